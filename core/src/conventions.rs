@@ -1,0 +1,1 @@
+//! Left and right, pairing, hat, frames, units, bibliography, errata.

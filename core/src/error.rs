@@ -1,0 +1,115 @@
+//! What can go wrong, each with the sentence that a user sees.
+
+use core::fmt;
+
+/// Why a stepper couldn't be built, or a motion not be started.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// A parameter has a value that can't be used.
+    Parameter {
+        /// The field of the Lagrangian.
+        field: &'static str,
+        /// What is wrong with it.
+        cause: &'static str,
+    },
+    /// The step is NaN or infinite, or so small or large that the constants of the step leave the scalar's range.
+    InvalidStep {
+        /// The step, s.
+        step: f64,
+    },
+    /// The kinetic part is degenerate at the identity: a momentum doesn't determine a velocity.
+    SingularKinetic {
+        /// The determinant of the inertia of the continuous limit.
+        determinant: f64,
+    },
+    /// A part of the initial state isn't finite.
+    NonFinite {
+        /// Which part.
+        what: &'static str,
+    },
+    /// The initial attitude isn't in the group.
+    NotInGroup {
+        /// How far the matrix is from the relation of the group.
+        defect: f64,
+    },
+}
+
+impl fmt::Display for SetupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter { field, cause } => write!(f, "parameter `{field}` {cause}"),
+            Self::InvalidStep { step } => {
+                write!(
+                    f,
+                    "the step {step:e} s can't be used; choose a finite one of the order of the motion's time scale"
+                )
+            }
+            Self::SingularKinetic { determinant } => write!(
+                f,
+                "the kinetic part is singular at the identity (determinant {determinant:e}): a momentum doesn't determine a velocity"
+            ),
+            Self::NonFinite { what } => write!(f, "the initial {what} is not finite"),
+            Self::NotInGroup { defect } => {
+                write!(f, "the initial attitude is not in the group (defect {defect:e}); normalise it first")
+            }
+        }
+    }
+}
+
+impl core::error::Error for SetupError {}
+
+/// Why a step couldn't be made. The state is then what it was before.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum StepError {
+    /// A part of the state isn't finite, before the step or after it.
+    NonFinite {
+        /// Which part.
+        what: &'static str,
+    },
+    /// The momentum equation (2.7) has no solution that continues the identity at this step, but has one at a smaller.
+    BeyondSolvable {
+        /// The step that was asked for, s.
+        step: f64,
+        /// The largest step that this state allows, s.
+        largest: f64,
+    },
+    /// Newton's iteration didn't settle.
+    NotConverged {
+        /// How many iterations were made.
+        iterations: u32,
+        /// The size of the last update relative to the unknown.
+        residual: f64,
+    },
+    /// The iteration settled on a solution that doesn't continue the identity.
+    WrongBranch {
+        /// The determinant of the Jacobian there, whose sign differs from that at the identity, or NaN.
+        determinant: f64,
+    },
+    /// The Jacobian is singular at an iterate.
+    Singular,
+}
+
+impl fmt::Display for StepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonFinite { what } => write!(f, "the {what} is not finite"),
+            Self::BeyondSolvable { step, largest } => write!(
+                f,
+                "no solution at the step {step:e} s: the body would turn too far; the largest step from this state is {largest:e} s"
+            ),
+            Self::NotConverged { iterations, residual } => write!(
+                f,
+                "Newton's iteration did not settle in {iterations} iterations (last relative update {residual:e}); try a smaller step"
+            ),
+            Self::WrongBranch { determinant } => write!(
+                f,
+                "the solution found doesn't continue the identity (Jacobian determinant {determinant:e}); try a smaller step"
+            ),
+            Self::Singular => write!(f, "the Newton Jacobian is singular; try a smaller step"),
+        }
+    }
+}
+
+impl core::error::Error for StepError {}

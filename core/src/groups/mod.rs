@@ -1,0 +1,85 @@
+//! Matrix Lie groups, one to a file.
+//!
+//! The laws that every group satisfies, with `F`, `G` in the group, `ξ`, `η` in the algebra, `μ` in its dual:
+//!
+//! | law | |
+//! |---|---|
+//! | `Ad_F ξ = (F ξ̂ F⁻¹)^∨` | [`adjoint`](LieGroup::adjoint) |
+//! | `⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩` | [`adjoint_transpose`](LieGroup::adjoint_transpose) |
+//! | `ad_ξ η = (ξ̂ η̂ − η̂ ξ̂)^∨` | [`lie_bracket`](LieGroup::lie_bracket) |
+//! | `⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩` | [`lie_bracket_transpose`](LieGroup::lie_bracket_transpose) |
+
+mod so3;
+
+pub use so3::{NotARotation, SO3};
+
+use core::fmt::Debug;
+
+use crate::coordinates::Coordinates;
+use crate::scalar::Real;
+
+/// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
+///
+/// Covectors are given by their components `μ_k = ⟨μ, E_k⟩`, so that no factor ½ appears anywhere.
+pub trait LieGroup: Copy + Debug + PartialEq {
+    /// The scalar of the matrices.
+    type Scalar: Real;
+    /// Components of algebra elements and of covectors.
+    type Vector: Coordinates<Self::Scalar>;
+    /// The ambient matrices.
+    type Matrix: Copy + Debug + PartialEq;
+
+    /// The dimension of the group.
+    const DIMENSION: usize;
+
+    /// The identity `e`.
+    fn identity() -> Self;
+
+    /// The product `self · right`.
+    #[must_use]
+    fn compose(&self, right: &Self) -> Self;
+
+    /// The inverse element.
+    #[must_use]
+    fn inverse(&self) -> Self;
+
+    /// The element as a matrix.
+    fn matrix(&self) -> Self::Matrix;
+
+    /// `ξ̂ = Σ ξ_k E_k`.
+    fn hat(components: &Self::Vector) -> Self::Matrix;
+
+    /// The components of an algebra element, the inverse of [`hat`](Self::hat).
+    fn vee(matrix: &Self::Matrix) -> Self::Vector;
+
+    /// `Ad_F ξ`.
+    fn adjoint(&self, velocity: &Self::Vector) -> Self::Vector;
+
+    /// `Ad*_F μ`, the transpose of [`adjoint`](Self::adjoint) (not the inverse transpose).
+    fn adjoint_transpose(&self, momentum: &Self::Vector) -> Self::Vector;
+
+    /// `ad_ξ η`.
+    fn lie_bracket(xi: &Self::Vector, eta: &Self::Vector) -> Self::Vector;
+
+    /// `ad*_ξ μ`, the transpose of [`lie_bracket`](Self::lie_bracket), \[RDAE, (1.17)\].
+    fn lie_bracket_transpose(xi: &Self::Vector, momentum: &Self::Vector) -> Self::Vector;
+
+    /// The element `I + D`, for an increment `D = F − I` that a retraction has formed.
+    fn from_increment(increment: &Self::Matrix) -> Self;
+
+    /// The increment `D = F − I`.
+    fn increment(&self) -> Self::Matrix;
+
+    /// The reconstruction `g ← g F = g + g D`, \[RDAE, (2.10)\].
+    ///
+    /// Adding `g D` loses less to rounding than multiplying by `F ≈ I`: the error of a product of size one becomes
+    /// one of size `|D|`.
+    #[must_use]
+    fn advance(&self, increment: &Self::Matrix) -> Self;
+
+    /// `Ad*_F μ − μ` for `F = I + D`.
+    fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector;
+
+    /// How far the matrix is from satisfying the relation of the group; zero on it.
+    fn defect(&self) -> Self::Scalar;
+}

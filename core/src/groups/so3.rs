@@ -1,0 +1,209 @@
+//! The rotations of space.
+
+use core::fmt;
+
+use nalgebra::{Matrix3, RealField, Rotation3, UnitQuaternion, Vector3};
+
+use super::LieGroup;
+use crate::scalar::{Real, real};
+
+/// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
+///
+/// Tangent space: `ξ̂ v = ξ × v`, basis `E_k = ê_k`; `ad_ξ η = ξ × η`. Covector components are those of the physical
+/// angular momentum. As an attitude it maps body to space components.
+///
+/// # Shape and units
+///
+/// A 3 × 3 matrix without unit.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::{LieGroup, SO3};
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// let attitude = SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0)));
+/// assert!(attitude.defect() < 1e-15);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SO3<T = f64>(Matrix3<T>);
+
+/// A matrix that isn't a rotation was given as one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotARotation {
+    /// `‖RᵀR − I‖` in the Frobenius norm, or NaN.
+    pub defect: f64,
+    /// The determinant, 1 for a rotation.
+    pub determinant: f64,
+}
+
+impl fmt::Display for NotARotation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the matrix is not a rotation: ‖RᵀR − I‖ = {:e}, det R = {}; pass a UnitQuaternion or an orthogonal matrix",
+            self.defect, self.determinant
+        )
+    }
+}
+
+impl core::error::Error for NotARotation {}
+
+impl<T: Real> SO3<T> {
+    /// Takes the matrix as it is; what depends on `RᵀR = I` is then only as right as the matrix.
+    #[must_use]
+    pub fn from_matrix_unchecked(matrix: Matrix3<T>) -> Self {
+        Self(matrix)
+    }
+
+    /// The matrix that maps body to space components.
+    #[must_use]
+    pub fn as_matrix(&self) -> &Matrix3<T> {
+        &self.0
+    }
+}
+
+impl<T: RealField + Copy> SO3<T> {
+    /// The rotation as a unit quaternion.
+    #[must_use]
+    pub fn to_quaternion(&self) -> UnitQuaternion<T> {
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(self.0))
+    }
+
+    /// The rotation vector `ξ` of the smallest angle with `exp ξ̂ = F`.
+    ///
+    /// At 180° the axis has two signs, of which one is returned.
+    #[must_use]
+    pub fn log(&self) -> Vector3<T> {
+        self.to_quaternion().scaled_axis()
+    }
+}
+
+impl<T> From<UnitQuaternion<T>> for SO3<T>
+where
+    T: Real,
+    T::Element: RealField,
+{
+    fn from(quaternion: UnitQuaternion<T>) -> Self {
+        Self(quaternion.to_rotation_matrix().into_inner())
+    }
+}
+
+impl<T: Real> From<Rotation3<T>> for SO3<T> {
+    fn from(rotation: Rotation3<T>) -> Self {
+        Self(rotation.into_inner())
+    }
+}
+
+impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
+    type Error = NotARotation;
+
+    /// Accepts a matrix that is orthogonal to 10⁴ roundings, so that one printed to a dozen digits passes.
+    fn try_from(matrix: Matrix3<T>) -> Result<Self, NotARotation> {
+        let candidate = Self(matrix);
+        let (defect, determinant) = (candidate.defect(), matrix.determinant());
+        if defect < T::default_epsilon() * real(1e4) && determinant > T::zero() {
+            Ok(candidate)
+        } else {
+            Err(NotARotation {
+                defect: crate::scalar::reported(defect),
+                determinant: crate::scalar::reported(determinant),
+            })
+        }
+    }
+}
+
+impl<T: Real> LieGroup for SO3<T> {
+    type Scalar = T;
+    type Vector = Vector3<T>;
+    type Matrix = Matrix3<T>;
+
+    const DIMENSION: usize = 3;
+
+    fn identity() -> Self {
+        Self(Matrix3::identity())
+    }
+
+    #[inline]
+    fn compose(&self, right: &Self) -> Self {
+        Self(self.0 * right.0)
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        Self(self.0.transpose())
+    }
+
+    #[inline]
+    fn matrix(&self) -> Matrix3<T> {
+        self.0
+    }
+
+    #[inline]
+    fn hat(v: &Vector3<T>) -> Matrix3<T> {
+        let zero = T::zero();
+        Matrix3::new(zero, -v.z, v.y, v.z, zero, -v.x, -v.y, v.x, zero)
+    }
+
+    /// Of a matrix that isn't skew, the components of its skew part.
+    #[inline]
+    fn vee(m: &Matrix3<T>) -> Vector3<T> {
+        Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12) * real::<T>(0.5)
+    }
+
+    #[inline]
+    fn adjoint(&self, velocity: &Vector3<T>) -> Vector3<T> {
+        self.0 * velocity
+    }
+
+    #[inline]
+    fn adjoint_transpose(&self, momentum: &Vector3<T>) -> Vector3<T> {
+        transpose_mul(&self.0, momentum)
+    }
+
+    #[inline]
+    fn lie_bracket(xi: &Vector3<T>, eta: &Vector3<T>) -> Vector3<T> {
+        xi.cross(eta)
+    }
+
+    /// `μ × ξ`.
+    #[inline]
+    fn lie_bracket_transpose(xi: &Vector3<T>, momentum: &Vector3<T>) -> Vector3<T> {
+        momentum.cross(xi)
+    }
+
+    #[inline]
+    fn from_increment(increment: &Matrix3<T>) -> Self {
+        Self(increment + Matrix3::identity())
+    }
+
+    #[inline]
+    fn increment(&self) -> Matrix3<T> {
+        self.0 - Matrix3::identity()
+    }
+
+    #[inline(always)]
+    fn advance(&self, increment: &Matrix3<T>) -> Self {
+        Self(self.0 + self.0 * increment)
+    }
+
+    #[inline(always)]
+    fn adjoint_transpose_increment(increment: &Matrix3<T>, momentum: &Vector3<T>) -> Vector3<T> {
+        transpose_mul(increment, momentum)
+    }
+
+    /// `‖RᵀR − I‖` in the Frobenius norm.
+    fn defect(&self) -> T {
+        let gram = self.0.transpose() * self.0 - Matrix3::identity();
+        gram.norm_squared().simd_sqrt()
+    }
+}
+
+/// `Aᵀ v`, unrolled.
+#[inline(always)]
+pub(crate) fn transpose_mul<T: Real>(a: &Matrix3<T>, v: &Vector3<T>) -> Vector3<T> {
+    Vector3::new(
+        a.m11 * v.x + a.m21 * v.y + a.m31 * v.z,
+        a.m12 * v.x + a.m22 * v.y + a.m32 * v.z,
+        a.m13 * v.x + a.m23 * v.y + a.m33 * v.z,
+    )
+}

@@ -1,0 +1,44 @@
+//! Structure-preserving integrators from declared reduced discrete Lagrangians.
+//!
+//! Annotate a struct with its reduced discrete Lagrangian `l_d(F, w)`, and [`lagrangian`] derives, when the crate is
+//! compiled, the momentum maps, the diamond term, the momentum equation and its Newton Jacobian; [`Stepper`] turns
+//! them into an integrator. [`conventions`] fixes what left, right and a momentum's components mean.
+//!
+//! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
+//! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
+//! direction: `scalar ← coordinates ← groups ← {retraction, advected} ← lagrangian ← newton ← flows ← stepper`.
+
+// Expansions name this crate by its path from outside; our own documentation and tests do too.
+extern crate self as liestep;
+
+pub mod conventions;
+
+mod advected;
+mod coordinates;
+mod error;
+mod flows;
+mod groups;
+mod inertia;
+mod lagrangian;
+mod newton;
+mod retraction;
+mod scalar;
+mod state;
+mod stepper;
+
+#[doc(hidden)]
+#[path = "private.rs"]
+pub mod __private;
+
+pub use advected::Advected;
+pub use coordinates::Coordinates;
+pub use error::{SetupError, StepError};
+pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use groups::{LieGroup, NotARotation, SO3};
+pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
+pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
+pub use liestep_macros::lagrangian;
+pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
+pub use scalar::Real;
+pub use state::State;
+pub use stepper::{StepReport, Stepper};

@@ -1,0 +1,138 @@
+//! Retractions: coordinates for the increments of a step.
+//!
+//! A retraction `τ` maps the Lie algebra to the group with `τ(0) = e` and derivative the identity there. The unknown
+//! of a Newton solve is such a coordinate vector, and `F` is rebuilt from it in every step: composing small
+//! corrections onto the previous `F` would let its rounding errors pile up.
+
+use nalgebra::{Matrix3, RealField, Vector3};
+
+use crate::groups::{LieGroup, SO3};
+use crate::scalar::{Real, real};
+
+/// Coordinates `ξ ↦ τ(ξ)` of a group about its identity.
+pub trait Retraction<G: LieGroup> {
+    /// `D = τ(ξ) − I`, formed without subtracting `I`, so that a small `ξ` keeps all its digits.
+    fn increment(xi: &G::Vector) -> G::Matrix;
+
+    /// `τ(ξ)`.
+    #[must_use]
+    fn retract(xi: &G::Vector) -> G {
+        G::from_increment(&Self::increment(xi))
+    }
+
+    /// `ξ` with `τ(ξ) = F`, or `None` where the coordinates don't reach `F`.
+    fn local_coordinates(element: &G) -> Option<G::Vector>;
+
+    /// The right-trivialised tangent `T` at `ξ`: `dF F⁻¹ = (T dξ)^`.
+    fn tangent(xi: &G::Vector) -> <G::Vector as crate::Coordinates<G::Scalar>>::Square;
+
+    /// Whether `ξ` lies so near to the identity that a solution there is the one that continues the identity.
+    ///
+    /// On SO(3) that is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
+    /// such solution. Farther out a solver looks closer.
+    fn is_near_identity(xi: &G::Vector) -> bool;
+}
+
+/// The Cayley map `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`.
+///
+/// `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`; only half turns are out of reach. No transcendental function
+/// is evaluated, so a step in these coordinates gives the same bits on every IEEE machine.
+#[derive(Clone, Copy, Debug)]
+pub struct CayleyRetraction;
+
+impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
+    /// `D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²)`.
+    #[inline(always)]
+    fn increment(xi: &Vector3<T>) -> Matrix3<T> {
+        let squared = xi.x * xi.x + xi.y * xi.y + xi.z * xi.z;
+        let four = real::<T>(4.0);
+        let scale = four / (four + squared);
+        quadratic_increment(xi, scale, scale * real(0.5))
+    }
+
+    /// `2 (F − Fᵀ)^∨ / (1 + tr F)`.
+    fn local_coordinates(element: &SO3<T>) -> Option<Vector3<T>> {
+        let f = element.as_matrix();
+        let scale = real::<T>(2.0) / (T::one() + f.m11 + f.m22 + f.m33);
+        let xi = SO3::vee(f) * (scale + scale);
+        crate::Coordinates::is_finite(&xi).then_some(xi)
+    }
+
+    /// `T = (I + ξ̂/2) · 4/(4 + |ξ|²)`.
+    fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
+        let four = real::<T>(4.0);
+        let scale = four / (four + xi.norm_squared());
+        (Matrix3::identity() + SO3::hat(xi) * real::<T>(0.5)) * scale
+    }
+
+    #[inline(always)]
+    fn is_near_identity(xi: &Vector3<T>) -> bool {
+        use nalgebra::SimdBool as _;
+        (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0)).all()
+    }
+}
+
+/// The exponential map, `ξ = θ n`.
+#[derive(Clone, Copy, Debug)]
+pub struct ExponentialRetraction;
+
+impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
+    /// Rodrigues' formula, `D = (sin θ/θ) ξ̂ + ½ (sin(θ/2)/(θ/2))² ξ̂²`, free of cancellation.
+    fn increment(xi: &Vector3<T>) -> Matrix3<T> {
+        let angle_squared = xi.norm_squared();
+        let (first, half) = (sinc(angle_squared), sinc(angle_squared * real(0.25)));
+        quadratic_increment(xi, first, half * half * real(0.5))
+    }
+
+    fn local_coordinates(element: &SO3<T>) -> Option<Vector3<T>> {
+        let xi = element.log();
+        crate::Coordinates::is_finite(&xi).then_some(xi)
+    }
+
+    /// `T = I + (1 − cos θ)/θ² ξ̂ + (θ − sin θ)/θ³ ξ̂²`.
+    fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
+        let angle_squared = xi.norm_squared();
+        let half = sinc(angle_squared * real(0.25));
+        // (θ − sin θ)/θ³ cancels for small θ; below this its Taylor polynomial is exact to a rounding.
+        let third = if angle_squared < real(0.04) {
+            let t = angle_squared;
+            let [a, b, c, d, e] =
+                [1.0 / 6.0, -1.0 / 120.0, 1.0 / 5040.0, -1.0 / 362_880.0, 1.0 / 39_916_800.0].map(real::<T>);
+            a + t * (b + t * (c + t * (d + t * e)))
+        } else {
+            (T::one() - sinc(angle_squared)) / angle_squared
+        };
+        Matrix3::identity() + quadratic_increment(xi, half * half * real(0.5), third)
+    }
+
+    fn is_near_identity(xi: &Vector3<T>) -> bool {
+        xi.norm_squared() < T::frac_pi_2() * T::frac_pi_2()
+    }
+}
+
+/// `a ξ̂ + b ξ̂²`.
+#[inline(always)]
+fn quadratic_increment<T: Real>(xi: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
+    let (x, y, z) = (xi.x, xi.y, xi.z);
+    let (bx, by, bz) = (b * x, b * y, b * z);
+    let (ax, ay, az) = (a * x, a * y, a * z);
+    let (xx, yy, zz) = (bx * x, by * y, bz * z);
+    let (xy, xz, yz) = (bx * y, bx * z, by * z);
+    Matrix3::new(-(yy + zz), xy - az, xz + ay, xy + az, -(xx + zz), yz - ax, xz - ay, yz + ax, -(xx + yy))
+}
+
+/// `sin θ / θ` as a function of `θ²`.
+///
+/// Below `θ² = 0.01` the Taylor polynomial to `θ¹⁰` is exact to a rounding; there is no square root at zero, whose
+/// derivative a dual number couldn't carry.
+fn sinc<T: RealField + Copy>(angle_squared: T) -> T {
+    if angle_squared < real(0.01) {
+        let t = angle_squared;
+        let [a, b, c, d, e] =
+            [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0].map(real::<T>);
+        T::one() + t * (a + t * (b + t * (c + t * (d + t * e))))
+    } else {
+        let angle = angle_squared.sqrt();
+        angle.sin() / angle
+    }
+}

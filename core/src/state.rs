@@ -1,0 +1,70 @@
+//! The state of a motion, and what can be read off it.
+
+use crate::advected::Advected;
+use crate::groups::{LieGroup, SO3};
+use crate::scalar::Real;
+use nalgebra::Vector3;
+
+/// Attitude, momentum and advected parameters at one time.
+///
+/// The coordinates of the last increment are kept as the next solve's guess. They are part of the state, so that a
+/// copy continues with the same bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<G: LieGroup, A: Advected<G>> {
+    pub(crate) attitude: G,
+    pub(crate) momentum: G::Vector,
+    pub(crate) advected: A,
+    pub(crate) coordinates: G::Vector,
+    pub(crate) steps: u64,
+}
+
+impl<G: LieGroup, A: Advected<G>> State<G, A> {
+    pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A) -> Self {
+        let coordinates = crate::Coordinates::zero();
+        Self { attitude, momentum, advected, coordinates, steps: 0 }
+    }
+
+    /// The attitude `g_i`, body to space.
+    #[must_use]
+    pub fn attitude(&self) -> G {
+        self.attitude
+    }
+
+    /// The momentum `μ_i`, body frame; on SO(3) the physical angular momentum, kg m²/s.
+    #[must_use]
+    pub fn momentum(&self) -> G::Vector {
+        self.momentum
+    }
+
+    /// The advected parameters `w_i = g_i⁻¹ · a_0`.
+    #[must_use]
+    pub fn advected(&self) -> A {
+        self.advected
+    }
+
+    /// The number of steps made.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The momentum in space, `Ad*_{g⁻¹} μ` (`R Π` on SO(3)); constant where nothing is advected.
+    #[must_use]
+    pub fn spatial_momentum(&self) -> G::Vector {
+        self.attitude.inverse().adjoint_transpose(&self.momentum)
+    }
+
+    /// How far the attitude has left the group, `‖RᵀR − I‖` on SO(3).
+    #[must_use]
+    pub fn orthogonality_defect(&self) -> G::Scalar {
+        self.attitude.defect()
+    }
+}
+
+impl<T: Real, A: Advected<SO3<T>>> State<SO3<T>, A> {
+    /// The spatial momentum's component along a direction given in space, `e₃ · R Π` for the vertical, (3.20).
+    #[must_use]
+    pub fn momentum_along(&self, direction: &Vector3<T>) -> T {
+        self.spatial_momentum().dot(direction)
+    }
+}

@@ -1,0 +1,191 @@
+//! The stepper: a flow on momenta with reconstruction.
+
+use crate::advected::Advected as _;
+use crate::coordinates::Coordinates as _;
+use crate::error::{SetupError, StepError};
+use crate::flows::DiscreteLiePoisson;
+use crate::groups::LieGroup;
+use crate::lagrangian::{
+    DiscreteLagrangian, Group, Scalar, Vector, energy, momentum_of_velocity, velocity_of_momentum,
+};
+use crate::scalar::{real, reported};
+use crate::state::State;
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepReport {
+    /// Newton iterations; above 20 where the first guess had to be given up.
+    pub iterations: u32,
+}
+
+/// An integrator with a fixed step for a declared Lagrangian.
+///
+/// # Contract
+///
+/// - A step satisfies its momentum equation to rounding on the branch of the identity, or returns an error and leaves
+///   the state as it was.
+/// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
+///   that holds from machine to machine.
+/// - Nothing is allocated, and no loop is unbounded.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::{DiagonalNonstandardInertia, SO3, Stepper, lagrangian};
+/// use nalgebra::Vector3;
+///
+/// /// A free rigid body.
+/// #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
+/// struct Body {
+///     J_d: DiagonalNonstandardInertia,
+/// }
+///
+/// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
+/// let stepper = Stepper::new(Body { J_d }, 0.01)?;
+/// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
+/// let before = state.spatial_momentum();
+/// for _ in 0..1000 {
+///     stepper.step(&mut state)?;
+/// }
+/// assert!((state.spatial_momentum() - before).norm() < 1e-12);
+/// # use liestep::LieGroup;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stepper<L: DiscreteLagrangian> {
+    flow: DiscreteLiePoisson<L>,
+}
+
+impl<L: DiscreteLagrangian> Stepper<L> {
+    /// Checks the parameters and folds the constants for the step `h`, in seconds.
+    ///
+    /// # Errors
+    ///
+    /// As [`DiscreteLiePoisson::new`].
+    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError> {
+        DiscreteLiePoisson::new(lagrangian, h).map(|flow| Self { flow })
+    }
+
+    /// A motion from an attitude (body to space) and a body velocity, on SO(3) in rad/s.
+    ///
+    /// The momentum is that of the continuous Lagrangian, `μ_0 = J Ω_0` for a rigid body: the half kick of the
+    /// potential is inside (2.7).
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
+    pub fn start(
+        &self,
+        attitude: impl Into<Group<L>>,
+        velocity: Vector<L>,
+    ) -> Result<State<Group<L>, L::Advected>, SetupError> {
+        if !velocity.is_finite() {
+            return Err(SetupError::NonFinite { what: "velocity" });
+        }
+        let attitude = attitude.into();
+        let w = self.lagrangian().advected().seen_from(&attitude);
+        let momentum = momentum_of_velocity(self.lagrangian(), &velocity, &w);
+        self.start_with_momentum(attitude, momentum)
+    }
+
+    /// A motion from an attitude (body to space) and a body momentum, on SO(3) in kg m²/s.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
+    pub fn start_with_momentum(
+        &self,
+        attitude: impl Into<Group<L>>,
+        momentum: Vector<L>,
+    ) -> Result<State<Group<L>, L::Advected>, SetupError> {
+        let attitude = attitude.into();
+        // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
+        let allowed = Scalar::<L>::simd_default_epsilon() * real(1e4);
+        let defect = attitude.defect();
+        if !defect.simd_le(allowed).all() {
+            return Err(SetupError::NotInGroup { defect: reported(defect) });
+        }
+        let advected = self.lagrangian().advected().seen_from(&attitude);
+        if !momentum.is_finite() {
+            return Err(SetupError::NonFinite { what: "momentum" });
+        }
+        Ok(State::new(attitude, momentum, advected))
+    }
+
+    /// One step. On an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where the momentum equation (2.7) has no solution on the branch of the identity, or a value
+    /// isn't finite.
+    #[inline]
+    pub fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
+        let step = self.flow.step(&state.momentum, &state.advected, &state.coordinates)?;
+        state.attitude = state.attitude.advance(&step.increment);
+        state.momentum = step.momentum;
+        state.advected = step.advected;
+        state.coordinates = step.coordinates;
+        state.steps += 1;
+        Ok(StepReport { iterations: step.iterations })
+    }
+
+    /// The states after each step from here on; after an error, nothing more.
+    pub fn steps(
+        &self,
+        state: State<Group<L>, L::Advected>,
+    ) -> impl Iterator<Item = Result<State<Group<L>, L::Advected>, StepError>> {
+        let mut current = Some(state);
+        core::iter::from_fn(move || {
+            let mut next = current.take()?;
+            Some(self.step(&mut next).map(|_| {
+                current = Some(next);
+                next
+            }))
+        })
+    }
+
+    /// The declared Lagrangian.
+    #[must_use]
+    pub fn lagrangian(&self) -> &L {
+        self.flow.lagrangian()
+    }
+
+    /// The flow on momenta, (2.8).
+    #[must_use]
+    pub fn flow(&self) -> &DiscreteLiePoisson<L> {
+        &self.flow
+    }
+
+    /// The step `h`, s.
+    #[must_use]
+    pub fn step_size(&self) -> Scalar<L> {
+        self.flow.step_size()
+    }
+
+    /// The time since the start, `n h`, s; never accumulated.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
+    pub fn time(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
+        self.step_size() * real(state.steps as f64)
+    }
+
+    /// The body velocity, on SO(3) in rad/s.
+    #[must_use]
+    pub fn velocity(&self, state: &State<Group<L>, L::Advected>) -> Vector<L> {
+        velocity_of_momentum(self.lagrangian(), &state.momentum, &state.advected)
+    }
+
+    /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. It oscillates about its initial value, at the order
+    /// of the scheme, and doesn't drift.
+    #[must_use]
+    pub fn energy(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
+        energy(self.lagrangian(), &state.momentum, &state.advected)
+    }
+
+    /// The largest step from this state up to the stepper's own, s; see [`DiscreteLiePoisson::max_step`].
+    #[must_use]
+    pub fn max_step(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
+        self.flow.max_step(&state.momentum, &state.advected)
+    }
+}

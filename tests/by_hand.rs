@@ -1,0 +1,130 @@
+//! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
+
+use liestep::{CayleyRetraction, DiscreteLagrangian, NonstandardInertia, SO3, SetupError, Stepper};
+use nalgebra::{Matrix3, Vector3};
+
+#[derive(Clone, Debug)]
+struct HandWrittenTop {
+    inertia: NonstandardInertia,
+    weight: f64,
+    rho: Vector3<f64>,
+}
+
+fn hat(v: &Vector3<f64>) -> Matrix3<f64> {
+    v.cross_matrix()
+}
+
+/// `(M − Mᵀ)^∨`.
+fn skew(m: Matrix3<f64>) -> Vector3<f64> {
+    Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
+}
+
+impl HandWrittenTop {
+    fn torque(&self, w: &Vector3<f64>) -> Vector3<f64> {
+        w.cross(&self.rho) * self.weight
+    }
+}
+
+impl DiscreteLagrangian for HandWrittenTop {
+    type Scalar = f64;
+    type Group = SO3;
+    type Retraction = CayleyRetraction;
+    type Advected = Vector3<f64>;
+    /// `J/h`, `(h/2) m g ρ`.
+    type Constants = (Matrix3<f64>, Vector3<f64>);
+    type StepTerms = Vector3<f64>;
+
+    const DERIVATION: &'static str = "the heavy top (3.13), by hand";
+
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
+
+    fn advected(&self) -> Vector3<f64> {
+        Vector3::z()
+    }
+
+    fn l_d(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
+        let d = f - Matrix3::identity();
+        (d * self.inertia.as_matrix() * d.transpose()).trace() / (2.0 * h)
+            - 0.5 * h * self.weight * w.dot(&(self.rho + f * self.rho))
+    }
+
+    fn right_momentum(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> Vector3<f64> {
+        skew(f * self.inertia.as_matrix()) / h - (f * self.rho).cross(w) * (0.5 * h * self.weight)
+    }
+
+    fn left_momentum(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> Vector3<f64> {
+        skew(self.inertia.as_matrix() * f) / h + self.torque(&(f.transpose() * w)) * (0.5 * h)
+    }
+
+    fn diamond(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> Vector3<f64> {
+        w.cross(&(self.rho + f * self.rho)) * (0.5 * h * self.weight)
+    }
+
+    fn momentum_jacobian(&self, f: &Matrix3<f64>, _: &Vector3<f64>, h: f64) -> Matrix3<f64> {
+        let p = f * self.inertia.as_matrix() / h;
+        Matrix3::from_diagonal_element(p.trace()) - p
+    }
+
+    fn discrete_energy(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
+        let d = f - Matrix3::identity();
+        (d * self.inertia.as_matrix() * d.transpose()).trace() / (2.0 * h * h)
+            + 0.5 * self.weight * w.dot(&(self.rho + f * self.rho))
+    }
+
+    fn inertia(&self) -> Matrix3<f64> {
+        *self.inertia.to_inertia().as_matrix()
+    }
+
+    fn momentum_bias(&self, _: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+
+    fn potential(&self, w: &Vector3<f64>) -> f64 {
+        self.weight * w.dot(&self.rho)
+    }
+
+    fn constants(&self, h: f64) -> Self::Constants {
+        (*self.inertia.to_inertia().as_matrix() / h, self.rho * (0.5 * h * self.weight))
+    }
+
+    fn kick_before((_, lever): &Self::Constants, w: &Vector3<f64>) -> Vector3<f64> {
+        w.cross(lever)
+    }
+
+    fn step_terms(_: &Self::Constants, a: &Vector3<f64>, _: &Vector3<f64>) -> Vector3<f64> {
+        *a
+    }
+
+    fn newton_system((j, _): &Self::Constants, a: &Vector3<f64>, xi: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+        let y = xi * 0.5;
+        let jy = j * y;
+        let residual = (jy + y.cross(&jy)) * 2.0 - a * (1.0 + y.norm_squared());
+        let jacobian = j + hat(&y) * j - hat(&jy) - a * y.transpose();
+        (residual, jacobian)
+    }
+
+    fn kick_after((_, lever): &Self::Constants, _: &Matrix3<f64>, next: &Vector3<f64>) -> Vector3<f64> {
+        next.cross(lever)
+    }
+}
+
+#[test]
+fn a_top_written_by_hand_steps_and_keeps_its_vertical_momentum() {
+    let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
+    let top = HandWrittenTop { inertia, weight: 9.81, rho: Vector3::z() };
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    let attitude = nalgebra::UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+    let velocity = Vector3::new(0.5, 3.0 * 0.8_f64.sin(), 10.0 + 3.0 * 0.8_f64.cos());
+    let mut state = stepper.start(attitude, velocity).unwrap();
+    let (momentum, energy) = (state.momentum_along(&Vector3::z()), stepper.energy(&state));
+    let mut most = 0;
+    for _ in 0..10_000 {
+        most = most.max(stepper.step(&mut state).unwrap().iterations);
+        assert!((stepper.energy(&state) - energy).abs() < 1e-2);
+    }
+    assert!(most <= 4, "{most} iterations");
+    assert!((state.momentum_along(&Vector3::z()) - momentum).abs() < 1e-12);
+    assert!(state.orthogonality_defect() < 1e-13);
+}
