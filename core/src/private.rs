@@ -29,24 +29,14 @@ pub trait Parameter {
     }
 }
 
-macro_rules! scalar_parameter {
-    ($($scalar:ty),+) => {
-        $(impl Parameter for $scalar {
-            type Value = Self;
-
-            #[inline(always)]
-            fn value(&self) -> Self {
-                *self
-            }
-
-            fn is_finite(&self) -> bool {
-                <$scalar>::is_finite(*self)
-            }
-        })+
-    };
+/// As [`Parameter::validate`], for a scalar.
+///
+/// # Errors
+///
+/// [`SetupError::Parameter`] with the name of the field.
+pub fn validate_scalar<T: Real>(value: T, field: &'static str) -> Result<(), SetupError> {
+    if crate::scalar::is_finite(value) { Ok(()) } else { Err(SetupError::Parameter { field, cause: "is not finite" }) }
 }
-
-scalar_parameter!(f64, f32);
 
 macro_rules! matrix_parameter {
     ($type:ty, $value:ty, $get:expr) => {

@@ -1,7 +1,43 @@
-//! The attribute macro of liestep.
-use proc_macro::TokenStream;
-/// Derives an integrator.
+//! The attribute macro of liestep; use it through the crate `liestep`.
+//!
+//! This half runs when the user's crate is compiled. One direction of dependency:
+//! `lib → expand → {parse, check, lower} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+
+mod ast;
+mod check;
+mod derive;
+mod emit;
+mod errors;
+mod expand;
+mod fallback;
+mod lower;
+mod parse;
+mod scalar;
+mod symbolic;
+
+/// Derives an integrator from a reduced discrete Lagrangian: `impl DiscreteLagrangian` for the annotated struct.
+///
+/// ```text
+/// #[lagrangian(
+///     group = SO3,                    the group that F belongs to
+///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
+///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings
+///     crate = path,                   where liestep is found, if not at `::liestep`
+/// )]
+/// struct Name { … }                   the parameters
+/// ```
+///
+/// In scope in the expression are `F` (the increment `g_i⁻¹ g_{i+1}`, a matrix), `I`, `h` (the step), the advected names
+/// and the fields. It is ordinary Rust over nalgebra, so it also becomes the method `l_d` as it stands: `+ - * /`, unary
+/// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
+/// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, `vee(A)`, indexing, and decimal literals.
+///
+/// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>`, `NonstandardInertia`, `DiagonalNonstandardInertia` and
+/// `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct. Their types say what may be
+/// used: an inertia is symmetric, a diagonal one has six zeros.
+///
+/// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
-pub fn lagrangian(_attribute: TokenStream, item: TokenStream) -> TokenStream {
-    item
+pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand::expand(arguments.into(), item.into()).into()
 }

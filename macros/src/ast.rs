@@ -1,0 +1,127 @@
+//! A declaration after parsing: the struct, the attribute's arguments, and the expression as a tree with shapes.
+
+use std::rc::Rc;
+
+use proc_macro2::Span;
+use syn::{Expr, Ident, ItemStruct, Path};
+
+use crate::symbolic::{Function, Rational};
+
+/// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
+pub(crate) struct Declaration {
+    pub(crate) item: ItemStruct,
+    /// Where liestep is found.
+    pub(crate) root: Path,
+    pub(crate) advected: Vec<AdvectedParameter>,
+    pub(crate) l_d: Expr,
+    pub(crate) fields: Vec<Field>,
+    pub(crate) scalar: Scalar,
+}
+
+/// `w = up`: `w` in the expression is the field `up`, carried by the group.
+pub(crate) struct AdvectedParameter {
+    pub(crate) name: Ident,
+    /// The index of the field.
+    pub(crate) field: usize,
+}
+
+/// A field of the struct.
+pub(crate) struct Field {
+    pub(crate) name: Ident,
+    pub(crate) kind: FieldKind,
+}
+
+/// What a field's type promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FieldKind {
+    Scalar,
+    Vector,
+    Matrix,
+    /// `NonstandardInertia`, `Inertia`.
+    SymmetricInertia,
+    /// `DiagonalNonstandardInertia`.
+    DiagonalInertia,
+}
+
+impl FieldKind {
+    pub(crate) fn shape(self) -> Shape {
+        match self {
+            Self::Scalar => Shape::Scalar,
+            Self::Vector => Shape::Matrix(3, 1),
+            Self::Matrix | Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
+        }
+    }
+}
+
+/// The scalar that all fields share.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Scalar {
+    /// `f64` or `f32`.
+    Primitive(Ident),
+    /// A type parameter of the struct.
+    Parameter(Ident),
+}
+
+/// The shape of an expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    Scalar,
+    /// Rows and columns; a vector has one column.
+    Matrix(usize, usize),
+}
+
+impl Shape {
+    /// In a message: `a scalar`, `a vector of 3`, `a 3 × 3 matrix`.
+    pub(crate) fn describe(self) -> String {
+        match self {
+            Self::Scalar => "a scalar".to_owned(),
+            Self::Matrix(rows, 1) => format!("a vector of {rows}"),
+            Self::Matrix(1, columns) => format!("a row of {columns}"),
+            Self::Matrix(rows, columns) => format!("a {rows} × {columns} matrix"),
+        }
+    }
+}
+
+/// An expression with its shape, read as mathematics.
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
+    pub(crate) span: Span,
+    pub(crate) shape: Shape,
+    pub(crate) kind: Kind,
+}
+
+/// A name in scope.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Name {
+    /// `F`.
+    Increment,
+    /// `h`.
+    Step,
+    /// An advected parameter, by its place in `advected(…)`.
+    Advected(usize),
+    /// A field, by its place in the struct.
+    Field(usize),
+}
+
+/// The operations of the declared syntax.
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    Number(Rational),
+    Identity,
+    Name(Name),
+    Negate(Rc<Tree>),
+    Add(Rc<Tree>, Rc<Tree>),
+    Subtract(Rc<Tree>, Rc<Tree>),
+    Multiply(Rc<Tree>, Rc<Tree>),
+    Divide(Rc<Tree>, Rc<Tree>),
+    Transpose(Rc<Tree>),
+    Trace(Rc<Tree>),
+    Dot(Rc<Tree>, Rc<Tree>),
+    Cross(Rc<Tree>, Rc<Tree>),
+    CrossMatrix(Rc<Tree>),
+    ComponentMultiply(Rc<Tree>, Rc<Tree>),
+    Power(Rc<Tree>, i32),
+    Apply(Function, Rc<Tree>),
+    Vee(Rc<Tree>),
+    Entry(Rc<Tree>, usize, usize),
+}

@@ -1,0 +1,189 @@
+//! Methods and functions of the declared syntax.
+
+use std::rc::Rc;
+
+use proc_macro2::Span;
+use syn::spanned::Spanned as _;
+use syn::{Expr, ExprCall, ExprMethodCall, Lit, UnOp};
+
+use super::{Checker, tree};
+use crate::ast::{Kind, Shape, Tree};
+use crate::errors::suggestion;
+use crate::symbolic::Function;
+
+const METHODS: [&str; 15] = [
+    "transpose",
+    "trace",
+    "dot",
+    "norm_squared",
+    "norm",
+    "cross",
+    "cross_matrix",
+    "component_mul",
+    "powi",
+    "sqrt",
+    "ln",
+    "exp",
+    "sin",
+    "cos",
+    "clone",
+];
+
+const VECTOR: Shape = Shape::Matrix(3, 1);
+const SQUARE: Shape = Shape::Matrix(3, 3);
+
+impl Checker<'_> {
+    pub(super) fn method(&mut self, call: &ExprMethodCall) -> Option<Rc<Tree>> {
+        let receiver = self.expression(&call.receiver);
+        let name = call.method.to_string();
+        if !METHODS.contains(&name.as_str()) {
+            self.unknown_method(&name, call.method.span());
+            return None;
+        }
+        if let Some(arguments) = &call.turbofish {
+            self.errors.push(arguments.span(), "leave the type arguments away");
+        }
+        let wanted = usize::from(matches!(name.as_str(), "dot" | "cross" | "component_mul" | "powi"));
+        if call.args.len() != wanted {
+            let count = if wanted == 0 { "no argument" } else { "one argument" };
+            self.errors.push(call.method.span(), format!("`{name}` takes {count}"));
+            return None;
+        }
+        let (receiver, span, at) = (receiver?, call.span(), call.method.span());
+        match (name.as_str(), call.args.first()) {
+            ("powi", Some(exponent)) => self.power(receiver, exponent, span, at),
+            (_, Some(argument)) => {
+                let argument = self.expression(argument)?;
+                self.of_two(&name, receiver, argument, span, at)
+            }
+            (_, None) => self.of_one(&name, receiver, span, at),
+        }
+    }
+
+    fn of_one(&mut self, name: &str, receiver: Rc<Tree>, span: Span, at: Span) -> Option<Rc<Tree>> {
+        let shape = receiver.shape;
+        let (expected, result) = match (name, shape) {
+            ("clone", _) => return Some(receiver),
+            ("transpose", Shape::Matrix(rows, columns)) => {
+                return Some(tree(span, Shape::Matrix(columns, rows), Kind::Transpose(receiver)));
+            }
+            ("transpose", Shape::Scalar) => ("a matrix", None),
+            ("trace", SQUARE) => ("", Some((Shape::Scalar, Kind::Trace(receiver)))),
+            ("trace", _) => ("a square matrix", None),
+            ("cross_matrix", VECTOR) => ("", Some((SQUARE, Kind::CrossMatrix(receiver)))),
+            ("cross_matrix", _) => ("a vector of 3", None),
+            ("norm_squared" | "norm", VECTOR) => {
+                let squared = tree(span, Shape::Scalar, Kind::Dot(receiver.clone(), receiver));
+                let norm = |squared| Kind::Apply(Function::Sqrt, squared);
+                return Some(if name == "norm" { tree(span, Shape::Scalar, norm(squared)) } else { squared });
+            }
+            ("norm_squared" | "norm", Shape::Matrix(..)) => {
+                let turned = match shape {
+                    Shape::Matrix(rows, columns) => Shape::Matrix(columns, rows),
+                    Shape::Scalar => shape,
+                };
+                if turned != shape {
+                    return self.mismatch(name, "a vector of 3 or a square matrix", shape, at);
+                }
+                let transposed = tree(span, turned, Kind::Transpose(receiver.clone()));
+                let product = tree(span, shape, Kind::Multiply(receiver, transposed));
+                let squared = tree(span, Shape::Scalar, Kind::Trace(product));
+                let norm = |squared| Kind::Apply(Function::Sqrt, squared);
+                return Some(if name == "norm" { tree(span, Shape::Scalar, norm(squared)) } else { squared });
+            }
+            ("norm_squared" | "norm", Shape::Scalar) => ("a vector or a matrix", None),
+            (function, Shape::Scalar) => {
+                let function = Function::ALL.into_iter().find(|known| known.name() == function);
+                ("", function.map(|function| (Shape::Scalar, Kind::Apply(function, receiver))))
+            }
+            _ => ("a scalar", None),
+        };
+        match result {
+            Some((shape, kind)) => Some(tree(span, shape, kind)),
+            None => self.mismatch(name, expected, shape, at),
+        }
+    }
+
+    fn of_two(&mut self, name: &str, left: Rc<Tree>, right: Rc<Tree>, span: Span, at: Span) -> Option<Rc<Tree>> {
+        for operand in [&left, &right] {
+            if operand.shape != VECTOR {
+                return self.mismatch(name, "two vectors of 3", operand.shape, at);
+            }
+        }
+        Some(match name {
+            "dot" => tree(span, Shape::Scalar, Kind::Dot(left, right)),
+            "cross" => tree(span, VECTOR, Kind::Cross(left, right)),
+            _ => tree(span, VECTOR, Kind::ComponentMultiply(left, right)),
+        })
+    }
+
+    fn power(&mut self, base: Rc<Tree>, exponent: &Expr, span: Span, at: Span) -> Option<Rc<Tree>> {
+        if base.shape != Shape::Scalar {
+            return self.mismatch("powi", "a scalar", base.shape, at);
+        }
+        match integer(exponent).filter(|n| (-16..=16).contains(n)) {
+            Some(exponent) => Some(tree(span, Shape::Scalar, Kind::Power(base, exponent))),
+            None => {
+                self.errors.push(exponent.span(), "write the exponent as a whole number from −16 to 16");
+                None
+            }
+        }
+    }
+
+    fn mismatch(&mut self, name: &str, expected: &str, found: Shape, at: Span) -> Option<Rc<Tree>> {
+        self.errors.push(at, format!("`{name}` needs {expected}, and this is {}", found.describe()));
+        None
+    }
+
+    fn unknown_method(&mut self, name: &str, span: Span) {
+        let message = match name {
+            "abs" | "max" | "min" | "signum" | "floor" | "ceil" | "round" | "clamp" => {
+                format!("`{name}` isn't smooth, and its derivative is needed: use a smooth function such as `.powi(2)`")
+            }
+            "magnitude" => "write `norm`".to_owned(),
+            "magnitude_squared" => "write `norm_squared`".to_owned(),
+            "tr_mul" | "tr_dot" => "write `.transpose()` and `*`".to_owned(),
+            _ => {
+                let known = METHODS.iter().copied().filter(|known| *known != "clone").collect::<Vec<_>>().join(", ");
+                let near = suggestion(name, METHODS);
+                format!("`{name}` isn't known in a Lagrangian{near}\nknown: {known}")
+            }
+        };
+        self.errors.push(span, message);
+    }
+
+    /// `vee(A)`, the only free function.
+    pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
+        let is_vee = matches!(&*call.func, Expr::Path(path) if path.path.is_ident("vee"));
+        if !is_vee {
+            self.errors.push(
+                call.func.span(),
+                "this function isn't known in a Lagrangian; there is `vee(A)`, the vector of a skew matrix",
+            );
+            return None;
+        }
+        let mut arguments = call.args.iter();
+        let (Some(argument), None) = (arguments.next(), arguments.next()) else {
+            self.errors.push(call.func.span(), "`vee` takes one matrix");
+            return None;
+        };
+        let argument = self.expression(argument)?;
+        if argument.shape != SQUARE {
+            return self.mismatch("vee", "a 3 × 3 matrix", argument.shape, call.func.span());
+        }
+        Some(tree(call.span(), VECTOR, Kind::Vee(argument)))
+    }
+}
+
+fn integer(expression: &Expr) -> Option<i32> {
+    match expression {
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Int(integer) => integer.base10_parse().ok(),
+            _ => None,
+        },
+        Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => integer(&unary.expr).map(|n: i32| -n),
+        Expr::Paren(inner) => integer(&inner.expr),
+        Expr::Group(inner) => integer(&inner.expr),
+        _ => None,
+    }
+}

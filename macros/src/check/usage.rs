@@ -1,0 +1,30 @@
+//! What is declared must be used, as a forgotten name is a forgotten force.
+
+use syn::ext::IdentExt as _;
+use syn::spanned::Spanned as _;
+
+use crate::ast::{Declaration, Name};
+use crate::errors::Errors;
+
+pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
+    if !used.contains(&Name::Increment) {
+        errors.push(
+            declaration.l_d.span(),
+            "the Lagrangian doesn't depend on `F`, the increment of a step: nothing would move",
+        );
+    }
+    for (index, w) in declaration.advected.iter().enumerate() {
+        if !used.contains(&Name::Advected(index)) {
+            let name = w.name.unraw();
+            errors.push(w.name.span(), format!("`{name}` isn't used in the Lagrangian: remove it from `advected(…)`"));
+        }
+    }
+    for (index, field) in declaration.fields.iter().enumerate() {
+        let carried = declaration.advected.iter().any(|w| w.field == index);
+        if !carried && !used.contains(&Name::Field(index)) {
+            let name = field.name.unraw();
+            errors
+                .push(field.name.span(), format!("`{name}` isn't used in the Lagrangian: remove the field, or use it"));
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! The momentum equation in Cayley coordinates with the denominators cleared.
+//!
+//! `F = cay(ξ) = ((4 − |ξ|²) I + 2 ξξᵀ + 4 ξ̂) / (4 + |ξ|²)`. Where `U(F, w)` is polynomial in `F`, multiplying
+//! `U(F, w) − a` by a power of `D = 4 + |ξ|²` leaves a polynomial in `ξ`: for (3.13) a quadratic one.
+
+use std::collections::BTreeMap;
+
+use super::Context;
+use crate::symbolic::{Expression, Rational, Variations, variation};
+
+/// `Dⁿ (U − a)`, linear in `E_k`, and its variation along `δξ`.
+#[derive(Clone, Debug)]
+pub(crate) struct Cleared {
+    pub(crate) residual: Expression,
+    pub(crate) jacobian: Expression,
+}
+
+/// Beyond this many terms the retracted form is surely cheaper, and expanding would take long.
+const MOST_TERMS: usize = 400;
+
+pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared> {
+    let directions = context.directions;
+    if unknown.contains_closed(context.declared.increment) || unknown.len() > MOST_TERMS {
+        return None;
+    }
+    let integer = |n| Expression::rational(Rational::integer(n));
+    let xi = context.symbol(directions.coordinates);
+    let d = context.symbol(directions.denominator);
+    // 4 − |ξ|² = 8 − D.
+    let scalar_part = context.product(&integer(8).minus(d.clone()), &Expression::identity(3));
+    let outer = context.product(&xi, &xi.transpose(context.symbols)).scaled(Rational::integer(2));
+    let numerator = scalar_part.plus(outer).plus(xi.hat(context.symbols).scaled(Rational::integer(4)));
+    let cayley = context.product(&d.clone().power(-1, context.symbols), &numerator);
+    let map = BTreeMap::from([(context.declared.increment, cayley)]);
+    let in_coordinates = context.substituted(unknown, &map);
+    if in_coordinates.len() > MOST_TERMS {
+        return None;
+    }
+    // ⟨a, E⟩ = −½ tr(E â).
+    let direction = context.symbol(directions.first);
+    let target_hat = context.symbol(directions.target).hat(context.symbols);
+    let target = context.product(&direction, &target_hat).trace(context.symbols).scaled(Rational::new(-1, 2));
+    let difference = in_coordinates.minus(target);
+    let lowest = difference.terms().map(|(monomial, _)| monomial.exponent(directions.denominator)).min()?;
+    let residual = context.product(&d.power(lowest.min(0).saturating_neg(), context.symbols), &difference);
+    let delta = context.symbol(directions.coordinate_direction);
+    let delta_d = context.product(&xi.transpose(context.symbols), &delta).scaled(Rational::integer(2));
+    let variations = Variations::from([(directions.coordinates, delta), (directions.denominator, delta_d)]);
+    let jacobian = variation(&residual, &variations, context.symbols);
+    Some(Cleared { residual, jacobian })
+}

@@ -1,0 +1,36 @@
+//! The step in the transport form `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`, which keeps the Casimirs at any Newton tolerance.
+//!
+//! What doesn't depend on `F` is moved to where it is cheap: with `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with
+//! all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
+//!
+//! ```text
+//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E Fᵀ⟩,     w = F w⁺
+//! ```
+//!
+//! Written in `w⁺`, the second part loses its `F` for a potential of the new position, as `FᵀF = I` finds by itself.
+
+use std::collections::BTreeMap;
+
+use super::Context;
+use crate::symbolic::{Expression, monomial_contains};
+
+pub(super) struct Parts {
+    pub(super) kick_before: Expression,
+    pub(super) unknown: Expression,
+    pub(super) kick_after: Expression,
+}
+
+pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expression) -> Parts {
+    let increment = context.declared.increment;
+    let unknown = momentum.filtered(|monomial| monomial_contains(monomial, increment));
+    let kick_before = unknown.clone().minus(momentum.clone());
+    let moved = diamond.clone().minus(kick_before.clone());
+    let f = context.symbol(increment);
+    let direction = context.symbol(context.directions.first);
+    let turned = context.product(&context.product(&f, &direction), &f.transpose(context.symbols));
+    let mut map = BTreeMap::from([(context.directions.first, turned)]);
+    for (&w, &next) in context.declared.advected.iter().zip(&context.directions.next) {
+        map.insert(w, context.product(&f, &context.symbol(next)));
+    }
+    Parts { kick_before, unknown, kick_after: context.substituted(&moved, &map) }
+}

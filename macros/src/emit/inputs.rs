@@ -1,0 +1,73 @@
+//! Where the entries of a symbol are found in the generated methods.
+
+use proc_macro2::{Literal, Span, TokenStream};
+use quote::quote_spanned;
+
+use super::Emitter;
+use crate::ast::{FieldKind, Name};
+use crate::scalar::Input;
+
+impl Emitter<'_> {
+    /// An entry of `F`, `w`, `h` or a parameter; arrays are indexed by numbers, so nothing can panic.
+    pub(super) fn input_token(&self, input: Input) -> TokenStream {
+        let span = Span::mixed_site();
+        let found = self.lowered.names.iter().find(|(_, id)| **id == input.symbol).map(|(name, _)| *name);
+        match found {
+            Some(Name::Step) => quote_spanned!(span=> h),
+            Some(Name::Increment) => entry(&quote_spanned!(span=> f), input),
+            Some(Name::Advected(index)) => entry(&self.part(&quote_spanned!(span=> w), index), input),
+            Some(Name::Field(index)) => self.field_entry(index, input),
+            None => self.derived_input(input),
+        }
+    }
+
+    /// An entry of a symbol that the derivation has added.
+    fn derived_input(&self, input: Input) -> TokenStream {
+        let span = Span::mixed_site();
+        let directions = &self.derived.directions;
+        if let Some(index) = directions.next.iter().position(|&next| next == input.symbol) {
+            return entry(&self.part(&quote_spanned!(span=> next), index), input);
+        }
+        if input.symbol == directions.coordinates {
+            return entry(&quote_spanned!(span=> xi), input);
+        }
+        if input.symbol == directions.target {
+            return entry(&quote_spanned!(span=> a), input);
+        }
+        // Directions are replaced by their entries before; a leftover is a bug that the user's compiler then shows.
+        let name = self.symbol_name(input.symbol);
+        let message = format!("liestep: no value for `{name}`; please report this declaration");
+        quote_spanned!(span=> compile_error!(#message))
+    }
+
+    /// One of several advected parameters.
+    fn part(&self, all: &TokenStream, index: usize) -> TokenStream {
+        if self.declaration.advected.len() == 1 {
+            return all.clone();
+        }
+        let index = syn::Index::from(index);
+        quote_spanned!(Span::mixed_site()=> #all.#index)
+    }
+
+    fn field_entry(&self, index: usize, input: Input) -> TokenStream {
+        let span = Span::mixed_site();
+        let Some(field) = self.declaration.fields.get(index) else { return TokenStream::new() };
+        let name = &field.name;
+        let place = |value: TokenStream| entry(&value, input);
+        match field.kind {
+            FieldKind::Scalar => quote_spanned!(span=> self.#name),
+            FieldKind::Vector | FieldKind::Matrix => place(quote_spanned!(span=> self.#name)),
+            FieldKind::SymmetricInertia => place(quote_spanned!(span=> self.#name.as_matrix())),
+            FieldKind::DiagonalInertia => {
+                let diagonal = Input { column: 0, ..input };
+                entry(&quote_spanned!(span=> self.#name.diagonal()), diagonal)
+            }
+        }
+    }
+}
+
+/// Column-major storage: `[[_; rows]; columns]`.
+fn entry(value: &TokenStream, input: Input) -> TokenStream {
+    let (row, column) = (Literal::usize_unsuffixed(input.row), Literal::usize_unsuffixed(input.column));
+    quote_spanned!(Span::mixed_site()=> #value.data.0[#column][#row])
+}

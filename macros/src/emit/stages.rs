@@ -1,0 +1,125 @@
+//! The staged step: what is computed once, once a step, and once a Newton iteration.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use proc_macro2::{Literal, Span, TokenStream};
+use quote::quote_spanned;
+
+use super::Emitter;
+use super::code::needed;
+use crate::scalar::{Graph, Kernel, Node, NodeId};
+use crate::symbolic::Stage;
+
+/// The methods of the stages, and the arrays that pass values between them.
+pub(super) struct Stages {
+    pub(super) methods: TokenStream,
+    pub(super) constants_type: TokenStream,
+    pub(super) step_terms_type: TokenStream,
+}
+
+pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
+    let graph = &kernel.graph;
+    let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
+    let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &system, &kernel.kick_after].concat();
+    let constants = boundary(graph, &everything, Stage::Construction);
+    let step_terms = boundary(graph, &system, Stage::Step);
+    let (span, root) = (Span::mixed_site(), &emitter.header.root);
+    let (vector, square, scalar) = (emitter.header.vector(), emitter.header.square(), &emitter.header.scalar);
+    let from_parameters = |id: NodeId| input(emitter, graph, id);
+    let from_constants = |id: NodeId| slot(&constants, id, "constants").or_else(|| input(emitter, graph, id));
+    let from_terms = |id: NodeId| slot(&step_terms, id, "terms").or_else(|| from_constants(id));
+    let after_step = |id: NodeId| {
+        slot(&constants, id, "constants").or_else(|| match graph.node(id) {
+            Node::Input(entry) if entry.symbol == emitter.derived.increment() => {
+                let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
+                Some(quote_spanned!(span=> increment.data.0[#column][#row]))
+            }
+            _ => input(emitter, graph, id),
+        })
+    };
+    let array = |nodes: &BTreeMap<NodeId, usize>, given: super::code::Given| {
+        let nodes: Vec<NodeId> = nodes.keys().copied().collect();
+        let (lets, values) = emitter.statements(graph, &nodes, given);
+        quote_spanned!(span=> #lets [#(#values),*])
+    };
+    let constants_body = array(&constants, &from_parameters);
+    let step_terms_body = array(&step_terms, &from_constants);
+    let value = |outputs: &[NodeId], given: super::code::Given| {
+        let (lets, values) = emitter.statements(graph, outputs, given);
+        let value = emitter.assembled(&values);
+        quote_spanned!(span=> #lets #value)
+    };
+    let kick_before = value(&kernel.kick_before, &from_constants);
+    let kick_after = value(&kernel.kick_after, &after_step);
+    let (lets, values) = emitter.statements(graph, &system, &from_terms);
+    let (residual, jacobian) = values.split_at(kernel.residual.len());
+    let (residual, jacobian) = (emitter.assembled(residual), emitter.assembled(jacobian));
+    let length = |nodes: &BTreeMap<NodeId, usize>| {
+        let length = Literal::usize_unsuffixed(nodes.len());
+        quote_spanned!(span=> [#scalar; #length])
+    };
+    let iteration = super::docs::stage(graph, &system, Stage::Iteration, "a Newton iteration, residual and Jacobian");
+    let step = super::docs::stage(
+        graph,
+        &[kernel.kick_before.clone(), step_terms.keys().copied().collect()].concat(),
+        Stage::Step,
+        "a step before the solve",
+    );
+    let construction =
+        super::docs::stage(graph, &constants.keys().copied().collect::<Vec<_>>(), Stage::Construction, "construction");
+    let methods = quote_spanned! {span=>
+        #[doc = #construction]
+        fn constants(&self, h: #scalar) -> Self::Constants { #constants_body }
+
+        #[inline(always)]
+        fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> #vector { #kick_before }
+
+        #[doc = #step]
+        #[inline(always)]
+        fn step_terms(constants: &Self::Constants, a: &#vector, w: &Self::Advected) -> Self::StepTerms {
+            #step_terms_body
+        }
+
+        #[doc = #iteration]
+        #[inline(always)]
+        fn newton_system(
+            constants: &Self::Constants,
+            terms: &Self::StepTerms,
+            xi: &#vector,
+        ) -> (#vector, #root::__private::nalgebra::Matrix3<#scalar>) {
+            #lets
+            (#residual, #jacobian)
+        }
+
+        #[inline(always)]
+        fn kick_after(constants: &Self::Constants, increment: &#square, next: &Self::Advected) -> #vector {
+            #kick_after
+        }
+    };
+    Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
+}
+
+fn input(emitter: &Emitter, graph: &Graph, id: NodeId) -> Option<TokenStream> {
+    match graph.node(id) {
+        Node::Input(entry) => Some(emitter.input_token(entry)),
+        _ => None,
+    }
+}
+
+fn slot(slots: &BTreeMap<NodeId, usize>, id: NodeId, array: &str) -> Option<TokenStream> {
+    let (array, index) = (syn::Ident::new(array, Span::mixed_site()), Literal::usize_unsuffixed(*slots.get(&id)?));
+    Some(quote_spanned!(Span::mixed_site()=> #array[#index]))
+}
+
+/// The nodes of one stage that a later stage uses, in order, with their places in an array.
+fn boundary(graph: &Graph, outputs: &[NodeId], stage: Stage) -> BTreeMap<NodeId, usize> {
+    let is_literal = |id: NodeId| matches!(graph.node(id), Node::Constant(_));
+    let crosses = |id: NodeId| graph.stage(id) == stage && !is_literal(id);
+    let mut found: BTreeSet<NodeId> = outputs.iter().copied().filter(|&id| crosses(id)).collect();
+    for id in needed(graph, outputs, &|_| None) {
+        if graph.stage(id) > stage {
+            found.extend(graph.node(id).operands().into_iter().flatten().filter(|&operand| crosses(operand)));
+        }
+    }
+    found.into_iter().enumerate().map(|(index, id)| (id, index)).collect()
+}

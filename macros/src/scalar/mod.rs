@@ -1,0 +1,14 @@
+//! From matrix expressions to scalar operations: entries, stages, shared subexpressions, counts.
+
+mod count;
+mod expand;
+mod graph;
+mod kernel;
+mod scalarise;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use count::count;
+pub(crate) use graph::{Graph, Input, Node, NodeId};
+pub(crate) use kernel::{Kernel, components, kernel, square};
+pub(crate) use scalarise::Scalariser;

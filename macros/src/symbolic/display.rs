@@ -1,0 +1,141 @@
+//! Expressions in print, as a paper would write them.
+
+use super::expression::{Atom, Expression, Monomial};
+use super::rational::Rational;
+use super::symbols::{SymbolId, Symbols};
+use super::word::{Factor, transpose};
+
+/// A scalar, vector or matrix expression.
+pub(crate) fn text(expression: &Expression, symbols: &Symbols) -> String {
+    let is_matrix = expression.shape() != (1, 1);
+    join(expression.terms().map(|(monomial, coefficient)| {
+        let mut body = word_text(&monomial.word, symbols);
+        if is_matrix && monomial.word.is_empty() {
+            "I".clone_into(&mut body);
+        }
+        (coefficient, prefix(monomial, coefficient, None, symbols), body)
+    }))
+}
+
+/// An expression that is linear in the algebra direction `E`, as the covector that it pairs with: `tr(E W)` is the
+/// `E` component of `−(W − Wᵀ)^∨`.
+pub(crate) fn covector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> String {
+    join(expression.terms().map(|(monomial, coefficient)| {
+        let closed = monomial.scalars.iter().find_map(|(atom, exponent)| match atom {
+            Atom::Trace(word) if *exponent == 1 => opened(word, direction, symbols).map(|opened| (atom, opened)),
+            _ => None,
+        });
+        match closed {
+            Some((atom, word)) => {
+                let (sign, turned) = transpose(&word, symbols);
+                let (word, turned) = (word_text(&word, symbols), word_text(&turned, symbols));
+                let between = if sign < 0 { "+" } else { "−" };
+                let (coefficient, body) = if coefficient.is_negative() || sign < 0 {
+                    (-coefficient, format!("({word} {between} {turned})^∨"))
+                } else {
+                    (coefficient, format!("({turned} − {word})^∨"))
+                };
+                (coefficient, prefix(monomial, coefficient, Some(atom), symbols), body)
+            }
+            None => (coefficient, prefix(monomial, coefficient, None, symbols), String::new()),
+        }
+    }))
+}
+
+/// `W` with `tr(E W)` or `uᵀ A E B v` equal to the closed word, if `E` is one of its factors.
+fn opened(word: &[Factor], direction: SymbolId, symbols: &Symbols) -> Option<Vec<Factor>> {
+    let is_direction = |factor: &Factor| matches!(factor, Factor::Symbol { id, .. } if *id == direction);
+    let at = word.iter().position(is_direction)?;
+    let (before, rest) = word.split_at(at);
+    let after = rest.get(1..)?;
+    let others = [after, before].concat();
+    let once = !others.iter().any(|factor| factor.contains(direction));
+    (once && !others.is_empty() && symbols.get(direction).shape.0 == 3).then_some(others)
+}
+
+/// Terms with their signs.
+fn join(terms: impl Iterator<Item = (Rational, String, String)>) -> String {
+    let mut sum = String::new();
+    for (coefficient, prefix, body) in terms {
+        let sign = if coefficient.is_negative() { "−" } else { "+" };
+        if sum.is_empty() {
+            sum.push_str(if coefficient.is_negative() { "−" } else { "" });
+        } else {
+            sum.push_str(&format!(" {sign} "));
+        }
+        sum.push_str(&prefix);
+        if !prefix.is_empty() && !body.is_empty() {
+            sum.push(' ');
+        }
+        sum.push_str(&body);
+        if prefix.is_empty() && body.is_empty() {
+            sum.push('1');
+        }
+    }
+    if sum.is_empty() { "0".to_owned() } else { sum }
+}
+
+/// The size of the coefficient with the scalars of a monomial, as one fraction.
+fn prefix(monomial: &Monomial, coefficient: Rational, without: Option<&Atom>, symbols: &Symbols) -> String {
+    let (mut over, mut under) = (Vec::new(), Vec::new());
+    let (numerator, denominator) = coefficient.parts();
+    if numerator.unsigned_abs() != 1 {
+        over.push(numerator.unsigned_abs().to_string());
+    }
+    if denominator != 1 {
+        under.push(denominator.to_string());
+    }
+    for (atom, exponent) in monomial.scalars.iter().filter(|(atom, _)| Some(*atom) != without) {
+        let power = match exponent.unsigned_abs() {
+            1 => String::new(),
+            n => superscript(n),
+        };
+        let side = if *exponent > 0 { &mut over } else { &mut under };
+        side.push(format!("{}{power}", atom_text(atom, symbols)));
+    }
+    let (over, parts) = (over.join(" "), under.len());
+    let under = under.join(" ");
+    match (over.is_empty(), parts) {
+        (_, 0) => over,
+        (true, 1) => format!("(1/{under})"),
+        (true, _) => format!("(1/({under}))"),
+        (false, 1) => format!("({over}/{under})"),
+        (false, _) => format!("({over}/({under}))"),
+    }
+}
+
+fn superscript(n: u32) -> String {
+    let digits = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let digit = |c: char| c.to_digit(10).and_then(|d| digits.get(usize::try_from(d).ok()?).copied());
+    n.to_string().chars().filter_map(digit).collect()
+}
+
+fn atom_text(atom: &Atom, symbols: &Symbols) -> String {
+    match atom {
+        Atom::Symbol(id) => symbols.get(*id).name.clone(),
+        Atom::Trace(word) => match word.split_first() {
+            Some((first, rest)) if first.shape(symbols).0 == 1 => {
+                let (_, column) = first.transpose(symbols);
+                format!("⟨{}, {}⟩", factor_text(&column, symbols), word_text(rest, symbols))
+            }
+            _ => format!("tr({})", word_text(word, symbols)),
+        },
+        Atom::Function(function, inner) => format!("{}({})", function.name(), text(inner, symbols)),
+        Atom::Sum(inner) => format!("({})", text(inner, symbols)),
+    }
+}
+
+fn word_text(word: &[Factor], symbols: &Symbols) -> String {
+    word.iter().map(|factor| factor_text(factor, symbols)).collect::<Vec<_>>().join(" ")
+}
+
+fn factor_text(factor: &Factor, symbols: &Symbols) -> String {
+    let mark = |transposed: bool| if transposed { "ᵀ" } else { "" };
+    match factor {
+        Factor::Symbol { id, transposed } => format!("{}{}", symbols.get(*id).name, mark(*transposed)),
+        Factor::Unit { index, transposed, .. } => format!("e{}{}", index + 1, mark(*transposed)),
+        Factor::Hat(word) => format!("hat({})", word_text(word, symbols)),
+        Factor::Diagonal(word) => format!("diag({})", word_text(word, symbols)),
+        Factor::Vee { word, transposed } => format!("vee({}){}", word_text(word, symbols), mark(*transposed)),
+    }
+}

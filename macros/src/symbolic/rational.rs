@@ -1,0 +1,160 @@
+//! Exact rational coefficients.
+
+use std::cmp::Ordering;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A rational number in lowest terms with a positive denominator.
+///
+/// A result that leaves 128 bits is the sticky [`OVERFLOW`](Self::OVERFLOW), so that a caller checks once at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Rational {
+    numerator: i128,
+    denominator: i128,
+}
+
+impl Rational {
+    pub(crate) const ZERO: Self = Self { numerator: 0, denominator: 1 };
+    pub(crate) const ONE: Self = Self { numerator: 1, denominator: 1 };
+    pub(crate) const OVERFLOW: Self = Self { numerator: 0, denominator: 0 };
+
+    pub(crate) fn new(numerator: i128, denominator: i128) -> Self {
+        let divisor = gcd(numerator.unsigned_abs(), denominator.unsigned_abs());
+        let Ok(divisor) = i128::try_from(divisor) else { return Self::OVERFLOW };
+        if denominator == 0 || divisor == 0 {
+            return Self::OVERFLOW;
+        }
+        let sign = if denominator < 0 { -1 } else { 1 };
+        Self { numerator: sign * (numerator / divisor), denominator: sign * (denominator / divisor) }
+    }
+
+    pub(crate) fn integer(value: i128) -> Self {
+        Self { numerator: value, denominator: 1 }
+    }
+
+    /// The exact value of a decimal literal such as `9.81` or `2.5e-3`; overflows beyond some 36 digits.
+    pub(crate) fn from_decimal(digits: &str) -> Self {
+        let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((digits, "0"));
+        let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+        let fraction = fraction.trim_end_matches('0');
+        let parsed = format!("{whole}{fraction}").parse::<i128>();
+        let (Ok(number), Ok(exponent), Ok(places)) = (parsed, exponent.parse::<i32>(), i32::try_from(fraction.len()))
+        else {
+            return Self::OVERFLOW;
+        };
+        let power = |n: i32| u32::try_from(n).ok().and_then(|n| 10_i128.checked_pow(n));
+        let shift = exponent.saturating_sub(places);
+        match (power(shift), power(shift.saturating_neg())) {
+            (Some(scale), _) => number.checked_mul(scale).map_or(Self::OVERFLOW, Self::integer),
+            (None, Some(scale)) => Self::new(number, scale),
+            (None, None) => Self::OVERFLOW,
+        }
+    }
+
+    pub(crate) fn is_zero(self) -> bool {
+        self.numerator == 0 && self.denominator != 0
+    }
+
+    pub(crate) fn is_overflow(self) -> bool {
+        self.denominator == 0
+    }
+
+    pub(crate) fn is_negative(self) -> bool {
+        self.numerator < 0
+    }
+
+    pub(crate) fn inverse(self) -> Self {
+        Self::new(self.denominator, self.numerator)
+    }
+
+    pub(crate) fn power(self, exponent: i32) -> Self {
+        let base = if exponent < 0 { self.inverse() } else { self };
+        (0..exponent.unsigned_abs()).fold(Self::ONE, |product, _| product * base)
+    }
+
+    /// The nearest `f64`.
+    #[allow(clippy::cast_precision_loss)] // 53 bits are what the emitted literal can hold
+    pub(crate) fn to_f64(self) -> f64 {
+        self.numerator as f64 / self.denominator as f64
+    }
+
+    pub(crate) fn parts(self) -> (i128, i128) {
+        (self.numerator, self.denominator)
+    }
+}
+
+fn gcd(a: u128, b: u128) -> u128 {
+    if b == 0 { a } else { gcd(b, a % b) }
+}
+
+impl Add for Rational {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let sum = || {
+            let left = self.numerator.checked_mul(other.denominator)?;
+            let right = other.numerator.checked_mul(self.denominator)?;
+            Some(Self::new(left.checked_add(right)?, self.denominator.checked_mul(other.denominator)?))
+        };
+        sum().unwrap_or(Self::OVERFLOW)
+    }
+}
+
+impl Neg for Rational {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        self.numerator.checked_neg().map_or(Self::OVERFLOW, |numerator| Self { numerator, ..self })
+    }
+}
+
+impl Sub for Rational {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Rational {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let product = || {
+            let numerator = self.numerator.checked_mul(other.numerator)?;
+            Some(Self::new(numerator, self.denominator.checked_mul(other.denominator)?))
+        };
+        product().unwrap_or(Self::OVERFLOW)
+    }
+}
+
+impl PartialOrd for Rational {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Rational {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.numerator, self.denominator).cmp(&(other.numerator, other.denominator))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Rational;
+
+    #[test]
+    fn decimals_are_exact() {
+        assert_eq!(Rational::from_decimal("9.81"), Rational::new(981, 100));
+        assert_eq!(Rational::from_decimal("2.50e-3"), Rational::new(1, 400));
+        assert_eq!(Rational::from_decimal("3e2"), Rational::integer(300));
+        assert!(Rational::from_decimal("1e300").is_overflow());
+    }
+
+    #[test]
+    fn overflow_sticks() {
+        let large = Rational::integer(i128::MAX);
+        assert!((large * large + Rational::ONE).is_overflow());
+        assert!((Rational::OVERFLOW * Rational::ZERO).is_overflow());
+    }
+}
