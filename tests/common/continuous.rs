@@ -1,0 +1,36 @@
+//! The continuous heavy top, for references that no file holds.
+
+use nalgebra::{SVector, Vector3};
+
+use super::tops::HeavyTop;
+
+/// Body momentum and `w`, one below the other.
+pub type Phase = SVector<f64, 6>;
+
+pub fn phase(momentum: &Vector3<f64>, w: &Vector3<f64>) -> Phase {
+    Phase::from_fn(|i, _| if i < 3 { momentum[i] } else { w[i - 3] })
+}
+
+/// `ṗ = p × Ω + m g w × ρ`, `ẇ = w × Ω`.
+fn rate(top: &HeavyTop, z: &Phase) -> Phase {
+    let (p, w): (Vector3<f64>, Vector3<f64>) = (z.fixed_rows::<3>(0).into(), z.fixed_rows::<3>(3).into());
+    let velocity = p.component_div(&super::tops::moments(top));
+    phase(&(p.cross(&velocity) + w.cross(&top.rho) * (top.m * top.g)), &w.cross(&velocity))
+}
+
+/// The solution after the time `t`, by the classical Runge–Kutta method with compensated sums.
+pub fn solution(top: &HeavyTop, start: Phase, t: f64, steps: u32) -> Phase {
+    let h = t / f64::from(steps);
+    let (mut z, mut lost) = (start, Phase::zeros());
+    for _ in 0..steps {
+        let k1 = rate(top, &z);
+        let k2 = rate(top, &(z + k1 * (0.5 * h)));
+        let k3 = rate(top, &(z + k2 * (0.5 * h)));
+        let k4 = rate(top, &(z + k3 * h));
+        let change = (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (h / 6.0) + lost;
+        let next = z + change;
+        lost = change - (next - z);
+        z = next;
+    }
+    z
+}

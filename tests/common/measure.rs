@@ -1,0 +1,53 @@
+//! Distances and orders.
+
+use core::ops::{Add, Mul, Sub};
+
+use nalgebra::{Dim, Matrix, RawStorage};
+
+/// `|a − b| / |b|` in the Euclidean (Frobenius) norm.
+pub fn relative<R: Dim, C: Dim, A: RawStorage<f64, R, C>, B: RawStorage<f64, R, C>>(
+    a: &Matrix<f64, R, C, A>,
+    b: &Matrix<f64, R, C, B>,
+) -> f64 {
+    let squared: f64 = a.iter().zip(b.iter()).map(|(a, b)| (a - b).powi(2)).sum();
+    (squared / b.iter().map(|b| b * b).sum::<f64>()).sqrt()
+}
+
+/// The steps `coarsest`, `coarsest/2`, … of four halvings.
+pub fn four_halvings(coarsest: f64) -> [f64; 5] {
+    [1.0, 0.5, 0.25, 0.125, 0.0625].map(|fraction| coarsest * fraction)
+}
+
+/// The slope of `ln error` over `ln h` by least squares, over the points above the round-off plateau.
+///
+/// At least four points must be left, so that a slope isn't read off the plateau's edge.
+pub fn order(errors: &[(f64, f64)], plateau: f64) -> f64 {
+    let points: Vec<(f64, f64)> =
+        errors.iter().filter(|(_, error)| *error > plateau).map(|(h, error)| (h.ln(), error.ln())).collect();
+    assert!(points.len() >= 4, "too few points above the round-off plateau: {errors:?}");
+    slope(&points)
+}
+
+/// The slope of a straight line through the points, by least squares.
+#[allow(clippy::cast_precision_loss)] // a handful of points
+pub fn slope(points: &[(f64, f64)]) -> f64 {
+    let count = points.len() as f64;
+    let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
+    let covariance: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+    covariance / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>()
+}
+
+/// The whole number of steps `h` in the time `t`.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small positive numbers
+pub fn steps_in(t: f64, h: f64) -> u64 {
+    (t / h).round() as u64
+}
+
+/// `f'(0)` from six values at a spacing of 10⁻³.
+///
+/// The remainder is of the order of 10⁻¹⁸ by the seventh derivative, rounding of 10⁻¹³ by the size of `f`.
+pub fn derivative<V: Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>>(f: impl Fn(f64) -> V) -> V {
+    let d = 1e-3;
+    let odd = |k: f64| f(k * d) - f(-k * d);
+    (odd(1.0) * 45.0 - odd(2.0) * 9.0 + odd(3.0)) * (1.0 / (60.0 * d))
+}

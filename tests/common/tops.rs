@@ -1,0 +1,73 @@
+//! The declarations that the tests integrate.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use liestep::{DiagonalNonstandardInertia, NonstandardInertia};
+use nalgebra::Vector3;
+
+/// The heavy top (3.13) in principal axes.
+#[derive(Clone, Debug)]
+pub struct HeavyTop {
+    pub J_d: DiagonalNonstandardInertia,
+    pub m: f64,
+    pub g: f64,
+    pub rho: Vector3<f64>,
+    pub up: Vector3<f64>,
+}
+
+/// The heavy top (3.13) with a full inertia tensor.
+#[derive(Clone, Debug)]
+pub struct FullTop {
+    pub J_d: NonstandardInertia,
+    pub m: f64,
+    pub g: f64,
+    pub rho: Vector3<f64>,
+    pub up: Vector3<f64>,
+}
+
+/// The free rigid body: the kinetic term of (3.13) alone.
+#[derive(Clone, Debug)]
+pub struct FreeBody {
+    pub J_d: NonstandardInertia,
+}
+
+impl HeavyTop {
+    /// The thesis' body: `J_d = diag(2, 2, 1)`, one metre below its centre of mass, reading A.
+    pub fn thesis() -> Self {
+        Self::symmetric(Vector3::new(2.0, 2.0, 1.0))
+    }
+
+    /// A body of 1 kg with `ρ = e₃`.
+    pub fn symmetric(nonstandard: Vector3<f64>) -> Self {
+        let J_d = DiagonalNonstandardInertia::new(nonstandard).unwrap();
+        Self { J_d, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
+    }
+
+    /// No symmetry: three moments and a centre of mass off the axes.
+    pub fn asymmetric() -> Self {
+        let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap();
+        Self { J_d, m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
+    }
+}
+
+impl FullTop {
+    /// The body of `top` described in axes turned by `axes`, and mirrored if its determinant is negative.
+    pub fn in_axes(top: &HeavyTop, axes: &nalgebra::Matrix3<f64>) -> Self {
+        let J_d = NonstandardInertia::new(axes * top.J_d.to_matrix() * axes.transpose()).unwrap();
+        Self { J_d, m: top.m, g: top.g, rho: axes * top.rho, up: top.up }
+    }
+}
+
+impl FreeBody {
+    /// From the principal moments of the ordinary inertia.
+    pub fn with_moments(moments: [f64; 3]) -> Self {
+        Self { J_d: NonstandardInertia::from_principal_moments(moments.into()).unwrap() }
+    }
+}
+
+/// The principal moments of the ordinary inertia.
+pub fn moments(top: &HeavyTop) -> Vector3<f64> {
+    let d = top.J_d.diagonal();
+    Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y)
+}
