@@ -24,7 +24,7 @@ pub struct DiscreteLiePoisson<L: DiscreteLagrangian> {
 /// One application of a flow.
 #[derive(Clone, Copy, Debug)]
 pub struct Increment<L: DiscreteLagrangian> {
-    /// The coordinates `ξ` of `F_i = τ(ξ)`: the next solve's guess.
+    /// The coordinates `ξ` of `F_i = τ(ξ)`: a guess for the next solve.
     pub coordinates: Vector<L>,
     /// `F_i − I`.
     pub increment: <Group<L> as LieGroup>::Matrix,

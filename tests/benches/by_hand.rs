@@ -22,12 +22,13 @@ pub(crate) struct Top {
     half_step: f64,
 }
 
-/// Attitude by rows, body momentum, vertical in the body, and the last Cayley vector as the next guess.
+/// Attitude by rows, body momentum, vertical in the body, the last Cayley vector and the guess of the next.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub(crate) attitude: [[f64; 3]; 3],
     pub(crate) momentum: [f64; 3],
     pub(crate) vertical: [f64; 3],
+    pub(crate) last: [f64; 3],
     pub(crate) guess: [f64; 3],
 }
 
@@ -86,7 +87,9 @@ impl Top {
         }
         state.momentum = momentum;
         state.vertical = vertical;
-        state.guess = [x, y, z];
+        let [x0, y0, z0] = state.last;
+        state.guess = [x + (x - x0), y + (y - y0), z + (z - z0)];
+        state.last = [x, y, z];
         true
     }
 

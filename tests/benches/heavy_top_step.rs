@@ -50,11 +50,14 @@ fn derived() -> (Derived, DerivedState) {
 fn written_by_hand(start: &DerivedState) -> (by_hand::Top, by_hand::State) {
     let attitude = start.attitude();
     let r = attitude.as_matrix();
+    let momentum: [f64; 3] = start.momentum().into();
+    let first = [0, 1, 2].map(|k| 0.5 * STEP * momentum[k] / MOMENTS[k]);
     let state = by_hand::State {
         attitude: [0, 1, 2].map(|i| [r[(i, 0)], r[(i, 1)], r[(i, 2)]]),
-        momentum: start.momentum().into(),
+        momentum,
         vertical: start.advected().into(),
-        guess: [0.0; 3],
+        last: first,
+        guess: first,
     };
     (by_hand::Top::new(MOMENTS, WEIGHT, RHO, STEP), state)
 }
