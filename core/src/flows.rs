@@ -116,9 +116,9 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
             return Ok(self.stand_still(momentum, advected));
         }
         let problem = self.problem(momentum, advected);
-        let Root { xi, increment, iterations } = match problem.solve(guess) {
-            Ok(root) => root,
-            Err(error) => return Err(self.explain(error, momentum, advected)),
+        let Root { xi, increment, iterations } = match problem.solve_directly(guess) {
+            Some(root) => root,
+            None => self.solve_carefully(momentum, advected, guess)?,
         };
         let next = advected.advect(&increment);
         let momentum = *momentum
@@ -151,9 +151,19 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         Increment { coordinates, increment, momentum: *momentum, advected: *advected, iterations: 0 }
     }
 
-    /// Finds out whether a smaller step would do, which turns a failed solve into the error that says so.
+    /// The solve with all its fallbacks, from the beginning.
     #[cold]
     #[inline(never)]
+    fn solve_carefully(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        guess: &Vector<L>,
+    ) -> Result<Root<L>, StepError> {
+        self.problem(momentum, advected).solve(guess).map_err(|error| self.explain(error, momentum, advected))
+    }
+
+    /// Finds out whether a smaller step would do, which turns a failed solve into the error that says so.
     fn explain(&self, error: StepError, momentum: &Vector<L>, advected: &L::Advected) -> StepError {
         if !momentum.is_finite() {
             return StepError::NonFinite { what: "momentum" };
