@@ -53,9 +53,11 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
             let (update, det) = self.update(&terms, &xi);
             xi = xi - update;
             if settled::<L>(&update, &xi) {
-                let accepted = self.is_oriented(det) && L::Retraction::is_near_identity(&xi);
+                if !self.is_oriented(det) || !L::Retraction::is_near_identity(&xi) {
+                    return None;
+                }
                 let increment = L::Retraction::increment(&xi);
-                return accepted.then_some(Root { xi, increment, iterations: iteration + 1 });
+                return Some(Root { xi, increment, iterations: iteration + 1 });
             }
         }
         None
