@@ -147,6 +147,8 @@
 //! [`NonstandardInertia`]: crate::NonstandardInertia
 //! [`Stepper::start`]: crate::Stepper::start
 
+#![allow(clippy::doc_markdown)] // the author McClamroch isn't code
+
 pub mod equations;
 pub mod errata;
 pub mod guarantees;

@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use nalgebra::{Matrix3, SimdBool as _, SimdPartialOrd as _, Vector3};
+use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use crate::scalar::Real;
 

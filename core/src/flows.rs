@@ -113,7 +113,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         guess: &Vector<L>,
     ) -> Result<Increment<L>, StepError> {
         if self.h == real(0.0) {
-            return Ok(self.stand_still(momentum, advected));
+            return Ok(Self::stand_still(momentum, advected));
         }
         let problem = self.problem(momentum, advected);
         let Root { xi, increment, iterations } = match problem.solve_directly(guess) {
@@ -145,7 +145,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
     }
 
     #[cold]
-    fn stand_still(&self, momentum: &Vector<L>, advected: &L::Advected) -> Increment<L> {
+    fn stand_still(momentum: &Vector<L>, advected: &L::Advected) -> Increment<L> {
         let coordinates = Vector::<L>::zero();
         let increment = L::Retraction::increment(&coordinates);
         Increment { coordinates, increment, momentum: *momentum, advected: *advected, iterations: 0 }

@@ -168,5 +168,5 @@ fn settled<L: DiscreteLagrangian>(update: &Vector<L>, xi: &Vector<L>) -> bool {
 /// The sign that the Jacobian's determinant has at the identity: that of `h^d`, as the inertia is positive.
 pub(crate) fn orientation<T: Real>(h: T, dimension: usize) -> T {
     let sign = real::<T>(1.0).simd_copysign(h);
-    if dimension % 2 == 0 { sign * sign } else { sign }
+    if dimension.is_multiple_of(2) { sign * sign } else { sign }
 }

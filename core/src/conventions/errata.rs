@@ -25,7 +25,6 @@
 //! | theorem 1.1.1, proof | the derivative of `exp(εη(t))` in `t` is right to first order in `ε`, which is all that is used |
 //! | lemma 1.2.1 | its functions live on `𝔤*`; the bracket of two algebra elements is `ad`, without a star |
 //! | section 1.4 | a path has `N` points; in (1.20) the flow is `F_{H_d}`, and in the right half of its diagram the two transforms have changed places |
-//! | (1.32) against (1.31) | see the first row above |
 //! | chapter 2 | `w_0` is the spatial constant, here `a_0`; it is the value of `w` at `i = 0` only for `g_0 = e` |
 //! | theorem 2.2.1 | `l_d(f, w)` is defined by `L_d`; the sum by parts has boundary terms, which vanish with the variations at the ends |
 //! | (2.4), (2.6), (2.7) | `δl_d/δf` is taken at `(f, w)`: gravity couples the two |

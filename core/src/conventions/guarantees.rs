@@ -10,13 +10,13 @@
 //! |---|---|---|
 //! | `F ∈ G`, and so the attitude in the group | exactly | every Lagrangian |
 //! | Casimirs; on SO(3) with one vector `w·w` and `p·w = e₃·R p`, (3.20) | exactly | every Lagrangian |
-//! | the Lie–Poisson structure of `(μ, w)`, volume included | exactly | every Lagrangian |
+//! | the Lie–Poisson structure of `(μ, w)` | exactly | every Lagrangian |
 //! | `R p`, the spatial momentum | exactly | nothing advected |
 //! | `p_3` | exactly | `J_1 = J_2`, `ρ` along the third axis |
 //! | a step back by `−h` undoes the step | exactly | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`; (3.13) is such |
 //! | kinetic energy `½ p·J⁻¹p` | exactly | the kinetic term of (3.13) alone; not for other kinetic terms |
 //! | energy with a potential | nearly: it oscillates with an amplitude of order `h²` and doesn't drift | steps well inside the limit below |
-//! | phase, period | not: the error is of order `h²` and grows linearly in time | |
+//! | phase, period | not: the error is of order `h²` and grows with time | |
 //!
 //! For (3.13) the energy that is kept more closely is known. With `Ω = J⁻¹p`, `γ = Ω × JΩ` and `V''` the second time
 //! derivative of the potential along the free motion,
