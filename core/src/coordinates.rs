@@ -3,9 +3,9 @@
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
-use crate::scalar::{Real, is_finite};
+use crate::scalar::Real;
 
 /// Components with respect to the declared basis `E_k` of a Lie algebra, or, for a covector, `μ_k = ⟨μ, E_k⟩`.
 pub trait Coordinates<T: Real>:
@@ -47,7 +47,8 @@ impl<T: Real> Coordinates<T> for Vector3<T> {
 
     #[inline(always)]
     fn is_finite(&self) -> bool {
-        is_finite(self.x + self.y + self.z) && is_finite(self.x * T::zero() + self.y * T::zero() + self.z * T::zero())
+        // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
+        (self.x * T::zero() + self.y * T::zero() + self.z * T::zero()).simd_eq(T::zero()).all()
     }
 
     /// Cramer's rule by cross products of the rows.

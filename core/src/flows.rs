@@ -24,7 +24,7 @@ pub struct DiscreteLiePoisson<L: DiscreteLagrangian> {
 /// One application of a flow.
 #[derive(Clone, Copy, Debug)]
 pub struct Increment<L: DiscreteLagrangian> {
-    /// The coordinates `ξ` of `F_i = τ(ξ)`: the next solve's guess.
+    /// The coordinates `ξ` of `F_i = τ(ξ)`: a guess for the next solve.
     pub coordinates: Vector<L>,
     /// `F_i − I`.
     pub increment: <Group<L> as LieGroup>::Matrix,
@@ -113,12 +113,12 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         guess: &Vector<L>,
     ) -> Result<Increment<L>, StepError> {
         if self.h == real(0.0) {
-            return Ok(self.stand_still(momentum, advected));
+            return Ok(Self::stand_still(momentum, advected));
         }
         let problem = self.problem(momentum, advected);
-        let Root { xi, increment, iterations } = match problem.solve(guess) {
-            Ok(root) => root,
-            Err(error) => return Err(self.explain(error, momentum, advected)),
+        let Root { xi, increment, iterations } = match problem.solve_directly(guess) {
+            Some(root) => root,
+            None => self.solve_carefully(momentum, advected, guess)?,
         };
         let next = advected.advect(&increment);
         let momentum = *momentum
@@ -145,15 +145,25 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
     }
 
     #[cold]
-    fn stand_still(&self, momentum: &Vector<L>, advected: &L::Advected) -> Increment<L> {
+    fn stand_still(momentum: &Vector<L>, advected: &L::Advected) -> Increment<L> {
         let coordinates = Vector::<L>::zero();
         let increment = L::Retraction::increment(&coordinates);
         Increment { coordinates, increment, momentum: *momentum, advected: *advected, iterations: 0 }
     }
 
-    /// Finds out whether a smaller step would do, which turns a failed solve into the error that says so.
+    /// The solve with all its fallbacks, from the beginning.
     #[cold]
     #[inline(never)]
+    fn solve_carefully(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        guess: &Vector<L>,
+    ) -> Result<Root<L>, StepError> {
+        self.problem(momentum, advected).solve(guess).map_err(|error| self.explain(error, momentum, advected))
+    }
+
+    /// Finds out whether a smaller step would do, which turns a failed solve into the error that says so.
     fn explain(&self, error: StepError, momentum: &Vector<L>, advected: &L::Advected) -> StepError {
         if !momentum.is_finite() {
             return StepError::NonFinite { what: "momentum" };

@@ -42,3 +42,7 @@ pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::Real;
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
+
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;

@@ -17,10 +17,10 @@ pub fn real<T: Real>(value: f64) -> T {
     nalgebra::convert(value)
 }
 
-/// Whether every lane is finite: the difference of an infinity or a NaN with itself is NaN.
+/// Whether every lane is finite: zero times an infinity or a NaN is NaN.
 #[inline(always)]
 pub(crate) fn is_finite<T: Real>(value: T) -> bool {
-    (value - value).simd_eq(T::zero()).all()
+    (value * T::zero()).simd_eq(T::zero()).all()
 }
 
 /// The value as `f64` for a message; NaN where the lanes differ.

@@ -7,21 +7,21 @@ use nalgebra::Vector3;
 
 /// Attitude, momentum and advected parameters at one time.
 ///
-/// The coordinates of the last increment are kept as the next solve's guess. They are part of the state, so that a
-/// copy continues with the same bits.
+/// The coordinates of the last increment and a guess of the next ones are kept for the next solve. They are part of the
+/// state, so that a copy continues with the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) attitude: G,
     pub(crate) momentum: G::Vector,
     pub(crate) advected: A,
     pub(crate) coordinates: G::Vector,
+    pub(crate) guess: G::Vector,
     pub(crate) steps: u64,
 }
 
 impl<G: LieGroup, A: Advected<G>> State<G, A> {
-    pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A) -> Self {
-        let coordinates = crate::Coordinates::zero();
-        Self { attitude, momentum, advected, coordinates, steps: 0 }
+    pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, coordinates: G::Vector) -> Self {
+        Self { attitude, momentum, advected, coordinates, guess: coordinates, steps: 0 }
     }
 
     /// The attitude `g_i`, body to space.

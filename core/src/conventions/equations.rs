@@ -1,0 +1,80 @@
+//! Where each numbered equation of \[RDAE\] lives in the code.
+//!
+//! What is continuous in time serves to check the discrete theory and to read energies and velocities off a state; it
+//! isn't integrated. Files are relative to `core/src` unless they begin with `examples`.
+//!
+//! # Chapter 1: reduction
+//!
+//! | equation | what | file | item |
+//! |---|---|---|---|
+//! | (1.1)–(1.13), (1.15) | continuous reduction | | not in the code |
+//! | (1.14) | `μ = δl/δξ` of the continuous limit | `stepper.rs` | [`Stepper::start`], [`Stepper::velocity`] |
+//! | (1.16) | the energy `μ·ξ − l(ξ)` | `stepper.rs` | [`Stepper::energy`] |
+//! | (1.17) | `ad*_Ω Π = Π × Ω` | `groups/so3.rs` | [`lie_bracket_transpose`] |
+//! | (1.18) | `l_d` approximates the action of a step | | up to the declaration |
+//! | (1.19) | Legendre transforms before reduction | | only reduced, as (2.6) |
+//! | (1.20), (1.28) | `𝔽l_d⁺ ∘ (𝔽l_d⁻)⁻¹` | `flows.rs` | [`DiscreteLiePoisson`] |
+//! | (1.21), (1.32) | momentum map `R Π` | `state.rs` | [`State::spatial_momentum`] |
+//! | (1.22) | `l_d(f) = L_d(g_1, g_2)` | `lagrangian.rs` | [`DiscreteLagrangian::l_d`] |
+//! | (1.23), (1.25) | discrete Euler–Poincaré flow | `flows.rs` | [`DiscreteEulerPoincare`] with nothing advected |
+//! | (1.24), (1.30) | reconstruction | `flows.rs`, `stepper.rs` | [`reconstruct`], [`Stepper::step`] |
+//! | (1.26), (1.27) | reduced Legendre transforms, momentum | `lagrangian.rs` | [`legendre_minus`], [`legendre_plus`] |
+//! | (1.29) | `μ_{i+1} = Ad*_f μ_i` | `flows.rs` | [`DiscreteLiePoisson::step`], without kicks |
+//! | (1.31) | momentum of the free body | | derived from the declaration: [`right_momentum`] |
+//!
+//! # Chapter 2: advected parameters
+//!
+//! | equation | what | file | item |
+//! |---|---|---|---|
+//! | (2.1) | `δl_d/δw ⋄ w` | `lagrangian.rs` | [`DiscreteLagrangian::diamond`] |
+//! | (2.2) | continuous advected equations | | not in the code |
+//! | (2.3) | continuous Lagrangian of a top | `lagrangian.rs` | [`inertia`] and [`potential`] of the continuous limit |
+//! | (2.4), first line | `w_{i+1} = f_i⁻¹ w_i` | `advected.rs` | [`Advected::advect`] |
+//! | (2.4), second line; (2.5) | discrete advected Euler–Poincaré flow | `flows.rs` | [`DiscreteEulerPoincare::step`] |
+//! | (2.6) | `𝔽l_d⁻`, `𝔽l_d⁺` | `lagrangian.rs` | [`legendre_minus`], [`legendre_plus`] |
+//! | (2.7) | the momentum equation | `lagrangian.rs`, `newton.rs` | [`legendre_minus`]; solved by [`invert_legendre_minus`] |
+//! | (2.8) | discrete advected Lie–Poisson flow | `flows.rs` | [`DiscreteLiePoisson`] |
+//! | (2.9) | its three equations | `flows.rs` | [`DiscreteLiePoisson::step`] |
+//! | (2.10) | `g_{i+1} = g_i f_i` | `groups/mod.rs`, `flows.rs` | [`LieGroup::advance`], [`reconstruct`] |
+//!
+//! The second line of (2.9) is computed in its transport form `μ_{i+1} = Ad*_F (μ_i + δl_d/δw ⋄ w)`. It equals the
+//! printed one where (2.7) holds, and keeps `μ·w` to rounding even where (2.7) has been solved to fewer digits.
+//!
+//! # Chapter 3: the heavy top
+//!
+//! | equation | what | file | item |
+//! |---|---|---|---|
+//! | (3.1)–(3.4) | Euler angles and their rates | `examples/heavy-top.rs` | initial values only; no angle enters a step |
+//! | (3.5)–(3.12) | equations of motion in Euler angles | | not in the code |
+//! | (3.13) | the reduced discrete Lagrangian | `examples/heavy-top.rs` | declared |
+//! | (3.14) | `R_{i+1} = R_i F_i` | `groups/so3.rs` | [`LieGroup::advance`] |
+//! | (3.15) | `w_{i+1} = F_iᵀ w_i` | `advected.rs` | [`Advected::advect`] |
+//! | (3.16) | the flow on increments | | derived from (3.13); [`DiscreteEulerPoincare::step`] |
+//! | (3.17) | momentum at the start of a step | | derived: [`legendre_minus`], and [`newton_system`] for its solution |
+//! | (3.18) | momentum at its end | | derived: [`legendre_plus`]; a step uses the transport form |
+//! | (3.19) | change of the spatial momentum | | a consequence of (2.9): the two half kicks, in space |
+//! | (3.20) | `e₃·R Π` is constant | `state.rs` | [`State::momentum_along`] |
+//!
+//! [`Advected::advect`]: crate::Advected::advect
+//! [`DiscreteEulerPoincare`]: crate::DiscreteEulerPoincare
+//! [`DiscreteEulerPoincare::step`]: crate::DiscreteEulerPoincare::step
+//! [`DiscreteLagrangian::diamond`]: crate::DiscreteLagrangian::diamond
+//! [`DiscreteLagrangian::l_d`]: crate::DiscreteLagrangian::l_d
+//! [`DiscreteLiePoisson`]: crate::DiscreteLiePoisson
+//! [`DiscreteLiePoisson::step`]: crate::DiscreteLiePoisson::step
+//! [`LieGroup::advance`]: crate::LieGroup::advance
+//! [`State::momentum_along`]: crate::State::momentum_along
+//! [`State::spatial_momentum`]: crate::State::spatial_momentum
+//! [`Stepper::energy`]: crate::Stepper::energy
+//! [`Stepper::start`]: crate::Stepper::start
+//! [`Stepper::step`]: crate::Stepper::step
+//! [`Stepper::velocity`]: crate::Stepper::velocity
+//! [`inertia`]: crate::DiscreteLagrangian::inertia
+//! [`invert_legendre_minus`]: crate::DiscreteLiePoisson::invert_legendre_minus
+//! [`legendre_minus`]: crate::DiscreteLagrangian::legendre_minus
+//! [`legendre_plus`]: crate::DiscreteLagrangian::legendre_plus
+//! [`lie_bracket_transpose`]: crate::LieGroup::lie_bracket_transpose
+//! [`newton_system`]: crate::DiscreteLagrangian::newton_system
+//! [`potential`]: crate::DiscreteLagrangian::potential
+//! [`reconstruct`]: crate::reconstruct
+//! [`right_momentum`]: crate::DiscreteLagrangian::right_momentum
