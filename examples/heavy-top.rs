@@ -97,7 +97,7 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 /// The greatest deviations over the run, and what a step costs.
 fn summary(series: &[Series]) -> String {
     let mut rows = vec![
-        ["method", "‖RᵀR − I‖", "Δ e₃·RΠ, rel.", "Δ energy, rel.", "Newton its/step", "ns/step"]
+        ["method", "‖RᵀR − I‖", "Δ e₃·RΠ, rel.", "Δ energy, rel.", "growing", "Newton its/step", "ns/step"]
             .map(str::to_owned)
             .to_vec(),
     ];
@@ -108,9 +108,14 @@ fn summary(series: &[Series]) -> String {
             number(s.largest(|q| q.defect)),
             number(s.largest(|q| ((q.vertical - start.vertical) / start.vertical).abs())),
             number(s.largest(|q| ((q.energy - start.energy) / start.energy).abs())),
+            format!("{:.1}×", s.growth(|q| (q.energy - start.energy).abs())),
             if s.iterations > 0.0 { format!("{:.2}", s.iterations) } else { "–".to_owned() },
             format!("{:.0}", s.nanoseconds),
         ]);
     }
-    format!("Greatest deviations in the run, and the cost of a step:\n\n{}", aligned(&rows))
+    let table = aligned(&rows);
+    format!(
+        "Greatest deviations in the run, and the cost of a step. Growing: how much larger the energy's deviation is in\n\
+         the last tenth of the run than in the first; 1 for an oscillation, 10 for a steady drift.\n\n{table}"
+    )
 }

@@ -31,9 +31,9 @@ impl Figures<'_> {
         let title = "Angular momentum about the vertical";
         output.write("vertical-momentum.svg", &whole(self.vertical_momentum(""), "3.5", title)?)?;
         let title = format!("Energy, the first {short} s");
-        output.write("energy-short.svg", &whole(self.energy("", short), "3.6 (a)", &title)?)?;
+        output.write("energy-short.svg", &whole(self.energy_short(""), "3.6 (a)", &title)?)?;
         let title = format!("Energy, all {end} s");
-        output.write("energy-long.svg", &whole(self.energy("", end), "3.6 (b)", &title)?)?;
+        output.write("energy-long.svg", &whole(self.energy_long(""), "3.6 (b)", &title)?)?;
         output.write("body-rates.svg", &self.body_rates()?)?;
         output.write(&format!("tip-{}.svg", self.case), &self.tip()?)?;
         Ok(())
@@ -74,24 +74,43 @@ impl Figures<'_> {
         self.with_lines(panel, self.schedule.end(), |q, start| (q.vertical - start.vertical).abs())
     }
 
-    pub(crate) fn energy<'a>(&self, title: &'a str, end: f64) -> Panel<'a> {
-        let up = "E − E(0), J";
-        let panel = Panel { title, across: "time, s", up, vertical: Vertical::Linear, function: true, lines: vec![] };
-        self.with_lines(panel, end, |q, start| q.energy - start.energy)
+    /// The oscillation of the variational energy, which is of the order of the scheme.
+    pub(crate) fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
+        let panel = Panel {
+            title,
+            across: "time, s",
+            up: "E − E(0), J",
+            vertical: Vertical::Linear,
+            function: true,
+            lines: vec![],
+        };
+        self.with_lines(panel, SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy)
+    }
+
+    /// Whether it stays an oscillation.
+    pub(crate) fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
+        let panel = Panel {
+            title,
+            across: "time, s",
+            up: "|E − E(0)|, J",
+            vertical: Vertical::Logarithmic,
+            function: true,
+            lines: vec![],
+        };
+        self.with_lines(panel, self.schedule.end(), |q, start| (q.energy - start.energy).abs())
     }
 
     /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
-    pub(crate) fn close_up<'a>(&self, title: &'a str, series: &[&Series]) -> Panel<'a> {
+    pub(crate) fn close_up<'a>(&self, title: &'a str, series: &Series) -> Panel<'a> {
         let end = self.schedule.end();
-        let lines =
-            series.iter().map(|s| Line { colour: s.colour, points: unwound(s.between((end - SHORT).max(0.0), end)) });
+        let points = unwound(series.between((end - SHORT).max(0.0), end));
         Panel {
             title,
             across: "azimuth of the tip, degrees",
             up: "tilt from the vertical, degrees",
             vertical: Vertical::Linear,
             function: false,
-            lines: lines.collect(),
+            lines: vec![Line { colour: series.colour, points }],
         }
     }
 
@@ -151,16 +170,17 @@ impl Figures<'_> {
         };
         render((1000, 800), |area| {
             let (header, body) = area.split_vertically(px(HEADER));
-            let title = format!("Path of the tip on the sphere, {start} s to {end} s: {}", self.case);
+            let title = format!("Path of the tip on the sphere, {start} s to {end} s");
             let subtitle = format!("{}; after figure {} of the thesis", self.setting(), self.case.figure());
             heading(&header, &title, &subtitle)?;
-            let (spheres, below) = body.split_vertically(px(470));
-            for (place, series) in spheres.split_evenly((1, 2)).iter().zip([ours, theirs]) {
+            let close_up = format!("Its last {} s", SHORT.min(end));
+            for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
+                let (above, below) = place.split_vertically(px(470));
                 let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
-                sphere(place, &Path { title: series.name, colour: series.colour, points: &points })?;
+                sphere(&above, &Path { title: series.name, colour: series.colour, points: &points })?;
+                self.close_up(&close_up, series).draw(&below)?;
             }
-            let title = format!("The last {} s of both", SHORT.min(end));
-            self.close_up(&title, &[theirs, ours]).draw(&below)
+            Ok(())
         })
     }
 }

@@ -71,6 +71,14 @@ impl Series {
         self.values.iter().map(quantity).fold(0.0, |most: f64, x| if most.is_nan() || x <= most { most } else { x })
     }
 
+    /// The largest of a quantity in the last tenth of the run, over that in the first: about 1 for an oscillation, 10
+    /// for what grows in proportion to time.
+    pub(crate) fn growth(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
+        let tenth = self.values.len().div_ceil(10);
+        let largest = |values: &[Quantities]| values.iter().map(&quantity).fold(0.0, f64::max);
+        largest(&self.values[self.values.len() - tenth..]) / largest(&self.values[..tenth])
+    }
+
     /// As comma-separated values.
     pub(crate) fn csv(&self) -> String {
         let names = [

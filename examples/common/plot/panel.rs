@@ -5,7 +5,7 @@ use std::ops::Range;
 use plotters::prelude::*;
 
 use super::canvas::{Area, Drawn};
-use super::envelope::envelope;
+use super::envelope::{crest, envelope};
 use super::style::{GRID, INK, at, letters, px};
 
 /// A line of one colour.
@@ -18,7 +18,7 @@ pub(crate) struct Line {
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Vertical {
     Linear,
-    /// Powers of ten. What is zero or smaller than rounding is shown at the bottom.
+    /// Powers of ten, and of many points in a pixel the highest: deviations pass through zero all the time.
     Logarithmic,
 }
 
@@ -47,18 +47,18 @@ impl Panel<'_> {
             Vertical::Linear => range(all().map(|p| p.1), 0.06),
             Vertical::Logarithmic => decades(all().map(|p| p.1)),
         };
+        let (x_step, y_step) = (tick_step(&x_range), tick_step(&y_range));
         area.draw_text(self.title, &letters(13, INK), (at(16), at(6)))?;
         let mut chart = ChartBuilder::on(area)
-            .margin_top(px(28))
+            .margin_top(px(if self.title.is_empty() { 10 } else { 28 }))
             .margin_right(px(20))
             .margin_left(px(8))
             .margin_bottom(px(6))
-            .x_label_area_size(px(40))
+            .x_label_area_size(px(if self.across.is_empty() { 22 } else { 38 }))
             .y_label_area_size(px(66))
-            .build_cartesian_2d(x_range, y_range.clone())?;
-        let tick_step = tick_step(&y_range);
+            .build_cartesian_2d(x_range, y_range)?;
         let tick = |y: &f64| match self.vertical {
-            Vertical::Linear => decimal(*y, tick_step),
+            Vertical::Linear => decimal(*y, y_step),
             Vertical::Logarithmic => power_of_ten(*y),
         };
         chart
@@ -72,7 +72,7 @@ impl Panel<'_> {
             .y_desc(self.up)
             .x_labels(9)
             .y_labels(if area.dim_in_pixel().1 > px(260) { 7 } else { 5 })
-            .x_label_formatter(&|x| decimal(*x, 1.0))
+            .x_label_formatter(&|x| decimal(*x, x_step))
             .y_label_formatter(&tick)
             .draw()?;
         for line in lines {
@@ -82,12 +82,16 @@ impl Panel<'_> {
     }
 
     fn prepared(&self, line: &Line, columns: u32) -> Line {
-        let height = |y: f64| match self.vertical {
-            Vertical::Linear => y,
-            Vertical::Logarithmic => y.max(FLOOR).log10(),
+        let points = match self.vertical {
+            Vertical::Linear if self.function => envelope(&line.points, columns),
+            Vertical::Linear => line.points.clone(),
+            Vertical::Logarithmic => {
+                let crest = crest(&line.points, columns).into_iter();
+                // The first deviation is nothing at all, and would draw a line down to the bottom.
+                let crest = crest.enumerate().filter(|(i, (_, y))| *i > 0 || *y > FLOOR);
+                crest.map(|(_, (x, y))| (x, y.max(FLOOR).log10())).collect()
+            }
         };
-        let points: Vec<_> = line.points.iter().map(|&(x, y)| (x, height(y))).collect();
-        let points = if self.function { envelope(&points, columns) } else { points };
         Line { colour: line.colour, points }
     }
 }
@@ -101,8 +105,9 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
         return 0.0..1.0;
     }
     // A constant is drawn in the middle, not magnified to its rounding errors.
-    let least = 1e-12 * low.abs().max(high.abs()).max(f64::MIN_POSITIVE);
-    let room = (margin * (high - low)).max(if high - low <= least { least.max(1e-12) } else { 0.0 });
+    let size = low.abs().max(high.abs());
+    let constant = high - low <= 1e-9 * size || high == low;
+    let room = if constant { (0.1 * size).max(f64::MIN_POSITIVE.sqrt()) } else { margin * (high - low) };
     low - room..high + room
 }
 

@@ -15,7 +15,7 @@ pub(crate) struct Path<'a> {
 
 /// Where the eye is: high enough to see the rim of a cap at 45°.
 const AZIMUTH: f64 = 0.6;
-const ELEVATION: f64 = 0.55;
+const ELEVATION: f64 = 0.6;
 
 const SEA: RGBColor = RGBColor(246, 248, 250);
 const FAR_GRATICULE: RGBColor = RGBColor(228, 231, 235);
@@ -67,9 +67,9 @@ impl View {
     fn of(area: &Area<'_>) -> Self {
         let (width, height) = area.dim_in_pixel();
         let top = px(30);
-        let size = (width.min(height - top) / 2).saturating_sub(px(14));
+        let size = (width.min(height - top) / 2).saturating_sub(px(18));
         let half = |length: u32| i32::try_from(length / 2).unwrap_or(0);
-        let centre = (half(width), half(height - top) + at(30));
+        let centre = (half(width), half(height - top) + at(34));
         let ((sa, ca), (se, ce)) = (AZIMUTH.sin_cos(), ELEVATION.sin_cos());
         Self {
             centre,
@@ -110,9 +110,9 @@ impl View {
 
     /// The vertical, from the pole outwards.
     fn axis(&self, area: &Area<'_>) -> Drawn {
-        let ends = [1.0, 1.14].map(|z| self.project(&Vector3::new(0.0, 0.0, z)));
+        let ends = [1.0, 1.3].map(|z| self.project(&Vector3::new(0.0, 0.0, z)));
         area.draw(&PathElement::new(ends.to_vec(), INK.stroke_width(px(1))))?;
-        area.draw_text("e₃", &letters(12, INK), (ends[1].0 + at(5), ends[1].1 - at(4)))?;
+        area.draw_text("e₃", &letters(12, INK), (ends[1].0 + at(5), ends[1].1 - at(6)))?;
         Ok(())
     }
 }
