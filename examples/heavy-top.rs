@@ -21,13 +21,13 @@ use std::process::ExitCode;
 use clap::Parser;
 use liestep::Stepper;
 
-use common::output::Output;
+use common::output::{Output, print};
 use common::plot::{BLUE, GREEN, ORANGE};
 use common::run::run;
 use common::table::{aligned, number};
+use common::variational::Variational;
 use heavy_top::cases::{Case, Reading};
 use heavy_top::figures::Figures;
-use heavy_top::lagrangian::Variational;
 use heavy_top::overview::overview;
 use heavy_top::quantities::Series;
 use heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
@@ -76,12 +76,6 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         Series::new("RK4, nine entries of R", "rk4-matrix.csv", ORANGE, &body, &matrix),
     ];
 
-    println!("Heavy top: {case}, {reading}, h = {h} s, {} steps to t = {} s.", schedule.steps, schedule.end());
-    if let Some(caveat) = case.caveat(reading) {
-        println!("{caveat}");
-    }
-    println!("\n{}\n", summary(&series));
-
     let figures = Figures { case, reading, schedule, series: &series };
     output.write("heavy-top.svg", &overview(&figures)?)?;
     figures.write(&mut output)?;
@@ -90,7 +84,13 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             output.write(method.file, &method.csv())?;
         }
     }
-    print!("{output}");
+    let steps = schedule.steps;
+    let end = schedule.end();
+    let caveat = case.caveat(reading).map_or_else(String::new, |text| format!("{text}\n"));
+    print(&format!(
+        "Heavy top: {case}, {reading}, h = {h} s, {steps} steps to t = {end} s.\n{caveat}\n{}\n\n{output}",
+        summary(&series),
+    ))?;
     Ok(())
 }
 

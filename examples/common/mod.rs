@@ -6,3 +6,4 @@ pub(crate) mod output;
 pub(crate) mod plot;
 pub(crate) mod run;
 pub(crate) mod table;
+pub(crate) mod variational;

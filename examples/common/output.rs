@@ -2,8 +2,8 @@
 
 use std::fmt;
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::io::{self, Write as _};
+use std::path::PathBuf;
 
 /// A folder that exists and takes files, and what was written there.
 pub(crate) struct Output {
@@ -48,16 +48,18 @@ impl Output {
         self.written.push((name.to_owned(), content.len()));
         Ok(())
     }
+}
 
-    /// The folder.
-    pub(crate) fn folder(&self) -> &Path {
-        &self.folder
-    }
+/// Prints the report. A reader that has gone away is an error and not a panic.
+pub(crate) fn print(report: &str) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(report.as_bytes())?;
+    out.flush()
 }
 
 impl fmt::Display for Output {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "Written to {}:", self.folder().display())?;
+        writeln!(f, "Written to {}:", self.folder.display())?;
         for (name, bytes) in &self.written {
             writeln!(f, "  {name:<28} {:>6} kB", bytes.div_ceil(1000))?;
         }

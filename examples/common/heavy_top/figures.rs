@@ -110,7 +110,7 @@ impl Figures<'_> {
             up: "tilt from the vertical, degrees",
             vertical: Vertical::Linear,
             function: false,
-            lines: vec![Line { colour: series.colour, points }],
+            lines: vec![Line { colour: series.colour, width: 3, points }],
         }
     }
 
@@ -127,8 +127,9 @@ impl Figures<'_> {
         height: impl Fn(&Quantities, &Quantities) -> f64,
     ) -> Panel<'a> {
         // The variational line comes first in the legend and last, on top, in the drawing.
-        let lines = self.series.iter().rev().map(|s| Line {
+        let lines = self.series.iter().zip([3, 3, 7]).rev().map(|(s, width)| Line {
             colour: s.colour,
+            width,
             points: s.between(0.0, end).iter().map(|q| (q.time, height(q, &s.first()))).collect(),
         });
         Panel { lines: lines.collect(), ..panel }
@@ -153,7 +154,7 @@ impl Figures<'_> {
             heading(&header, &format!("Body rates, the first {end} s"), &subtitle)?;
             for (axis, (place, (up, colour))) in body.split_evenly((3, 1)).iter().zip(axes).enumerate() {
                 let points = self.series.iter().take(1).flat_map(|s| s.between(0.0, end));
-                let line = Line { colour, points: points.map(|q| (q.time, q.rates[axis])).collect() };
+                let line = Line { colour, width: 3, points: points.map(|q| (q.time, q.rates[axis])).collect() };
                 let across = if axis == 2 { "time, s" } else { "" };
                 let vertical = Vertical::Linear;
                 Panel { title: "", across, up, vertical, function: true, lines: vec![line] }.draw(place)?;

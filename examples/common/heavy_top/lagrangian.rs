@@ -1,9 +1,7 @@
 //! The declaration that the integrator is made from.
 
-use liestep::{DiagonalNonstandardInertia, State, Stepper};
+use liestep::DiagonalNonstandardInertia;
 use nalgebra::Vector3;
-
-use crate::common::run::{Method, Sample, Stopped};
 
 /// A heavy top: the reduced discrete Lagrangian \[RDAE, (3.13)\].
 // #[liestep::lagrangian(
@@ -25,28 +23,4 @@ pub(crate) struct HeavyTop {
     pub(crate) rho: Vector3<f64>,
     /// The vertical, in the inertial frame; `w` is the same vector seen from the body.
     pub(crate) up: Vector3<f64>,
-}
-
-/// A motion of the top with the derived integrator.
-#[derive(Clone)]
-pub(crate) struct Variational<'a> {
-    pub(crate) stepper: &'a Stepper<HeavyTop>,
-    pub(crate) state: State<liestep::SO3, Vector3<f64>>,
-}
-
-impl Method for Variational<'_> {
-    fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
-        let mut iterations = 0;
-        for _ in 0..steps {
-            match self.stepper.step(&mut self.state) {
-                Ok(report) => iterations += u64::from(report.iterations),
-                Err(cause) => return Err(Stopped { time: self.stepper.time(&self.state), cause }),
-            }
-        }
-        Ok(iterations)
-    }
-
-    fn sample(&self) -> Sample {
-        Sample { attitude: *self.state.attitude().as_matrix(), momentum: self.state.momentum() }
-    }
 }

@@ -18,11 +18,11 @@ pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
         let points: Vec<_> = ours.between(start, end).iter().map(|q| q.tip).collect();
         let title = format!("Path of the tip, {start} s to {end} s");
         sphere(&top, &Path { title: &title, colour: ours.colour, points: &points })?;
-        figures.close_up("Its last seconds", ours).draw(&bottom)?;
+        figures.close_up("The last of it, loop by loop", ours).draw(&bottom)?;
         let panels = [
             figures.geometry("Rigidity: how far R leaves the rotations"),
-            figures.vertical_momentum("Angular momentum about the vertical"),
-            figures.energy_long("Energy"),
+            figures.vertical_momentum("Angular momentum about the vertical: how far from its start"),
+            figures.energy_long("Energy: how far from its start"),
         ];
         for (place, panel) in right.split_evenly((3, 1)).iter().zip(panels) {
             panel.draw(place)?;

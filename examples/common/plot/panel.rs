@@ -11,6 +11,8 @@ use super::style::{GRID, INK, at, letters, px};
 /// A line of one colour.
 pub(crate) struct Line {
     pub(crate) colour: RGBColor,
+    /// Half pixels; wider where another line would hide it.
+    pub(crate) width: u32,
     pub(crate) points: Vec<(f64, f64)>,
 }
 
@@ -42,7 +44,7 @@ impl Panel<'_> {
         let (columns, _) = area.dim_in_pixel();
         let lines: Vec<Line> = self.lines.iter().map(|line| self.prepared(line, columns)).collect();
         let all = || lines.iter().flat_map(|line| &line.points);
-        let x_range = range(all().map(|p| p.0), 0.0);
+        let x_range = range(self.lines.iter().flat_map(|line| &line.points).map(|p| p.0), 0.0);
         let y_range = match self.vertical {
             Vertical::Linear => range(all().map(|p| p.1), 0.06),
             Vertical::Logarithmic => decades(all().map(|p| p.1)),
@@ -76,7 +78,7 @@ impl Panel<'_> {
             .y_label_formatter(&tick)
             .draw()?;
         for line in lines {
-            chart.draw_series(LineSeries::new(line.points, line.colour.stroke_width(px(1) + 1)))?;
+            chart.draw_series(LineSeries::new(line.points, line.colour.stroke_width(line.width)))?;
         }
         Ok(())
     }
@@ -92,7 +94,7 @@ impl Panel<'_> {
                 crest.map(|(_, (x, y))| (x, y.max(FLOOR).log10())).collect()
             }
         };
-        Line { colour: line.colour, points }
+        Line { points, ..*line }
     }
 }
 
