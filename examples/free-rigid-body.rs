@@ -29,6 +29,7 @@ use common::variational::Variational;
 use free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
 use free_body::figures::Figures;
 use free_body::lagrangian::FreeBody;
+use free_body::overview::overview;
 use free_body::quantities::Series;
 
 /// The period from J = diag(1, 2, 3) and Ω = (0.01, 2, 0.02), in s, there and back in two flips: that of the Jacobi
@@ -75,7 +76,9 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         Series::new("explicit, rescaled", "rescaled.csv", PURPLE, &body, &rescaled),
     ];
 
-    Figures { schedule, series: &series }.write(&mut output)?;
+    let figures = Figures { schedule, series: &series };
+    output.write("free-rigid-body.svg", &overview(&figures)?)?;
+    figures.write(&mut output)?;
     if arguments.common.csv {
         for method in &series {
             output.write(method.file, &method.csv())?;
@@ -117,8 +120,7 @@ fn summary(series: &[Series]) -> String {
     }
     let table = aligned(&rows);
     format!(
-        "Greatest deviations in the run, the period of two flips (exact: {PERIOD:.4} s), and the cost of\n\
-         a step:\n\n{table}"
+        "Greatest deviations in the run, the period of two flips (exact: {PERIOD:.4} s), the cost of a step:\n\n{table}"
     )
 }
 

@@ -26,18 +26,15 @@ impl Figures<'_> {
         render((900, 700), |area| {
             let body = self.header(area, "Energy of a free body that flips")?;
             let (above, below) = body.split_vertically(px(308));
-            let title = "Energy over its initial value";
-            self.panel(title, "E / E(0)", Vertical::Linear, |s| s.relative_energy().collect()).draw(&above)?;
-            let (title, up) = ("How far it strays", "|E − E(0)| / E(0)");
-            self.panel(title, up, Vertical::Logarithmic, |s| s.energy_error().collect()).draw(&below)
+            self.energy_ratio("Energy over its initial value").draw(&above)?;
+            self.energy_error("How far it strays").draw(&below)
         })
     }
 
     fn momentum(&self) -> Drawn<String> {
         render((900, 480), |area| {
             let body = self.header(area, "Spatial angular momentum of a free body: how far from its start")?;
-            let up = "|RΠ − RΠ(0)| / |Π(0)|";
-            self.panel("", up, Vertical::Logarithmic, |s| s.momentum_error().collect()).draw(&body)
+            self.momentum_error("").draw(&body)
         })
     }
 
@@ -62,11 +59,30 @@ impl Figures<'_> {
         })
     }
 
+    pub(crate) fn energy_ratio<'a>(&self, title: &'a str) -> Panel<'a> {
+        self.panel(title, "E / E(0)", Vertical::Linear, |s| s.relative_energy().collect())
+    }
+
+    fn energy_error<'a>(&self, title: &'a str) -> Panel<'a> {
+        self.panel(title, "|E − E(0)| / E(0)", Vertical::Logarithmic, |s| s.energy_error().collect())
+    }
+
+    pub(crate) fn momentum_error<'a>(&self, title: &'a str) -> Panel<'a> {
+        self.panel(title, "|RΠ − RΠ(0)| / |Π(0)|", Vertical::Logarithmic, |s| s.momentum_error().collect())
+    }
+
+    /// The rate about the middle axis, of all methods.
+    pub(crate) fn flips<'a>(&self, title: &'a str) -> Panel<'a> {
+        let rate = |s: &Series| s.values.iter().map(|q| (q.time, q.rates.y)).collect();
+        self.panel(title, "Ω_Y, rad/s", Vertical::Linear, rate)
+    }
+
     fn setting(&self) -> String {
         format!("J = diag(1, 2, 3) kg m², Ω(0) = (0.01, 2, 0.02) rad/s, h = {} s", self.schedule.step)
     }
 
-    fn header<'a>(&self, area: &Area<'a>, title: &str) -> Drawn<Area<'a>> {
+    /// Draws the title, the setting and the legend, and returns the rest.
+    pub(crate) fn header<'a>(&self, area: &Area<'a>, title: &str) -> Drawn<Area<'a>> {
         let (header, body) = area.split_vertically(px(HEADER));
         heading(&header, title, &self.setting())?;
         let entries: Vec<_> = self.series.iter().map(|s| (s.name, s.colour)).collect();

@@ -3,6 +3,7 @@
 pub(crate) mod engines;
 pub(crate) mod figures;
 pub(crate) mod lagrangian;
+pub(crate) mod overview;
 pub(crate) mod quantities;
 
 mod lagrangian_by_hand;

@@ -18,6 +18,8 @@ pub(crate) struct Quantities {
     pub(crate) spatial: Vector3<f64>,
     /// Body frame, rad/s
     pub(crate) rates: Vector3<f64>,
+    /// The middle axis in space, `R e₂`
+    pub(crate) axis: Vector3<f64>,
 }
 
 /// A method's run, ready to be drawn.
@@ -41,7 +43,8 @@ impl Series {
         let quantities = record.samples.iter().map(|(time, sample)| {
             let rates = body.rates(&sample.momentum);
             let energy = 0.5 * rates.dot(&sample.momentum);
-            Quantities { time: *time, energy, spatial: sample.attitude * sample.momentum, rates }
+            let spatial = sample.attitude * sample.momentum;
+            Quantities { time: *time, energy, spatial, rates, axis: sample.attitude.column(1).into() }
         });
         let (iterations, nanoseconds) = (record.iterations, record.nanoseconds);
         Self { name, file, colour, values: quantities.collect(), iterations, nanoseconds }

@@ -1,5 +1,7 @@
 //! Figures 3.4 to 3.10 of the thesis, done again.
 
+use nalgebra::Vector3;
+
 use super::cases::{Case, Reading};
 use super::quantities::{Quantities, Series};
 use crate::common::args::Schedule;
@@ -84,7 +86,10 @@ impl Figures<'_> {
             function: true,
             lines: vec![],
         };
-        self.with_lines(panel, SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy)
+        let mut panel = self.with_lines(panel, SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
+        // The rivals' lines coincide here.
+        panel.lines.iter_mut().take(1).for_each(|line| line.width = 7);
+        panel
     }
 
     /// Whether it stays an oscillation.
@@ -127,9 +132,9 @@ impl Figures<'_> {
         height: impl Fn(&Quantities, &Quantities) -> f64,
     ) -> Panel<'a> {
         // The variational line comes first in the legend and last, on top, in the drawing.
-        let lines = self.series.iter().zip([3, 3, 7]).rev().map(|(s, width)| Line {
+        let lines = self.series.iter().rev().map(|s| Line {
             colour: s.colour,
-            width,
+            width: 3,
             points: s.between(0.0, end).iter().map(|q| (q.time, height(q, &s.first()))).collect(),
         });
         Panel { lines: lines.collect(), ..panel }
@@ -178,7 +183,10 @@ impl Figures<'_> {
             for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
                 let (above, below) = place.split_vertically(px(470));
                 let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
-                sphere(&above, &Path { title: series.name, colour: series.colour, points: &points })?;
+                sphere(
+                    &above,
+                    &Path { title: series.name, colour: series.colour, points: &points, axis: (Vector3::z(), "e₃") },
+                )?;
                 self.close_up(&close_up, series).draw(&below)?;
             }
             Ok(())

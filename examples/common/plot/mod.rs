@@ -5,12 +5,10 @@
 mod canvas;
 mod envelope;
 mod panel;
-#[allow(dead_code)] // the free body draws no path on the sphere
 mod sphere;
 mod style;
 
 pub(crate) use canvas::{Area, Drawn, render};
 pub(crate) use panel::{Line, Panel, Vertical};
-#[allow(unused_imports)]
 pub(crate) use sphere::{Path, sphere};
 pub(crate) use style::{BLUE, GREEN, ORANGE, PURPLE, heading, legend, px};

@@ -88,10 +88,11 @@ impl Panel<'_> {
             Vertical::Linear if self.function => envelope(&line.points, columns),
             Vertical::Linear => line.points.clone(),
             Vertical::Logarithmic => {
-                let crest = crest(&line.points, columns).into_iter();
-                // The first deviation is nothing at all, and would draw a line down to the bottom.
-                let crest = crest.enumerate().filter(|(i, (_, y))| *i > 0 || *y > FLOOR);
-                crest.map(|(_, (x, y))| (x, y.max(FLOOR).log10())).collect()
+                let crest = crest(&line.points, columns);
+                // A moment without any deviation would be drawn as a line down to the bottom.
+                let nothing = crest.iter().all(|(_, y)| *y <= FLOOR);
+                let shown = crest.into_iter().filter(|(_, y)| nothing || *y > FLOOR);
+                shown.map(|(x, y)| (x, y.max(FLOOR).log10())).collect()
             }
         };
         Line { points, ..*line }

@@ -11,6 +11,8 @@ pub(crate) struct Path<'a> {
     pub(crate) title: &'a str,
     pub(crate) colour: RGBColor,
     pub(crate) points: &'a [Vector3<f64>],
+    /// A direction to mark, and its name.
+    pub(crate) axis: (Vector3<f64>, &'a str),
 }
 
 /// Where the eye is: high enough to see the rim of a cap at 45°.
@@ -34,7 +36,7 @@ pub(crate) fn sphere(area: &Area<'_>, path: &Path<'_>) -> Drawn {
             area.draw(&PathElement::new(arc.points.clone(), grid.stroke_width(px(1) / 2)))?;
         }
         if near {
-            view.axis(area)?;
+            view.axis(area, path.axis)?;
         }
         for arc in arcs.iter().filter(|arc| arc.near == near) {
             area.draw(&PathElement::new(arc.points.clone(), ink.stroke_width(px(1) / 2)))?;
@@ -108,11 +110,11 @@ impl View {
         arcs
     }
 
-    /// The vertical, from the pole outwards.
-    fn axis(&self, area: &Area<'_>) -> Drawn {
-        let ends = [1.0, 1.3].map(|z| self.project(&Vector3::new(0.0, 0.0, z)));
+    /// A direction, from the surface outwards.
+    fn axis(&self, area: &Area<'_>, (direction, name): (Vector3<f64>, &str)) -> Drawn {
+        let ends = [1.0, 1.3].map(|length| self.project(&(direction * length)));
         area.draw(&PathElement::new(ends.to_vec(), INK.stroke_width(px(1))))?;
-        area.draw_text("e₃", &letters(12, INK), (ends[1].0 + at(5), ends[1].1 - at(6)))?;
+        area.draw_text(name, &letters(12, INK), (ends[1].0 + at(5), ends[1].1 - at(6)))?;
         Ok(())
     }
 }
