@@ -1,0 +1,90 @@
+//! The three precessions of \[RDAE, figures 3.8 to 3.10\], and the two readings of its inertia.
+
+use std::fmt;
+
+use liestep::{DiagonalNonstandardInertia, InertiaError};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::lagrangian::HeavyTop;
+
+/// An initial condition, named as in the thesis.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Case {
+    /// Figure 3.8: φ' = 3, θ' = 0.5, ψ' = 10 rad/s.
+    Looping,
+    /// Figure 3.9: φ' = 0, θ' = 0, ψ' = 10 rad/s.
+    Cuspidal,
+    /// Figure 3.10: φ' = 1, θ' = 0.01, ψ' = 10 rad/s.
+    Unidirectional,
+}
+
+/// What `diag(2, 2, 1)` stands for.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reading {
+    /// The nonstandard inertia `J_d`, as in (3.13).
+    A,
+    /// The ordinary inertia `J`, as the figures of the thesis need it.
+    B,
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Looping => "looping",
+            Self::Cuspidal => "cuspidal",
+            Self::Unidirectional => "unidirectional",
+        })
+    }
+}
+
+impl fmt::Display for Reading {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::A => "reading A, J_d = diag(2, 2, 1)",
+            Self::B => "reading B, J = diag(2, 2, 1)",
+        })
+    }
+}
+
+impl Case {
+    /// The figure of the thesis that shows it.
+    pub(crate) fn figure(self) -> &'static str {
+        match self {
+            Self::Looping => "3.8",
+            Self::Cuspidal => "3.9",
+            Self::Unidirectional => "3.10",
+        }
+    }
+
+    /// The attitude at `φ = ψ = 0`, and the body velocity in rad/s.
+    pub(crate) fn start(self) -> (UnitQuaternion<f64>, Vector3<f64>) {
+        let (precession, nutation, spin) = match self {
+            Self::Looping => (3.0, 0.5, 10.0),
+            Self::Cuspidal => (0.0, 0.0, 10.0),
+            Self::Unidirectional => (1.0, 0.01, 10.0),
+        };
+        let tilt = 0.8_f64;
+        let velocity = Vector3::new(nutation, precession * tilt.sin(), spin + precession * tilt.cos());
+        (UnitQuaternion::from_axis_angle(&Vector3::x_axis(), tilt), velocity)
+    }
+
+    /// Where the thesis' name for a case and its motion part.
+    pub(crate) fn caveat(self, reading: Reading) -> Option<&'static str> {
+        (self == Self::Unidirectional && reading == Reading::A).then_some(
+            "Note: with J_d = diag(2, 2, 1) in (3.13) this third case of the thesis is looping: φ' runs from −0.60 to\n\
+             1.00 rad/s. It is unidirectional with diag(2, 2, 1) as the ordinary inertia: --reading b.",
+        )
+    }
+}
+
+impl Reading {
+    /// The top of the thesis, m = 1 kg, ρ = e₃, g = 9.81 m/s².
+    pub(crate) fn top(self) -> Result<HeavyTop, InertiaError> {
+        let printed = Vector3::new(2.0, 2.0, 1.0);
+        let inertia = match self {
+            Self::A => DiagonalNonstandardInertia::new(printed)?,
+            Self::B => DiagonalNonstandardInertia::from_principal_moments(printed)?,
+        };
+        Ok(HeavyTop { J_d: inertia, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() })
+    }
+}

@@ -1,0 +1,210 @@
+//! Figures 3.4 to 3.10 of the thesis, done again.
+
+use nalgebra::Vector3;
+
+use super::cases::{Case, Reading};
+use super::quantities::{Quantities, Series};
+use crate::common::args::Schedule;
+use crate::common::output::Output;
+use crate::common::plot::{Area, BLUE, Drawn, GREEN, Line, PURPLE, Panel, Path, Vertical, heading, legend, px};
+use crate::common::plot::{render, sphere};
+
+/// What the figures are of: the variational run first, then its rivals.
+pub(crate) struct Figures<'a> {
+    pub(crate) case: Case,
+    pub(crate) reading: Reading,
+    pub(crate) schedule: Schedule,
+    pub(crate) series: &'a [Series],
+}
+
+/// Long enough for ten nutations.
+const SHORT: f64 = 4.0;
+
+/// A figure's part below its heading.
+const HEADER: u32 = 62;
+
+impl Figures<'_> {
+    /// Writes all but the overview.
+    pub(crate) fn write(&self, output: &mut Output) -> Drawn {
+        let whole = |panel: Panel<'_>, figure: &str, title: &str| self.single(&panel, figure, title);
+        let end = self.schedule.end();
+        let short = SHORT.min(end);
+        output.write("geometry.svg", &whole(self.geometry(""), "3.4", "How far R leaves the rotations")?)?;
+        let title = "Angular momentum about the vertical";
+        output.write("vertical-momentum.svg", &whole(self.vertical_momentum(""), "3.5", title)?)?;
+        let title = format!("Energy, the first {short} s");
+        output.write("energy-short.svg", &whole(self.energy_short(""), "3.6 (a)", &title)?)?;
+        let title = format!("Energy, all {end} s");
+        output.write("energy-long.svg", &whole(self.energy_long(""), "3.6 (b)", &title)?)?;
+        output.write("body-rates.svg", &self.body_rates()?)?;
+        output.write(&format!("tip-{}.svg", self.case), &self.tip()?)?;
+        Ok(())
+    }
+
+    /// The case, the reading and the step: beside every figure.
+    pub(crate) fn setting(&self) -> String {
+        format!("{}, {}, h = {} s", self.case, self.reading, self.schedule.step)
+    }
+
+    /// The names and colours of all series.
+    pub(crate) fn legend(&self, area: &Area<'_>, place: (u32, u32)) -> Drawn {
+        let entries: Vec<_> = self.series.iter().map(|s| (s.name, s.colour)).collect();
+        legend(area, place, &entries)
+    }
+
+    pub(crate) fn geometry<'a>(&self, title: &'a str) -> Panel<'a> {
+        let panel = Panel {
+            title,
+            across: "time, s",
+            up: "‖RᵀR − I‖",
+            vertical: Vertical::Logarithmic,
+            function: true,
+            lines: vec![],
+        };
+        self.with_lines(panel, self.schedule.end(), |q, _| q.defect)
+    }
+
+    pub(crate) fn vertical_momentum<'a>(&self, title: &'a str) -> Panel<'a> {
+        let panel = Panel {
+            title,
+            across: "time, s",
+            up: "|e₃·RΠ − its start|, kg m²/s",
+            vertical: Vertical::Logarithmic,
+            function: true,
+            lines: vec![],
+        };
+        self.with_lines(panel, self.schedule.end(), |q, start| (q.vertical - start.vertical).abs())
+    }
+
+    /// The oscillation of the variational energy, which is of the order of the scheme.
+    pub(crate) fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
+        let panel = Panel {
+            title,
+            across: "time, s",
+            up: "E − E(0), J",
+            vertical: Vertical::Linear,
+            function: true,
+            lines: vec![],
+        };
+        let mut panel = self.with_lines(panel, SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
+        // The rivals' lines coincide here.
+        panel.lines.iter_mut().take(1).for_each(|line| line.width = 7);
+        panel
+    }
+
+    /// Whether it stays an oscillation.
+    pub(crate) fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
+        let panel = Panel {
+            title,
+            across: "time, s",
+            up: "|E − E(0)|, J",
+            vertical: Vertical::Logarithmic,
+            function: true,
+            lines: vec![],
+        };
+        self.with_lines(panel, self.schedule.end(), |q, start| (q.energy - start.energy).abs())
+    }
+
+    /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
+    pub(crate) fn close_up<'a>(&self, title: &'a str, series: &Series) -> Panel<'a> {
+        let end = self.schedule.end();
+        let points = unwound(series.between((end - SHORT).max(0.0), end));
+        Panel {
+            title,
+            across: "azimuth of the tip, degrees",
+            up: "tilt from the vertical, degrees",
+            vertical: Vertical::Linear,
+            function: false,
+            lines: vec![Line { colour: series.colour, width: 3, points }],
+        }
+    }
+
+    /// The second half of the run, as the thesis' 100 to 200 s, but no more than 100 s.
+    pub(crate) fn late(&self) -> (f64, f64) {
+        let end = self.schedule.end();
+        ((end / 2.0).max(end - 100.0), end)
+    }
+
+    fn with_lines<'a>(
+        &self,
+        panel: Panel<'a>,
+        end: f64,
+        height: impl Fn(&Quantities, &Quantities) -> f64,
+    ) -> Panel<'a> {
+        // The variational line comes first in the legend and last, on top, in the drawing.
+        let lines = self.series.iter().rev().map(|s| Line {
+            colour: s.colour,
+            width: 3,
+            points: s.between(0.0, end).iter().map(|q| (q.time, height(q, &s.first()))).collect(),
+        });
+        Panel { lines: lines.collect(), ..panel }
+    }
+
+    fn single(&self, panel: &Panel<'_>, figure: &str, title: &str) -> Drawn<String> {
+        render((900, 460), |area| {
+            let (header, body) = area.split_vertically(px(HEADER + 8));
+            heading(&header, title, &format!("{}; after figure {figure} of the thesis", self.setting()))?;
+            self.legend(&header, (16, HEADER + 4))?;
+            panel.draw(&body)
+        })
+    }
+
+    fn body_rates(&self) -> Drawn<String> {
+        let end = SHORT.min(self.schedule.end());
+        let axes = [("Ω_X, rad/s", BLUE), ("Ω_Y, rad/s", PURPLE), ("Ω_Z, rad/s", GREEN)];
+        let name = self.series.first().map_or("", |s| s.name);
+        render((900, 620), |area| {
+            let (header, body) = area.split_vertically(px(HEADER));
+            let subtitle = format!("{}, {name}; after figure 3.7 of the thesis", self.setting());
+            heading(&header, &format!("Body rates, the first {end} s"), &subtitle)?;
+            for (axis, (place, (up, colour))) in body.split_evenly((3, 1)).iter().zip(axes).enumerate() {
+                let points = self.series.iter().take(1).flat_map(|s| s.between(0.0, end));
+                let line = Line { colour, width: 3, points: points.map(|q| (q.time, q.rates[axis])).collect() };
+                let across = if axis == 2 { "time, s" } else { "" };
+                let vertical = Vertical::Linear;
+                Panel { title: "", across, up, vertical, function: true, lines: vec![line] }.draw(place)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// The variational run beside the thesis' Runge–Kutta, which is the last of the series.
+    fn tip(&self) -> Drawn<String> {
+        let (start, end) = self.late();
+        let (Some(ours), Some(theirs)) = (self.series.first(), self.series.last()) else {
+            return Err("no runs to draw".into());
+        };
+        render((1000, 800), |area| {
+            let (header, body) = area.split_vertically(px(HEADER));
+            let title = format!("Path of the tip on the sphere, {start} s to {end} s");
+            let subtitle = format!("{}; after figure {} of the thesis", self.setting(), self.case.figure());
+            heading(&header, &title, &subtitle)?;
+            let close_up = format!("Its last {} s", SHORT.min(end));
+            for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
+                let (above, below) = place.split_vertically(px(470));
+                let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
+                sphere(
+                    &above,
+                    &Path { title: series.name, colour: series.colour, points: &points, axis: (Vector3::z(), "e₃") },
+                )?;
+                self.close_up(&close_up, series).draw(&below)?;
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Azimuth and tilt in degrees, the azimuth without jumps.
+fn unwound(path: &[Quantities]) -> Vec<(f64, f64)> {
+    let mut turns = 0.0;
+    let mut before: Option<f64> = None;
+    let angles = path.iter().map(|q| {
+        let azimuth = q.tip.y.atan2(q.tip.x).to_degrees();
+        if let Some(before) = before {
+            turns -= 360.0 * ((azimuth - before) / 360.0).round();
+        }
+        before = Some(azimuth);
+        (azimuth + turns, q.tip.xy().norm().atan2(q.tip.z).to_degrees())
+    });
+    angles.collect()
+}

@@ -1,0 +1,102 @@
+//! What the figures show, computed in the same way from the samples of every method.
+
+use nalgebra::{Matrix3, Vector3};
+use plotters::style::RGBColor;
+
+use super::rk4::Body;
+use crate::common::csv;
+use crate::common::run::{Record, Sample};
+
+/// A state's invariants and what else is drawn of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Quantities {
+    /// s
+    pub(crate) time: f64,
+    /// `‖RᵀR − I‖`, Frobenius
+    pub(crate) defect: f64,
+    /// `e₃·RΠ`, kg m²/s
+    pub(crate) vertical: f64,
+    /// J
+    pub(crate) energy: f64,
+    /// Body frame, rad/s
+    pub(crate) rates: Vector3<f64>,
+    /// `R e₃`, of the length that the method's `R` gives it
+    pub(crate) tip: Vector3<f64>,
+}
+
+/// A method's run, ready to be drawn.
+pub(crate) struct Series {
+    pub(crate) name: &'static str,
+    pub(crate) file: &'static str,
+    pub(crate) colour: RGBColor,
+    pub(crate) values: Vec<Quantities>,
+    pub(crate) iterations: f64,
+    pub(crate) nanoseconds: f64,
+}
+
+impl Quantities {
+    fn of(body: &Body, time: f64, Sample { attitude, momentum }: &Sample) -> Self {
+        let rates = body.inverse_moments.component_mul(momentum);
+        Self {
+            time,
+            defect: (attitude.transpose() * attitude - Matrix3::identity()).norm(),
+            vertical: (attitude * momentum).z,
+            energy: 0.5 * momentum.dot(&rates) + (attitude * body.lever).z,
+            rates,
+            tip: attitude.column(2).into(),
+        }
+    }
+}
+
+impl Series {
+    pub(crate) fn new(name: &'static str, file: &'static str, colour: RGBColor, body: &Body, record: &Record) -> Self {
+        let values = record.samples.iter().map(|(time, sample)| Quantities::of(body, *time, sample)).collect();
+        Self { name, file, colour, values, iterations: record.iterations, nanoseconds: record.nanoseconds }
+    }
+
+    /// At the start.
+    pub(crate) fn first(&self) -> Quantities {
+        self.values[0]
+    }
+
+    /// Those from one time to another.
+    pub(crate) fn between(&self, start: f64, end: f64) -> &[Quantities] {
+        let from = self.values.partition_point(|q| q.time < start);
+        let to = self.values.partition_point(|q| q.time <= end);
+        &self.values[from..to]
+    }
+
+    /// The largest of a quantity; NaN if it is NaN anywhere, which `f64::max` would hide.
+    pub(crate) fn largest(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
+        self.values.iter().map(quantity).fold(0.0, |most: f64, x| if most.is_nan() || x <= most { most } else { x })
+    }
+
+    /// The largest of a quantity in the last tenth of the run, over that in the first: about 1 for an oscillation, 10
+    /// for what grows in proportion to time.
+    pub(crate) fn growth(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
+        let tenth = self.values.len().div_ceil(10);
+        let largest = |values: &[Quantities]| values.iter().map(&quantity).fold(0.0, f64::max);
+        largest(&self.values[self.values.len() - tenth..]) / largest(&self.values[..tenth])
+    }
+
+    /// As comma-separated values.
+    pub(crate) fn csv(&self) -> String {
+        let names = [
+            "time_s",
+            "orthogonality_defect",
+            "vertical_momentum_kg_m2_per_s",
+            "energy_J",
+            "omega_x_rad_per_s",
+            "omega_y_rad_per_s",
+            "omega_z_rad_per_s",
+            "tip_x",
+            "tip_y",
+            "tip_z",
+        ];
+        let row = |q: &Quantities| {
+            let (o, p) = (q.rates, q.tip);
+            [q.time, q.defect, q.vertical, q.energy, o.x, o.y, o.z, p.x, p.y, p.z]
+        };
+        csv::table(names, self.values.iter().map(row))
+    }
+}

@@ -1,0 +1,34 @@
+//! The integrator that a declared Lagrangian gives, as a method to run.
+
+use liestep::{DiscreteLagrangian, SO3, State, Stepper};
+
+use super::run::{Method, Sample, Stopped};
+
+/// A motion, with the stepper that moves it.
+pub(crate) struct Variational<'a, L: DiscreteLagrangian<Scalar = f64, Group = SO3>> {
+    pub(crate) stepper: &'a Stepper<L>,
+    pub(crate) state: State<SO3, L::Advected>,
+}
+
+impl<L: DiscreteLagrangian<Scalar = f64, Group = SO3>> Clone for Variational<'_, L> {
+    fn clone(&self) -> Self {
+        Self { stepper: self.stepper, state: self.state }
+    }
+}
+
+impl<L: DiscreteLagrangian<Scalar = f64, Group = SO3>> Method for Variational<'_, L> {
+    fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
+        let mut iterations = 0;
+        for _ in 0..steps {
+            match self.stepper.step(&mut self.state) {
+                Ok(report) => iterations += u64::from(report.iterations),
+                Err(cause) => return Err(Stopped { time: self.stepper.time(&self.state), cause }),
+            }
+        }
+        Ok(iterations)
+    }
+
+    fn sample(&self) -> Sample {
+        Sample { attitude: *self.state.attitude().as_matrix(), momentum: self.state.momentum() }
+    }
+}
