@@ -7,5 +7,4 @@ pub mod continuous;
 pub mod measure;
 pub mod random;
 pub mod reference;
-mod temporary;
 pub mod tops;

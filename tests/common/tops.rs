@@ -3,10 +3,16 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::{DiagonalNonstandardInertia, NonstandardInertia};
+use liestep::{DiagonalNonstandardInertia, NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
 /// The heavy top (3.13) in principal axes.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
+)]
 #[derive(Clone, Debug)]
 pub struct HeavyTop {
     pub J_d: DiagonalNonstandardInertia,
@@ -17,6 +23,12 @@ pub struct HeavyTop {
 }
 
 /// The heavy top (3.13) with a full inertia tensor.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
+)]
 #[derive(Clone, Debug)]
 pub struct FullTop {
     pub J_d: NonstandardInertia,
@@ -27,6 +39,7 @@ pub struct FullTop {
 }
 
 /// The free rigid body: the kinetic term of (3.13) alone.
+#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Debug)]
 pub struct FreeBody {
     pub J_d: NonstandardInertia,

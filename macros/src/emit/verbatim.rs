@@ -20,51 +20,45 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let mentioned = |name: &str| rewrite.mentioned.iter().any(|used| used == name);
-    let mut bindings = TokenStream::new();
-    let local = |name: &str| Ident::new_raw_or_plain(name, span);
-    if mentioned("F") {
-        let name = local("F");
-        bindings.extend(quote_spanned!(span=> let #name = *f;));
-    }
-    if mentioned("I") {
-        let name = local("I");
-        bindings.extend(quote_spanned!(span=> let #name: #square = <#square>::identity();));
-    }
-    if mentioned("vee") {
-        let (name, vector) = (local("vee"), header.vector());
-        bindings.extend(quote_spanned!(span=> let #name = |matrix: #square| -> #vector {
-            <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix)
-        };));
-    }
-    for (index, w) in declaration.advected.iter().enumerate() {
-        let text = w.name.unraw().to_string();
-        let name = local(&text);
+    let mut names: Vec<Ident> = Vec::new();
+    let mut values: Vec<TokenStream> = Vec::new();
+    let mut bind = |name: &str, value: TokenStream| {
+        if rewrite.mentioned.iter().any(|used| used == name) {
+            names.push(Ident::new_raw_or_plain(name, span));
+            values.push(value);
+        }
+    };
+    bind("F", quote_spanned!(span=> *f));
+    bind("I", quote_spanned!(span=> <#square>::identity()));
+    let vector = header.vector();
+    bind(
+        "vee",
+        quote_spanned!(span=> |matrix: #square| -> #vector { <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix) }),
+    );
+    for (index, parameter) in declaration.advected.iter().enumerate() {
         let value = if declaration.advected.len() == 1 {
             quote_spanned!(span=> *w)
         } else {
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
-        bindings.extend(quote_spanned!(span=> let #name = #value;));
+        bind(&parameter.name.unraw().to_string(), value);
     }
     for field in &declaration.fields {
-        let text = field.name.unraw().to_string();
-        if !mentioned(&text) {
-            continue;
-        }
-        let (name, member) = (local(&text), &field.name);
+        let member = &field.name;
         let value = match field.kind {
             FieldKind::Scalar => quote_spanned!(span=> self.#member),
             _ => quote_spanned!(span=> #root::__private::Parameter::value(&self.#member)),
         };
-        bindings.extend(quote_spanned!(span=> let #name = #value;));
+        bind(&field.name.unraw().to_string(), value);
     }
     let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));
     quote_spanned! {span=>
         /// The Lagrangian as declared.
         fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar {
             #traits
-            #bindings
+            // In one pattern, so that no name hides a value that a later one needs.
+            let (#(#names,)*) = (#(#values,)*);
             #expression
         }
     }
