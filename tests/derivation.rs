@@ -88,6 +88,9 @@ struct Smooth<T: Real> {
     up: Vector3<T>,
 }
 
+/// The trace of any rotation is above this.
+const ANY: f64 = -2.0;
+
 fn real<T: RealField>(value: f64) -> T {
     convert(value)
 }
@@ -172,14 +175,14 @@ fn close(what: &str, found: f64, expected: f64, scale: f64, tolerance: f64) {
     assert!((found - expected).abs() <= tolerance * scale, "{what}: {found} instead of {expected}, scale {scale}");
 }
 
-/// Compares all derived terms of one Lagrangian at many increments.
-fn compare<L, D, H>(build: fn(u64) -> L, dual: fn(u64) -> D, hyper: fn(u64) -> H)
+/// Compares all derived terms of one Lagrangian at many increments, those of a trace of at least −1 or more.
+fn compare<L, D, H>(build: fn(u64) -> L, dual: fn(u64) -> D, hyper: fn(u64) -> H, least_trace: f64)
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: Vectors<f64>>,
     D: DiscreteLagrangian<Scalar = Dual64, Group = SO3<Dual64>, Advected: Vectors<Dual64>>,
     H: DiscreteLagrangian<Scalar = HyperDual64, Group = SO3<HyperDual64>, Advected: Vectors<HyperDual64>>,
 {
-    for (index, f) in rotations().into_iter().enumerate() {
+    for (index, f) in rotations().into_iter().enumerate().filter(|(_, f)| f.trace() >= least_trace) {
         let seed = index as u64;
         let (system, first, second) = (build(seed), dual(seed), hyper(seed));
         let mut r = Random::new(1000 + seed);
@@ -270,28 +273,28 @@ where
 
 #[test]
 fn heavy_top_with_a_full_tensor() {
-    compare(top, top, top);
+    compare(top, top, top, ANY);
 }
 
 #[test]
 fn heavy_top_in_principal_axes() {
-    compare(diagonal_top, diagonal_top, diagonal_top);
+    compare(diagonal_top, diagonal_top, diagonal_top, ANY);
 }
 
 #[test]
 fn free_body_without_advected_parameters() {
-    compare(free_body, free_body, free_body);
+    compare(free_body, free_body, free_body, ANY);
 }
 
 #[test]
 fn two_advected_vectors_and_every_operation() {
-    compare(everything, everything, everything);
+    compare(everything, everything, everything, ANY);
 }
 
 #[test]
 fn smooth_functions() {
-    // Near a half turn ln((1 + tr F)/4) has no digits left.
-    compare(smooth, smooth, smooth);
+    // At a half turn ln((1 + tr F)/4) is singular, and central differences reach across.
+    compare(smooth, smooth, smooth, -0.9);
 }
 
 /// (3.17), (3.18) and the diamond of section 3.2.1, typed by hand, with `p = 2 vee(Π^)` (errata E1, E5).

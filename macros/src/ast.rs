@@ -12,6 +12,8 @@ pub(crate) struct Declaration {
     pub(crate) item: ItemStruct,
     /// Where liestep is found.
     pub(crate) root: Path,
+    /// The group as written.
+    pub(crate) group: Path,
     pub(crate) advected: Vec<AdvectedParameter>,
     pub(crate) l_d: Expr,
     pub(crate) fields: Vec<Field>,
@@ -88,6 +90,15 @@ pub(crate) struct Tree {
     pub(crate) span: Span,
     pub(crate) shape: Shape,
     pub(crate) kind: Kind,
+    /// How deep the operations are nested, through `let`s too.
+    pub(crate) depth: usize,
+}
+
+impl Tree {
+    pub(crate) fn new(span: Span, shape: Shape, kind: Kind) -> Rc<Self> {
+        let depth = kind.operands().into_iter().flatten().map(|operand| operand.depth).max().unwrap_or(0) + 1;
+        Rc::new(Self { span, shape, kind, depth })
+    }
 }
 
 /// A name in scope.
@@ -124,4 +135,27 @@ pub(crate) enum Kind {
     Apply(Function, Rc<Tree>),
     Vee(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
+}
+
+impl Kind {
+    pub(crate) fn operands(&self) -> [Option<&Rc<Tree>>; 2] {
+        match self {
+            Self::Number(_) | Self::Identity | Self::Name(_) => [None, None],
+            Self::Negate(a)
+            | Self::Transpose(a)
+            | Self::Trace(a)
+            | Self::CrossMatrix(a)
+            | Self::Power(a, _)
+            | Self::Apply(_, a)
+            | Self::Vee(a)
+            | Self::Entry(a, ..) => [Some(a), None],
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Divide(a, b)
+            | Self::Dot(a, b)
+            | Self::Cross(a, b)
+            | Self::ComponentMultiply(a, b) => [Some(a), Some(b)],
+        }
+    }
 }

@@ -6,7 +6,7 @@ use syn::ItemStruct;
 
 use crate::derive::{Derived, LimitError};
 use crate::errors::Errors;
-use crate::{check, derive, emit, fallback, lower, parse};
+use crate::{check, derive, emit, fallback, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 pub(crate) fn expand(arguments: TokenStream, item: TokenStream) -> TokenStream {
@@ -19,6 +19,11 @@ pub(crate) fn expand(arguments: TokenStream, item: TokenStream) -> TokenStream {
         }
     };
     let mut errors = Errors::default();
+    parse::check_size(&arguments, &mut errors);
+    if !errors.is_empty() {
+        let mistakes = errors.to_compile_errors();
+        return quote!(#item #mistakes);
+    }
     let implementation = implementation(arguments.clone(), &parsed, &mut errors);
     match implementation {
         Some(implementation) if errors.is_empty() => quote!(#item #implementation),
@@ -29,7 +34,7 @@ pub(crate) fn expand(arguments: TokenStream, item: TokenStream) -> TokenStream {
     }
 }
 
-/// Parse, check, lower, derive, emit.
+/// Parse, check, lower, derive, verify, emit.
 fn implementation(arguments: TokenStream, item: &ItemStruct, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::parse(arguments, item.clone(), errors)?;
     let tree = check::check(&declaration, errors)?;
@@ -39,6 +44,12 @@ fn implementation(arguments: TokenStream, item: &ItemStruct, errors: &mut Errors
     let lowered = lower::lower(&declaration, &tree, errors)?;
     let derived = derive::derive(&lowered.declared).map_err(|error| explain(error, tree.span, errors)).ok()?;
     is_sound(&derived, tree.span, errors)?;
+    if let Some(term) = verify::disagreement(&declaration, &tree, &lowered, &derived) {
+        let message =
+            format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
+        errors.push(tree.span, message);
+        return None;
+    }
     Some(emit::implementation(&declaration, &lowered, &derived))
 }
 

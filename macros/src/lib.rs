@@ -14,6 +14,7 @@ mod lower;
 mod parse;
 mod scalar;
 mod symbolic;
+mod verify;
 
 /// Derives an integrator from a reduced discrete Lagrangian: `impl DiscreteLagrangian` for the annotated struct.
 ///

@@ -44,7 +44,7 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         names.insert(Name::Advected(index), id);
         advected.push(id);
     }
-    let lowering = Lowering { symbols: &symbols, names: &names };
+    let mut lowering = Lowering { symbols: &symbols, names: &names, known: BTreeMap::new() };
     match lowering.expression(tree) {
         Ok(l_d) if l_d.has_overflow() => {
             errors
@@ -67,10 +67,27 @@ struct TooLarge(proc_macro2::Span);
 struct Lowering<'a> {
     symbols: &'a Symbols,
     names: &'a BTreeMap<Name, SymbolId>,
+    /// What a `let` has bound is lowered once, however often it is used.
+    known: BTreeMap<*const Tree, Expression>,
 }
 
 impl Lowering<'_> {
-    fn expression(&self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+    fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+        if let Some(known) = self.known.get(&Rc::as_ptr(tree)) {
+            return Ok(known.clone());
+        }
+        let result = self.operation(tree)?;
+        if result.len() > MOST_TERMS {
+            return Err(TooLarge(tree.span));
+        }
+        if Rc::strong_count(tree) > 1 {
+            self.known.insert(Rc::as_ptr(tree), result.clone());
+        }
+        Ok(result)
+    }
+
+    fn operation(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+        let symbols = self.symbols;
         let result = match &tree.kind {
             Kind::Number(value) => Expression::rational(*value),
             Kind::Identity => Expression::identity(3),
@@ -81,19 +98,17 @@ impl Lowering<'_> {
             Kind::Negate(a) => self.expression(a)?.scaled(-Rational::ONE),
             Kind::Add(a, b) => self.expression(a)?.plus(self.expression(b)?),
             Kind::Subtract(a, b) => self.expression(a)?.minus(self.expression(b)?),
-            Kind::Multiply(a, b) => self.product(tree, &self.expression(a)?, &self.expression(b)?)?,
+            Kind::Multiply(a, b) => product(tree, &self.expression(a)?, &self.expression(b)?, symbols)?,
             Kind::Divide(a, b) => {
-                self.product(tree, &self.expression(a)?, &self.expression(b)?.power(-1, self.symbols))?
+                product(tree, &self.expression(a)?, &self.expression(b)?.power(-1, symbols), symbols)?
             }
             Kind::Transpose(a) => self.expression(a)?.transpose(self.symbols),
             Kind::Trace(a) => self.expression(a)?.trace(self.symbols),
-            Kind::Dot(a, b) => {
-                self.product(tree, &self.expression(a)?.transpose(self.symbols), &self.expression(b)?)?
-            }
-            Kind::Cross(a, b) => self.product(tree, &self.expression(a)?.hat(self.symbols), &self.expression(b)?)?,
+            Kind::Dot(a, b) => product(tree, &self.expression(a)?.transpose(symbols), &self.expression(b)?, symbols)?,
+            Kind::Cross(a, b) => product(tree, &self.expression(a)?.hat(symbols), &self.expression(b)?, symbols)?,
             Kind::CrossMatrix(a) => self.expression(a)?.hat(self.symbols),
             Kind::ComponentMultiply(a, b) => {
-                self.product(tree, &self.expression(a)?.diagonal(self.symbols), &self.expression(b)?)?
+                product(tree, &self.expression(a)?.diagonal(symbols), &self.expression(b)?, symbols)?
             }
             Kind::Power(a, exponent) => {
                 let base = self.expression(a)?;
@@ -111,20 +126,20 @@ impl Lowering<'_> {
                 if columns == 1 { left } else { left.times(&self.unit(*column, columns, false), self.symbols) }
             }
         };
-        if result.len() > MOST_TERMS { Err(TooLarge(tree.span)) } else { Ok(result) }
-    }
-
-    fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, TooLarge> {
-        if left.len().saturating_mul(right.len()) > MOST_TERMS {
-            return Err(TooLarge(tree.span));
-        }
-        Ok(left.times(right, self.symbols))
+        Ok(result)
     }
 
     fn unit(&self, index: usize, size: usize, transposed: bool) -> Expression {
         let shape = if transposed { (1, size) } else { (size, 1) };
         Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, self.symbols)
     }
+}
+
+fn product(tree: &Tree, left: &Expression, right: &Expression, symbols: &Symbols) -> Result<Expression, TooLarge> {
+    if left.len().saturating_mul(right.len()) > MOST_TERMS {
+        return Err(TooLarge(tree.span));
+    }
+    Ok(left.times(right, symbols))
 }
 
 fn ambient(shape: Shape) -> (usize, usize) {

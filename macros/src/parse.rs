@@ -9,6 +9,39 @@ use syn::{Expr, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments,
 use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
 use crate::errors::{Errors, suggestion};
 
+/// More tokens than this, or deeper brackets, are no Lagrangian that a person wrote, and parsing them recursively could
+/// overflow the compiler's stack.
+const MOST_TOKENS: usize = 5_000;
+const DEEPEST_BRACKETS: usize = 64;
+
+/// Reports arguments that are too large to be parsed.
+pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) {
+    let mut open = vec![(arguments.clone().into_iter(), 0)];
+    let mut count = 0;
+    while let Some((mut tokens, depth)) = open.pop() {
+        let Some(token) = tokens.next() else { continue };
+        count += 1;
+        open.push((tokens, depth));
+        if count > MOST_TOKENS {
+            errors.push(
+                token.span(),
+                format!("the Lagrangian has more than {MOST_TOKENS} tokens: the expression is too large"),
+            );
+            return;
+        }
+        if let proc_macro2::TokenTree::Group(group) = token {
+            if depth >= DEEPEST_BRACKETS {
+                errors.push(
+                    group.span_open(),
+                    format!("brackets are nested more than {DEEPEST_BRACKETS} deep: bind parts with `let`"),
+                );
+                return;
+            }
+            open.push((group.stream().into_iter(), depth + 1));
+        }
+    }
+}
+
 /// The arguments as written.
 #[derive(Default)]
 struct Arguments {
@@ -43,7 +76,7 @@ pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Error
     };
     match &arguments.group {
         None => errors.push(Span::call_site(), "the group is missing: write `group = SO3`"),
-        Some(path) if !path.segments.last().is_some_and(|segment| segment.ident == "SO3") => {
+        Some(path) if path.segments.last().is_none_or(|segment| segment.ident != "SO3") => {
             errors.push(path.span(), "this group isn't known: write `group = SO3`");
         }
         Some(_) => {}
@@ -56,6 +89,7 @@ pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Error
     let advected = advected(&arguments.advected, &fields, errors);
     Some(Declaration {
         root: arguments.root.unwrap_or_else(default_root),
+        group: arguments.group.unwrap_or_else(|| syn::parse_quote!(SO3)),
         advected,
         l_d: arguments.l_d?,
         fields: fields.into_iter().map(|(field, _)| field).collect(),

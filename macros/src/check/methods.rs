@@ -6,7 +6,7 @@ use proc_macro2::Span;
 use syn::spanned::Spanned as _;
 use syn::{Expr, ExprCall, ExprMethodCall, Lit, UnOp};
 
-use super::{Checker, tree};
+use super::Checker;
 use crate::ast::{Kind, Shape, Tree};
 use crate::errors::suggestion;
 use crate::symbolic::Function;
@@ -65,7 +65,7 @@ impl Checker<'_> {
         let (expected, result) = match (name, shape) {
             ("clone", _) => return Some(receiver),
             ("transpose", Shape::Matrix(rows, columns)) => {
-                return Some(tree(span, Shape::Matrix(columns, rows), Kind::Transpose(receiver)));
+                return Some(Tree::new(span, Shape::Matrix(columns, rows), Kind::Transpose(receiver)));
             }
             ("transpose", Shape::Scalar) => ("a matrix", None),
             ("trace", SQUARE) => ("", Some((Shape::Scalar, Kind::Trace(receiver)))),
@@ -73,9 +73,9 @@ impl Checker<'_> {
             ("cross_matrix", VECTOR) => ("", Some((SQUARE, Kind::CrossMatrix(receiver)))),
             ("cross_matrix", _) => ("a vector of 3", None),
             ("norm_squared" | "norm", VECTOR) => {
-                let squared = tree(span, Shape::Scalar, Kind::Dot(receiver.clone(), receiver));
+                let squared = Tree::new(span, Shape::Scalar, Kind::Dot(receiver.clone(), receiver));
                 let norm = |squared| Kind::Apply(Function::Sqrt, squared);
-                return Some(if name == "norm" { tree(span, Shape::Scalar, norm(squared)) } else { squared });
+                return Some(if name == "norm" { Tree::new(span, Shape::Scalar, norm(squared)) } else { squared });
             }
             ("norm_squared" | "norm", Shape::Matrix(..)) => {
                 let turned = match shape {
@@ -85,11 +85,11 @@ impl Checker<'_> {
                 if turned != shape {
                     return self.mismatch(name, "a vector of 3 or a square matrix", shape, at);
                 }
-                let transposed = tree(span, turned, Kind::Transpose(receiver.clone()));
-                let product = tree(span, shape, Kind::Multiply(receiver, transposed));
-                let squared = tree(span, Shape::Scalar, Kind::Trace(product));
+                let transposed = Tree::new(span, turned, Kind::Transpose(receiver.clone()));
+                let product = Tree::new(span, shape, Kind::Multiply(receiver, transposed));
+                let squared = Tree::new(span, Shape::Scalar, Kind::Trace(product));
                 let norm = |squared| Kind::Apply(Function::Sqrt, squared);
-                return Some(if name == "norm" { tree(span, Shape::Scalar, norm(squared)) } else { squared });
+                return Some(if name == "norm" { Tree::new(span, Shape::Scalar, norm(squared)) } else { squared });
             }
             ("norm_squared" | "norm", Shape::Scalar) => ("a vector or a matrix", None),
             (function, Shape::Scalar) => {
@@ -99,7 +99,7 @@ impl Checker<'_> {
             _ => ("a scalar", None),
         };
         match result {
-            Some((shape, kind)) => Some(tree(span, shape, kind)),
+            Some((shape, kind)) => Some(Tree::new(span, shape, kind)),
             None => self.mismatch(name, expected, shape, at),
         }
     }
@@ -111,9 +111,9 @@ impl Checker<'_> {
             }
         }
         Some(match name {
-            "dot" => tree(span, Shape::Scalar, Kind::Dot(left, right)),
-            "cross" => tree(span, VECTOR, Kind::Cross(left, right)),
-            _ => tree(span, VECTOR, Kind::ComponentMultiply(left, right)),
+            "dot" => Tree::new(span, Shape::Scalar, Kind::Dot(left, right)),
+            "cross" => Tree::new(span, VECTOR, Kind::Cross(left, right)),
+            _ => Tree::new(span, VECTOR, Kind::ComponentMultiply(left, right)),
         })
     }
 
@@ -121,12 +121,9 @@ impl Checker<'_> {
         if base.shape != Shape::Scalar {
             return self.mismatch("powi", "a scalar", base.shape, at);
         }
-        match integer(exponent).filter(|n| (-16..=16).contains(n)) {
-            Some(exponent) => Some(tree(span, Shape::Scalar, Kind::Power(base, exponent))),
-            None => {
-                self.errors.push(exponent.span(), "write the exponent as a whole number from −16 to 16");
-                None
-            }
+        if let Some(exponent) = integer(exponent).filter(|n| (-16..=16).contains(n)) { Some(Tree::new(span, Shape::Scalar, Kind::Power(base, exponent))) } else {
+            self.errors.push(exponent.span(), "write the exponent as a whole number from −16 to 16");
+            None
         }
     }
 
@@ -171,7 +168,7 @@ impl Checker<'_> {
         if argument.shape != SQUARE {
             return self.mismatch("vee", "a 3 × 3 matrix", argument.shape, call.func.span());
         }
-        Some(tree(call.span(), VECTOR, Kind::Vee(argument)))
+        Some(Tree::new(call.span(), VECTOR, Kind::Vee(argument)))
     }
 }
 

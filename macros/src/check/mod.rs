@@ -17,7 +17,7 @@ use crate::errors::{Errors, suggestion};
 use crate::symbolic::Rational;
 
 /// Deeper expressions than a person writes would overflow the stack of the compiler.
-const DEEPEST: usize = 100;
+const DEEPEST: usize = 250;
 
 /// The declared expression as a tree, with every mistake reported.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
@@ -62,6 +62,11 @@ impl Checker<'_> {
         self.depth += 1;
         let tree = self.expression_inside(expression);
         self.depth -= 1;
+        if tree.as_ref().is_some_and(|tree| tree.depth > DEEPEST) {
+            self.errors
+                .push(expression.span(), format!("nested more than {DEEPEST} deep: the expression is too large"));
+            return None;
+        }
         tree
     }
 
@@ -86,7 +91,7 @@ impl Checker<'_> {
             Expr::Unary(unary) => match unary.op {
                 UnOp::Neg(_) => {
                     let operand = self.expression(&unary.expr)?;
-                    Some(tree(span, operand.shape, Kind::Negate(operand)))
+                    Some(Tree::new(span, operand.shape, Kind::Negate(operand)))
                 }
                 _ => self.unknown(span),
             },
@@ -185,7 +190,7 @@ impl Checker<'_> {
             self.errors.push(literal.span(), "too many digits for exact arithmetic: make it a field of the struct");
             return None;
         }
-        Some(tree(literal.span(), Shape::Scalar, Kind::Number(value)))
+        Some(Tree::new(literal.span(), Shape::Scalar, Kind::Number(value)))
     }
 
     fn name(&mut self, ident: &syn::Ident) -> Option<Rc<Tree>> {
@@ -199,7 +204,7 @@ impl Checker<'_> {
         let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.name.unraw() == name);
         let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.name.unraw() == name);
         let (shape, found) = match name.as_str() {
-            "I" => return Some(tree(span, Shape::Matrix(3, 3), Kind::Identity)),
+            "I" => return Some(Tree::new(span, Shape::Matrix(3, 3), Kind::Identity)),
             "F" => (Shape::Matrix(3, 3), Name::Increment),
             "h" => (Shape::Scalar, Name::Step),
             _ => {
@@ -222,7 +227,7 @@ impl Checker<'_> {
             }
         };
         self.used.push(found);
-        Some(tree(span, shape, Kind::Name(found)))
+        Some(Tree::new(span, shape, Kind::Name(found)))
     }
 
     fn unknown_name(&mut self, name: &str, span: Span) {
@@ -239,8 +244,4 @@ impl Checker<'_> {
         };
         self.errors.push(span, format!("`{name}` isn't known here{advice}"));
     }
-}
-
-fn tree(span: Span, shape: Shape, kind: Kind) -> Rc<Tree> {
-    Rc::new(Tree { span, shape, kind })
 }

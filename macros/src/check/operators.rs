@@ -5,7 +5,7 @@ use std::rc::Rc;
 use syn::spanned::Spanned as _;
 use syn::{BinOp, Expr, ExprBinary, ExprField, ExprIndex, Lit, Member};
 
-use super::{Checker, tree};
+use super::Checker;
 use crate::ast::{Kind, Shape, Tree};
 
 impl Checker<'_> {
@@ -28,7 +28,7 @@ impl Checker<'_> {
                 } else {
                     Kind::Subtract(left, right)
                 };
-                Some(tree(span, shape, kind))
+                Some(Tree::new(span, shape, kind))
             }
             BinOp::Mul(_) => {
                 let shape = match (left.shape, right.shape) {
@@ -46,7 +46,7 @@ impl Checker<'_> {
                         return None;
                     }
                 };
-                Some(tree(span, shape, Kind::Multiply(left, right)))
+                Some(Tree::new(span, shape, Kind::Multiply(left, right)))
             }
             BinOp::Div(_) => {
                 if right.shape != Shape::Scalar {
@@ -55,7 +55,7 @@ impl Checker<'_> {
                     return None;
                 }
                 let shape = left.shape;
-                Some(tree(span, shape, Kind::Divide(left, right)))
+                Some(Tree::new(span, shape, Kind::Divide(left, right)))
             }
             _ => self.unknown(operator),
         }
@@ -77,7 +77,7 @@ impl Checker<'_> {
         };
         match place {
             Some((row, column)) if row < rows && column < columns => {
-                Some(tree(index.span(), Shape::Scalar, Kind::Entry(operand, row, column)))
+                Some(Tree::new(index.span(), Shape::Scalar, Kind::Entry(operand, row, column)))
             }
             Some(_) => {
                 let shape = operand.shape.describe();
@@ -98,14 +98,13 @@ impl Checker<'_> {
             Member::Named(name) => ["x", "y", "z"].iter().position(|axis| name == axis),
             Member::Unnamed(_) => None,
         };
-        match (place, operand.shape) {
-            (Some(row), Shape::Matrix(3, 1)) => Some(tree(field.span(), Shape::Scalar, Kind::Entry(operand, row, 0))),
-            _ => {
-                let shape = operand.shape.describe();
-                self.errors
-                    .push(field.member.span(), format!("{shape} has no such component; a vector has x, y and z"));
-                None
-            }
+        if let (Some(row), Shape::Matrix(3, 1)) = (place, operand.shape) {
+            Some(Tree::new(field.span(), Shape::Scalar, Kind::Entry(operand, row, 0)))
+        } else {
+            let shape = operand.shape.describe();
+            self.errors
+                .push(field.member.span(), format!("{shape} has no such component; a vector has x, y and z"));
+            None
         }
     }
 }

@@ -1,9 +1,9 @@
-//! Straight-line code: one operation a `let`.
+//! Straight-line code.
 
 use std::collections::BTreeMap;
 
 use proc_macro2::{Literal, Span, TokenStream};
-use quote::quote_spanned;
+use quote::{ToTokens as _, quote_spanned};
 use syn::Ident;
 
 use super::Emitter;
@@ -40,43 +40,69 @@ impl Emitter<'_> {
     }
 
     /// Code for the outputs: the statements, and a token for each output.
+    ///
+    /// What is used once stands where it is used; the rest is bound by a `let`.
     pub(super) fn statements(
         &self,
         graph: &Graph,
         outputs: &[NodeId],
         given: Given,
     ) -> (TokenStream, Vec<TokenStream>) {
-        let mut lets = TokenStream::new();
-        let mut known: BTreeMap<NodeId, TokenStream> = BTreeMap::new();
-        for id in needed(graph, outputs, given) {
-            if let Some(token) = given(id) {
-                known.insert(id, token);
+        let order = needed(graph, outputs, given);
+        let mut uses: BTreeMap<NodeId, usize> = BTreeMap::new();
+        let operands = |id: NodeId| graph.node(id).operands().into_iter().flatten();
+        for &id in order.iter().filter(|&&id| given(id).is_none()) {
+            operands(id).for_each(|operand| *uses.entry(operand).or_insert(0) += 1);
+        }
+        // An output is always bound, as if it were used twice.
+        outputs.iter().for_each(|&output| *uses.entry(output).or_insert(0) += 2);
+        let mut known: BTreeMap<NodeId, Value> = BTreeMap::new();
+        let mut bound: Vec<Binding> = Vec::new();
+        for id in order {
+            let Some(value) = self.value(graph, id, given, &known) else { continue };
+            let is_operation = operands(id).next().is_some() && given(id).is_none();
+            if !is_operation || (uses.get(&id) == Some(&1) && value.depth < DEEPEST) {
+                known.insert(id, value);
                 continue;
             }
-            let at = |operand: NodeId| known.get(&operand).cloned().unwrap_or_default();
-            let span = Span::mixed_site();
-            let value = match graph.node(id) {
-                Node::Constant(value) => {
-                    known.insert(id, self.literal(value));
-                    continue;
-                }
-                Node::Input(_) => continue,
-                Node::Negate(a) => {
-                    let a = at(a);
-                    quote_spanned!(span=> -#a)
-                }
-                Node::Add(a, b) => binary(&at(a), '+', &at(b)),
-                Node::Subtract(a, b) => binary(&at(a), '-', &at(b)),
-                Node::Multiply(a, b) => binary(&at(a), '*', &at(b)),
-                Node::Divide(a, b) => binary(&at(a), '/', &at(b)),
-                Node::Apply(function, a) => self.call(function, &at(a)),
-            };
-            let name = Ident::new(&format!("t{}", id.0), span);
-            lets.extend(quote_spanned!(span=> let #name = #value;));
-            known.insert(id, quote_spanned!(span=> #name));
+            let name = Ident::new(&format!("t{}", id.0), Span::mixed_site());
+            let reference = Value { tokens: name.to_token_stream(), reads: vec![bound.len()], depth: 0 };
+            bound.push(Binding { name, value });
+            known.insert(id, reference);
         }
-        let values = outputs.iter().map(|output| known.get(output).cloned().unwrap_or_default()).collect();
-        (lets, values)
+        let values: Vec<Value> = outputs.iter().filter_map(|output| known.get(output).cloned()).collect();
+        let read_last: Vec<usize> = values.iter().flat_map(|value| value.reads.iter().copied()).collect();
+        (grouped(&bound, &read_last), values.into_iter().map(|value| value.tokens).collect())
+    }
+
+    fn value(&self, graph: &Graph, id: NodeId, given: Given, known: &BTreeMap<NodeId, Value>) -> Option<Value> {
+        let leaf = |tokens: TokenStream| Some(Value { tokens, reads: Vec::new(), depth: 0 });
+        if let Some(tokens) = given(id) {
+            return leaf(tokens);
+        }
+        let node = graph.node(id);
+        let parts: Vec<&Value> =
+            node.operands().into_iter().flatten().filter_map(|operand| known.get(&operand)).collect();
+        let reads = parts.iter().flat_map(|part| part.reads.iter().copied()).collect();
+        let depth = 1 + parts.iter().map(|part| part.depth).max().unwrap_or(0);
+        let tokens: Vec<TokenStream> = parts
+            .iter()
+            .map(|part| {
+                let tokens = &part.tokens;
+                if part.depth > 0 { quote_spanned!(Span::mixed_site()=> (#tokens)) } else { tokens.clone() }
+            })
+            .collect();
+        let tokens = match (node, tokens.as_slice()) {
+            (Node::Constant(value), _) => return leaf(self.literal(value)),
+            (Node::Negate(_), [a]) => quote_spanned!(Span::mixed_site()=> -#a),
+            (Node::Apply(function, _), [a]) => self.call(function, a),
+            (Node::Add(..), [a, b]) => binary(a, '+', b),
+            (Node::Subtract(..), [a, b]) => binary(a, '-', b),
+            (Node::Multiply(..), [a, b]) => binary(a, '*', b),
+            (Node::Divide(..), [a, b]) => binary(a, '/', b),
+            _ => return None,
+        };
+        Some(Value { tokens, reads, depth })
     }
 
     fn call(&self, function: Function, argument: &TokenStream) -> TokenStream {
@@ -96,6 +122,50 @@ impl Emitter<'_> {
             None => literal,
         }
     }
+}
+
+/// A value in tokens, with the `let`s that it reads.
+#[derive(Clone)]
+struct Value {
+    tokens: TokenStream,
+    reads: Vec<usize>,
+    depth: usize,
+}
+
+struct Binding {
+    name: Ident,
+    value: Value,
+}
+
+/// Deeper parentheses are hard to read.
+const DEEPEST: usize = 4;
+
+/// Each `let` opens a scope inside the last one, and compilers walk them recursively: more in a row overflow the stack.
+const LONGEST: usize = 200;
+
+/// The `let`s, in blocks that hand on what later ones read.
+fn grouped(bound: &[Binding], read_last: &[usize]) -> TokenStream {
+    let lets = |bindings: &[Binding]| -> TokenStream {
+        let each = bindings.iter().map(|Binding { name, value }| {
+            let tokens = &value.tokens;
+            quote_spanned!(Span::mixed_site()=> let #name = #tokens;)
+        });
+        each.collect()
+    };
+    if bound.len() <= LONGEST {
+        return lets(bound);
+    }
+    let mut code = TokenStream::new();
+    for (group, bindings) in bound.chunks(LONGEST).enumerate() {
+        let (start, end) = (group * LONGEST, group * LONGEST + bindings.len());
+        let later = bound.get(end..).unwrap_or_default().iter().flat_map(|binding| binding.value.reads.iter());
+        let wanted: std::collections::BTreeSet<usize> =
+            later.chain(read_last).copied().filter(|read| (start..end).contains(read)).collect();
+        let names: Vec<&Ident> = wanted.iter().filter_map(|&at| bound.get(at)).map(|binding| &binding.name).collect();
+        let inner = lets(bindings);
+        code.extend(quote_spanned!(Span::mixed_site()=> let [#(#names),*] = { #inner [#(#names),*] };));
+    }
+    code
 }
 
 fn binary(left: &TokenStream, operator: char, right: &TokenStream) -> TokenStream {

@@ -9,6 +9,7 @@ use crate::ast::{Declaration, Scalar};
 /// What the signatures are written with.
 pub(crate) struct Header {
     pub(crate) root: Path,
+    group: Path,
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
     pub(crate) parameter: Option<Ident>,
@@ -29,6 +30,7 @@ impl Header {
         };
         Self {
             root: declaration.root.clone(),
+            group: declaration.group.clone(),
             scalar,
             parameter,
             name: declaration.item.ident.clone(),
@@ -61,13 +63,13 @@ impl Header {
     }
 
     pub(crate) fn types(&self, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
-        let (root, scalar, vector) = (&self.root, &self.scalar, self.vector());
+        let (root, group, scalar, vector) = (&self.root, &self.group, &self.scalar, self.vector());
         let vectors = (0..self.advected).map(|_| &vector);
         let advected =
             if self.advected == 1 { vector.clone() } else { quote_spanned!(Span::mixed_site()=> (#(#vectors),*)) };
         quote_spanned! {Span::mixed_site()=>
             type Scalar = #scalar;
-            type Group = #root::SO3<#scalar>;
+            type Group = #group<#scalar>;
             type Retraction = #root::CayleyRetraction;
             type Advected = #advected;
             type Constants = #constants;

@@ -19,7 +19,6 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let mut expression = declaration.l_d.clone();
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
-    let mentioned = |name: &str| rewrite.mentioned.iter().any(|used| used == name);
     let mut names: Vec<Ident> = Vec::new();
     let mut values: Vec<TokenStream> = Vec::new();
     let mut bind = |name: &str, value: TokenStream| {
@@ -46,10 +45,7 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     }
     for field in &declaration.fields {
         let member = &field.name;
-        let value = match field.kind {
-            FieldKind::Scalar => quote_spanned!(span=> self.#member),
-            _ => quote_spanned!(span=> #root::__private::Parameter::value(&self.#member)),
-        };
+        let value = if field.kind == FieldKind::Scalar { quote_spanned!(span=> self.#member) } else { quote_spanned!(span=> #root::__private::Parameter::value(&self.#member)) };
         bind(&field.name.unraw().to_string(), value);
     }
     let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));

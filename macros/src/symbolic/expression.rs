@@ -208,7 +208,7 @@ impl Expression {
             power.add_term(monomial, coefficient.power(exponent));
             return power;
         }
-        if exponent < 0 || exponent > 4 {
+        if !(0..=4).contains(&exponent) {
             return Self::atom(Atom::Sum(Box::new(self)), exponent);
         }
         (0..exponent).fold(Self::identity(1), |product, _| product.times(&self, symbols))
@@ -290,11 +290,6 @@ impl Expression {
             Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(symbol),
             Atom::Symbol(_) | Atom::Trace(_) => false,
         })
-    }
-
-    /// The structure of the matrix as far as its form shows it.
-    pub(crate) fn is_symmetric(&self, symbols: &Symbols) -> bool {
-        *self == self.transpose(symbols)
     }
 }
 

@@ -58,8 +58,4 @@ impl Symbols {
     pub(crate) fn get(&self, id: SymbolId) -> &Symbol {
         &self.0[id.0]
     }
-
-    pub(crate) fn ids(&self) -> impl Iterator<Item = SymbolId> + use<> {
-        (0..self.0.len()).map(SymbolId)
-    }
 }

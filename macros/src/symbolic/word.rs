@@ -127,7 +127,7 @@ pub(crate) fn canonical_trace(word: Vec<Factor>, symbols: &Symbols) -> (i8, Vec<
     let (sign, turned) = transpose(&word, symbols);
     let (direct, turned) = (candidates(&word), candidates(&turned));
     if direct == turned {
-        return (if sign < 0 { 0 } else { 1 }, direct);
+        return (i8::from(sign >= 0), direct);
     }
     let (sign, word) = if direct < turned { (1, direct) } else { (sign, turned) };
     if is_form { sort_triple_product(sign, word, symbols) } else { (sign, word) }
