@@ -83,3 +83,6 @@ fn is_sound(derived: &Derived, span: Span, errors: &mut Errors) -> Option<()> {
     }
     Some(())
 }
+
+#[cfg(test)]
+pub(crate) mod tests;
