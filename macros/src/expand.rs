@@ -9,7 +9,7 @@ use crate::errors::Errors;
 use crate::{check, derive, emit, fallback, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
-pub(crate) fn expand(arguments: TokenStream, item: TokenStream) -> TokenStream {
+pub(crate) fn expand(arguments: &TokenStream, item: &TokenStream) -> TokenStream {
     let parsed = match syn::parse2::<ItemStruct>(item.clone()) {
         Ok(parsed) => parsed,
         Err(error) => {
@@ -19,7 +19,7 @@ pub(crate) fn expand(arguments: TokenStream, item: TokenStream) -> TokenStream {
         }
     };
     let mut errors = Errors::default();
-    parse::check_size(&arguments, &mut errors);
+    parse::check_size(arguments, &mut errors);
     if !errors.is_empty() {
         let mistakes = errors.to_compile_errors();
         return quote!(#item #mistakes);
@@ -28,7 +28,7 @@ pub(crate) fn expand(arguments: TokenStream, item: TokenStream) -> TokenStream {
     match implementation {
         Some(implementation) if errors.is_empty() => quote!(#item #implementation),
         _ => {
-            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(&arguments, &parsed));
+            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(arguments, &parsed));
             quote!(#item #mistakes #stand_in)
         }
     }

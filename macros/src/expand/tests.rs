@@ -27,7 +27,7 @@ fn tokens(text: &str) -> TokenStream {
 }
 
 fn expanded(arguments: &str, item: &str) -> TokenStream {
-    expand(tokens(arguments), tokens(item))
+    expand(&tokens(arguments), &tokens(item))
 }
 
 /// What is derived from a declaration, through all phases.

@@ -27,24 +27,21 @@ pub(crate) fn covector_text(expression: &Expression, direction: SymbolId, symbol
             Atom::Trace(word) if *exponent == 1 => opened(word, direction, symbols).map(|opened| (atom, opened)),
             _ => None,
         });
-        match closed {
-            Some((atom, word)) => {
-                let (sign, turned) = transpose(&word, symbols);
-                let (word, turned) = (word_text(&word, symbols), word_text(&turned, symbols));
-                let between = if sign < 0 { "+" } else { "−" };
-                let (coefficient, body) = if coefficient.is_negative() || sign < 0 {
-                    (-coefficient, format!("({word} {between} {turned})^∨"))
-                } else {
-                    (coefficient, format!("({turned} − {word})^∨"))
-                };
-                let (prefix, mut others) = parts(monomial, coefficient, Some(atom), symbols);
-                others.push(body);
-                (coefficient, prefix, others.join(" "))
-            }
-            None => {
-                let (prefix, body) = parts(monomial, coefficient, None, symbols);
-                (coefficient, prefix, body.join(" "))
-            }
+        if let Some((atom, word)) = closed {
+            let (sign, turned) = transpose(&word, symbols);
+            let (word, turned) = (word_text(&word, symbols), word_text(&turned, symbols));
+            let between = if sign < 0 { "+" } else { "−" };
+            let (coefficient, body) = if coefficient.is_negative() || sign < 0 {
+                (-coefficient, format!("({word} {between} {turned})^∨"))
+            } else {
+                (coefficient, format!("({turned} − {word})^∨"))
+            };
+            let (prefix, mut others) = parts(monomial, coefficient, Some(atom), symbols);
+            others.push(body);
+            (coefficient, prefix, others.join(" "))
+        } else {
+            let (prefix, body) = parts(monomial, coefficient, None, symbols);
+            (coefficient, prefix, body.join(" "))
         }
     }))
 }
@@ -68,7 +65,7 @@ fn join(terms: impl Iterator<Item = (Rational, String, String)>) -> String {
         if sum.is_empty() {
             sum.push_str(if coefficient.is_negative() { "−" } else { "" });
         } else {
-            sum.push_str(&format!(" {sign} "));
+            sum.extend([" ", sign, " "]);
         }
         sum.push_str(&prefix);
         if !prefix.is_empty() && !body.is_empty() {
