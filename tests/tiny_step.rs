@@ -28,6 +28,7 @@ fn t4_a_million_steps_of_ten_nanoseconds() {
         relative(&state.attitude().matrix().row(2).transpose(), &w),
     ];
     println!("{errors:?}");
+    // An increment of 10⁻⁷ is rounded to 10⁻²³; only adding it loses half a unit of the sum, at random.
     assert!(errors[0] < 1e-14, "{:e}", errors[0]);
     // A million roundings of numbers of size one, at random.
     assert!(errors[1] < 1e-13 && errors[2] < 1e-13, "{errors:?}");

@@ -49,10 +49,12 @@ fn pass(vertical: f64, h: f64) -> f64 {
         most[place] = most[place].max(iterations);
         change[place] = change[place].max((forth.energy(&state) - energy).abs());
         nearest = nearest.min(state.advected().xy().norm());
+        // Less than a rounding in each of up to 3200 steps, at random.
         assert!((state.advected().norm() - 1.0).abs() < 1e-13);
         assert!((state.momentum().dot(&state.advected()) - casimir).abs() < 1e-12);
     }
     println!("h = {h}: nearest {nearest:.1e}, iterations {most:?}, energy steps {change:?}");
+    // The way back and forth loses some roundings, far less than a thousandth of the miss.
     assert!(nearest < 1e-6 && (nearest - MISS).abs() < 1e-9);
     assert!(most[1] <= most[0] && most[0] <= 4, "{most:?}");
     assert!(change[1] <= change[0], "{change:?}");
