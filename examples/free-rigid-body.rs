@@ -34,7 +34,7 @@ use free_body::quantities::Series;
 
 /// The period from J = diag(1, 2, 3) and Ω = (0.01, 2, 0.02), in s, there and back in two flips: that of the Jacobi
 /// elliptic function that the middle rate is.
-const PERIOD: f64 = 19.001_635_511_000_249;
+const PERIOD: f64 = 19.001_635_511_000_25;
 
 /// Simulates a free rigid body that flips, beside the updates of physics engines.
 #[derive(Parser)]

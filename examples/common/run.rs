@@ -2,7 +2,7 @@
 //!
 //! Recording and timing don't mix: each block of steps is first made without any output, and that is timed; then the
 //! same block is made again from its start, with samples kept. A method is a pure function of its state, so both end
-//! in the same place, and that is checked.
+//! in the same place; a debug build checks that.
 
 use std::fmt;
 use std::time::{Duration, Instant};

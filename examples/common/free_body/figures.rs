@@ -51,9 +51,7 @@ impl Figures<'_> {
                     width: 3,
                     points: series.values.iter().map(|q| (q.time, q.rates[axis])).collect(),
                 });
-                let (across, up) = ("time, s", "rad/s");
-                let (vertical, lines) = (Vertical::Linear, lines.into());
-                Panel { title: series.name, across, up, vertical, function: true, lines }.draw(place)?;
+                Panel::over_time(series.name, "rad/s", Vertical::Linear, lines.into()).draw(place)?;
             }
             Ok(())
         })
@@ -99,6 +97,6 @@ impl Figures<'_> {
     ) -> Panel<'a> {
         // The variational line comes first in the legend and last, on top, in the drawing.
         let lines = self.series.iter().rev().map(|s| Line { colour: s.colour, width: 3, points: points(s) });
-        Panel { title, across: "time, s", up, vertical, function: true, lines: lines.collect() }
+        Panel::over_time(title, up, vertical, lines.collect())
     }
 }

@@ -53,56 +53,27 @@ impl Figures<'_> {
     }
 
     pub(crate) fn geometry<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "‖RᵀR − I‖",
-            vertical: Vertical::Logarithmic,
-            function: true,
-            lines: vec![],
-        };
-        self.with_lines(panel, self.schedule.end(), |q, _| q.defect)
+        let lines = self.lines(self.schedule.end(), |q, _| q.defect);
+        Panel::over_time(title, "‖RᵀR − I‖", Vertical::Logarithmic, lines)
     }
 
     pub(crate) fn vertical_momentum<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "|e₃·RΠ − its start|, kg m²/s",
-            vertical: Vertical::Logarithmic,
-            function: true,
-            lines: vec![],
-        };
-        self.with_lines(panel, self.schedule.end(), |q, start| (q.vertical - start.vertical).abs())
+        let lines = self.lines(self.schedule.end(), |q, start| (q.vertical - start.vertical).abs());
+        Panel::over_time(title, "|e₃·RΠ − its start|, kg m²/s", Vertical::Logarithmic, lines)
     }
 
     /// The oscillation of the variational energy, which is of the order of the scheme.
     pub(crate) fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "E − E(0), J",
-            vertical: Vertical::Linear,
-            function: true,
-            lines: vec![],
-        };
-        let mut panel = self.with_lines(panel, SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
+        let mut lines = self.lines(SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
         // The rivals' lines coincide here.
-        panel.lines.iter_mut().take(1).for_each(|line| line.width = 7);
-        panel
+        lines.iter_mut().take(1).for_each(|line| line.width = 7);
+        Panel::over_time(title, "E − E(0), J", Vertical::Linear, lines)
     }
 
     /// Whether it stays an oscillation.
     pub(crate) fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "|E − E(0)|, J",
-            vertical: Vertical::Logarithmic,
-            function: true,
-            lines: vec![],
-        };
-        self.with_lines(panel, self.schedule.end(), |q, start| (q.energy - start.energy).abs())
+        let lines = self.lines(self.schedule.end(), |q, start| (q.energy - start.energy).abs());
+        Panel::over_time(title, "|E − E(0)|, J", Vertical::Logarithmic, lines)
     }
 
     /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
@@ -125,19 +96,15 @@ impl Figures<'_> {
         ((end / 2.0).max(end - 100.0), end)
     }
 
-    fn with_lines<'a>(
-        &self,
-        panel: Panel<'a>,
-        end: f64,
-        height: impl Fn(&Quantities, &Quantities) -> f64,
-    ) -> Panel<'a> {
+    /// A line for every method, of a quantity at each time and at the start.
+    fn lines(&self, end: f64, height: impl Fn(&Quantities, &Quantities) -> f64) -> Vec<Line> {
         // The variational line comes first in the legend and last, on top, in the drawing.
         let lines = self.series.iter().rev().map(|s| Line {
             colour: s.colour,
             width: 3,
             points: s.between(0.0, end).iter().map(|q| (q.time, height(q, &s.first()))).collect(),
         });
-        Panel { lines: lines.collect(), ..panel }
+        lines.collect()
     }
 
     fn single(&self, panel: &Panel<'_>, figure: &str, title: &str) -> Drawn<String> {
@@ -185,7 +152,13 @@ impl Figures<'_> {
                 let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
                 sphere(
                     &above,
-                    &Path { title: series.name, colour: series.colour, points: &points, axis: (Vector3::z(), "e₃") },
+                    &Path {
+                        title: series.name,
+                        colour: series.colour,
+                        width: 1,
+                        points: &points,
+                        axis: (Vector3::z(), "e₃"),
+                    },
                 )?;
                 self.close_up(&close_up, series).draw(&below)?;
             }

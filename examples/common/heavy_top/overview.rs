@@ -19,7 +19,10 @@ pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
         let (top, bottom) = left.split_vertically(px(470));
         let points: Vec<_> = ours.between(start, end).iter().map(|q| q.tip).collect();
         let title = format!("Path of the tip, {start} s to {end} s");
-        sphere(&top, &Path { title: &title, colour: ours.colour, points: &points, axis: (Vector3::z(), "e₃") })?;
+        sphere(
+            &top,
+            &Path { title: &title, colour: ours.colour, width: 1, points: &points, axis: (Vector3::z(), "e₃") },
+        )?;
         figures.close_up("The last of it, loop by loop", ours).draw(&bottom)?;
         let panels = [
             figures.geometry("Rigidity: how far R leaves the rotations"),

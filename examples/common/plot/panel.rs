@@ -38,6 +38,13 @@ pub(crate) struct Panel<'a> {
 /// Below a double's rounding at one.
 const FLOOR: f64 = 1e-17;
 
+impl<'a> Panel<'a> {
+    /// Functions of time.
+    pub(crate) fn over_time(title: &'a str, up: &'a str, vertical: Vertical, lines: Vec<Line>) -> Self {
+        Self { title, across: "time, s", up, vertical, function: true, lines }
+    }
+}
+
 impl Panel<'_> {
     /// Draws it into the area.
     pub(crate) fn draw(&self, area: &Area<'_>) -> Drawn {
@@ -109,7 +116,7 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     }
     // A constant is drawn in the middle, not magnified to its rounding errors.
     let size = low.abs().max(high.abs());
-    let constant = high - low <= 1e-9 * size || high == low;
+    let constant = high - low <= 1e-9 * size;
     let room = if constant { (0.1 * size).max(f64::MIN_POSITIVE.sqrt()) } else { margin * (high - low) };
     low - room..high + room
 }

@@ -10,6 +10,8 @@ use super::style::{INK, at, letters, px};
 pub(crate) struct Path<'a> {
     pub(crate) title: &'a str,
     pub(crate) colour: RGBColor,
+    /// Half pixels; thin where a path covers itself many times.
+    pub(crate) width: u32,
     pub(crate) points: &'a [Vector3<f64>],
     /// A direction to mark, and its name.
     pub(crate) axis: (Vector3<f64>, &'a str),
@@ -39,7 +41,7 @@ pub(crate) fn sphere(area: &Area<'_>, path: &Path<'_>) -> Drawn {
             view.axis(area, path.axis)?;
         }
         for arc in arcs.iter().filter(|arc| arc.near == near) {
-            area.draw(&PathElement::new(arc.points.clone(), ink.stroke_width(px(1) / 2)))?;
+            area.draw(&PathElement::new(arc.points.clone(), ink.stroke_width(path.width)))?;
         }
     }
     area.draw(&Circle::new(view.centre, view.size, NEAR_GRATICULE.stroke_width(px(1))))?;
