@@ -24,7 +24,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use common::output::{Output, print};
 use common::plot::{BLUE, GREEN, ORANGE, PURPLE};
 use common::run::run;
-use common::table::{aligned, number};
+use common::table::{aligned, number, short};
 use common::variational::Variational;
 use free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
 use free_body::figures::Figures;
@@ -84,9 +84,9 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             output.write(method.file, &method.csv())?;
         }
     }
-    let (steps, end) = (schedule.steps, schedule.end());
+    let (steps, end) = (schedule.steps, short(schedule.end()));
     print(&format!(
-        "Free rigid body, J = diag(1, 2, 3), Ω(0) = (0.01, 2, 0.02), h = {h} s, {steps} steps to t = {end} s.\n\n\
+        "Free rigid body, J = diag(1, 2, 3), Ω(0) = (0.01, 2, 0.02), steps of {h} s to t = {end} s, {steps} in all.\n\n\
          {}\n\n{output}",
         summary(&series),
     ))?;

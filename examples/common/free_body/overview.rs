@@ -2,6 +2,7 @@
 
 use super::figures::Figures;
 use crate::common::plot::{Drawn, Path, px, render, sphere};
+use crate::common::table::short;
 
 /// Two flips, in s: more would cover their own path.
 const SHOWN: f64 = 19.0;
@@ -18,7 +19,8 @@ pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
         let shown = ours.values.iter().take_while(|q| q.time <= SHOWN);
         let points: Vec<_> = shown.map(|q| q.axis).collect();
         let axis = (ours.values[0].spatial.normalize(), "RΠ");
-        let title = format!("Path of the middle axis in space, the first {} s", SHOWN.min(figures.schedule.end()));
+        let title =
+            format!("Path of the middle axis in space, the first {} s", short(SHOWN.min(figures.schedule.end())));
         sphere(&top, &Path { title: &title, colour: ours.colour, width: 3, points: &points, axis })?;
         figures.flips("The rate about it, all methods").draw(&bottom)?;
         let panels = [

@@ -4,10 +4,11 @@ use nalgebra::Vector3;
 
 use super::cases::{Case, Reading};
 use super::quantities::{Quantities, Series};
-use crate::common::args::Schedule;
+use crate::common::args::{BEGINNING, ENDING, Schedule};
 use crate::common::output::Output;
 use crate::common::plot::{Area, BLUE, Drawn, GREEN, Line, PURPLE, Panel, Path, Vertical, heading, legend, px};
 use crate::common::plot::{render, sphere};
+use crate::common::table::short;
 
 /// What the figures are of: the variational run first, then its rivals.
 pub(crate) struct Figures<'a> {
@@ -17,9 +18,6 @@ pub(crate) struct Figures<'a> {
     pub(crate) series: &'a [Series],
 }
 
-/// Long enough for ten nutations.
-const SHORT: f64 = 4.0;
-
 /// A figure's part below its heading.
 const HEADER: u32 = 62;
 
@@ -28,13 +26,13 @@ impl Figures<'_> {
     pub(crate) fn write(&self, output: &mut Output) -> Drawn {
         let whole = |panel: Panel<'_>, figure: &str, title: &str| self.single(&panel, figure, title);
         let end = self.schedule.end();
-        let short = SHORT.min(end);
+        let beginning = BEGINNING.min(end);
         output.write("geometry.svg", &whole(self.geometry(""), "3.4", "How far R leaves the rotations")?)?;
         let title = "Angular momentum about the vertical";
         output.write("vertical-momentum.svg", &whole(self.vertical_momentum(""), "3.5", title)?)?;
-        let title = format!("Energy, the first {short} s");
+        let title = format!("Energy, the first {} s", short(beginning));
         output.write("energy-short.svg", &whole(self.energy_short(""), "3.6 (a)", &title)?)?;
-        let title = format!("Energy, all {end} s");
+        let title = format!("Energy, all {} s", short(end));
         output.write("energy-long.svg", &whole(self.energy_long(""), "3.6 (b)", &title)?)?;
         output.write("body-rates.svg", &self.body_rates()?)?;
         output.write(&format!("tip-{}.svg", self.case), &self.tip()?)?;
@@ -64,7 +62,7 @@ impl Figures<'_> {
 
     /// The oscillation of the variational energy, which is of the order of the scheme.
     pub(crate) fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
-        let mut lines = self.lines(SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
+        let mut lines = self.lines(BEGINNING.min(self.schedule.end()), |q, start| q.energy - start.energy);
         // The rivals' lines coincide here.
         lines.iter_mut().take(1).for_each(|line| line.width = 7);
         Panel::over_time(title, "E − E(0), J", Vertical::Linear, lines)
@@ -79,7 +77,7 @@ impl Figures<'_> {
     /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
     pub(crate) fn close_up<'a>(&self, title: &'a str, series: &Series) -> Panel<'a> {
         let end = self.schedule.end();
-        let points = unwound(series.between((end - SHORT).max(0.0), end));
+        let points = unwound(series.between((end - BEGINNING).max(0.0), end));
         Panel {
             title,
             across: "azimuth of the tip, degrees",
@@ -90,10 +88,10 @@ impl Figures<'_> {
         }
     }
 
-    /// The second half of the run, as the thesis' 100 to 200 s, but no more than 100 s.
+    /// The second half of the run, as the thesis' 100 to 200 s, but no more than can be drawn in detail.
     pub(crate) fn late(&self) -> (f64, f64) {
         let end = self.schedule.end();
-        ((end / 2.0).max(end - 100.0), end)
+        ((end / 2.0).max(end - ENDING), end)
     }
 
     /// A line for every method, of a quantity at each time and at the start.
@@ -117,13 +115,13 @@ impl Figures<'_> {
     }
 
     fn body_rates(&self) -> Drawn<String> {
-        let end = SHORT.min(self.schedule.end());
+        let end = BEGINNING.min(self.schedule.end());
         let axes = [("Ω_X, rad/s", BLUE), ("Ω_Y, rad/s", PURPLE), ("Ω_Z, rad/s", GREEN)];
         let name = self.series.first().map_or("", |s| s.name);
         render((900, 620), |area| {
             let (header, body) = area.split_vertically(px(HEADER));
             let subtitle = format!("{}, {name}; after figure 3.7 of the thesis", self.setting());
-            heading(&header, &format!("Body rates, the first {end} s"), &subtitle)?;
+            heading(&header, &format!("Body rates, the first {} s", short(end)), &subtitle)?;
             for (axis, (place, (up, colour))) in body.split_evenly((3, 1)).iter().zip(axes).enumerate() {
                 let points = self.series.iter().take(1).flat_map(|s| s.between(0.0, end));
                 let line = Line { colour, width: 3, points: points.map(|q| (q.time, q.rates[axis])).collect() };
@@ -143,10 +141,10 @@ impl Figures<'_> {
         };
         render((1000, 800), |area| {
             let (header, body) = area.split_vertically(px(HEADER));
-            let title = format!("Path of the tip on the sphere, {start} s to {end} s");
+            let title = format!("Path of the tip on the sphere, {} s to {} s", short(start), short(end));
             let subtitle = format!("{}; after figure {} of the thesis", self.setting(), self.case.figure());
             heading(&header, &title, &subtitle)?;
-            let close_up = format!("Its last {} s", SHORT.min(end));
+            let close_up = format!("Its last {} s", short(BEGINNING.min(end)));
             for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
                 let (above, below) = place.split_vertically(px(470));
                 let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
