@@ -49,7 +49,7 @@ impl Figures<'_> {
                 let lines = [0, 2, 1].map(|axis: usize| Line {
                     colour: axes[axis].1,
                     width: 3,
-                    points: series.values.iter().map(|q| (q.time, q.rates[axis])).collect(),
+                    points: series.bounded(|q| q.rates[axis]),
                 });
                 Panel::over_time(series.name, "rad/s", Vertical::Linear, lines.into()).draw(place)?;
             }
@@ -58,7 +58,7 @@ impl Figures<'_> {
     }
 
     pub(crate) fn energy_ratio<'a>(&self, title: &'a str) -> Panel<'a> {
-        self.panel(title, "E / E(0)", Vertical::Linear, |s| s.relative_energy().collect())
+        self.panel(title, "E / E(0)", Vertical::Linear, Series::relative_energy)
     }
 
     fn energy_error<'a>(&self, title: &'a str) -> Panel<'a> {
@@ -71,8 +71,7 @@ impl Figures<'_> {
 
     /// The rate about the middle axis, of all methods.
     pub(crate) fn flips<'a>(&self, title: &'a str) -> Panel<'a> {
-        let rate = |s: &Series| s.values.iter().map(|q| (q.time, q.rates.y)).collect();
-        self.panel(title, "Ω_Y, rad/s", Vertical::Linear, rate)
+        self.panel(title, "Ω_Y, rad/s", Vertical::Linear, |s| s.bounded(|q| q.rates.y))
     }
 
     fn setting(&self) -> String {
