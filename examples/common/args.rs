@@ -66,10 +66,10 @@ const MOST_STEPS: f64 = 1e10;
 /// More samples than a figure has room for, few enough for any memory.
 const MOST_SAMPLES: u64 = 20_000;
 
-/// The beginning that is drawn in detail, s: ten nutations of the top.
-pub(crate) const BEGINNING: f64 = 4.0;
+/// The beginning that is kept in detail, s: two flips of the free body.
+const BEGINNING: f64 = 20.0;
 
-/// The end that is drawn in detail, s: from 100 s to 200 s in the thesis.
+/// The end that is kept in detail, s: from 100 s to 200 s in the thesis.
 pub(crate) const ENDING: f64 = 100.0;
 
 impl Common {

@@ -13,6 +13,9 @@ pub(crate) struct Figures<'a> {
 
 const HEADER: u32 = 84;
 
+/// For how long single flips can be told apart in a small panel, s.
+const DISTINCT: f64 = 200.0;
+
 impl Figures<'_> {
     /// Writes all of them.
     pub(crate) fn write(&self, output: &mut Output) -> Drawn {
@@ -69,9 +72,13 @@ impl Figures<'_> {
         self.panel(title, "|RΠ − RΠ(0)| / |Π(0)|", Vertical::Logarithmic, |s| s.momentum_error().collect())
     }
 
-    /// The rate about the middle axis, of all methods.
+    /// The rate about the middle axis, of all methods, while flips can be told apart.
     pub(crate) fn flips<'a>(&self, title: &'a str) -> Panel<'a> {
-        self.panel(title, "Ω_Y, rad/s", Vertical::Linear, |s| s.bounded(|q| q.rates.y))
+        self.panel(title, "Ω_Y, rad/s", Vertical::Linear, |s| {
+            let mut rates = s.bounded(|q| q.rates.y);
+            rates.retain(|(time, _)| *time <= DISTINCT);
+            rates
+        })
     }
 
     fn setting(&self) -> String {

@@ -4,7 +4,7 @@ use super::figures::Figures;
 use crate::common::plot::{Drawn, Path, px, render, sphere};
 use crate::common::table::short;
 
-/// Two flips, in s: more would cover their own path.
+/// Two flips, s: more would cover their own path.
 const SHOWN: f64 = 19.0;
 
 /// The path of the middle axis on the sphere, the flips, and what is conserved.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::cases::{Case, Reading};
 use super::quantities::{Quantities, Series};
-use crate::common::args::{BEGINNING, ENDING, Schedule};
+use crate::common::args::{ENDING, Schedule};
 use crate::common::output::Output;
 use crate::common::plot::{Area, BLUE, Drawn, GREEN, Line, PURPLE, Panel, Path, Vertical, heading, legend, px};
 use crate::common::plot::{render, sphere};
@@ -18,6 +18,9 @@ pub(crate) struct Figures<'a> {
     pub(crate) series: &'a [Series],
 }
 
+/// What is drawn in close-up, s: ten nutations.
+const SHORT: f64 = 4.0;
+
 /// A figure's part below its heading.
 const HEADER: u32 = 62;
 
@@ -26,7 +29,7 @@ impl Figures<'_> {
     pub(crate) fn write(&self, output: &mut Output) -> Drawn {
         let whole = |panel: Panel<'_>, figure: &str, title: &str| self.single(&panel, figure, title);
         let end = self.schedule.end();
-        let beginning = BEGINNING.min(end);
+        let beginning = SHORT.min(end);
         output.write("geometry.svg", &whole(self.geometry(""), "3.4", "How far R leaves the rotations")?)?;
         let title = "Angular momentum about the vertical";
         output.write("vertical-momentum.svg", &whole(self.vertical_momentum(""), "3.5", title)?)?;
@@ -62,7 +65,7 @@ impl Figures<'_> {
 
     /// The oscillation of the variational energy, which is of the order of the scheme.
     pub(crate) fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
-        let mut lines = self.lines(BEGINNING.min(self.schedule.end()), |q, start| q.energy - start.energy);
+        let mut lines = self.lines(SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
         // The rivals' lines coincide here.
         lines.iter_mut().take(1).for_each(|line| line.width = 7);
         Panel::over_time(title, "E − E(0), J", Vertical::Linear, lines)
@@ -77,7 +80,7 @@ impl Figures<'_> {
     /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
     pub(crate) fn close_up<'a>(&self, title: &'a str, series: &Series) -> Panel<'a> {
         let end = self.schedule.end();
-        let points = unwound(series.between((end - BEGINNING).max(0.0), end));
+        let points = unwound(series.between((end - SHORT).max(0.0), end));
         Panel {
             title,
             across: "azimuth of the tip, degrees",
@@ -88,7 +91,7 @@ impl Figures<'_> {
         }
     }
 
-    /// The second half of the run, as the thesis' 100 to 200 s, but no more than can be drawn in detail.
+    /// The second half of the run, as the thesis' 100 to 200 s, but no more than is kept in detail.
     pub(crate) fn late(&self) -> (f64, f64) {
         let end = self.schedule.end();
         ((end / 2.0).max(end - ENDING), end)
@@ -115,7 +118,7 @@ impl Figures<'_> {
     }
 
     fn body_rates(&self) -> Drawn<String> {
-        let end = BEGINNING.min(self.schedule.end());
+        let end = SHORT.min(self.schedule.end());
         let axes = [("Ω_X, rad/s", BLUE), ("Ω_Y, rad/s", PURPLE), ("Ω_Z, rad/s", GREEN)];
         let name = self.series.first().map_or("", |s| s.name);
         render((900, 620), |area| {
@@ -144,7 +147,7 @@ impl Figures<'_> {
             let title = format!("Path of the tip on the sphere, {} s to {} s", short(start), short(end));
             let subtitle = format!("{}; after figure {} of the thesis", self.setting(), self.case.figure());
             heading(&header, &title, &subtitle)?;
-            let close_up = format!("Its last {} s", short(BEGINNING.min(end)));
+            let close_up = format!("Its last {} s", short(SHORT.min(end)));
             for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
                 let (above, below) = place.split_vertically(px(470));
                 let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();

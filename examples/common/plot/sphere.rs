@@ -45,6 +45,11 @@ pub(crate) fn sphere(area: &Area<'_>, path: &Path<'_>) -> Drawn {
         }
     }
     area.draw(&Circle::new(view.centre, view.size, NEAR_GRATICULE.stroke_width(px(1))))?;
+    // The end of the path is marked: a path that shrinks to a point would not be seen otherwise.
+    if let Some((arc, end)) = arcs.last().and_then(|arc| Some((arc, arc.points.last()?))) {
+        let ink = if arc.near { path.colour } else { faint(path.colour) };
+        area.draw(&Circle::new(*end, px(3), ink.filled()))?;
+    }
     Ok(())
 }
 
