@@ -73,7 +73,9 @@ impl Figures<'_> {
 
     /// Whether it stays an oscillation.
     pub(crate) fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
-        let lines = self.lines(self.schedule.end(), |q, start| (q.energy - start.energy).abs());
+        let mut lines = self.lines(self.schedule.end(), |q, start| (q.energy - start.energy).abs());
+        // The oscillation would hide the rivals' drift.
+        lines.reverse();
         Panel::over_time(title, "|E − E(0)|, J", Vertical::Logarithmic, lines)
     }
 
@@ -89,6 +91,10 @@ impl Figures<'_> {
             function: false,
             lines: vec![Line { colour: series.colour, width: 3, points }],
         }
+    }
+
+    pub(crate) fn close_up_title(&self) -> String {
+        format!("Its last {} s", short(SHORT.min(self.schedule.end())))
     }
 
     /// The second half of the run, as the thesis' 100 to 200 s, but no more than is kept in detail.
@@ -147,7 +153,6 @@ impl Figures<'_> {
             let title = format!("Path of the tip on the sphere, {} s to {} s", short(start), short(end));
             let subtitle = format!("{}; after figure {} of the thesis", self.setting(), self.case.figure());
             heading(&header, &title, &subtitle)?;
-            let close_up = format!("Its last {} s", short(SHORT.min(end)));
             for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
                 let (above, below) = place.split_vertically(px(470));
                 let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
@@ -161,7 +166,7 @@ impl Figures<'_> {
                         axis: (Vector3::z(), "e₃"),
                     },
                 )?;
-                self.close_up(&close_up, series).draw(&below)?;
+                self.close_up(&self.close_up_title(), series).draw(&below)?;
             }
             Ok(())
         })

@@ -24,7 +24,7 @@ pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
             &top,
             &Path { title: &title, colour: ours.colour, width: 1, points: &points, axis: (Vector3::z(), "e₃") },
         )?;
-        figures.close_up("The last of it, loop by loop", ours).draw(&bottom)?;
+        figures.close_up(&figures.close_up_title(), ours).draw(&bottom)?;
         let panels = [
             figures.geometry("Rigidity: how far R leaves the rotations"),
             figures.vertical_momentum("Angular momentum about the vertical: how far from its start"),
