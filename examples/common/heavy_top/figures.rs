@@ -44,7 +44,8 @@ impl Figures<'_> {
 
     /// The case, the reading and the step: beside every figure.
     pub(crate) fn setting(&self) -> String {
-        format!("{}, {}, h = {} s", self.case, self.reading, self.schedule.step)
+        let in_fact = if self.case.caveat(self.reading).is_some() { " (here looping)" } else { "" };
+        format!("{}{in_fact}, {}, h = {} s", self.case, self.reading, self.schedule.step)
     }
 
     /// The names and colours of all series.
