@@ -3,7 +3,7 @@
 use liestep::DiagonalNonstandardInertia;
 
 /// A free rigid body: the kinetic part of the reduced discrete Lagrangian \[RDAE, (3.13)\].
-// #[liestep::lagrangian(
+// #[lagrangian(
 //     group = SO3,
 //     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h),
 // )]

@@ -4,7 +4,7 @@ use liestep::DiagonalNonstandardInertia;
 use nalgebra::Vector3;
 
 /// A heavy top: the reduced discrete Lagrangian \[RDAE, (3.13)\].
-// #[liestep::lagrangian(
+// #[lagrangian(
 //     group = SO3,
 //     advected(w = up),
 //     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
