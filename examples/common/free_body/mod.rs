@@ -6,4 +6,3 @@ pub(crate) mod lagrangian;
 pub(crate) mod overview;
 pub(crate) mod quantities;
 
-mod lagrangian_by_hand;

@@ -7,4 +7,3 @@ pub(crate) mod overview;
 pub(crate) mod quantities;
 pub(crate) mod rk4;
 
-mod lagrangian_by_hand;
