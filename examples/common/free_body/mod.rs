@@ -5,4 +5,3 @@ pub(crate) mod figures;
 pub(crate) mod lagrangian;
 pub(crate) mod overview;
 pub(crate) mod quantities;
-

@@ -6,4 +6,3 @@ pub(crate) mod lagrangian;
 pub(crate) mod overview;
 pub(crate) mod quantities;
 pub(crate) mod rk4;
-

@@ -102,8 +102,7 @@ impl Checker<'_> {
             Some(Tree::new(field.span(), Shape::Scalar, Kind::Entry(operand, row, 0)))
         } else {
             let shape = operand.shape.describe();
-            self.errors
-                .push(field.member.span(), format!("{shape} has no such component; a vector has x, y and z"));
+            self.errors.push(field.member.span(), format!("{shape} has no such component; a vector has x, y and z"));
             None
         }
     }

@@ -45,7 +45,11 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     }
     for field in &declaration.fields {
         let member = &field.name;
-        let value = if field.kind == FieldKind::Scalar { quote_spanned!(span=> self.#member) } else { quote_spanned!(span=> #root::__private::Parameter::value(&self.#member)) };
+        let value = if field.kind == FieldKind::Scalar {
+            quote_spanned!(span=> self.#member)
+        } else {
+            quote_spanned!(span=> #root::__private::Parameter::value(&self.#member))
+        };
         bind(&field.name.unraw().to_string(), value);
     }
     let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));
