@@ -5,6 +5,7 @@ use std::rc::Rc;
 use proc_macro2::Span;
 use syn::{Expr, Ident, ItemStruct, Path};
 
+use crate::group::Group;
 use crate::symbolic::{Function, Rational};
 
 /// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
@@ -14,6 +15,8 @@ pub(crate) struct Declaration {
     pub(crate) root: Path,
     /// The group as written.
     pub(crate) group: Path,
+    /// What is known of it.
+    pub(crate) structure: Group,
     pub(crate) advected: Vec<AdvectedParameter>,
     pub(crate) l_d: Expr,
     pub(crate) fields: Vec<Field>,
@@ -37,8 +40,10 @@ pub(crate) struct Field {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FieldKind {
     Scalar,
-    Vector,
-    Matrix,
+    /// Rows.
+    Vector(usize),
+    /// Rows, as many columns.
+    Matrix(usize),
     /// `NonstandardInertia`, `Inertia`.
     SymmetricInertia,
     /// `DiagonalNonstandardInertia`.
@@ -49,8 +54,9 @@ impl FieldKind {
     pub(crate) fn shape(self) -> Shape {
         match self {
             Self::Scalar => Shape::Scalar,
-            Self::Vector => Shape::Matrix(3, 1),
-            Self::Matrix | Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
+            Self::Vector(rows) => Shape::Matrix(rows, 1),
+            Self::Matrix(rows) => Shape::Matrix(rows, rows),
+            Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
         }
     }
 }

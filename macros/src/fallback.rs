@@ -19,7 +19,7 @@ pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStrea
     };
     let none = quote_spanned!(span=> ());
     let types = header.types(&none, &none);
-    let (vector, square, scalar) = (header.vector(), header.square(), &header.scalar);
+    let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let implementation = header.implementation();
     let core = quote_spanned!(span=> #root::__private::core);
     let of_increment = [
@@ -32,7 +32,7 @@ pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStrea
     ];
     let of_increment = of_increment.map(|(name, result)| {
         let name = syn::Ident::new(name, span);
-        quote_spanned!(span=> fn #name(&self, _: &#square, _: &Self::Advected, _: #scalar) -> #result { loop {} })
+        quote_spanned!(span=> fn #name(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #result { loop {} })
     });
     quote_spanned! {span=>
         #[automatically_derived]
@@ -50,7 +50,7 @@ pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStrea
             fn kick_before(_: &Self::Constants, _: &Self::Advected) -> #vector { loop {} }
             fn step_terms(_: &Self::Constants, _: &#vector, _: &Self::Advected) -> Self::StepTerms {}
             fn newton_system(_: &Self::Constants, _: &Self::StepTerms, _: &#vector) -> (#vector, #square) { loop {} }
-            fn kick_after(_: &Self::Constants, _: &#square, _: &Self::Advected) -> #vector { loop {} }
+            fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
         }
     }
 }

@@ -10,6 +10,7 @@ mod emit;
 mod errors;
 mod expand;
 mod fallback;
+mod group;
 mod lower;
 mod parse;
 mod scalar;

@@ -4,10 +4,14 @@ use proc_macro2::{Span, TokenStream};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::spanned::Spanned as _;
-use syn::{Expr, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, parenthesized};
+use syn::{
+    Expr, ExprArray, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, parenthesized,
+};
 
 use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
 use crate::errors::{Errors, suggestion};
+use crate::group::{self, Group};
+use crate::symbolic::Rational;
 
 /// More tokens than this, or deeper brackets, are no Lagrangian that a person wrote, and parsing them recursively could
 /// overflow the compiler's stack.
@@ -49,9 +53,10 @@ struct Arguments {
     advected: Vec<(Ident, Ident)>,
     l_d: Option<Expr>,
     root: Option<Path>,
+    generators: Option<ExprArray>,
 }
 
-const KEYS: [&str; 4] = ["group", "advected", "l_d", "crate"];
+const KEYS: [&str; 5] = ["group", "advected", "l_d", "generators", "crate"];
 
 /// The path of the crate that expansions name: as given, or `::liestep`.
 pub(crate) fn root(arguments: &TokenStream) -> Path {
@@ -74,28 +79,99 @@ pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Error
             return None;
         }
     };
-    match &arguments.group {
-        None => errors.push(Span::call_site(), "the group is missing: write `group = SO3`"),
-        Some(path) if path.segments.last().is_none_or(|segment| segment.ident != "SO3") => {
-            errors.push(path.span(), "this group isn't known: write `group = SO3`");
-        }
-        Some(_) => {}
-    }
+    let structure = group(&arguments, errors);
     if arguments.l_d.is_none() {
         errors.push(Span::call_site(), "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`");
     }
     let fields = fields(&item, errors);
     let scalar = scalar(&item, errors);
-    let advected = advected(&arguments.advected, &fields, errors);
+    let advected = advected(&arguments.advected, &fields, structure.size, errors);
     Some(Declaration {
         root: arguments.root.unwrap_or_else(default_root),
         group: arguments.group.unwrap_or_else(|| syn::parse_quote!(SO3)),
+        structure,
         advected,
         l_d: arguments.l_d?,
         fields: fields.into_iter().map(|(field, _)| field).collect(),
         scalar,
         item,
     })
+}
+
+/// What is known of the group; SO(3) after a mistake, so that the rest can be checked.
+fn group(arguments: &Arguments, errors: &mut Errors) -> Group {
+    let fallback = || group::built_in("SO3").unwrap_or_else(|| Group::declared("SO3", 3, Vec::new()));
+    let Some(path) = &arguments.group else {
+        errors.push(Span::call_site(), "the group is missing: write `group = SO3`");
+        return fallback();
+    };
+    let name = path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+    if let Some(array) = &arguments.generators {
+        return match generators(array) {
+            Ok((size, generators)) => Group::declared(&name, size, generators),
+            Err(error) => {
+                errors.extend(error);
+                fallback()
+            }
+        };
+    }
+    group::built_in(&name).unwrap_or_else(|| {
+        let known = group::NAMES.join(", ");
+        let near = suggestion(&name, group::NAMES);
+        errors.push(
+            path.span(),
+            format!("the group `{name}` isn't known{near}\nknown: {known}; of your own group give the `generators = [[[0.0, …], …], …]` too"),
+        );
+        fallback()
+    })
+}
+
+/// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows.
+fn generators(array: &ExprArray) -> syn::Result<(usize, Vec<Vec<Rational>>)> {
+    let rows = |expression: &Expr| match expression {
+        Expr::Array(array) => Ok(array.elems.clone()),
+        other => Err(syn::Error::new(other.span(), "write a matrix as an array of rows: `[[0.0, -1.0], [1.0, 0.0]]`")),
+    };
+    let mut generators = Vec::new();
+    let mut size = None;
+    for matrix in &array.elems {
+        let mut entries = Vec::new();
+        let matrix_rows = rows(matrix)?;
+        let expected = *size.get_or_insert(matrix_rows.len());
+        for row in &matrix_rows {
+            let row_entries = rows(row)?;
+            if row_entries.len() != expected || matrix_rows.len() != expected {
+                return Err(syn::Error::new(row.span(), "all generators are square matrices of one size"));
+            }
+            for entry in &row_entries {
+                entries.push(decimal(entry)?);
+            }
+        }
+        generators.push(entries);
+    }
+    match size {
+        Some(size) if (1..=MOST_ROWS).contains(&size) => Ok((size, generators)),
+        _ => Err(syn::Error::new(
+            array.span(),
+            format!("a group has at least one generator, of at most {MOST_ROWS} rows"),
+        )),
+    }
+}
+
+/// Larger matrices would make the derived code grow without bound.
+const MOST_ROWS: usize = 4;
+
+fn decimal(expression: &Expr) -> syn::Result<Rational> {
+    let message = "write the entry of a generator as a decimal number: `-1.0`";
+    let value = match expression {
+        Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
+        Expr::Lit(literal) => match &literal.lit {
+            syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),
+            _ => return Err(syn::Error::new(expression.span(), message)),
+        },
+        _ => return Err(syn::Error::new(expression.span(), message)),
+    };
+    if value.is_overflow() { Err(syn::Error::new(expression.span(), message)) } else { Ok(value) }
 }
 
 /// Reads `key = value` pairs; after a syntax error the rest is skipped, as nothing tells where the next key begins.
@@ -135,6 +211,11 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             input.parse::<Token![=]>()?;
             arguments.l_d = Some(input.parse()?);
         }
+        "generators" => {
+            once(arguments.generators.is_some());
+            input.parse::<Token![=]>()?;
+            arguments.generators = Some(input.parse()?);
+        }
         "advected" => {
             if !input.peek(syn::token::Paren) {
                 return Err(syn::Error::new(
@@ -150,7 +231,10 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
         }
         other => {
             let message = format!("`{other}` isn't an argument of `lagrangian`{}", suggestion(other, KEYS));
-            return Err(syn::Error::new(key.span(), format!("{message}\nknown: group, advected, l_d, crate")));
+            return Err(syn::Error::new(
+                key.span(),
+                format!("{message}\nknown: group, advected, l_d, generators, crate"),
+            ));
         }
     }
     if !input.is_empty() {
@@ -204,13 +288,18 @@ fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     let name = last_segment(ty)?.ident.to_string();
     Some(match name.as_str() {
         "f64" | "f32" => FieldKind::Scalar,
-        "Vector3" => FieldKind::Vector,
-        "Matrix3" => FieldKind::Matrix,
+        "Vector2" | "Vector3" | "Vector4" => FieldKind::Vector(digit(&name)?),
+        "Matrix2" | "Matrix3" | "Matrix4" => FieldKind::Matrix(digit(&name)?),
         "NonstandardInertia" | "Inertia" => FieldKind::SymmetricInertia,
         "DiagonalNonstandardInertia" => FieldKind::DiagonalInertia,
         _ if item.generics.type_params().any(|parameter| parameter.ident == name) => FieldKind::Scalar,
         _ => return None,
     })
+}
+
+/// The number that a type's name ends with.
+fn digit(name: &str) -> Option<usize> {
+    usize::try_from(name.chars().last()?.to_digit(10)?).ok()
 }
 
 /// The scalar that a type is made of; an inertia without arguments has `f64`.
@@ -252,7 +341,12 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
-fn advected(pairs: &[(Ident, Ident)], fields: &[(Field, Span)], errors: &mut Errors) -> Vec<AdvectedParameter> {
+fn advected(
+    pairs: &[(Ident, Ident)],
+    fields: &[(Field, Span)],
+    size: usize,
+    errors: &mut Errors,
+) -> Vec<AdvectedParameter> {
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for (name, field) in pairs {
         let unraw = name.unraw().to_string();
@@ -272,10 +366,13 @@ fn advected(pairs: &[(Ident, Ident)], fields: &[(Field, Span)], errors: &mut Err
             continue;
         };
         if let Some((found, span)) = fields.get(index)
-            && found.kind != FieldKind::Vector
+            && found.kind != FieldKind::Vector(size)
         {
             let shape = found.kind.shape().describe();
-            errors.push(*span, format!("`{wanted}` is {shape}, but SO3 carries a vector of 3: use Vector3<f64>"));
+            errors.push(
+                *span,
+                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>"),
+            );
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index });
     }

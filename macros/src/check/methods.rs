@@ -68,11 +68,13 @@ impl Checker<'_> {
                 return Some(Tree::new(span, Shape::Matrix(columns, rows), Kind::Transpose(receiver)));
             }
             ("transpose", Shape::Scalar) => ("a matrix", None),
-            ("trace", SQUARE) => ("", Some((Shape::Scalar, Kind::Trace(receiver)))),
+            ("trace", Shape::Matrix(rows, columns)) if rows == columns => {
+                ("", Some((Shape::Scalar, Kind::Trace(receiver))))
+            }
             ("trace", _) => ("a square matrix", None),
             ("cross_matrix", VECTOR) => ("", Some((SQUARE, Kind::CrossMatrix(receiver)))),
             ("cross_matrix", _) => ("a vector of 3", None),
-            ("norm_squared" | "norm", VECTOR) => {
+            ("norm_squared" | "norm", Shape::Matrix(_, 1)) => {
                 let squared = Tree::new(span, Shape::Scalar, Kind::Dot(receiver.clone(), receiver));
                 let norm = |squared| Kind::Apply(Function::Sqrt, squared);
                 return Some(if name == "norm" { Tree::new(span, Shape::Scalar, norm(squared)) } else { squared });
@@ -106,14 +108,18 @@ impl Checker<'_> {
 
     fn of_two(&mut self, name: &str, left: Rc<Tree>, right: Rc<Tree>, span: Span, at: Span) -> Option<Rc<Tree>> {
         for operand in [&left, &right] {
-            if operand.shape != VECTOR {
-                return self.mismatch(name, "two vectors of 3", operand.shape, at);
+            let fits =
+                if name == "cross" { operand.shape == VECTOR } else { matches!(operand.shape, Shape::Matrix(_, 1)) };
+            if !fits || operand.shape != left.shape {
+                let expected = if name == "cross" { "two vectors of 3" } else { "two vectors of one size" };
+                return self.mismatch(name, expected, operand.shape, at);
             }
         }
+        let shape = left.shape;
         Some(match name {
             "dot" => Tree::new(span, Shape::Scalar, Kind::Dot(left, right)),
             "cross" => Tree::new(span, VECTOR, Kind::Cross(left, right)),
-            _ => Tree::new(span, VECTOR, Kind::ComponentMultiply(left, right)),
+            _ => Tree::new(span, shape, Kind::ComponentMultiply(left, right)),
         })
     }
 

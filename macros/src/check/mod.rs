@@ -203,13 +203,15 @@ impl Checker<'_> {
         }
         let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.name.unraw() == name);
         let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.name.unraw() == name);
+        let size = self.declaration.structure.size;
+        let square = Shape::Matrix(size, size);
         let (shape, found) = match name.as_str() {
-            "I" => return Some(Tree::new(span, Shape::Matrix(3, 3), Kind::Identity)),
-            "F" => (Shape::Matrix(3, 3), Name::Increment),
+            "I" => return Some(Tree::new(span, square, Kind::Identity)),
+            "F" => (square, Name::Increment),
             "h" => (Shape::Scalar, Name::Step),
             _ => {
                 if let Some(index) = advected(self.declaration) {
-                    (Shape::Matrix(3, 1), Name::Advected(index))
+                    (Shape::Matrix(size, 1), Name::Advected(index))
                 } else if let Some(index) = field(self.declaration) {
                     if let Some(w) = self.declaration.advected.iter().find(|w| w.field == index) {
                         let w = w.name.unraw();

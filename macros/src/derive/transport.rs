@@ -4,7 +4,7 @@
 //! all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
 //!
 //! ```text
-//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E Fᵀ⟩,     w = F w⁺
+//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F⁻ᵀ w⁺
 //! ```
 //!
 //! Written in `w⁺`, the second part loses its `F` for a potential of the new position, as `FᵀF = I` finds by itself.
@@ -27,10 +27,21 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
     let moved = diamond.clone().minus(kick_before.clone());
     let f = context.symbol(increment);
     let direction = context.symbol(context.directions.first);
-    let turned = context.product(&context.product(&f, &direction), &f.transpose(context.symbols));
+    let inverse = Expression::inverse(increment, context.symbols);
+    let turned = context.product(&context.product(&f, &direction), &inverse);
+    // w⁺ = ρ(F)ᵀ w.
+    let back = inverse.transpose(context.symbols);
     let mut map = BTreeMap::from([(context.directions.first, turned)]);
     for (&w, &next) in context.declared.advected.iter().zip(&context.directions.next) {
-        map.insert(w, context.product(&f, &context.symbol(next)));
+        map.insert(w, context.product(&back, &context.symbol(next)));
     }
     Parts { kick_before, unknown, kick_after: context.substituted(&moved, &map) }
+}
+
+/// With `F = I + D`; as it is where that would multiply the terms.
+pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
+    let small = Expression::identity(context.declared.group.size).plus(context.symbol(context.directions.small));
+    let map = BTreeMap::from([(context.declared.increment, small)]);
+    let substituted = context.substituted(unknown, &map);
+    if substituted.len() > 4 * unknown.len() + 16 { unknown.clone() } else { substituted }
 }

@@ -1,6 +1,6 @@
 //! Types and generics of the implementation.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
@@ -16,6 +16,8 @@ pub(crate) struct Header {
     name: Ident,
     generics: syn::Generics,
     advected: usize,
+    size: usize,
+    dimension: usize,
 }
 
 impl Header {
@@ -36,17 +38,34 @@ impl Header {
             name: declaration.item.ident.clone(),
             generics: declaration.item.generics.clone(),
             advected: declaration.advected.len(),
+            size: declaration.structure.size,
+            dimension: declaration.structure.dimension(),
         }
     }
 
+    /// Components of covectors.
     pub(crate) fn vector(&self) -> TokenStream {
-        let (root, scalar) = (&self.root, &self.scalar);
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Vector3<#scalar>)
+        self.column(self.dimension)
     }
 
+    /// Linear maps of components.
     pub(crate) fn square(&self) -> TokenStream {
-        let (root, scalar) = (&self.root, &self.scalar);
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Matrix3<#scalar>)
+        self.matrix_of(self.dimension)
+    }
+
+    /// The matrices of the group.
+    pub(crate) fn matrix(&self) -> TokenStream {
+        self.matrix_of(self.size)
+    }
+
+    fn column(&self, rows: usize) -> TokenStream {
+        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
+        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SVector<#scalar, #rows>)
+    }
+
+    fn matrix_of(&self, rows: usize) -> TokenStream {
+        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
+        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SMatrix<#scalar, #rows, #rows>)
     }
 
     /// `impl … DiscreteLagrangian for …`.
@@ -63,7 +82,8 @@ impl Header {
     }
 
     pub(crate) fn types(&self, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
-        let (root, group, scalar, vector) = (&self.root, &self.group, &self.scalar, self.vector());
+        let (root, group, scalar) = (&self.root, &self.group, &self.scalar);
+        let vector = self.column(self.size);
         let vectors = (0..self.advected).map(|_| &vector);
         let advected =
             if self.advected == 1 { vector.clone() } else { quote_spanned!(Span::mixed_site()=> (#(#vectors),*)) };

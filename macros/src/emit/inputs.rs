@@ -31,6 +31,12 @@ impl Emitter<'_> {
         if input.symbol == directions.coordinates {
             return entry(&quote_spanned!(span=> xi), input);
         }
+        if input.symbol == directions.small {
+            return entry(&quote_spanned!(span=> increment), input);
+        }
+        if input.symbol == directions.inverse {
+            return entry(&quote_spanned!(span=> inverse), input);
+        }
         if input.symbol == directions.target {
             return entry(&quote_spanned!(span=> a), input);
         }
@@ -56,7 +62,7 @@ impl Emitter<'_> {
         let place = |value: TokenStream| entry(&value, input);
         match field.kind {
             FieldKind::Scalar => quote_spanned!(span=> self.#name),
-            FieldKind::Vector | FieldKind::Matrix => place(quote_spanned!(span=> self.#name)),
+            FieldKind::Vector(_) | FieldKind::Matrix(_) => place(quote_spanned!(span=> self.#name)),
             FieldKind::SymmetricInertia => place(quote_spanned!(span=> self.#name.as_matrix())),
             FieldKind::DiagonalInertia => {
                 let diagonal = Input { column: 0, ..input };

@@ -15,7 +15,7 @@ use crate::ast::{Declaration, FieldKind};
 
 pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
-    let (root, scalar, square) = (&header.root, &header.scalar, header.square());
+    let (root, scalar, square) = (&header.root, &header.scalar, header.matrix());
     let mut expression = declaration.l_d.clone();
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
@@ -29,11 +29,8 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     };
     bind("F", quote_spanned!(span=> *f));
     bind("I", quote_spanned!(span=> <#square>::identity()));
-    let vector = header.vector();
-    bind(
-        "vee",
-        quote_spanned!(span=> |matrix: #square| -> #vector { <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix) }),
-    );
+    let three = quote_spanned!(span=> #root::__private::nalgebra::Matrix3<#scalar>);
+    bind("vee", quote_spanned!(span=> |matrix: #three| <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix)));
     for (index, parameter) in declaration.advected.iter().enumerate() {
         let value = if declaration.advected.len() == 1 {
             quote_spanned!(span=> *w)
