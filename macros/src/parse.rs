@@ -1,6 +1,6 @@
 //! The attribute's arguments and the struct's fields.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::spanned::Spanned as _;
@@ -14,8 +14,14 @@ use crate::errors::{Errors, suggestion};
 const MOST_TOKENS: usize = 5_000;
 const DEEPEST_BRACKETS: usize = 64;
 
-/// Reports arguments that are too large to be parsed.
-pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) {
+/// The annotated struct.
+pub(crate) fn item(item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
+    let parsed = syn::parse2(item.clone());
+    parsed.map_err(|error| errors.push(error.span(), "`lagrangian` belongs on a struct with named fields")).ok()
+}
+
+/// `None` where the arguments are too large to be parsed, which has been reported.
+pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![(arguments.clone().into_iter(), 0)];
     let mut count = 0;
     while let Some((mut tokens, depth)) = open.pop() {
@@ -27,19 +33,20 @@ pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) {
                 token.span(),
                 format!("the Lagrangian has more than {MOST_TOKENS} tokens: the expression is too large"),
             );
-            return;
+            return None;
         }
-        if let proc_macro2::TokenTree::Group(group) = token {
+        if let TokenTree::Group(group) = token {
             if depth >= DEEPEST_BRACKETS {
                 errors.push(
                     group.span_open(),
                     format!("brackets are nested more than {DEEPEST_BRACKETS} deep: bind parts with `let`"),
                 );
-                return;
+                return None;
             }
             open.push((group.stream().into_iter(), depth + 1));
         }
     }
+    Some(())
 }
 
 /// The arguments as written.
@@ -53,60 +60,60 @@ struct Arguments {
 
 const KEYS: [&str; 4] = ["group", "advected", "l_d", "crate"];
 
-/// The path of the crate that expansions name: as given, or `::liestep`.
-pub(crate) fn root(arguments: &TokenStream) -> Path {
-    let mut ignored = Errors::default();
-    let parsed = (|input: ParseStream| Ok(arguments_from(input, &mut ignored))).parse2(arguments.clone());
-    parsed.ok().and_then(|arguments| arguments.root).unwrap_or_else(default_root)
-}
-
 fn default_root() -> Path {
     syn::parse_quote!(::liestep)
 }
 
-/// The declaration, or `None` if there is nothing to go on with.
-pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Option<Declaration> {
+/// The declaration as far as it can be read.
+pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
     let parser = |input: ParseStream| Ok(arguments_from(input, errors));
-    let arguments = match parser.parse2(arguments) {
-        Ok(arguments) => arguments,
-        Err(error) => {
-            errors.extend(error);
-            return None;
+    let arguments = parser.parse2(arguments).unwrap_or_else(|error| {
+        errors.extend(error);
+        Arguments::default()
+    });
+    // What seems to be missing may stand in an argument that couldn't be read.
+    let is_readable = errors.is_empty();
+    let root = arguments.root.unwrap_or_else(default_root);
+    let group = match arguments.group {
+        Some(path) if path.segments.last().is_some_and(|segment| segment.ident == "SO3") => path,
+        other => {
+            match other {
+                Some(path) => errors.push_over(path, "this group isn't known: write `group = SO3`"),
+                None if is_readable => errors.push(Span::call_site(), "the group is missing: write `group = SO3`"),
+                None => {}
+            }
+            syn::parse_quote!(#root::SO3)
         }
     };
-    match &arguments.group {
-        None => errors.push(Span::call_site(), "the group is missing: write `group = SO3`"),
-        Some(path) if path.segments.last().is_none_or(|segment| segment.ident != "SO3") => {
-            errors.push(path.span(), "this group isn't known: write `group = SO3`");
-        }
-        Some(_) => {}
-    }
-    if arguments.l_d.is_none() {
+    if arguments.l_d.is_none() && is_readable {
         errors.push(Span::call_site(), "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`");
     }
-    let fields = fields(&item, errors);
+    let (fields, unreadable) = fields(&item, errors);
     let scalar = scalar(&item, errors);
-    let advected = advected(&arguments.advected, &fields, errors);
-    Some(Declaration {
-        root: arguments.root.unwrap_or_else(default_root),
-        group: arguments.group.unwrap_or_else(|| syn::parse_quote!(SO3)),
+    let advected = advected(&arguments.advected, &fields, &unreadable, errors);
+    let has_names = matches!(item.fields, Fields::Named(_));
+    Declaration {
+        root,
+        group,
         advected,
-        l_d: arguments.l_d?,
+        l_d: arguments.l_d.filter(|_| is_readable && has_names),
         fields: fields.into_iter().map(|(field, _)| field).collect(),
+        unreadable,
         scalar,
         item,
-    })
+    }
 }
 
-/// Reads `key = value` pairs; after a syntax error the rest is skipped, as nothing tells where the next key begins.
+/// Reads `key = value` pairs; after a syntax error it goes on behind the next comma.
 fn arguments_from(input: ParseStream, errors: &mut Errors) -> Arguments {
     let mut arguments = Arguments::default();
     while !input.is_empty() {
         if let Err(error) = argument(input, &mut arguments, errors) {
             errors.extend(error);
-            // Whatever is left would only be reported as unexpected.
-            let _ = input.parse::<TokenStream>();
-            break;
+            while !input.is_empty() && !input.peek(Token![,]) {
+                let _ = input.parse::<TokenTree>();
+            }
+            let _ = input.parse::<Token![,]>();
         }
     }
     arguments
@@ -144,9 +151,10 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             }
             let content;
             parenthesized!(content in input);
-            for (name, field) in content.parse_terminated(advected_pair, Token![,])? {
-                arguments.advected.push((name, field));
-            }
+            let pairs = content.parse_terminated(advected_pair, Token![,]);
+            // What is left after a mistake would be reported as unexpected.
+            content.parse::<TokenStream>()?;
+            arguments.advected.extend(pairs?);
         }
         other => {
             let message = format!("`{other}` isn't an argument of `lagrangian`{}", suggestion(other, KEYS));
@@ -169,25 +177,27 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
     Ok((name, input.parse()?))
 }
 
-fn fields(item: &ItemStruct, errors: &mut Errors) -> Vec<(Field, Span)> {
+/// The fields with the place of their types, and the names of those whose type has no meaning.
+fn fields(item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<String>) {
     let Fields::Named(named) = &item.fields else {
         errors.push(item.ident.span(), "a Lagrangian is a struct with named fields: its parameters");
-        return Vec::new();
+        return Default::default();
     };
-    let mut fields = Vec::new();
+    let (mut fields, mut unreadable) = (Vec::new(), Vec::new());
     for field in &named.named {
         let Some(name) = field.ident.clone() else { continue };
-        let kind = field_kind(&field.ty, item).unwrap_or_else(|| {
-            errors.push(
-                field.ty.span(),
+        if let Some(kind) = field_kind(&field.ty, item) {
+            fields.push((Field { name, kind }, field.ty.span()));
+        } else {
+            unreadable.push(name.unraw().to_string());
+            errors.push_over(
+                &field.ty,
                 "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Matrix3<f64>, NonstandardInertia, \
                  DiagonalNonstandardInertia or Inertia (or the same with the struct's type parameter)",
             );
-            FieldKind::Scalar
-        });
-        fields.push((Field { name, kind }, field.ty.span()));
+        }
     }
-    fields
+    (fields, unreadable)
 }
 
 fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {
@@ -252,7 +262,12 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
-fn advected(pairs: &[(Ident, Ident)], fields: &[(Field, Span)], errors: &mut Errors) -> Vec<AdvectedParameter> {
+fn advected(
+    pairs: &[(Ident, Ident)],
+    fields: &[(Field, Span)],
+    unreadable: &[String],
+    errors: &mut Errors,
+) -> Vec<AdvectedParameter> {
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for (name, field) in pairs {
         let unraw = name.unraw().to_string();
@@ -266,12 +281,12 @@ fn advected(pairs: &[(Ident, Ident)], fields: &[(Field, Span)], errors: &mut Err
             continue;
         }
         let wanted = field.unraw().to_string();
-        let Some(index) = field_names.iter().position(|known| *known == wanted) else {
+        let index = field_names.iter().position(|known| *known == wanted);
+        if index.is_none() && !unreadable.contains(&wanted) {
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
-            continue;
-        };
-        if let Some((found, span)) = fields.get(index)
+        }
+        if let Some((found, span)) = index.and_then(|index| fields.get(index))
             && found.kind != FieldKind::Vector
         {
             let shape = found.kind.shape().describe();

@@ -121,7 +121,9 @@ impl Checker<'_> {
         if base.shape != Shape::Scalar {
             return self.mismatch("powi", "a scalar", base.shape, at);
         }
-        if let Some(exponent) = integer(exponent).filter(|n| (-16..=16).contains(n)) { Some(Tree::new(span, Shape::Scalar, Kind::Power(base, exponent))) } else {
+        if let Some(exponent) = integer(exponent).filter(|n| (-16..=16).contains(n)) {
+            Some(Tree::new(span, Shape::Scalar, Kind::Power(base, exponent)))
+        } else {
             self.errors.push(exponent.span(), "write the exponent as a whole number from −16 to 16");
             None
         }

@@ -21,20 +21,36 @@ const DEEPEST: usize = 250;
 
 /// The declared expression as a tree, with every mistake reported.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
+    let l_d = declaration.l_d.as_ref()?;
     let mut checker = Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0 };
-    let tree = checker.expression(&declaration.l_d);
+    let tree = checker.expression(l_d);
     let used = checker.used;
     let tree = tree?;
     if tree.shape != Shape::Scalar {
         let shape = tree.shape.describe();
-        errors.push(
-            tree.span,
+        errors.push_over(
+            value(l_d),
             format!("a Lagrangian is a scalar, but this is {shape}: take a `.trace()` or a `.dot(…)`"),
         );
         return None;
     }
-    usage::check(declaration, &used, errors);
+    // Only what has been read as a whole says what is used.
+    if errors.is_empty() {
+        usage::check(declaration, &used, errors);
+    }
     Some(tree)
+}
+
+/// What a block ends with, or the expression itself.
+pub(crate) fn value(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Group(inner) => value(&inner.expr),
+        Expr::Block(block) => match block.block.stmts.last() {
+            Some(Stmt::Expr(last, None)) => value(last),
+            _ => expression,
+        },
+        _ => expression,
+    }
 }
 
 /// A `let`: its tree, or nothing if that had a mistake, and whether it has been used.
@@ -115,8 +131,10 @@ impl Checker<'_> {
     fn block(&mut self, block: &Block) -> Option<Rc<Tree>> {
         self.scopes.push(BTreeMap::new());
         let result = self.statements(&block.stmts, block.brace_token.span.join());
+        // What couldn't be read may use any name.
+        let is_read = self.errors.is_empty();
         for binding in self.scopes.pop().into_iter().flat_map(BTreeMap::into_values) {
-            if !binding.used {
+            if is_read && !binding.used {
                 self.errors.push(binding.span, "this `let` isn't used: remove it");
             }
         }
@@ -211,7 +229,7 @@ impl Checker<'_> {
                 if let Some(index) = advected(self.declaration) {
                     (Shape::Matrix(3, 1), Name::Advected(index))
                 } else if let Some(index) = field(self.declaration) {
-                    if let Some(w) = self.declaration.advected.iter().find(|w| w.field == index) {
+                    if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
                         let w = w.name.unraw();
                         self.errors.push(
                             span,
@@ -221,7 +239,9 @@ impl Checker<'_> {
                     }
                     (self.declaration.fields[index].kind.shape(), Name::Field(index))
                 } else {
-                    self.unknown_name(&name, span);
+                    if !self.declaration.unreadable.contains(&name) {
+                        self.unknown_name(&name, span);
+                    }
                     return None;
                 }
             }

@@ -19,7 +19,13 @@ impl Checker<'_> {
                     let (a, b) = (left.shape.describe(), right.shape.describe());
                     let verb = if matches!(binary.op, BinOp::Add(_)) { "added to" } else { "subtracted from" };
                     let (a, b) = if matches!(binary.op, BinOp::Add(_)) { (a, b) } else { (b, a) };
-                    self.errors.push(operator, format!("{a} can't be {verb} {b}: both sides need one shape"));
+                    let advice = match (left.shape, right.shape) {
+                        (Shape::Scalar, Shape::Matrix(3, 3)) | (Shape::Matrix(3, 3), Shape::Scalar) => {
+                            ": write `a * I` for a scalar `a`"
+                        }
+                        _ => ": both sides need one shape",
+                    };
+                    self.errors.push(operator, format!("{a} can't be {verb} {b}{advice}"));
                     return None;
                 }
                 let shape = left.shape;
@@ -51,7 +57,10 @@ impl Checker<'_> {
             BinOp::Div(_) => {
                 if right.shape != Shape::Scalar {
                     let shape = right.shape.describe();
-                    self.errors.push(operator, format!("only a scalar can divide, and this is {shape}"));
+                    self.errors.push(
+                        operator,
+                        format!("only a scalar can divide, and this is {shape}: the inverse of `F` is `F.transpose()`"),
+                    );
                     return None;
                 }
                 let shape = left.shape;
@@ -102,8 +111,7 @@ impl Checker<'_> {
             Some(Tree::new(field.span(), Shape::Scalar, Kind::Entry(operand, row, 0)))
         } else {
             let shape = operand.shape.describe();
-            self.errors
-                .push(field.member.span(), format!("{shape} has no such component; a vector has x, y and z"));
+            self.errors.push(field.member.span(), format!("{shape} has no such component; a vector has x, y and z"));
             None
         }
     }

@@ -16,7 +16,7 @@ use crate::ast::{Declaration, FieldKind};
 pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
     let (root, scalar, square) = (&header.root, &header.scalar, header.square());
-    let mut expression = declaration.l_d.clone();
+    let Some(mut expression) = declaration.l_d.clone() else { return TokenStream::new() };
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let mut names: Vec<Ident> = Vec::new();
@@ -45,7 +45,11 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     }
     for field in &declaration.fields {
         let member = &field.name;
-        let value = if field.kind == FieldKind::Scalar { quote_spanned!(span=> self.#member) } else { quote_spanned!(span=> #root::__private::Parameter::value(&self.#member)) };
+        let value = if field.kind == FieldKind::Scalar {
+            quote_spanned!(span=> self.#member)
+        } else {
+            quote_spanned!(span=> #root::__private::Parameter::value(&self.#member))
+        };
         bind(&field.name.unraw().to_string(), value);
     }
     let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));
