@@ -1,10 +1,10 @@
 //! The attribute's arguments and the struct's fields.
 
-use proc_macro2::{Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::spanned::Spanned as _;
-use syn::{Expr, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, parenthesized};
+use syn::{Expr, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, braced, parenthesized};
 
 use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
 use crate::errors::{Errors, suggestion};
@@ -66,8 +66,16 @@ fn default_root() -> Path {
 
 /// The declaration as far as it can be read.
 pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
-    let parser = |input: ParseStream| Ok(arguments_from(input, errors));
-    let arguments = parser.parse2(arguments).unwrap_or_else(|error| {
+    // In braces that span the last token, so that what ends too early is reported there.
+    let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
+    let mut braces = Group::new(Delimiter::Brace, arguments);
+    braces.set_span(last);
+    let parser = |input: ParseStream| {
+        let content;
+        braced!(content in input);
+        Ok(arguments_from(&content, errors))
+    };
+    let arguments = parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
         errors.extend(error);
         Arguments::default()
     });

@@ -46,7 +46,8 @@ impl Checker<'_> {
         let wanted = usize::from(matches!(name.as_str(), "dot" | "cross" | "component_mul" | "powi"));
         if call.args.len() != wanted {
             let count = if wanted == 0 { "no argument" } else { "one argument" };
-            self.errors.push(call.method.span(), format!("`{name}` takes {count}"));
+            let span = call.args.get(wanted).map_or(call.method.span(), syn::spanned::Spanned::span);
+            self.errors.push(span, format!("`{name}` takes {count}"));
             return None;
         }
         let (receiver, span, at) = (receiver?, call.span(), call.method.span());

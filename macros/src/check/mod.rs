@@ -171,7 +171,8 @@ impl Checker<'_> {
                 &name.ident
             }
             other => {
-                self.errors.push(other.span(), "bind one plain name: `let name = …;`");
+                self.errors.push_over(other, "bind one plain name: `let name = …;`");
+                self.bind_nothing(other);
                 return;
             }
         };
@@ -180,12 +181,27 @@ impl Checker<'_> {
         }
         let Some(init) = local.init.as_ref().filter(|init| init.diverge.is_none()) else {
             self.errors.push(local.span(), "a binding needs a value: `let name = …;`");
+            self.bind_nothing(pattern);
             return;
         };
         let tree = self.expression(&init.expr);
         let binding = Binding { tree, span: name.span(), used: false };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.unraw().to_string(), binding);
+        }
+    }
+
+    /// The names of a `let` with a mistake are known, and have no tree.
+    fn bind_nothing(&mut self, pattern: &Pat) {
+        match pattern {
+            Pat::Ident(name) => {
+                let binding = Binding { tree: None, span: name.span(), used: true };
+                if let Some(scope) = self.scopes.last_mut() {
+                    scope.insert(name.ident.unraw().to_string(), binding);
+                }
+            }
+            Pat::Tuple(tuple) => tuple.elems.iter().for_each(|part| self.bind_nothing(part)),
+            _ => {}
         }
     }
 

@@ -94,7 +94,11 @@ impl Checker<'_> {
                 None
             }
             None => {
-                self.errors.push(index.index.span(), "write indices as numbers: `v[0]`, `A[(0, 1)]`");
+                let culprit = match &*index.index {
+                    Expr::Tuple(pair) => pair.elems.iter().find(|index| number(index).is_none()),
+                    _ => None,
+                };
+                self.errors.push_over(culprit.unwrap_or(&index.index), "write indices as numbers: `v[0]`, `A[(0, 1)]`");
                 None
             }
         }

@@ -1,8 +1,15 @@
 use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::Vector3;
 
-#[lagrangian(grop = SO3, l_d = (F * J_d).trace() / h)]
+#[lagrangian(
+    group = SO3,
+    advect(w = up),
+    l_d = (F * J_d).trace() / h - h * w.dot(&(F * rho)),
+)]
 struct Top {
     J_d: NonstandardInertia,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
 }
 
 fn run(top: Top) {

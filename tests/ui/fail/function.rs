@@ -1,4 +1,4 @@
-use liestep::{SO3, lagrangian};
+use liestep::lagrangian;
 
 #[lagrangian(group = SO3, l_d = F.trace() / h)]
 fn top() {}

@@ -1,4 +1,4 @@
-use liestep::{NonstandardInertia, SO3, lagrangian};
+use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 
 #[lagrangian(group = SO3, l_d = rho.trace() * F.trace() / h)]
