@@ -165,8 +165,12 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             arguments.advected.extend(pairs?);
         }
         other => {
-            let message = format!("`{other}` isn't an argument of `lagrangian`{}", suggestion(other, KEYS));
-            return Err(syn::Error::new(key.span(), format!("{message}\nknown: group, advected, l_d, crate")));
+            let near = suggestion(other, KEYS);
+            let list = if near.is_empty() { format!("\nknown: {}", KEYS.join(", ")) } else { String::new() };
+            return Err(syn::Error::new(
+                key.span(),
+                format!("`{other}` isn't an argument of `lagrangian`{near}{list}"),
+            ));
         }
     }
     if !input.is_empty() {

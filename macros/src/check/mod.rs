@@ -22,7 +22,8 @@ const DEEPEST: usize = 250;
 /// The declared expression as a tree, with every mistake reported.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
     let l_d = declaration.l_d.as_ref()?;
-    let mut checker = Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0 };
+    let mut checker =
+        Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0, is_too_deep: false };
     let tree = checker.expression(l_d);
     let used = checker.used;
     let tree = tree?;
@@ -66,13 +67,18 @@ struct Checker<'a> {
     scopes: Vec<BTreeMap<String, Binding>>,
     used: Vec<Name>,
     depth: usize,
+    /// Both operands of an operation may be too deep, and one message says it.
+    is_too_deep: bool,
 }
 
 impl Checker<'_> {
     /// `None` where a mistake has been reported.
     fn expression(&mut self, expression: &Expr) -> Option<Rc<Tree>> {
         if self.depth > DEEPEST {
-            self.errors.push(expression.span(), format!("nested more than {DEEPEST} deep: bind parts with `let`"));
+            if !self.is_too_deep {
+                self.errors.push(expression.span(), format!("nested more than {DEEPEST} deep: bind parts with `let`"));
+            }
+            self.is_too_deep = true;
             return None;
         }
         self.depth += 1;
@@ -154,6 +160,10 @@ impl Checker<'_> {
         }
         match last {
             Stmt::Expr(expression, None) => self.expression(expression),
+            Stmt::Expr(_, Some(semicolon)) => {
+                self.errors.push(semicolon.span(), "the block must end with the Lagrangian: remove the semicolon");
+                None
+            }
             other => {
                 self.errors.push(other.span(), "the block must end with the Lagrangian, without a semicolon");
                 None

@@ -74,7 +74,7 @@ impl Checker<'_> {
     pub(super) fn index(&mut self, index: &ExprIndex) -> Option<Rc<Tree>> {
         let operand = self.expression(&index.expr)?;
         let Shape::Matrix(rows, columns) = operand.shape else {
-            self.errors.push(index.index.span(), "a scalar has no entries");
+            self.errors.push(index.index.span(), "a scalar has no entries: remove the index");
             return None;
         };
         let place = match &*index.index {
