@@ -24,6 +24,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use liestep::Stepper;
 
+use common::args::Schedule;
 use common::output::{Output, print};
 use common::plot::{BLUE, GREEN, ORANGE};
 use common::run::run;
@@ -64,30 +65,23 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let schedule = arguments.common.schedule()?;
     let mut output = Output::new(arguments.common.folder("heavy-top"))?;
 
-    let stepper = Stepper::new(reading.top()?, schedule.step)?;
-    let (attitude, velocity) = case.start();
-    let state = stepper.start(attitude, velocity)?;
-    let body = Body::of(stepper.lagrangian());
-    let (h, momentum) = (schedule.step, state.momentum());
-
-    let ours = run("variational", Variational { stepper: &stepper, state }, &schedule)?;
-    let quaternion = run("RK4, quaternion", OnQuaternion::new(body, h, &attitude, momentum), &schedule)?;
-    let matrix = run("RK4, nine entries of R", OnMatrix::new(body, h, &attitude, momentum), &schedule)?;
-    let series = [
-        Series::new("variational", "variational.csv", BLUE, &body, &ours),
-        Series::new("RK4, quaternion renormalised", "rk4-quaternion.csv", GREEN, &body, &quaternion),
-        Series::new("RK4, nine entries of R", "rk4-matrix.csv", ORANGE, &body, &matrix),
-    ];
-
+    let series = all_methods(case, reading, &schedule)?;
     let figures = Figures { case, reading, schedule, series: &series };
     output.write("heavy-top.svg", &overview(&figures)?)?;
     figures.write(&mut output)?;
+    for other in Case::ALL.into_iter().filter(|other| *other != case) {
+        match all_methods(other, reading, &schedule) {
+            Ok(series) => Figures { case: other, reading, schedule, series: &series }.write_tip(&mut output)?,
+            // The case that was asked for is done; another may turn too fast for the step.
+            Err(cause) => eprintln!("note: no path of the tip for the case {other}: {cause}"),
+        }
+    }
     if arguments.common.csv {
         for method in &series {
             output.write(method.file, &method.csv())?;
         }
     }
-    let steps = schedule.steps;
+    let (h, steps) = (schedule.step, schedule.steps);
     let end = short(schedule.end());
     let caveat = case.caveat(reading).map_or_else(String::new, |text| format!("{text}\n"));
     print(&format!(
@@ -95,6 +89,23 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         summary(&series),
     ))?;
     Ok(())
+}
+
+/// The variational run of a case and its two rivals.
+fn all_methods(case: Case, reading: Reading, schedule: &Schedule) -> Result<[Series; 3], Box<dyn Error>> {
+    let stepper = Stepper::new(reading.top()?, schedule.step)?;
+    let (attitude, velocity) = case.start();
+    let state = stepper.start(attitude, velocity)?;
+    let body = Body::of(stepper.lagrangian());
+    let (h, momentum) = (schedule.step, state.momentum());
+    let ours = run("variational", Variational { stepper: &stepper, state }, schedule)?;
+    let quaternion = run("RK4, quaternion", OnQuaternion::new(body, h, &attitude, momentum), schedule)?;
+    let matrix = run("RK4, nine entries of R", OnMatrix::new(body, h, &attitude, momentum), schedule)?;
+    Ok([
+        Series::new("variational", "variational.csv", BLUE, &body, &ours),
+        Series::new("RK4, quaternion renormalised", "rk4-quaternion.csv", GREEN, &body, &quaternion),
+        Series::new("RK4, nine entries of R", "rk4-matrix.csv", ORANGE, &body, &matrix),
+    ])
 }
 
 /// The greatest deviations over the run, and what a step costs.

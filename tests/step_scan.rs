@@ -69,7 +69,7 @@ fn s1_the_error_beyond_the_fold_names_the_largest_step() {
         let error = first_step(&motion.top, &motion, h).unwrap_err();
         let StepError::BeyondSolvable { step, largest } = error else { panic!("{factor} times the fold: {error:?}") };
         assert!(step.to_bits() == h.to_bits());
-        // The bisection stops at six digits, the scan of X at five.
+        // The bisection stops at six digits, which are what is told, the scan of X at five.
         assert!((largest / fold - 1.0).abs() < 1e-5, "{largest} against {fold} at {factor} times the fold");
         assert!(error.to_string().contains(&format!("{largest:e} s")), "{error}");
     }

@@ -38,6 +38,11 @@ impl Figures<'_> {
         let title = format!("Energy, all {} s", short(end));
         output.write("energy-long.svg", &whole(self.energy_long(""), "3.6 (b)", &title)?)?;
         output.write("body-rates.svg", &self.body_rates()?)?;
+        self.write_tip(output)
+    }
+
+    /// Writes the path of the tip, figure 3.8, 3.9 or 3.10.
+    pub(crate) fn write_tip(&self, output: &mut Output) -> Drawn {
         output.write(&format!("tip-{}.svg", self.case), &self.tip()?)?;
         Ok(())
     }
