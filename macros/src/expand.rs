@@ -8,12 +8,12 @@ use crate::errors::Errors;
 use crate::{check, derive, emit, explain, fallback, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
-pub(crate) fn expand(arguments: TokenStream, item: TokenStream) -> TokenStream {
+pub(crate) fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
     let mut errors = Errors::default();
-    match implementation(&arguments, &item, &mut errors) {
+    match implementation(&arguments, item, &mut errors) {
         Some(implementation) if errors.is_empty() => quote!(#item #implementation),
         _ => {
-            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(arguments, &item));
+            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(arguments, item));
             quote!(#item #mistakes #stand_in)
         }
     }

@@ -41,5 +41,5 @@ mod verify;
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
 pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(arguments.into(), item.into()).into()
+    expand::expand(arguments.into(), &item.into()).into()
 }

@@ -1,6 +1,6 @@
 use liestep::{DiscreteLagrangian, NonstandardInertia, Stepper, lagrangian};
 
-#[lagrangian(group = SE3, l_d = (F * J_d).trace() / h)]
+#[lagrangian(group = SO4, l_d = (F * J_d).trace() / h)]
 struct Top {
     J_d: NonstandardInertia,
 }
