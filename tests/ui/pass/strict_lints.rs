@@ -1,6 +1,15 @@
 //! A crate that denies what it can.
 
-#![deny(warnings, missing_docs, non_snake_case, unused, rust_2018_idioms, unreachable_pub, clippy::all, clippy::pedantic)]
+#![deny(
+    warnings,
+    missing_docs,
+    non_snake_case,
+    unused,
+    rust_2018_idioms,
+    unreachable_pub,
+    clippy::all,
+    clippy::pedantic
+)]
 #![forbid(unsafe_code)]
 
 use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
