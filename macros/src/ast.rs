@@ -18,16 +18,19 @@ pub(crate) struct Declaration {
     /// What is known of it.
     pub(crate) structure: Group,
     pub(crate) advected: Vec<AdvectedParameter>,
-    pub(crate) l_d: Expr,
+    /// `None` where a mistake elsewhere hides what it means.
+    pub(crate) l_d: Option<Expr>,
     pub(crate) fields: Vec<Field>,
+    /// The fields whose type has no meaning.
+    pub(crate) unreadable: Vec<String>,
     pub(crate) scalar: Scalar,
 }
 
 /// `w = up`: `w` in the expression is the field `up`, carried by the group.
 pub(crate) struct AdvectedParameter {
     pub(crate) name: Ident,
-    /// The index of the field.
-    pub(crate) field: usize,
+    /// The index of the field; `None` where there is no such field of a known type.
+    pub(crate) field: Option<usize>,
 }
 
 /// A field of the struct.

@@ -1,22 +1,20 @@
 //! What stands in for the implementation after a mistake, so that one mistake gives one error.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote_spanned;
-use syn::ItemStruct;
+use syn::{Item, ItemStruct};
 
+use crate::emit::Header;
+use crate::errors::Errors;
 use crate::parse;
 
 /// An implementation that type-checks wherever the real one would be used.
-pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStream {
+pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStream {
+    let Some(item) = as_struct(item) else { return TokenStream::new() };
     let span = Span::mixed_site();
-    let root = parse::root(arguments);
-    let mut silent = crate::errors::Errors::default();
-    // Without a readable Lagrangian the shape of the advected parameters is still in the arguments, if they parse.
-    let declaration = parse::parse(arguments.clone(), item.clone(), &mut silent);
-    let header = declaration.as_ref().map(crate::emit::Header::new);
-    let Some(header) = header else {
-        return TokenStream::new();
-    };
+    let mut silent = Errors::default();
+    let header = Header::new(&parse::parse(without_lagrangian(arguments), item, &mut silent));
+    let root = &header.root;
     let none = quote_spanned!(span=> ());
     let types = header.types(&none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
@@ -53,4 +51,28 @@ pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStrea
             fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
         }
     }
+}
+
+/// The struct, or one of the same name in the place of an enum.
+fn as_struct(item: &TokenStream) -> Option<ItemStruct> {
+    match syn::parse2(item.clone()).ok()? {
+        Item::Struct(item) => Some(item),
+        Item::Enum(item) => {
+            let name = &item.ident;
+            Some(ItemStruct { generics: item.generics, ..syn::parse_quote!(struct #name;) })
+        }
+        _ => None,
+    }
+}
+
+/// The other arguments: the Lagrangian may be too large to be parsed.
+fn without_lagrangian(arguments: TokenStream) -> TokenStream {
+    let mut is_lagrangian = false;
+    let other = arguments.into_iter().filter(|token| {
+        is_lagrangian |= matches!(token, TokenTree::Ident(key) if key == "l_d");
+        let is_other = !is_lagrangian;
+        is_lagrangian &= !matches!(token, TokenTree::Punct(comma) if comma.as_char() == ',');
+        is_other
+    });
+    other.collect()
 }

@@ -7,7 +7,6 @@ use crate::symbolic::Rational;
 /// A matrix Lie group by its generators.
 #[derive(Clone, Debug)]
 pub(crate) struct Group {
-    pub(crate) name: String,
     /// Rows of the matrices.
     pub(crate) size: usize,
     /// `E_k`, row by row.
@@ -24,7 +23,7 @@ impl Group {
     }
 
     /// A group that a user declares.
-    pub(crate) fn declared(name: &str, size: usize, generators: Vec<Vec<Rational>>) -> Self {
+    pub(crate) fn declared(size: usize, generators: Vec<Vec<Rational>>) -> Self {
         let skew = |generator: &Vec<Rational>| {
             (0..size * size).all(|at| {
                 let (row, column) = (at / size, at % size);
@@ -33,7 +32,7 @@ impl Group {
             })
         };
         let orthogonal = generators.iter().all(skew);
-        Self { name: name.to_owned(), size, generators, orthogonal, is_so3: false }
+        Self { size, generators, orthogonal, is_so3: false }
     }
 }
 
@@ -59,10 +58,7 @@ pub(crate) fn built_in(name: &str) -> Option<Group> {
                 &[(0, 3, -1, 2), (1, 2, -1, 2), (2, 1, 1, 2), (3, 0, 1, 2)],
             ],
         ),
-        "SL2" => (
-            2,
-            &[&[(0, 0, 1, 2), (1, 1, -1, 2)], &[(0, 1, 1, 2), (1, 0, 1, 2)], &[(0, 1, -1, 2), (1, 0, 1, 2)]],
-        ),
+        "SL2" => (2, &[&[(0, 0, 1, 2), (1, 1, -1, 2)], &[(0, 1, 1, 2), (1, 0, 1, 2)], &[(0, 1, -1, 2), (1, 0, 1, 2)]]),
         "Heisenberg" => (3, &[&[(0, 1, 1, 1)], &[(1, 2, 1, 1)], &[(0, 2, 1, 1)]]),
         "R1" => (2, &[&[(0, 1, 1, 1)]]),
         "R2" => (3, &[&[(0, 2, 1, 1)], &[(1, 2, 1, 1)]]),
@@ -79,7 +75,7 @@ pub(crate) fn built_in(name: &str) -> Option<Group> {
         entries
     };
     let is_so3 = name == "SO3";
-    Some(Group { is_so3, ..Group::declared(name, size, generators.iter().map(full).collect()) })
+    Some(Group { is_so3, ..Group::declared(size, generators.iter().map(full).collect()) })
 }
 
 const ROTATIONS: [Sparse; 3] =

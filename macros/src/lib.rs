@@ -1,7 +1,7 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
 //! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+//! `lib → expand → {parse, check, lower, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
 
 mod ast;
 mod check;
@@ -9,6 +9,7 @@ mod derive;
 mod emit;
 mod errors;
 mod expand;
+mod explain;
 mod fallback;
 mod group;
 mod lower;
@@ -41,5 +42,5 @@ mod verify;
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
 pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(arguments.into(), item.into()).into()
+    expand::expand(arguments.into(), &item.into()).into()
 }

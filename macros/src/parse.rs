@@ -1,25 +1,32 @@
 //! The attribute's arguments and the struct's fields.
 
-use proc_macro2::{Span, TokenStream};
+mod group;
+
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::spanned::Spanned as _;
 use syn::{
-    Expr, ExprArray, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, parenthesized,
+    Expr, ExprArray, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, braced,
+    parenthesized,
 };
 
 use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
 use crate::errors::{Errors, suggestion};
-use crate::group::{self, Group};
-use crate::symbolic::Rational;
 
 /// More tokens than this, or deeper brackets, are no Lagrangian that a person wrote, and parsing them recursively could
 /// overflow the compiler's stack.
 const MOST_TOKENS: usize = 5_000;
 const DEEPEST_BRACKETS: usize = 64;
 
-/// Reports arguments that are too large to be parsed.
-pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) {
+/// The annotated struct.
+pub(crate) fn item(item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
+    let parsed = syn::parse2(item.clone());
+    parsed.map_err(|error| errors.push(error.span(), "`lagrangian` belongs on a struct with named fields")).ok()
+}
+
+/// `None` where the arguments are too large to be parsed, which has been reported.
+pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![(arguments.clone().into_iter(), 0)];
     let mut count = 0;
     while let Some((mut tokens, depth)) = open.pop() {
@@ -31,19 +38,20 @@ pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) {
                 token.span(),
                 format!("the Lagrangian has more than {MOST_TOKENS} tokens: the expression is too large"),
             );
-            return;
+            return None;
         }
-        if let proc_macro2::TokenTree::Group(group) = token {
+        if let TokenTree::Group(group) = token {
             if depth >= DEEPEST_BRACKETS {
                 errors.push(
                     group.span_open(),
                     format!("brackets are nested more than {DEEPEST_BRACKETS} deep: bind parts with `let`"),
                 );
-                return;
+                return None;
             }
             open.push((group.stream().into_iter(), depth + 1));
         }
     }
+    Some(())
 }
 
 /// The arguments as written.
@@ -58,131 +66,59 @@ struct Arguments {
 
 const KEYS: [&str; 5] = ["group", "advected", "l_d", "generators", "crate"];
 
-/// The path of the crate that expansions name: as given, or `::liestep`.
-pub(crate) fn root(arguments: &TokenStream) -> Path {
-    let mut ignored = Errors::default();
-    let parsed = (|input: ParseStream| Ok(arguments_from(input, &mut ignored))).parse2(arguments.clone());
-    parsed.ok().and_then(|arguments| arguments.root).unwrap_or_else(default_root)
-}
-
 fn default_root() -> Path {
     syn::parse_quote!(::liestep)
 }
 
-/// The declaration, or `None` if there is nothing to go on with.
-pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Option<Declaration> {
-    let parser = |input: ParseStream| Ok(arguments_from(input, errors));
-    let arguments = match parser.parse2(arguments) {
-        Ok(arguments) => arguments,
-        Err(error) => {
-            errors.extend(error);
-            return None;
-        }
+/// The declaration as far as it can be read.
+pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
+    // In braces that span the last token, so that what ends too early is reported there.
+    let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
+    let mut braces = Group::new(Delimiter::Brace, arguments);
+    braces.set_span(last);
+    let parser = |input: ParseStream| {
+        let content;
+        braced!(content in input);
+        Ok(arguments_from(&content, errors))
     };
-    let structure = group(&arguments, errors);
-    if arguments.l_d.is_none() {
+    let arguments = parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
+        errors.extend(error);
+        Arguments::default()
+    });
+    // What seems to be missing may stand in an argument that couldn't be read.
+    let is_readable = errors.is_empty();
+    let root = arguments.root.unwrap_or_else(default_root);
+    let (group, structure) = group::group(arguments.group, arguments.generators.as_ref(), &root, is_readable, errors);
+    if arguments.l_d.is_none() && is_readable {
         errors.push(Span::call_site(), "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`");
     }
-    let fields = fields(&item, errors);
+    let (fields, unreadable) = fields(&item, errors);
     let scalar = scalar(&item, errors);
-    let advected = advected(&arguments.advected, &fields, structure.size, errors);
-    Some(Declaration {
-        root: arguments.root.unwrap_or_else(default_root),
-        group: arguments.group.unwrap_or_else(|| syn::parse_quote!(SO3)),
+    let advected = advected(&arguments.advected, &fields, &unreadable, structure.size, errors);
+    let has_names = matches!(item.fields, Fields::Named(_));
+    Declaration {
+        root,
+        group,
         structure,
         advected,
-        l_d: arguments.l_d?,
+        l_d: arguments.l_d.filter(|_| is_readable && has_names),
         fields: fields.into_iter().map(|(field, _)| field).collect(),
+        unreadable,
         scalar,
         item,
-    })
-}
-
-/// What is known of the group; SO(3) after a mistake, so that the rest can be checked.
-fn group(arguments: &Arguments, errors: &mut Errors) -> Group {
-    let fallback = || group::built_in("SO3").unwrap_or_else(|| Group::declared("SO3", 3, Vec::new()));
-    let Some(path) = &arguments.group else {
-        errors.push(Span::call_site(), "the group is missing: write `group = SO3`");
-        return fallback();
-    };
-    let name = path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
-    if let Some(array) = &arguments.generators {
-        return match generators(array) {
-            Ok((size, generators)) => Group::declared(&name, size, generators),
-            Err(error) => {
-                errors.extend(error);
-                fallback()
-            }
-        };
-    }
-    group::built_in(&name).unwrap_or_else(|| {
-        let known = group::NAMES.join(", ");
-        let near = suggestion(&name, group::NAMES);
-        errors.push(
-            path.span(),
-            format!("the group `{name}` isn't known{near}\nknown: {known}; of your own group give the `generators = [[[0.0, …], …], …]` too"),
-        );
-        fallback()
-    })
-}
-
-/// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows.
-fn generators(array: &ExprArray) -> syn::Result<(usize, Vec<Vec<Rational>>)> {
-    let rows = |expression: &Expr| match expression {
-        Expr::Array(array) => Ok(array.elems.clone()),
-        other => Err(syn::Error::new(other.span(), "write a matrix as an array of rows: `[[0.0, -1.0], [1.0, 0.0]]`")),
-    };
-    let mut generators = Vec::new();
-    let mut size = None;
-    for matrix in &array.elems {
-        let mut entries = Vec::new();
-        let matrix_rows = rows(matrix)?;
-        let expected = *size.get_or_insert(matrix_rows.len());
-        for row in &matrix_rows {
-            let row_entries = rows(row)?;
-            if row_entries.len() != expected || matrix_rows.len() != expected {
-                return Err(syn::Error::new(row.span(), "all generators are square matrices of one size"));
-            }
-            for entry in &row_entries {
-                entries.push(decimal(entry)?);
-            }
-        }
-        generators.push(entries);
-    }
-    match size {
-        Some(size) if (1..=MOST_ROWS).contains(&size) => Ok((size, generators)),
-        _ => Err(syn::Error::new(
-            array.span(),
-            format!("a group has at least one generator, of at most {MOST_ROWS} rows"),
-        )),
     }
 }
 
-/// Larger matrices would make the derived code grow without bound.
-const MOST_ROWS: usize = 4;
-
-fn decimal(expression: &Expr) -> syn::Result<Rational> {
-    let message = "write the entry of a generator as a decimal number: `-1.0`";
-    let value = match expression {
-        Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
-        Expr::Lit(literal) => match &literal.lit {
-            syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),
-            _ => return Err(syn::Error::new(expression.span(), message)),
-        },
-        _ => return Err(syn::Error::new(expression.span(), message)),
-    };
-    if value.is_overflow() { Err(syn::Error::new(expression.span(), message)) } else { Ok(value) }
-}
-
-/// Reads `key = value` pairs; after a syntax error the rest is skipped, as nothing tells where the next key begins.
+/// Reads `key = value` pairs; after a syntax error it goes on behind the next comma.
 fn arguments_from(input: ParseStream, errors: &mut Errors) -> Arguments {
     let mut arguments = Arguments::default();
     while !input.is_empty() {
         if let Err(error) = argument(input, &mut arguments, errors) {
             errors.extend(error);
-            // Whatever is left would only be reported as unexpected.
-            let _ = input.parse::<TokenStream>();
-            break;
+            while !input.is_empty() && !input.peek(Token![,]) {
+                let _ = input.parse::<TokenTree>();
+            }
+            let _ = input.parse::<Token![,]>();
         }
     }
     arguments
@@ -225,15 +161,17 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             }
             let content;
             parenthesized!(content in input);
-            for (name, field) in content.parse_terminated(advected_pair, Token![,])? {
-                arguments.advected.push((name, field));
-            }
+            let pairs = content.parse_terminated(advected_pair, Token![,]);
+            // What is left after a mistake would be reported as unexpected.
+            content.parse::<TokenStream>()?;
+            arguments.advected.extend(pairs?);
         }
         other => {
-            let message = format!("`{other}` isn't an argument of `lagrangian`{}", suggestion(other, KEYS));
+            let near = suggestion(other, KEYS);
+            let list = if near.is_empty() { format!("\nknown: {}", KEYS.join(", ")) } else { String::new() };
             return Err(syn::Error::new(
                 key.span(),
-                format!("{message}\nknown: group, advected, l_d, generators, crate"),
+                format!("`{other}` isn't an argument of `lagrangian`{near}{list}"),
             ));
         }
     }
@@ -253,25 +191,27 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
     Ok((name, input.parse()?))
 }
 
-fn fields(item: &ItemStruct, errors: &mut Errors) -> Vec<(Field, Span)> {
+/// The fields with the place of their types, and the names of those whose type has no meaning.
+fn fields(item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<String>) {
     let Fields::Named(named) = &item.fields else {
         errors.push(item.ident.span(), "a Lagrangian is a struct with named fields: its parameters");
-        return Vec::new();
+        return Default::default();
     };
-    let mut fields = Vec::new();
+    let (mut fields, mut unreadable) = (Vec::new(), Vec::new());
     for field in &named.named {
         let Some(name) = field.ident.clone() else { continue };
-        let kind = field_kind(&field.ty, item).unwrap_or_else(|| {
-            errors.push(
-                field.ty.span(),
+        if let Some(kind) = field_kind(&field.ty, item) {
+            fields.push((Field { name, kind }, field.ty.span()));
+        } else {
+            unreadable.push(name.unraw().to_string());
+            errors.push_over(
+                &field.ty,
                 "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Matrix3<f64>, NonstandardInertia, \
                  DiagonalNonstandardInertia or Inertia (or the same with the struct's type parameter)",
             );
-            FieldKind::Scalar
-        });
-        fields.push((Field { name, kind }, field.ty.span()));
+        }
     }
-    fields
+    (fields, unreadable)
 }
 
 fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {
@@ -344,6 +284,7 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
 fn advected(
     pairs: &[(Ident, Ident)],
     fields: &[(Field, Span)],
+    unreadable: &[String],
     size: usize,
     errors: &mut Errors,
 ) -> Vec<AdvectedParameter> {
@@ -360,12 +301,12 @@ fn advected(
             continue;
         }
         let wanted = field.unraw().to_string();
-        let Some(index) = field_names.iter().position(|known| *known == wanted) else {
+        let index = field_names.iter().position(|known| *known == wanted);
+        if index.is_none() && !unreadable.contains(&wanted) {
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
-            continue;
-        };
-        if let Some((found, span)) = fields.get(index)
+        }
+        if let Some((found, span)) = index.and_then(|index| fields.get(index))
             && found.kind != FieldKind::Vector(size)
         {
             let shape = found.kind.shape().describe();

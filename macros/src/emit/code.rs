@@ -82,7 +82,9 @@ impl Emitter<'_> {
             operands(id).for_each(|operand| *uses.entry(operand).or_insert(0) += 1);
         }
         // An output is always bound, as if it were used twice.
-        outputs.iter().for_each(|&output| *uses.entry(output).or_insert(0) += 2);
+        for &output in outputs {
+            *uses.entry(output).or_insert(0) += 2;
+        }
         let mut known: BTreeMap<NodeId, Value> = BTreeMap::new();
         let mut bound: Vec<Binding> = Vec::new();
         for id in order {

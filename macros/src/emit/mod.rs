@@ -156,7 +156,7 @@ impl Emitter<'_> {
 
     fn advected(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let fields = self.declaration.advected.iter().filter_map(|w| self.declaration.fields.get(w.field));
+        let fields = self.declaration.advected.iter().filter_map(|w| self.declaration.fields.get(w.field?));
         let names: Vec<_> = fields.map(|field| &field.name).collect();
         let value = match names.as_slice() {
             [single] => quote_spanned!(span=> self.#single),

@@ -16,7 +16,7 @@ use crate::ast::{Declaration, FieldKind};
 pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
     let (root, scalar, square) = (&header.root, &header.scalar, header.matrix());
-    let mut expression = declaration.l_d.clone();
+    let Some(mut expression) = declaration.l_d.clone() else { return TokenStream::new() };
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let mut names: Vec<Ident> = Vec::new();
@@ -49,11 +49,16 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
         };
         bind(&field.name.unraw().to_string(), value);
     }
+    // In the user's scope `F` and `I` may be constants or unit structs, which a pattern would compare with instead of
+    // binding the name; the nearer functions can be hidden.
+    let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
+    let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
     let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));
     quote_spanned! {span=>
         /// The Lagrangian as declared.
         fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar {
             #traits
+            #hidden
             // In one pattern, so that no name hides a value that a later one needs.
             let (#(#names,)*) = (#(#values,)*);
             #expression

@@ -14,21 +14,21 @@ use crate::symbolic::{Atom, Expression, Factor, Monomial, Stage, Structure, Symb
 pub(crate) struct Entries {
     pub(crate) rows: usize,
     pub(crate) columns: usize,
-    entries: Vec<NodeId>,
+    nodes: Vec<NodeId>,
 }
 
 impl Entries {
     pub(crate) fn new(rows: usize, columns: usize, mut entry: impl FnMut(usize, usize) -> NodeId) -> Self {
         let entries = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
-        Self { rows, columns, entries: entries.map(|(row, column)| entry(row, column)).collect() }
+        Self { rows, columns, nodes: entries.map(|(row, column)| entry(row, column)).collect() }
     }
 
     pub(crate) fn at(&self, row: usize, column: usize) -> NodeId {
-        self.entries[row * self.columns + column]
+        self.nodes[row * self.columns + column]
     }
 
     pub(crate) fn all(&self) -> &[NodeId] {
-        &self.entries
+        &self.nodes
     }
 
     fn transposed(&self) -> Self {
@@ -179,7 +179,7 @@ impl Scalariser<'_> {
             let right = factors.remove(at + 1);
             factors[at] = self.multiply(&factors[at].clone(), &right);
         }
-        factors.pop().unwrap_or_else(|| Entries { rows: 0, columns: 0, entries: Vec::new() })
+        factors.pop().unwrap_or_else(|| Entries { rows: 0, columns: 0, nodes: Vec::new() })
     }
 
     /// The trace of a closed word, or the value of a bilinear form, times a scale.

@@ -58,12 +58,12 @@ fn opened(word: &[Factor], direction: SymbolId, symbols: &Symbols) -> Option<Vec
 fn join(terms: impl Iterator<Item = (Rational, String, String)>) -> String {
     let mut sum = String::new();
     for (coefficient, prefix, body) in terms {
-        let sign = if coefficient.is_negative() { "−" } else { "+" };
-        if sum.is_empty() {
-            sum.push_str(if coefficient.is_negative() { "−" } else { "" });
-        } else {
-            sum.push_str(&format!(" {sign} "));
-        }
+        sum.push_str(match (sum.is_empty(), coefficient.is_negative()) {
+            (true, true) => "−",
+            (true, false) => "",
+            (false, true) => " − ",
+            (false, false) => " + ",
+        });
         sum.push_str(&prefix);
         if !prefix.is_empty() && !body.is_empty() {
             sum.push(' ');
