@@ -77,9 +77,13 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
     );
     let construction =
         super::docs::stage(graph, &constants.keys().copied().collect::<Vec<_>>(), Stage::Construction, "construction");
+    let generators = same_generators(emitter);
     let methods = quote_spanned! {span=>
         #[doc = #construction]
-        fn constants(&self, h: #scalar) -> Self::Constants { #constants_body }
+        fn constants(&self, h: #scalar) -> Self::Constants {
+            #generators
+            #constants_body
+        }
 
         #[inline(always)]
         fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> #vector { #kick_before }
@@ -109,6 +113,33 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
         }
     };
     Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
+}
+
+/// The compiler's check that the generators that were derived with are those of the group that is run with.
+fn same_generators(emitter: &Emitter) -> TokenStream {
+    let (span, root, group) = (Span::mixed_site(), &emitter.header.root, &emitter.derived.group);
+    if group.is_so3 {
+        return TokenStream::new();
+    }
+    let matrices = group.generators.iter().map(|entries| {
+        let rows = entries.chunks(group.size).map(|row| {
+            let entries = row.iter().map(|entry| {
+                let mut size = Literal::f64_unsuffixed(entry.to_f64().abs());
+                size.set_span(span);
+                if entry.is_negative() { quote_spanned!(span=> -#size) } else { quote_spanned!(span=> #size) }
+            });
+            quote_spanned!(span=> [#(#entries),*])
+        });
+        quote_spanned!(span=> [#(#rows),*])
+    });
+    quote_spanned! {span=>
+        const {
+            #root::__private::core::assert!(
+                <Self::Group>::has_generators(&[#(#matrices),*]),
+                "the generators of the declaration aren't those of the group"
+            )
+        };
+    }
 }
 
 fn input(emitter: &Emitter, graph: &Graph, id: NodeId) -> Option<TokenStream> {
