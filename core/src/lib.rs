@@ -13,6 +13,7 @@ extern crate self as liestep;
 
 pub mod conventions;
 pub mod groups;
+pub mod laws;
 
 mod advected;
 mod coordinates;
