@@ -11,6 +11,7 @@ use liestep::{
     Advected, Coordinates, DiscreteLagrangian, DiscreteLiePoisson, Generators, Heisenberg, LieGroup, MatrixGroup, R2,
     Retraction, SE2, SE3, SL2, SO2, SU2, Stepper, lagrangian,
 };
+use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
 
 /// A planar pendulum.
@@ -133,6 +134,41 @@ struct Scaling {
     covector: Vector2<f64>,
 }
 
+/// Every kind of advected parameter on SL(2), whose representation isn't orthogonal.
+#[lagrangian(
+    group = SL2,
+    advected(w = covector, v = vector, S = tensor, B = form, A = map),
+    l_d = {
+        let potential = w.dot(&(F * r)) + (F.transpose() * covariant).dot(&v) + (S * F).trace() + (B * F * r).dot(&r)
+            + (A * F).trace() * w.dot(&v) + (S * B).trace() + (A * S * F).trace();
+        ((F - I) * (F - I).transpose()).trace() * m / (2.0 * h) - 0.5 * h * potential
+    },
+)]
+struct Kinds {
+    m: f64,
+    r: Vector2<f64>,
+    covariant: Vector2<f64>,
+    covector: Vector2<f64>,
+    vector: ContravariantVector<f64, 2>,
+    tensor: ContravariantTensor<f64, 2>,
+    form: CovariantTensor<f64, 2>,
+    map: MixedTensor<f64, 2>,
+}
+
+fn kinds() -> Kinds {
+    let mut r = Random::new(8);
+    Kinds {
+        m: 1.5,
+        r: column(&mut r),
+        covariant: column(&mut r),
+        covector: column(&mut r),
+        vector: ContravariantVector(column(&mut r)),
+        tensor: ContravariantTensor(tensor(&mut r)),
+        form: CovariantTensor(tensor(&mut r)),
+        map: MixedTensor(tensor(&mut r)),
+    }
+}
+
 /// A symmetric positive definite matrix.
 fn tensor<const N: usize>(r: &mut Random) -> SMatrix<f64, N, N> {
     let root = SMatrix::<f64, N, N>::from_fn(|_, _| r.signed());
@@ -149,9 +185,9 @@ fn along<const D: usize>(k: usize, s: f64) -> SVector<f64, D> {
 }
 
 /// The truth about one Lagrangian on a group of N × N matrices of dimension D, at random increments.
-fn compare<L, const N: usize, const D: usize>(system: &L)
+fn compare<L, const N: usize, const D: usize>(system: &L, random: fn(&mut Random) -> L::Advected)
 where
-    L: DiscreteLagrangian<Scalar = f64, Advected = SVector<f64, N>>,
+    L: DiscreteLagrangian<Scalar = f64>,
     L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
     SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
 {
@@ -160,8 +196,9 @@ where
         let h = 0.05;
         let xi = column::<D>(&mut r) * size;
         let element = L::Retraction::retract(&xi);
-        let (f, w) = (element.matrix(), column::<N>(&mut r));
-        let exp = |k: usize, s: f64| L::Retraction::retract(&(along::<D>(k, s))).matrix();
+        let (f, w) = (element.matrix(), random(&mut r));
+        let exp_element = |k: usize, s: f64| L::Retraction::retract(&(along::<D>(k, s)));
+        let exp = |k: usize, s: f64| exp_element(k, s).matrix();
         // A retraction agrees with the exponential to first order, and central differences see no more.
         let slope = |g: &dyn Fn(f64) -> f64| (g(1e-5) - g(-1e-5)) / 2e-5;
         let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
@@ -172,8 +209,8 @@ where
             assert!((found - expected).abs() <= 1e-7 * scale, "{what}: {found} instead of {expected}, scale {scale}");
         };
         for k in 0..D {
-            // exp(sE)·w = ρ(exp(−sE))ᵀ w on V*.
-            let carried = |s: f64| exp(k, -s).transpose() * w;
+            // What an attitude g sees is g⁻¹·w.
+            let carried = |s: f64| w.seen_from(&exp_element(k, -s));
             close("right", right[k], slope(&|s| system.l_d(&(exp(k, s) * f), &w, h)));
             close("left", left[k], slope(&|s| system.l_d(&(f * exp(k, s)), &w, h)));
             close("diamond", diamond[k], -slope(&|s| system.l_d(&f, &carried(s), h)));
@@ -190,9 +227,9 @@ where
 }
 
 /// The staged step says the same as the unstaged terms.
-fn stages<L, const N: usize, const D: usize>(system: &L, xi: &SVector<f64, D>, w: &SVector<f64, N>, h: f64, scale: f64)
+fn stages<L, const N: usize, const D: usize>(system: &L, xi: &SVector<f64, D>, w: &L::Advected, h: f64, scale: f64)
 where
-    L: DiscreteLagrangian<Scalar = f64, Advected = SVector<f64, N>>,
+    L: DiscreteLagrangian<Scalar = f64>,
     L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
     SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
 {
@@ -283,7 +320,7 @@ macro_rules! on_a_group {
         $(
             #[test]
             fn $name() {
-                compare::<_, $n, $d>(&$system());
+                compare::<_, $n, $d>(&$system(), column::<$n>);
             }
         )+
     };
@@ -299,6 +336,16 @@ on_a_group!(
     r2 particle 3 2,
     affine scaling 2 2,
 );
+
+/// All five kinds at once, each in a term of its own and in one with another.
+#[test]
+fn kinds_of_advected_parameters() {
+    compare::<_, 2, 3>(&kinds(), |r| {
+        let bilinear = CovariantTensor(SMatrix::from_fn(|_, _| r.signed()));
+        let (tensor, map) = (SMatrix::from_fn(|_, _| r.signed()), SMatrix::from_fn(|_, _| r.signed()));
+        (column(r), ContravariantVector(column(r)), ContravariantTensor(tensor), bilinear, MixedTensor(map))
+    });
+}
 
 /// Where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, a step of `−h` undoes one of `h`.
 #[test]

@@ -3,9 +3,10 @@
 pub use core;
 pub use nalgebra;
 
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::{Matrix3, SMatrix, SVector};
 
 pub use crate::scalar::real;
+use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};
 
 /// A field of a declared Lagrangian: its value for the declared expression, and whether it can be used.
@@ -72,6 +73,30 @@ macro_rules! inertia_parameter {
 inertia_parameter!(NonstandardInertia<T>, |inertia: &Self| *inertia.as_matrix());
 inertia_parameter!(Inertia<T>, |inertia: &Self| *inertia.as_matrix());
 inertia_parameter!(DiagonalNonstandardInertia<T>, Self::to_matrix);
+
+macro_rules! advected_parameter {
+    ($($name:ident $value:ident<$($argument:ident),+>),+) => {
+        $(impl<T: Real, const N: usize> Parameter for $name<T, N> {
+            type Value = $value<$($argument),+>;
+
+            #[inline(always)]
+            fn value(&self) -> Self::Value {
+                self.0
+            }
+
+            fn is_finite(&self) -> bool {
+                Parameter::is_finite(&self.0)
+            }
+        })+
+    };
+}
+
+advected_parameter!(
+    ContravariantVector SVector<T, N>,
+    ContravariantTensor SMatrix<T, N, N>,
+    CovariantTensor SMatrix<T, N, N>,
+    MixedTensor SMatrix<T, N, N>
+);
 
 impl<K: Generators<N, D>, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     /// Whether an expansion has the generators of this group, by rows.

@@ -6,7 +6,7 @@ use proc_macro2::Span;
 use syn::{Expr, Ident, ItemStruct, Path};
 
 use crate::group::Group;
-use crate::symbolic::{Function, Rational};
+use crate::symbolic::{Function, Rational, Variance};
 
 /// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
 pub(crate) struct Declaration {
@@ -33,6 +33,14 @@ pub(crate) struct AdvectedParameter {
     pub(crate) field: Option<usize>,
 }
 
+impl Declaration {
+    /// What an advected parameter's field promises; a plain vector after a mistake.
+    pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
+        let field = self.advected.get(index).and_then(|w| self.fields.get(w.field?));
+        field.map_or(FieldKind::Vector(self.structure.size), |field| field.kind)
+    }
+}
+
 /// A field of the struct.
 pub(crate) struct Field {
     pub(crate) name: Ident,
@@ -47,6 +55,8 @@ pub(crate) enum FieldKind {
     Vector(usize),
     /// Rows, as many columns.
     Matrix(usize),
+    /// An advected parameter with its kind in its type.
+    Advected(Variance, usize),
     /// `NonstandardInertia`, `Inertia`.
     SymmetricInertia,
     /// `DiagonalNonstandardInertia`.
@@ -54,10 +64,24 @@ pub(crate) enum FieldKind {
 }
 
 impl FieldKind {
+    /// How the group moves it: a plain vector is a covector.
+    pub(crate) fn variance(self) -> Variance {
+        match self {
+            Self::Advected(variance, _) => variance,
+            _ => Variance::Covector,
+        }
+    }
+
+    /// Whether its value is wrapped in a type that says how the group moves it.
+    pub(crate) fn is_wrapped(self) -> bool {
+        matches!(self, Self::Advected(..))
+    }
+
     pub(crate) fn shape(self) -> Shape {
         match self {
             Self::Scalar => Shape::Scalar,
             Self::Vector(rows) => Shape::Matrix(rows, 1),
+            Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
             Self::Matrix(rows) => Shape::Matrix(rows, rows),
             Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
         }

@@ -32,7 +32,7 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
     for (index, field) in declaration.fields.iter().enumerate() {
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
-            FieldKind::Vector(rows) => ((rows, 1), Structure::General),
+            FieldKind::Vector(_) | FieldKind::Advected(..) => (ambient(field.kind.shape()), Structure::General),
             FieldKind::Matrix(rows) => ((rows, rows), Structure::General),
             FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
@@ -42,9 +42,11 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
     }
     let mut advected = Vec::new();
     for (index, w) in declaration.advected.iter().enumerate() {
-        let id = symbols.add(w.name.unraw().to_string(), (size, 1), Structure::General, Stage::Step);
+        let kind = declaration.advected_kind(index);
+        let shape = ambient(kind.shape());
+        let id = symbols.add(w.name.unraw().to_string(), shape, Structure::General, Stage::Step);
         names.insert(Name::Advected(index), id);
-        advected.push(id);
+        advected.push((id, kind.variance()));
     }
     let mut lowering = Lowering { symbols: &symbols, names: &names, known: BTreeMap::new() };
     match lowering.expression(tree) {

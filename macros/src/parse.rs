@@ -13,6 +13,7 @@ use syn::{
 
 use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
 use crate::errors::{Errors, suggestion};
+use crate::symbolic::Variance;
 
 /// More tokens than this, or deeper brackets, are no Lagrangian that a person wrote, and parsing them recursively could
 /// overflow the compiler's stack.
@@ -230,11 +231,27 @@ fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
         "f64" | "f32" => FieldKind::Scalar,
         "Vector2" | "Vector3" | "Vector4" => FieldKind::Vector(digit(&name)?),
         "Matrix2" | "Matrix3" | "Matrix4" => FieldKind::Matrix(digit(&name)?),
+        "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
+        "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
+        "CovariantTensor" => FieldKind::Advected(Variance::Covariant, length(ty)?),
+        "MixedTensor" => FieldKind::Advected(Variance::Mixed, length(ty)?),
         "NonstandardInertia" | "Inertia" => FieldKind::SymmetricInertia,
         "DiagonalNonstandardInertia" => FieldKind::DiagonalInertia,
         _ if item.generics.type_params().any(|parameter| parameter.ident == name) => FieldKind::Scalar,
         _ => return None,
     })
+}
+
+/// The number in a type's arguments, `3` in `MixedTensor<f64, 3>`.
+fn length(ty: &Type) -> Option<usize> {
+    let PathArguments::AngleBracketed(arguments) = &last_segment(ty)?.arguments else { return None };
+    match arguments.args.last()? {
+        GenericArgument::Const(Expr::Lit(literal)) => match &literal.lit {
+            syn::Lit::Int(integer) => integer.base10_parse().ok(),
+            _ => None,
+        },
+        _ => None,
+    }
 }
 
 /// The number that a type's name ends with.
@@ -306,14 +323,18 @@ fn advected(
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
         }
-        if let Some((found, span)) = index.and_then(|index| fields.get(index))
-            && found.kind != FieldKind::Vector(size)
-        {
-            let shape = found.kind.shape().describe();
-            errors.push(
-                *span,
-                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>"),
-            );
+        if let Some((found, span)) = index.and_then(|index| fields.get(index)) {
+            let fits = match found.kind {
+                FieldKind::Vector(rows) | FieldKind::Advected(_, rows) => rows == size,
+                _ => false,
+            };
+            if !fits {
+                let shape = found.kind.shape().describe();
+                errors.push(
+                    *span,
+                    format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>"),
+                );
+            }
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index });
     }

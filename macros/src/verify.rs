@@ -11,7 +11,7 @@ use crate::derive::Derived;
 use crate::group::Group;
 use crate::lower::Lowered;
 use crate::scalar::{Graph, Input, components, square};
-use crate::symbolic::SymbolId;
+use crate::symbolic::{SymbolId, Variance};
 
 /// Central differences at this spacing are right to about eight digits.
 const SPACING: f64 = 1e-5;
@@ -101,7 +101,7 @@ struct Sample<'a> {
     derived: &'a Derived,
     values: BTreeMap<Name, Value>,
     symbols: BTreeMap<SymbolId, Name>,
-    advected: Vec<Name>,
+    advected: Vec<(Name, Variance)>,
 }
 
 impl<'a> Sample<'a> {
@@ -144,10 +144,11 @@ impl<'a> Sample<'a> {
         }
         let mut advected = Vec::new();
         for index in 0..declaration.advected.len() {
-            let rows = group.size;
-            let entries = (0..rows).map(|_| 2.0 * number() - 1.0).collect();
-            values.insert(Name::Advected(index), Value { rows, columns: 1, entries });
-            advected.push(Name::Advected(index));
+            let kind = declaration.advected_kind(index);
+            let Shape::Matrix(rows, columns) = kind.shape() else { continue };
+            let entries = (0..rows * columns).map(|_| 2.0 * number() - 1.0).collect();
+            values.insert(Name::Advected(index), Value { rows, columns, entries });
+            advected.push((Name::Advected(index), kind.variance()));
         }
         let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
         Self { derived, values, symbols, advected }
@@ -176,8 +177,7 @@ impl<'a> Sample<'a> {
         // One function of two turns holds all terms: exp(sE_k) exp(tE_j) F and exp(sE_k)·w.
         let at = |k: usize, s: f64, j: usize, t: f64, w: f64| {
             let f = turn(group, k, s).times(&turn(group, j, t)).times(&f);
-            // exp(sE)·w = ρ(exp(−sE))ᵀ w.
-            self.moved(tree, &f, &turn(group, k, -w).transpose())
+            self.moved(tree, &f, (&turn(group, k, w), &turn(group, k, -w)))
         };
         let slope = |g: &dyn Fn(f64) -> f64| (g(SPACING) - g(-SPACING)) / (2.0 * SPACING);
         let size: f64 = jacobian.iter().map(|x| x.abs()).sum::<f64>() + at(0, 0.0, 0, 0.0, 0.0).abs();
@@ -187,7 +187,7 @@ impl<'a> Sample<'a> {
         let (diamond, momentum) = (covector(&d.diamond), covector(&d.momentum));
         let dimension = group.dimension();
         for k in 0..dimension {
-            let on_the_right = |s: f64| self.moved(tree, &f.times(&turn(group, k, s)), &identity);
+            let on_the_right = |s: f64| self.moved(tree, &f.times(&turn(group, k, s)), (&identity, &identity));
             let checks = [
                 ("right momentum map", &right, slope(&|s| at(k, s, 0, 0.0, 0.0))),
                 ("left momentum map", &left, slope(&on_the_right)),
@@ -212,14 +212,20 @@ impl<'a> Sample<'a> {
         None
     }
 
-    /// `l_d` at another `F`, with all advected parameters turned.
-    fn moved(&self, tree: &Rc<Tree>, f: &Value, turned: &Value) -> f64 {
+    /// `l_d` at another `F`, with all advected parameters moved by a group element, given with its inverse.
+    fn moved(&self, tree: &Rc<Tree>, f: &Value, (g, inverse): (&Value, &Value)) -> f64 {
         let mut values = self.values.clone();
         values.insert(Name::Increment, f.clone());
-        for name in &self.advected {
-            if let Some(w) = self.values.get(name) {
-                values.insert(*name, turned.times(w));
-            }
+        for (name, variance) in &self.advected {
+            let Some(w) = self.values.get(name) else { continue };
+            let moved = match variance {
+                Variance::Vector => g.times(w),
+                Variance::Covector => inverse.transpose().times(w),
+                Variance::Contravariant => g.times(w).times(&g.transpose()),
+                Variance::Covariant => inverse.transpose().times(w).times(inverse),
+                Variance::Mixed => g.times(w).times(inverse),
+            };
+            values.insert(*name, moved);
         }
         Evaluation { values: &values, known: BTreeMap::new() }.of(tree).first()
     }

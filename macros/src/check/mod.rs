@@ -255,7 +255,7 @@ impl Checker<'_> {
             "h" => (Shape::Scalar, Name::Step),
             _ => {
                 if let Some(index) = advected(self.declaration) {
-                    (Shape::Matrix(size, 1), Name::Advected(index))
+                    (self.declaration.advected_kind(index).shape(), Name::Advected(index))
                 } else if let Some(index) = field(self.declaration) {
                     if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
                         let w = w.name.unraw();

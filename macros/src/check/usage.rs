@@ -20,7 +20,13 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
     }
     for (index, field) in declaration.fields.iter().enumerate() {
         let carried = declaration.advected.iter().any(|w| w.field == Some(index));
-        if !carried && !used.contains(&Name::Field(index)) {
+        if field.kind.is_wrapped() && !carried {
+            let name = field.name.unraw();
+            errors.push(
+                field.name.span(),
+                format!("the type of `{name}` is for what the group carries: declare it with `advected(w = {name})`"),
+            );
+        } else if !carried && !used.contains(&Name::Field(index)) {
             let name = field.name.unraw();
             errors
                 .push(field.name.span(), format!("`{name}` isn't used in the Lagrangian: remove the field, or use it"));

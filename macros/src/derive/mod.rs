@@ -1,5 +1,6 @@
 //! From `l_d` to all that an integrator needs, in the order of the thesis. Knows no token.
 
+mod action;
 mod cayley;
 mod diamond;
 mod energy;
@@ -11,7 +12,7 @@ mod transport;
 use std::collections::BTreeMap;
 
 use crate::group::Group;
-use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols};
+use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance};
 
 pub(crate) use cayley::Cleared;
 pub(crate) use limit::{Limit, LimitError};
@@ -27,7 +28,7 @@ pub(crate) struct Declared {
     /// The step `h`.
     pub(crate) step: SymbolId,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<SymbolId>,
+    pub(crate) advected: Vec<(SymbolId, Variance)>,
 }
 
 /// The symbols that the derivation adds.
@@ -166,9 +167,10 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         next: declared
             .advected
             .iter()
-            .map(|&w| {
+            .map(|&(w, variance)| {
                 let name = format!("{}⁺", symbols.get(w).name);
-                column(symbols, &name, size, Stage::Step)
+                let columns = if variance.is_tensor() { size } else { 1 };
+                symbols.add(name, (size, columns), Structure::General, Stage::Step)
             })
             .collect(),
     }

@@ -4,14 +4,14 @@
 //! all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
 //!
 //! ```text
-//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F⁻ᵀ w⁺
+//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
 //! ```
 //!
 //! Written in `w⁺`, the second part loses its `F` for a potential of the new position, as `FᵀF = I` finds by itself.
 
 use std::collections::BTreeMap;
 
-use super::Context;
+use super::{Context, action};
 use crate::symbolic::{Expression, monomial_contains};
 
 pub(super) struct Parts {
@@ -29,11 +29,9 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
     let direction = context.symbol(context.directions.first);
     let inverse = Expression::inverse(increment, context.symbols);
     let turned = context.product(&context.product(&f, &direction), &inverse);
-    // w⁺ = ρ(F)ᵀ w.
-    let back = inverse.transpose(context.symbols);
     let mut map = BTreeMap::from([(context.directions.first, turned)]);
-    for (&w, &next) in context.declared.advected.iter().zip(&context.directions.next) {
-        map.insert(w, context.product(&back, &context.symbol(next)));
+    for (&(w, variance), &next) in context.declared.advected.iter().zip(&context.directions.next) {
+        map.insert(w, action::moved_back(context, variance, (&f, &inverse), &context.symbol(next)));
     }
     Parts { kick_before, unknown, kick_after: context.substituted(&moved, &map) }
 }

@@ -32,12 +32,14 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let three = quote_spanned!(span=> #root::__private::nalgebra::Matrix3<#scalar>);
     bind("vee", quote_spanned!(span=> |matrix: #three| <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix)));
     for (index, parameter) in declaration.advected.iter().enumerate() {
-        let value = if declaration.advected.len() == 1 {
-            quote_spanned!(span=> *w)
+        let part = if declaration.advected.len() == 1 {
+            quote_spanned!(span=> (*w))
         } else {
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
+        let is_wrapped = declaration.advected_kind(index).is_wrapped();
+        let value = if is_wrapped { quote_spanned!(span=> #part.0) } else { part };
         bind(&parameter.name.unraw().to_string(), value);
     }
     for field in &declaration.fields {
