@@ -51,3 +51,6 @@ fn is_sound(derived: &Derived, span: Span, errors: &mut Errors) -> Option<()> {
     }
     Some(())
 }
+
+#[cfg(test)]
+pub(crate) mod tests;

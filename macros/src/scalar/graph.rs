@@ -113,6 +113,10 @@ impl Graph {
             (_, Node::Constant(y)) if y.is_zero() => a,
             (_, Node::Negate(y)) => self.subtract(a, y),
             (Node::Negate(x), _) => self.subtract(b, x),
+            _ if a == b => {
+                let two = self.constant(Rational::integer(2));
+                self.multiply(two, a)
+            }
             _ => self.operation(Node::Add(a.min(b), a.max(b))),
         }
     }
@@ -144,14 +148,26 @@ impl Graph {
                 let product = self.multiply(size, b);
                 self.negate(product)
             }
-            (_, Node::Constant(y)) if y.is_negative() => self.multiply(b, a),
             (Node::Negate(x), _) => {
                 let product = self.multiply(x, b);
                 self.negate(product)
             }
-            (_, Node::Negate(_)) => self.multiply(b, a),
-            _ => self.operation(Node::Multiply(a.min(b), a.max(b))),
+            (_, Node::Negate(_) | Node::Constant(_)) => self.multiply(b, a),
+            _ => match self.constants_together(a, b) {
+                Some((constant, rest)) => {
+                    let constant = self.constant(constant);
+                    self.multiply(constant, rest)
+                }
+                None => self.operation(Node::Multiply(a.min(b), a.max(b))),
+            },
         }
+    }
+
+    /// `x (y b) = (x y) b` for constants `x` and `y`, as long as their product is exact.
+    fn constants_together(&self, a: NodeId, b: NodeId) -> Option<(Rational, NodeId)> {
+        let (Node::Constant(x), Node::Multiply(left, right)) = (self.node(a), self.node(b)) else { return None };
+        let constant = |node, rest| self.value(node).map(|y| (x * y, rest));
+        constant(left, right).or_else(|| constant(right, left)).filter(|(product, _)| !product.is_overflow())
     }
 
     pub(crate) fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {

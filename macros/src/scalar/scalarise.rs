@@ -247,8 +247,10 @@ impl Scalariser<'_> {
         self.graph.sum(&terms)
     }
 
-    /// Multiplications that a product makes, the later the dearer; then the size of the result.
-    fn pair_cost(&self, left: &Entries, right: &Entries) -> (usize, usize) {
+    /// Whether a product is of a generator, which the other components of a covector don't share; multiplications that
+    /// it makes, the later the dearer; the size of the result.
+    fn pair_cost(&self, left: &Entries, right: &Entries) -> (bool, usize, usize) {
+        let is_own = self.is_constant(left) != self.is_constant(right);
         let mut cost = 0;
         for row in 0..left.rows {
             for column in 0..right.columns {
@@ -264,6 +266,6 @@ impl Scalariser<'_> {
                 }
             }
         }
-        (cost, left.rows * right.columns)
+        (is_own, cost, left.rows * right.columns)
     }
 }

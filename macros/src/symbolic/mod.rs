@@ -11,7 +11,7 @@ mod rational;
 mod substitution;
 mod symbols;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod variance;
 mod variation;
 mod word;

@@ -1,0 +1,148 @@
+//! Declarations that are too large get an error, quickly, on an ordinary stack.
+
+use std::time::{Duration, Instant};
+
+use super::{expanded, is_refused};
+
+/// What threads get by default.
+const STACK: usize = 2 << 20;
+/// Far more than the largest accepted declaration needs without optimisation.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+const ITEM: &str =
+    "struct Top { J_d: NonstandardInertia, A: Matrix3<f64>, k: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+const KINETIC: &str = "(J_d.trace() - (F * J_d).trace()) / h";
+
+/// Expands on a small stack; whether it was refused.
+fn refused(l_d: String) -> bool {
+    let start = Instant::now();
+    let arguments = format!("group = SO3, advected(w = up), l_d = {l_d}");
+    let expansion = move || is_refused(&expanded(&arguments, ITEM));
+    let thread = std::thread::Builder::new().stack_size(STACK).spawn(expansion).expect("a thread");
+    let refused = thread.join().expect("no panic");
+    assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
+    refused
+}
+
+fn with_term(term: &str) -> String {
+    format!("{{ {term} }}")
+}
+
+#[test]
+fn nested_tokens() {
+    let many = 100_000;
+    for [open, close] in [["(", ")"], ["-", ""], ["!", ""], ["&", ""], ["{", "}"], ["vee(", ")"], ["*", ""]] {
+        for count in [60, 400, 4_000, many] {
+            // The lexer of a real compilation has its own limit for brackets; here it would recurse.
+            if !close.is_empty() && count > 2_000 {
+                continue;
+            }
+            let nested = format!("{}k{}", open.repeat(count), close.repeat(count));
+            let result = refused(with_term(&format!("{KINETIC} + h * {nested}")));
+            assert!(result || count <= 60, "{open} {count}");
+        }
+    }
+}
+
+#[test]
+fn long_sums_and_products() {
+    for (operator, operand) in [("+", "k"), ("-", "k"), ("*", "k"), ("/", "k"), ("+", "F[(0, 1)]"), ("*", "F.trace()")]
+    {
+        for count in [100, 1_000, 50_000] {
+            let term = vec![operand; count].join(operator);
+            let result = refused(with_term(&format!("{KINETIC} + h * ({term})")));
+            assert!(result || count <= 1_000);
+        }
+    }
+    let calls = ".sin()".repeat(3_000);
+    assert!(refused(with_term(&format!("{KINETIC} + h * k{calls}"))));
+    let transposes = ".transpose()".repeat(3_000);
+    assert!(refused(with_term(&format!("{KINETIC} + h * A{transposes}.trace()"))));
+}
+
+/// `let b = a ∘ a; let c = b ∘ b; …`
+fn doubling(first: &str, step: impl Fn(&str) -> String, last: impl Fn(&str) -> String, count: usize) -> String {
+    let mut lets = format!("let a0 = {first};");
+    for at in 0..count {
+        lets.push_str(&format!("let a{} = {};", at + 1, step(&format!("a{at}"))));
+    }
+    format!("{{ {lets} {KINETIC} + h * {} }}", last(&format!("a{count}")))
+}
+
+#[test]
+fn doubling_bindings() {
+    for count in [3, 8, 20, 60, 200] {
+        let plain = |a: &str| a.to_owned();
+        let trace = |a: &str| format!("{a}.trace()");
+        let square = |a: &str| format!("{a} * {a}");
+        let cases = [
+            doubling("k", square, plain, count),
+            doubling("k + F.trace()", square, plain, count),
+            doubling("F * A", square, trace, count),
+            doubling("F + A", square, trace, count),
+            doubling("F * A", |a| format!("{a} * A * {a}.transpose()"), trace, count),
+            doubling("w.dot(&(F * rho))", |a| format!("{a}.sin() * {a}.cos()"), plain, count),
+            doubling("w.dot(&(F * rho))", |a| format!("{a}.sin() + {a}.cos()"), plain, count),
+            doubling("w.dot(&(F * rho))", |a| format!("1.0 / (3.0 + {a} * {a})"), plain, count),
+            doubling("F * rho", |a| format!("{a}.cross(&(A * {a}))"), |a| format!("{a}.dot(&w)"), count),
+            doubling("F * rho", |a| format!("{a}.component_mul(&{a})"), |a| format!("{a}.dot(&w)"), count),
+            doubling("F * rho", |a| format!("vee(A * {a}.cross_matrix() * A)"), |a| format!("{a}.dot(&w)"), count),
+            doubling("3.0 * k", |a| format!("{a}.powi(16)"), plain, count),
+            doubling("F.trace()", |a| format!("{a}.powi(16)"), plain, count),
+            doubling("F.trace()", |a| format!("{a}.powi(-16)"), plain, count),
+            doubling("k + F.trace()", |a| format!("{a}.powi(16)"), plain, count),
+            doubling("k + F.trace()", |a| format!("{a}.powi(4)"), plain, count),
+            doubling("k + F.trace()", |a| format!("({a}.powi(-3) + 1.0)"), plain, count),
+            doubling("1.5", |a| format!("{a} * {a}"), plain, count),
+            doubling("F.trace()", |a| format!("(2.0 + {a}).sqrt()"), plain, count),
+        ];
+        for (index, case) in cases.into_iter().enumerate() {
+            let start = Instant::now();
+            let result = refused(case);
+            println!("{count} {index} {result} {:?}", start.elapsed());
+        }
+    }
+}
+
+#[test]
+fn many_factors() {
+    for count in [2, 3, 4, 5, 6, 8, 12, 16, 24, 40, 100] {
+        for unit in ["F * A", "F * J_d", "(F + A)", "F.transpose() * A * F"] {
+            let product = vec![unit; count].join(" * ");
+            let start = Instant::now();
+            let result = refused(with_term(&format!("{KINETIC} + h * ({product}).trace()")));
+            println!("{count} {unit} {result} {:?}", start.elapsed());
+        }
+        let start = Instant::now();
+        let product = vec!["F.trace()"; count].join(" * ");
+        let result = refused(with_term(&format!("{KINETIC} + h * {product}")));
+        println!("{count} traces {result} {:?}", start.elapsed());
+        let product = vec!["w.dot(&(F * A * rho))"; count].join(" * ");
+        let result = refused(with_term(&format!("{KINETIC} + h * {product}")));
+        println!("{count} dots {result} {:?}", start.elapsed());
+    }
+}
+
+#[test]
+fn large_literals() {
+    for literal in ["1e300", "1e-300", "1e38", "1e999999999999", "123456789012345678901234567890123456789.0", "0.1e-37"]
+    {
+        for term in [format!("{literal} * k"), format!("k.powi(2) * {literal} * {literal}"), format!("k / {literal}")] {
+            refused(with_term(&format!("{KINETIC} + h * {term}")));
+        }
+    }
+    assert!(refused(with_term(&format!("{KINETIC} + h * k * {}.0", "9".repeat(4_000)))));
+    assert!(refused(with_term(&format!("{KINETIC} + h * k.powi({})", "9".repeat(4_000)))));
+    assert!(refused(with_term(&format!("{KINETIC} + h * rho[{}]", "9".repeat(40)))));
+}
+
+#[test]
+fn many_fields_and_keys() {
+    let fields: String = (0..3_000).map(|at| format!("k{at}: f64,")).collect();
+    let item = format!("struct Top {{ J_d: NonstandardInertia, {fields} }}");
+    let start = Instant::now();
+    let expansion = expanded(&format!("group = SO3, l_d = {KINETIC}"), &item);
+    assert!(is_refused(&expansion) && start.elapsed() < PATIENCE, "{:?}", start.elapsed());
+    let groups = "group = SO3, ".repeat(1_000);
+    assert!(is_refused(&expanded(&format!("{groups} l_d = {KINETIC}"), ITEM)));
+}
