@@ -36,8 +36,10 @@ pub(crate) struct AdvectedParameter {
 impl Declaration {
     /// What an advected parameter's field promises; a plain vector after a mistake.
     pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
+        let size = self.structure.size;
         let field = self.advected.get(index).and_then(|w| self.fields.get(w.field?));
-        field.map_or(FieldKind::Vector(self.structure.size), |field| field.kind)
+        let kind = field.map(|field| field.kind).filter(|kind| kind.is_carried_by(size));
+        kind.unwrap_or(FieldKind::Vector(size))
     }
 }
 
@@ -70,6 +72,11 @@ impl FieldKind {
             Self::Advected(variance, _) => variance,
             _ => Variance::Covector,
         }
+    }
+
+    /// Whether a group of matrices of this size can move it.
+    pub(crate) fn is_carried_by(self, size: usize) -> bool {
+        matches!(self, Self::Vector(rows) | Self::Advected(_, rows) if rows == size)
     }
 
     /// Whether its value is wrapped in a type that says how the group moves it.

@@ -23,6 +23,7 @@ mod verify;
 /// ```text
 /// #[lagrangian(
 ///     group = SO3,                    the group that F belongs to
+///     generators = […],               its generators, row by row, if it is a group of your own
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings
 ///     crate = path,                   where liestep is found, if not at `::liestep`
@@ -35,9 +36,11 @@ mod verify;
 /// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
 /// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, `vee(A)`, indexing, and decimal literals.
 ///
-/// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>`, `NonstandardInertia`, `DiagonalNonstandardInertia` and
-/// `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct. Their types say what may be
-/// used: an inertia is symmetric, a diagonal one has six zeros.
+/// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
+/// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct.
+/// Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. An advected vector is a
+/// covector, moved by `ρ(f)ᵀ`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and `MixedTensor` are the
+/// other kinds.
 ///
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]

@@ -323,18 +323,14 @@ fn advected(
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
         }
-        if let Some((found, span)) = index.and_then(|index| fields.get(index)) {
-            let fits = match found.kind {
-                FieldKind::Vector(rows) | FieldKind::Advected(_, rows) => rows == size,
-                _ => false,
-            };
-            if !fits {
-                let shape = found.kind.shape().describe();
-                errors.push(
-                    *span,
-                    format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>"),
-                );
-            }
+        if let Some((found, span)) = index.and_then(|index| fields.get(index))
+            && !found.kind.is_carried_by(size)
+        {
+            let shape = found.kind.shape().describe();
+            errors.push(
+                *span,
+                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>"),
+            );
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index });
     }

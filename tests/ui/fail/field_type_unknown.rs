@@ -1,5 +1,5 @@
 use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
-use nalgebra::{Vector3, Vector4};
+use nalgebra::{Point3, Vector3};
 
 #[lagrangian(
     group = SO3,
@@ -8,7 +8,7 @@ use nalgebra::{Vector3, Vector4};
 )]
 struct Top {
     J_d: NonstandardInertia,
-    rho: Vector4<f64>,
+    rho: Point3<f64>,
     up: Vector3<f64>,
 }
 
