@@ -43,7 +43,21 @@ fn implementation(arguments: &TokenStream, item: &TokenStream, errors: &mut Erro
 
 /// Coefficients stay exact, or the expansion says that they can't.
 fn is_sound(derived: &Derived, span: Span, errors: &mut Errors) -> Option<()> {
-    let all = [&derived.momentum, &derived.jacobian, &derived.left_momentum, &derived.kick_after];
+    let limit = &derived.limit;
+    let all = [
+        &derived.right_momentum,
+        &derived.left_momentum,
+        &derived.diamond,
+        &derived.momentum,
+        &derived.jacobian,
+        &derived.energy,
+        &limit.inertia,
+        &limit.bias,
+        &limit.potential,
+        &derived.kick_before,
+        &derived.unknown,
+        &derived.kick_after,
+    ];
     let cleared = derived.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
     if all.into_iter().chain(cleared).any(crate::symbolic::Expression::has_overflow) {
         errors.push(span, "the coefficients leave the range of exact arithmetic: make the large numbers fields");

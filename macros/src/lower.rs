@@ -12,6 +12,9 @@ use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, 
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
+/// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
+const MOST_FACTORS: usize = 2_000;
+const LONGEST_PRODUCT: usize = 48;
 
 /// The declared Lagrangian in symbols; the names say which symbol stands for what.
 pub(crate) struct Lowered {
@@ -62,7 +65,9 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         Err(TooLarge(span)) => {
             errors.push(
                 span,
-                format!("multiplied out, this has more than {MOST_TERMS} terms: the expression is too large"),
+                format!(
+                    "multiplied out, this has more than {MOST_TERMS} terms or factors: the expression is too large"
+                ),
             );
             None
         }
@@ -84,7 +89,7 @@ impl Lowering<'_> {
             return Ok(known.clone());
         }
         let result = self.operation(tree)?;
-        if result.len() > MOST_TERMS {
+        if result.len() > MOST_TERMS || result.size() > MOST_FACTORS || result.longest_word() > LONGEST_PRODUCT {
             return Err(TooLarge(tree.span));
         }
         if Rc::strong_count(tree) > 1 {

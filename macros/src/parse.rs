@@ -1,6 +1,7 @@
 //! The attribute's arguments and the struct's fields.
 
 mod group;
+mod size;
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
@@ -15,44 +16,12 @@ use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
 use crate::errors::{Errors, suggestion};
 use crate::symbolic::Variance;
 
-/// More tokens than this, or deeper brackets, are no Lagrangian that a person wrote, and parsing them recursively could
-/// overflow the compiler's stack.
-const MOST_TOKENS: usize = 5_000;
-const DEEPEST_BRACKETS: usize = 64;
+pub(crate) use size::check_size;
 
 /// The annotated struct.
 pub(crate) fn item(item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
     let parsed = syn::parse2(item.clone());
     parsed.map_err(|error| errors.push(error.span(), "`lagrangian` belongs on a struct with named fields")).ok()
-}
-
-/// `None` where the arguments are too large to be parsed, which has been reported.
-pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
-    let mut open = vec![(arguments.clone().into_iter(), 0)];
-    let mut count = 0;
-    while let Some((mut tokens, depth)) = open.pop() {
-        let Some(token) = tokens.next() else { continue };
-        count += 1;
-        open.push((tokens, depth));
-        if count > MOST_TOKENS {
-            errors.push(
-                token.span(),
-                format!("the Lagrangian has more than {MOST_TOKENS} tokens: the expression is too large"),
-            );
-            return None;
-        }
-        if let TokenTree::Group(group) = token {
-            if depth >= DEEPEST_BRACKETS {
-                errors.push(
-                    group.span_open(),
-                    format!("brackets are nested more than {DEEPEST_BRACKETS} deep: bind parts with `let`"),
-                );
-                return None;
-            }
-            open.push((group.stream().into_iter(), depth + 1));
-        }
-    }
-    Some(())
 }
 
 /// The arguments as written.

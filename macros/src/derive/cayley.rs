@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::Context;
-use crate::symbolic::{Expression, Rational, Variations, variation};
+use crate::symbolic::{Expression, Rational, Variations, degree, variation};
 
 /// `Dⁿ (U − a)`, linear in `E_k`, and its variation along `δξ`.
 #[derive(Clone, Debug)]
@@ -16,13 +16,13 @@ pub(crate) struct Cleared {
 }
 
 /// Beyond this many terms the retracted form is surely cheaper, and expanding would take long.
-const MOST_TERMS: usize = 400;
+const MOST_TERMS: usize = 100;
 
 pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared> {
     let directions = context.directions;
     if !context.declared.group.is_so3
         || unknown.contains_closed(context.declared.increment)
-        || unknown.len() > MOST_TERMS
+        || terms_in_coordinates(context, unknown) > MOST_TERMS
     {
         return None;
     }
@@ -36,9 +36,6 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     let cayley = context.product(&d.clone().power(-1, context.symbols), &numerator);
     let map = BTreeMap::from([(context.declared.increment, cayley)]);
     let in_coordinates = context.substituted(unknown, &map);
-    if in_coordinates.len() > MOST_TERMS {
-        return None;
-    }
     // ⟨a, E⟩ = −½ tr(E â).
     let direction = context.symbol(directions.first);
     let target_hat = context.symbol(directions.target).hat(context.symbols);
@@ -51,4 +48,13 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     let variations = Variations::from([(directions.coordinates, delta), (directions.denominator, delta_d)]);
     let jacobian = variation(&residual, &variations, context.symbols);
     Some(Cleared { residual, jacobian })
+}
+
+/// Each `F` becomes the four terms of `(8/D − 1) I + (2 ξξᵀ + 4 ξ̂)/D`.
+fn terms_in_coordinates(context: &Context, unknown: &Expression) -> usize {
+    let terms = unknown.terms().map(|(monomial, _)| {
+        let factors = u32::try_from(degree(monomial, context.declared.increment)).unwrap_or(u32::MAX);
+        4_usize.saturating_pow(factors)
+    });
+    terms.fold(0, usize::saturating_add)
 }

@@ -13,6 +13,8 @@ type Polynomial = BTreeMap<Vec<NodeId>, NodeId>;
 
 /// Beyond this many monomials in all, multiplying out can't pay.
 const MOST_MONOMIALS: usize = 600;
+/// A product of two polynomials has fewer monomials than this after collecting, if it is worth it.
+const MOST_PRODUCTS: usize = 2_000;
 
 /// The same outputs, multiplied out; `opaque` nodes count as variables. `None` where they grow too large.
 pub(crate) fn expanded(graph: &mut Graph, outputs: &[NodeId], opaque: &BTreeSet<NodeId>) -> Option<Vec<NodeId>> {
@@ -87,6 +89,9 @@ fn polynomial(
         }
         Node::Multiply(a, b) => {
             let (a, b) = (polynomial(graph, a, opaque, known)?, polynomial(graph, b, opaque, known)?);
+            if a.len() * b.len() > MOST_PRODUCTS {
+                return None;
+            }
             let mut product = Polynomial::new();
             for (left, &x) in &a {
                 for (right, &y) in &b {

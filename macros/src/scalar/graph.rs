@@ -74,6 +74,11 @@ impl Graph {
         self.insert(Node::Constant(value), Stage::Construction)
     }
 
+    /// The exact value of an operation on constants, or the operation where that isn't in range.
+    fn folded(&mut self, value: Rational, node: Node) -> NodeId {
+        if value.is_overflow() { self.operation(node) } else { self.constant(value) }
+    }
+
     pub(crate) fn zero(&mut self) -> NodeId {
         self.constant(Rational::ZERO)
     }
@@ -108,7 +113,7 @@ impl Graph {
 
     pub(crate) fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
-            (Node::Constant(x), Node::Constant(y)) => self.constant(x + y),
+            (Node::Constant(x), Node::Constant(y)) => self.folded(x + y, Node::Add(a, b)),
             (Node::Constant(x), _) if x.is_zero() => b,
             (_, Node::Constant(y)) if y.is_zero() => a,
             (_, Node::Negate(y)) => self.subtract(a, y),
@@ -123,7 +128,7 @@ impl Graph {
 
     pub(crate) fn subtract(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
-            (Node::Constant(x), Node::Constant(y)) => self.constant(x - y),
+            (Node::Constant(x), Node::Constant(y)) => self.folded(x - y, Node::Subtract(a, b)),
             (_, Node::Constant(y)) if y.is_zero() => a,
             (Node::Constant(x), _) if x.is_zero() => self.negate(b),
             (_, Node::Negate(y)) => self.add(a, y),
@@ -138,7 +143,7 @@ impl Graph {
 
     pub(crate) fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
-            (Node::Constant(x), Node::Constant(y)) => self.constant(x * y),
+            (Node::Constant(x), Node::Constant(y)) => self.folded(x * y, Node::Multiply(a, b)),
             (Node::Constant(x), _) if x.is_zero() => a,
             (_, Node::Constant(y)) if y.is_zero() => b,
             (Node::Constant(x), _) if x == Rational::ONE => b,
@@ -172,7 +177,7 @@ impl Graph {
 
     pub(crate) fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
         match (self.node(a), self.node(b)) {
-            (Node::Constant(x), Node::Constant(y)) if !y.is_zero() => self.constant(x * y.inverse()),
+            (Node::Constant(x), Node::Constant(y)) if !y.is_zero() => self.folded(x * y.inverse(), Node::Divide(a, b)),
             (_, Node::Constant(y)) if y == Rational::ONE => a,
             (Node::Constant(x), _) if x.is_zero() => a,
             _ => self.operation(Node::Divide(a, b)),

@@ -145,9 +145,41 @@ impl Expression {
         self.terms.is_empty()
     }
 
-    /// Whether a coefficient has left the range of exact arithmetic.
+    /// How many scalars and factors are written down, inside functions too.
+    pub(crate) fn size(&self) -> usize {
+        let terms = self.terms.keys().map(|monomial| {
+            let scalars = monomial.scalars.keys().map(|atom| match atom {
+                Atom::Symbol(_) => 1,
+                Atom::Trace(word) => word::size(word),
+                Atom::Function(_, inner) | Atom::Sum(inner) => 1 + inner.size(),
+            });
+            1 + scalars.sum::<usize>() + word::size(&monomial.word)
+        });
+        terms.sum()
+    }
+
+    /// The factors of the longest word.
+    pub(crate) fn longest_word(&self) -> usize {
+        let words = self.terms.keys().map(|monomial| {
+            let scalars = monomial.scalars.keys().map(|atom| match atom {
+                Atom::Symbol(_) => 1,
+                Atom::Trace(word) => word::size(word),
+                Atom::Function(_, inner) | Atom::Sum(inner) => inner.longest_word(),
+            });
+            scalars.max().unwrap_or(0).max(word::size(&monomial.word))
+        });
+        words.max().unwrap_or(0)
+    }
+
+    /// Whether a coefficient has left the range of exact arithmetic, inside functions too.
     pub(crate) fn has_overflow(&self) -> bool {
-        self.terms.values().any(|coefficient| coefficient.is_overflow())
+        self.terms.iter().any(|(monomial, coefficient)| {
+            let inside = monomial.scalars.keys().any(|atom| match atom {
+                Atom::Function(_, inner) | Atom::Sum(inner) => inner.has_overflow(),
+                Atom::Symbol(_) | Atom::Trace(_) => false,
+            });
+            inside || coefficient.is_overflow()
+        })
     }
 
     pub(crate) fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
@@ -311,6 +343,20 @@ pub(crate) fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
             Atom::Trace(word) => word.iter().any(|factor| factor.contains(symbol)),
             Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(symbol),
         })
+}
+
+/// How often the symbol is multiplied with itself in a monomial, at most.
+pub(crate) fn degree(monomial: &Monomial, symbol: SymbolId) -> usize {
+    let of_word = |word: &[Factor]| word.iter().map(|factor| factor.degree(symbol)).sum::<usize>();
+    let scalars = monomial.scalars.iter().map(|(atom, exponent)| {
+        let inside = match atom {
+            Atom::Symbol(id) => usize::from(*id == symbol),
+            Atom::Trace(word) => of_word(word),
+            Atom::Function(_, inner) | Atom::Sum(inner) => usize::from(inner.contains(symbol)),
+        };
+        inside.saturating_mul(usize::try_from(exponent.unsigned_abs()).unwrap_or(usize::MAX))
+    });
+    scalars.fold(of_word(&monomial.word), usize::saturating_add)
 }
 
 impl Structure {

@@ -20,7 +20,8 @@ impl Rational {
     pub(crate) fn new(numerator: i128, denominator: i128) -> Self {
         let divisor = gcd(numerator.unsigned_abs(), denominator.unsigned_abs());
         let Ok(divisor) = i128::try_from(divisor) else { return Self::OVERFLOW };
-        if denominator == 0 || divisor == 0 {
+        // The least number has no negative.
+        if denominator == 0 || divisor == 0 || numerator.min(denominator) == i128::MIN {
             return Self::OVERFLOW;
         }
         let sign = if denominator < 0 { -1 } else { 1 };
@@ -67,8 +68,18 @@ impl Rational {
     }
 
     pub(crate) fn power(self, exponent: i32) -> Self {
-        let base = if exponent < 0 { self.inverse() } else { self };
-        (0..exponent.unsigned_abs()).fold(Self::ONE, |product, _| product * base)
+        let (mut square, mut rest) = (if exponent < 0 { self.inverse() } else { self }, exponent.unsigned_abs());
+        let mut product = Self::ONE;
+        while rest > 0 {
+            if rest % 2 == 1 {
+                product = product * square;
+            }
+            rest /= 2;
+            if rest > 0 {
+                square = square * square;
+            }
+        }
+        product
     }
 
     /// The nearest `f64`.
@@ -156,5 +167,15 @@ mod tests {
         let large = Rational::integer(i128::MAX);
         assert!((large * large + Rational::ONE).is_overflow());
         assert!((Rational::OVERFLOW * Rational::ZERO).is_overflow());
+        assert!(Rational::new(i128::MIN, 1).is_overflow() && Rational::new(1, i128::MIN).is_overflow());
+    }
+
+    #[test]
+    fn powers() {
+        assert_eq!(Rational::new(-2, 3).power(3), Rational::new(-8, 27));
+        assert_eq!(Rational::new(-2, 3).power(-4), Rational::new(81, 16));
+        assert_eq!(Rational::new(7, 2).power(0), Rational::ONE);
+        assert_eq!((-Rational::ONE).power(i32::MAX), -Rational::ONE);
+        assert!(Rational::integer(3).power(i32::MIN).is_overflow());
     }
 }

@@ -73,14 +73,28 @@ impl Factor {
     }
 
     pub(crate) fn contains(&self, symbol: SymbolId) -> bool {
+        self.degree(symbol) > 0
+    }
+
+    /// How often the symbol occurs.
+    pub(crate) fn degree(&self, symbol: SymbolId) -> usize {
         match self {
-            Self::Symbol { id, .. } | Self::Inverse { id, .. } => *id == symbol,
-            Self::Unit { .. } => false,
+            Self::Symbol { id, .. } | Self::Inverse { id, .. } => usize::from(*id == symbol),
+            Self::Unit { .. } => 0,
             Self::Hat(word) | Self::Diagonal(word) | Self::Vee { word, .. } => {
-                word.iter().any(|factor| factor.contains(symbol))
+                word.iter().map(|factor| factor.degree(symbol)).sum()
             }
         }
     }
+}
+
+/// How many factors are written down, inside others too.
+pub(crate) fn size(word: &[Factor]) -> usize {
+    let sizes = word.iter().map(|factor| match factor {
+        Factor::Symbol { .. } | Factor::Inverse { .. } | Factor::Unit { .. } => 1,
+        Factor::Hat(inner) | Factor::Diagonal(inner) | Factor::Vee { word: inner, .. } => 1 + size(inner),
+    });
+    sizes.sum()
 }
 
 /// The transpose of a word and its sign.
