@@ -125,7 +125,8 @@ fn p2_the_staged_newton_system_is_the_momentum_equation() {
         let constants = top.constants(h);
         for _ in 0..20 {
             let (xi, w) = (random.vector(), random.vector());
-            let f = <HeavyTop as DiscreteLagrangian>::Retraction::retract(&xi).matrix();
+            let f: SO3 = <HeavyTop as DiscreteLagrangian>::Retraction::retract(&xi);
+            let f = f.matrix();
             let a = top.legendre_minus(&f, &w, h) + HeavyTop::kick_before(&constants, &w);
             let terms = HeavyTop::step_terms(&constants, &a, &w);
             let system = |xi: Vector3<f64>| HeavyTop::newton_system(&constants, &terms, &xi);

@@ -121,9 +121,8 @@ fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>, mut z: SVector<T,
     let mut det = T::one();
     for k in 0..D {
         det *= a[(k, k)];
-        let inverse = T::one() / a[(k, k)];
         for i in k + 1..D {
-            let factor = a[(i, k)] * inverse;
+            let factor = a[(i, k)] / a[(k, k)];
             for j in k + 1..D {
                 let product = factor * a[(k, j)];
                 a[(i, j)] -= product;

@@ -29,7 +29,7 @@ pub(crate) fn exponential<T: RealField + Copy, const N: usize>(
     let mut increment = scaled * mean;
     for _ in 0..halvings {
         mean += increment * mean * half;
-        increment += increment + increment * increment;
+        increment = increment * real::<T>(2.0) + increment * increment;
     }
     (increment, mean)
 }

@@ -40,6 +40,25 @@ use crate::scalar::{Real, real};
 /// let map: Affine = CayleyRetraction::retract(&Vector2::new(1.0, 1.0));
 /// assert_eq!(map.matrix(), Matrix2::new(3.0, 2.0, 0.0, 1.0));
 /// ```
+///
+/// Generators that aren't orthogonal, or a Cayley map that leaves the group, are errors when a program is built. Here
+/// `diag(1, 2)³` isn't a multiple of `diag(1, 2)`:
+///
+/// ```compile_fail,E0080
+/// # use liestep::groups::matrix;
+/// # use liestep::{CayleyRetraction, Generators, MatrixGroup, Retraction};
+/// # use nalgebra::{RealField, SMatrix, Vector1};
+/// # #[derive(Clone, Copy, Debug, PartialEq)]
+/// # struct Stretch;
+/// impl Generators<2, 1> for Stretch {
+///     const GENERATORS: [[[f64; 2]; 2]; 1] = [matrix(&[(0, 0, 1.0), (1, 1, 2.0)])];
+/// #     fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+/// #         (m.m11 * m.m11 - m.m22).abs()
+/// #     }
+/// }
+///
+/// let map: MatrixGroup<Stretch, f64, 2, 1> = CayleyRetraction::retract(&Vector1::new(0.1));
+/// ```
 pub trait Generators<const N: usize, const D: usize>: Copy + Debug + PartialEq + 'static {
     /// The basis `E_k`, each matrix by rows; [`matrix`] writes one by its entries.
     const GENERATORS: [[[f64; N]; N]; D];

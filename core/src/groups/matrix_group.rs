@@ -67,9 +67,10 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> T
 
     /// Accepts a matrix that satisfies the relation to 10⁴ roundings, so that one printed to a dozen digits passes.
     fn try_from(matrix: SMatrix<T, N, N>) -> Result<Self, NotInGroup> {
-        let defect = K::relation(&matrix);
+        let candidate = Self::from_matrix_unchecked(matrix);
+        let defect = candidate.defect();
         if defect < T::default_epsilon() * real(1e4) {
-            Ok(Self::from_matrix_unchecked(matrix))
+            Ok(candidate)
         } else {
             Err(NotInGroup { defect: reported(defect) })
         }
@@ -202,8 +203,9 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
         Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))
     }
 
+    /// NaN where an entry isn't finite, whether or not the relation depends on it.
     fn defect(&self) -> T {
-        K::relation(&self.0)
+        K::relation(&self.0) + self.0.sum() * T::zero()
     }
 }
 

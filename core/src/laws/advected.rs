@@ -2,9 +2,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::samples::{
-    Entries, MatrixLieGroup, ROUNDING, Random, assert_close, assert_small, condition, eliminated_inverse,
-};
+use super::samples::{Entries, MatrixLieGroup, ROUNDING, Random, assert_small, condition, eliminated_inverse};
 use crate::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 
 /// `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, and linear in `w`.

@@ -63,9 +63,13 @@ pub fn retraction_tangent<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: us
 pub fn retraction_keeps_digits<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {
     let mut random = Random::new(14);
     for _ in 0..20 {
-        let xi = random.sample::<SVector<f64, D>>() * 1e-12;
-        // The second order is 10⁻²⁴; a subtraction of `I` would leave 10⁻¹⁶.
-        assert_close(&R::increment(&xi), &G::hat(&xi), 1e-22, "τ(ξ) − I = ξ̂ to first order");
+        let xi: SVector<f64, D> = random.sample();
+        // The second order is 10⁻²⁴; a subtraction of `I` would leave 10⁻¹⁶ on the diagonal.
+        let tiny = xi * 1e-12;
+        assert_close(&R::increment(&tiny), &G::hat(&tiny), 1e-22, "τ(ξ) − I = ξ̂ to first order");
+        // Where the diagonal has no first order, as for rotations, the even part tells: it is quadratic up to 10⁻²¹.
+        let even = |scale: f64| R::increment(&(xi * scale)) + R::increment(&(xi * -scale));
+        assert_close(&even(4e-6), &(even(2e-6) * 4.0), 1e-19, "the second order of τ(ξ) − I keeps its digits");
     }
 }
 
