@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 
 use super::{Context, action};
-use crate::symbolic::{Expression, monomial_contains};
+use crate::symbolic::{Expression, degree, monomial_contains};
 
 pub(super) struct Parts {
     pub(super) kick_before: Expression,
@@ -38,8 +38,13 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
 
 /// With `F = I + D`; as it is where that would multiply the terms.
 pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
+    let increment = context.declared.increment;
+    // Each F becomes two terms.
+    let factors = |monomial| u32::try_from(degree(monomial, increment)).unwrap_or(u32::MAX);
+    let terms = unknown.terms().map(|(monomial, _)| 2_usize.saturating_pow(factors(monomial)));
+    if terms.fold(0, usize::saturating_add) > 4 * unknown.len() + 16 {
+        return unknown.clone();
+    }
     let small = Expression::identity(context.declared.group.size).plus(context.symbol(context.directions.small));
-    let map = BTreeMap::from([(context.declared.increment, small)]);
-    let substituted = context.substituted(unknown, &map);
-    if substituted.len() > 4 * unknown.len() + 16 { unknown.clone() } else { substituted }
+    context.substituted(unknown, &BTreeMap::from([(increment, small)]))
 }
