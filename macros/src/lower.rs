@@ -14,7 +14,7 @@ use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, 
 const MOST_TERMS: usize = 2_000;
 /// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
 const MOST_FACTORS: usize = 2_000;
-const LONGEST_PRODUCT: usize = 48;
+const LONGEST_PRODUCT: usize = 32;
 
 /// The declared Lagrangian in symbols; the names say which symbol stands for what.
 pub(crate) struct Lowered {

@@ -46,7 +46,7 @@ pub(super) fn of(equations: &[Equation], method: &str, graph: &Graph, outputs: &
     let operations = count(graph, outputs, None);
     let found = equations.iter().find(|equation| equation.method == method);
     let (left, right, source) = found.map_or(("", "", ""), |e| (e.left, e.right.as_str(), e.source));
-    let source = if source.is_empty() { String::new() } else { format!("    ({source})") };
+    let source = if source.is_empty() { String::new() } else { format!("    [{source}]") };
     format!("```text\n{left} = {right}{source}\n```\n\n{operations}.")
 }
 
@@ -58,7 +58,7 @@ pub(super) fn stage(graph: &Graph, outputs: &[NodeId], stage: Stage, when: &str)
 /// All equations as one text.
 pub(super) fn derivation(equations: &[Equation]) -> String {
     let line = |equation: &Equation| {
-        let source = if equation.source.is_empty() { String::new() } else { format!("    ({})", equation.source) };
+        let source = if equation.source.is_empty() { String::new() } else { format!("    [{}]", equation.source) };
         format!("{}\n    {} = {}{source}\n", equation.method, equation.left, equation.right)
     };
     equations.iter().map(line).collect()

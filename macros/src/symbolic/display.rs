@@ -9,11 +9,13 @@ use super::word::{Factor, transpose};
 pub(crate) fn text(expression: &Expression, symbols: &Symbols) -> String {
     let is_matrix = expression.shape() != (1, 1);
     join(expression.terms().map(|(monomial, coefficient)| {
-        let mut body = word_text(&monomial.word, symbols);
+        let (prefix, mut body) = parts(monomial, coefficient, None, symbols);
+        let word = word_text(&monomial.word, symbols);
+        body.extend((!word.is_empty()).then_some(word));
         if is_matrix && monomial.word.is_empty() {
-            "I".clone_into(&mut body);
+            body.push("I".to_owned());
         }
-        (coefficient, prefix(monomial, coefficient, None, symbols), body)
+        (coefficient, prefix, body.join(" "))
     }))
 }
 
@@ -35,9 +37,14 @@ pub(crate) fn covector_text(expression: &Expression, direction: SymbolId, symbol
                 } else {
                     (coefficient, format!("({turned} − {word})^∨"))
                 };
-                (coefficient, prefix(monomial, coefficient, Some(atom), symbols), body)
+                let (prefix, mut others) = parts(monomial, coefficient, Some(atom), symbols);
+                others.push(body);
+                (coefficient, prefix, others.join(" "))
             }
-            None => (coefficient, prefix(monomial, coefficient, None, symbols), String::new()),
+            None => {
+                let (prefix, body) = parts(monomial, coefficient, None, symbols);
+                (coefficient, prefix, body.join(" "))
+            }
         }
     }))
 }
@@ -76,9 +83,15 @@ fn join(terms: impl Iterator<Item = (Rational, String, String)>) -> String {
     if sum.is_empty() { "0".to_owned() } else { sum }
 }
 
-/// The size of the coefficient with the scalars of a monomial, as one fraction.
-fn prefix(monomial: &Monomial, coefficient: Rational, without: Option<&Atom>, symbols: &Symbols) -> String {
-    let (mut over, mut under) = (Vec::new(), Vec::new());
+/// The size of the coefficient with the named scalars of a monomial, and whatever is divided by, as one fraction; and
+/// its traces, forms and functions.
+fn parts(
+    monomial: &Monomial,
+    coefficient: Rational,
+    without: Option<&Atom>,
+    symbols: &Symbols,
+) -> (String, Vec<String>) {
+    let (mut over, mut under, mut body) = (Vec::new(), Vec::new(), Vec::new());
     let (numerator, denominator) = coefficient.parts();
     if numerator.unsigned_abs() != 1 {
         over.push(numerator.unsigned_abs().to_string());
@@ -91,18 +104,23 @@ fn prefix(monomial: &Monomial, coefficient: Rational, without: Option<&Atom>, sy
             1 => String::new(),
             n => superscript(n),
         };
-        let side = if *exponent > 0 { &mut over } else { &mut under };
+        let side = match atom {
+            _ if *exponent < 0 => &mut under,
+            Atom::Symbol(_) => &mut over,
+            Atom::Trace(_) | Atom::Function(..) | Atom::Sum(_) => &mut body,
+        };
         side.push(format!("{}{power}", atom_text(atom, symbols)));
     }
     let (over, parts) = (over.join(" "), under.len());
     let under = under.join(" ");
-    match (over.is_empty(), parts) {
+    let prefix = match (over.is_empty(), parts) {
         (_, 0) => over,
         (true, 1) => format!("(1/{under})"),
         (true, _) => format!("(1/({under}))"),
         (false, 1) => format!("({over}/{under})"),
         (false, _) => format!("({over}/({under}))"),
-    }
+    };
+    (prefix, body)
 }
 
 fn superscript(n: u32) -> String {

@@ -7,6 +7,9 @@ use super::rational::Rational;
 use super::symbols::{Structure, SymbolId, Symbols};
 use super::word::{self, Factor};
 
+/// Larger ones are on their way to where exponents saturate.
+const LARGEST_EXPONENT: u32 = 1 << 16;
+
 /// A scalar that isn't taken apart.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Atom {
@@ -145,13 +148,14 @@ impl Expression {
         self.terms.is_empty()
     }
 
-    /// How many scalars and factors are written down, inside functions too.
+    /// How many scalars and factors are written down; those inside functions double, as `f(u)` has `f'(u) δu` for its
+    /// variation.
     pub(crate) fn size(&self) -> usize {
         let terms = self.terms.keys().map(|monomial| {
             let scalars = monomial.scalars.keys().map(|atom| match atom {
                 Atom::Symbol(_) => 1,
                 Atom::Trace(word) => word::size(word),
-                Atom::Function(_, inner) | Atom::Sum(inner) => 1 + inner.size(),
+                Atom::Function(_, inner) | Atom::Sum(inner) => 1 + 2 * inner.size(),
             });
             1 + scalars.sum::<usize>() + word::size(&monomial.word)
         });
@@ -171,9 +175,12 @@ impl Expression {
         words.max().unwrap_or(0)
     }
 
-    /// Whether a coefficient has left the range of exact arithmetic, inside functions too.
+    /// Whether a coefficient or an exponent has left the range of exact arithmetic, inside functions too.
     pub(crate) fn has_overflow(&self) -> bool {
         self.terms.iter().any(|(monomial, coefficient)| {
+            if monomial.scalars.values().any(|exponent| exponent.unsigned_abs() > LARGEST_EXPONENT) {
+                return true;
+            }
             let inside = monomial.scalars.keys().any(|atom| match atom {
                 Atom::Function(_, inner) | Atom::Sum(inner) => inner.has_overflow(),
                 Atom::Symbol(_) | Atom::Trace(_) => false,

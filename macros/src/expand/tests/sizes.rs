@@ -97,7 +97,7 @@ fn doubling(first: &str, step: impl Fn(&str) -> String, last: impl Fn(&str) -> S
 
 #[test]
 fn doubling_bindings() {
-    for count in [3, 8, 20, 60, 200] {
+    for count in [3, 4, 5, 6, 8, 20, 60, 200] {
         let plain = |a: &str| a.to_owned();
         let trace = |a: &str| format!("{a}.trace()");
         let square = |a: &str| format!("{a} * {a}");
@@ -122,30 +122,26 @@ fn doubling_bindings() {
             doubling("1.5", |a| format!("{a} * {a}"), plain, count),
             doubling("F.trace()", |a| format!("(2.0 + {a}).sqrt()"), plain, count),
         ];
-        for (index, case) in cases.into_iter().enumerate() {
-            let start = Instant::now();
+        for case in cases {
             let result = refused(case);
-            println!("{count} {index} {result} {:?}", start.elapsed());
+            assert!(result || count <= 60, "{count}");
         }
     }
 }
 
 #[test]
 fn many_factors() {
-    for count in [2, 3, 4, 5, 6, 8, 12, 16, 24, 40, 100] {
+    for count in [1, 2, 3, 4, 6, 8, 12, 16, 24, 40, 100] {
         for unit in ["F * A", "F * J_d", "(F + A)", "F.transpose() * A * F"] {
             let product = vec![unit; count].join(" * ");
-            let start = Instant::now();
             let result = refused(with_term(&format!("{KINETIC} + h * ({product}).trace()")));
-            println!("{count} {unit} {result} {:?}", start.elapsed());
+            assert!(if count < 3 { !result } else { result || count < 40 }, "{count} {unit}");
         }
-        let start = Instant::now();
-        let product = vec!["F.trace()"; count].join(" * ");
-        let result = refused(with_term(&format!("{KINETIC} + h * {product}")));
-        println!("{count} traces {result} {:?}", start.elapsed());
-        let product = vec!["w.dot(&(F * A * rho))"; count].join(" * ");
-        let result = refused(with_term(&format!("{KINETIC} + h * {product}")));
-        println!("{count} dots {result} {:?}", start.elapsed());
+        for unit in ["F.trace()", "w.dot(&(F * A * rho))"] {
+            let product = vec![unit; count].join(" * ");
+            let result = refused(with_term(&format!("{KINETIC} + h * {product}")));
+            assert!(!result || count > 2, "{count} {unit}");
+        }
     }
 }
 
