@@ -80,3 +80,16 @@ fn s4_turning_without_a_vertical() {
     // The spatial momentum loses a rounding per step.
     assert!((state.spatial_momentum() - before).norm() < 1e-13 * before.norm());
 }
+
+/// A step whose inverse leaves the range of the scalar is refused when the stepper is built, not when it steps.
+#[test]
+fn a_step_out_of_range_is_refused() {
+    use liestep::SetupError;
+    for h in [1e-300, -1e-200, 1e200, f64::NAN, f64::INFINITY, f64::MIN_POSITIVE / 4.0] {
+        let refused = Stepper::new(HeavyTop::thesis(), h);
+        assert!(matches!(refused, Err(SetupError::InvalidStep { .. })), "h = {h:e}: {refused:?}");
+    }
+    for h in [1e-60, -1e-30, 0.0, 1e3] {
+        assert!(Stepper::new(HeavyTop::thesis(), h).is_ok(), "h = {h:e}");
+    }
+}

@@ -1,5 +1,6 @@
 //! The energy `½ p·J⁻¹p` of a free body is an exact invariant of (3.13), as is the spatial momentum `R p`; what is left
-//! is rounding, for bodies and steps on which an explicit, an implicit or a rescaling update fails.
+//! is rounding, at random and less than one a step, so 10⁻¹⁴ after hundreds of steps and 10⁻¹³ after ten thousands; for
+//! bodies and steps on which an explicit, an implicit or a rescaling update fails.
 
 mod common;
 

@@ -63,6 +63,7 @@ fn b6_a_negative_entry_violates_the_triangle_inequality() {
     for diagonal in [[2.0, 2.0, -1.0], [-1e-6, 1.0, 1.0], [1.0, -1e-13, 1.0]] {
         let error = nonstandard(diagonal).unwrap_err();
         let InertiaError::TriangleInequality { smallest } = error else { panic!("{diagonal:?}: {error:?}") };
+        // The eigenvalues of a diagonal matrix are its entries, without a rounding worth mentioning.
         assert!(diagonal.iter().any(|&entry| (entry / smallest - 1.0).abs() < 1e-9));
         assert!(error.to_string().contains("J_d"), "{error}");
     }

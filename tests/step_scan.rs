@@ -55,6 +55,7 @@ fn s1_looping_top_steps_up_to_the_fold() {
         let (iterations, angle) = first_step(&motion.top, &motion, fraction * fold).unwrap();
         println!("{fraction} of the fold: {iterations} iterations, {angle:.2}°");
         assert!(iterations <= 9, "{iterations} iterations at {fraction} of the fold");
+        // On a principal axis the fold is at 90°, for this body it is at most 91.6° in any direction.
         assert!(angle < 91.0, "{angle}° at {fraction} of the fold");
     }
 }
@@ -68,7 +69,7 @@ fn s1_the_error_beyond_the_fold_names_the_largest_step() {
         let error = first_step(&motion.top, &motion, h).unwrap_err();
         let StepError::BeyondSolvable { step, largest } = error else { panic!("{factor} times the fold: {error:?}") };
         assert!(step.to_bits() == h.to_bits());
-        // The bisection stops at six digits, the scan of X at five.
+        // The bisection stops at six digits, which are what is told, the scan of X at five.
         assert!((largest / fold - 1.0).abs() < 1e-5, "{largest} against {fold} at {factor} times the fold");
         assert!(error.to_string().contains(&format!("{largest:e} s")), "{error}");
     }

@@ -1,14 +1,29 @@
 //! Advected parameters: what the group carries along, seen from the body.
 //!
 //! The spatial value `a_0` is constant; the body sees `w_i = g_i⁻¹ · a_0`. A parameter in `V*` moves by the
-//! contragredient action, in columns `w_{i+1} = ρ(f)ᵀ w_i`; on SO(3) that is the rotation `Fᵀ w`.
+//! contragredient action, in columns `w_{i+1} = ρ(f)ᵀ w_i`; on SO(3) that is the rotation `Fᵀ w`. The product `F⁻¹ w`,
+//! which is the same there, belongs to `V` and is another parameter on a group that isn't orthogonal.
+//!
+//! | parameter in | type | `f⁻¹ · w` | for example |
+//! |---|---|---|---|
+//! | `V*` | `SVector<T, N>`, as `Vector3` | `Fᵀ w` | a direction, a plane, a potential's gradient |
+//! | `V` | [`ContravariantVector`] | `F⁻¹ w` | a point fixed in space |
+//! | `V ⊗ V` | [`ContravariantTensor`] | `F⁻¹ S F⁻ᵀ` | a conductivity |
+//! | `V* ⊗ V*` | [`CovariantTensor`] | `Fᵀ S F` | a metric, a strain, the gradient of a field of force |
+//! | `V ⊗ V*` | [`MixedTensor`] | `F⁻¹ S F` | a velocity gradient |
+//!
+//! `V` is the space that the group's matrices act on, `F` the matrix itself.
 
 use core::fmt::Debug;
 
-use nalgebra::Vector3;
+mod tensors;
+
+pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+
+use nalgebra::{SMatrix, SVector};
 
 use crate::coordinates::Coordinates;
-use crate::groups::{LieGroup, SO3};
+use crate::groups::LieGroup;
 use crate::scalar::Real;
 
 /// The advected parameters of a Lagrangian: `()` for none, a vector for one, a tuple for several.
@@ -35,21 +50,33 @@ impl<G: LieGroup> Advected<G> for () {
     }
 }
 
-impl<T: Real> Advected<SO3<T>> for Vector3<T> {
+/// An element of `V*`.
+impl<G, T: Real, const N: usize> Advected<G> for SVector<T, N>
+where
+    G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
+{
+    /// `ρ(g)ᵀ a_0`.
     #[inline]
-    fn seen_from(&self, attitude: &SO3<T>) -> Self {
-        attitude.adjoint_transpose(self)
+    fn seen_from(&self, attitude: &G) -> Self {
+        transpose_mul(&attitude.matrix(), self)
     }
 
+    /// `w + Dᵀ w`.
     #[inline(always)]
-    fn advect(&self, increment: &nalgebra::Matrix3<T>) -> Self {
-        self + SO3::adjoint_transpose_increment(increment, self)
+    fn advect(&self, increment: &SMatrix<T, N, N>) -> Self {
+        self + transpose_mul(increment, self)
     }
 
     #[inline(always)]
     fn is_finite(&self) -> bool {
         Coordinates::is_finite(self)
     }
+}
+
+/// `Aᵀ v`, unrolled.
+#[inline(always)]
+fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
+    SVector::from_fn(|i, _| (1..N).fold(a[(0, i)] * v[0], |sum, j| sum + a[(j, i)] * v[j]))
 }
 
 macro_rules! tuple {

@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use nalgebra::{Matrix3, SimdBool as _, Vector3};
+use nalgebra::{SMatrix, SVector, SimdBool as _};
 
 use crate::scalar::Real;
 
@@ -25,15 +25,21 @@ pub trait Coordinates<T: Real>:
 
     /// The solution `z` of `A z = b`, and `det A`.
     ///
-    /// There is no pivoting and no branch, so that SIMD lanes stay together: where `det A` is zero, `z` isn't finite.
+    /// There is no pivoting and no branch, so that SIMD lanes stay together, and so that another unit of length, which
+    /// scales rows and columns, changes no digit. Where `A` is singular, `z` isn't finite and `det A` is zero or not
+    /// finite.
+    ///
+    /// Up to three dimensions this is Cramer's rule. Beyond, it is elimination in the order of the basis: as accurate
+    /// as any for a matrix whose symmetric part is positive definite, like the Jacobian of a kinetic energy near the
+    /// identity, and not finite where a leading minor is zero.
     fn solve(matrix: &Self::Square, right_side: &Self) -> (Self, T);
 
     /// The trace of a square matrix.
     fn trace(matrix: &Self::Square) -> T;
 }
 
-impl<T: Real> Coordinates<T> for Vector3<T> {
-    type Square = Matrix3<T>;
+impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
+    type Square = SMatrix<T, D, D>;
 
     #[inline(always)]
     fn zero() -> Self {
@@ -42,41 +48,95 @@ impl<T: Real> Coordinates<T> for Vector3<T> {
 
     #[inline(always)]
     fn dot(&self, other: &Self) -> T {
-        self.x * other.x + self.y * other.y + self.z * other.z
+        sum::<T, D>(|k| self[k] * other[k])
     }
 
     #[inline(always)]
     fn is_finite(&self) -> bool {
         // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
-        (self.x * T::zero() + self.y * T::zero() + self.z * T::zero()).simd_eq(T::zero()).all()
-    }
-
-    /// Cramer's rule by cross products of the rows.
-    #[inline(always)]
-    fn solve(matrix: &Matrix3<T>, b: &Self) -> (Self, T) {
-        let m = matrix;
-        // Rows of the adjugate: cofactors of the columns.
-        let c11 = m.m22 * m.m33 - m.m23 * m.m32;
-        let c21 = m.m23 * m.m31 - m.m21 * m.m33;
-        let c31 = m.m21 * m.m32 - m.m22 * m.m31;
-        let c12 = m.m13 * m.m32 - m.m12 * m.m33;
-        let c22 = m.m11 * m.m33 - m.m13 * m.m31;
-        let c32 = m.m12 * m.m31 - m.m11 * m.m32;
-        let c13 = m.m12 * m.m23 - m.m13 * m.m22;
-        let c23 = m.m13 * m.m21 - m.m11 * m.m23;
-        let c33 = m.m11 * m.m22 - m.m12 * m.m21;
-        let det = m.m11 * c11 + m.m12 * c21 + m.m13 * c31;
-        let inverse = T::one() / det;
-        let z = Self::new(
-            (c11 * b.x + c12 * b.y + c13 * b.z) * inverse,
-            (c21 * b.x + c22 * b.y + c23 * b.z) * inverse,
-            (c31 * b.x + c32 * b.y + c33 * b.z) * inverse,
-        );
-        (z, det)
+        sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
     }
 
     #[inline(always)]
-    fn trace(matrix: &Matrix3<T>) -> T {
-        matrix.m11 + matrix.m22 + matrix.m33
+    fn solve(matrix: &SMatrix<T, D, D>, b: &Self) -> (Self, T) {
+        // `D` is a constant, so that one of these is left.
+        match D {
+            1 => (b / matrix[(0, 0)], matrix[(0, 0)]),
+            2 => cramer_2(matrix, b),
+            3 => cramer_3(matrix, b),
+            _ => eliminate(*matrix, *b),
+        }
     }
+
+    #[inline(always)]
+    fn trace(matrix: &SMatrix<T, D, D>) -> T {
+        sum::<T, D>(|k| matrix[(k, k)])
+    }
+}
+
+/// `term(0) + term(1) + …`, in that order.
+#[inline(always)]
+fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
+    if D == 0 { T::zero() } else { (1..D).fold(term(0), |sum, k| sum + term(k)) }
+}
+
+#[inline(always)]
+fn cramer_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>, b: &SVector<T, D>) -> (SVector<T, D>, T) {
+    let det = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
+    let inverse = T::one() / det;
+    let mut z = SVector::zeros();
+    z[0] = (m[(1, 1)] * b[0] - m[(0, 1)] * b[1]) * inverse;
+    z[1] = (m[(0, 0)] * b[1] - m[(1, 0)] * b[0]) * inverse;
+    (z, det)
+}
+
+/// Cramer's rule by cross products of the rows.
+#[inline(always)]
+fn cramer_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, b: &SVector<T, D>) -> (SVector<T, D>, T) {
+    let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
+    // Rows of the adjugate: cofactors of the columns.
+    let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
+    let c21 = m(2, 3) * m(3, 1) - m(2, 1) * m(3, 3);
+    let c31 = m(2, 1) * m(3, 2) - m(2, 2) * m(3, 1);
+    let c12 = m(1, 3) * m(3, 2) - m(1, 2) * m(3, 3);
+    let c22 = m(1, 1) * m(3, 3) - m(1, 3) * m(3, 1);
+    let c32 = m(1, 2) * m(3, 1) - m(1, 1) * m(3, 2);
+    let c13 = m(1, 2) * m(2, 3) - m(1, 3) * m(2, 2);
+    let c23 = m(1, 3) * m(2, 1) - m(1, 1) * m(2, 3);
+    let c33 = m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1);
+    let det = m(1, 1) * c11 + m(1, 2) * c21 + m(1, 3) * c31;
+    let inverse = T::one() / det;
+    let mut z = SVector::zeros();
+    z[0] = (c11 * b[0] + c12 * b[1] + c13 * b[2]) * inverse;
+    z[1] = (c21 * b[0] + c22 * b[1] + c23 * b[2]) * inverse;
+    z[2] = (c31 * b[0] + c32 * b[1] + c33 * b[2]) * inverse;
+    (z, det)
+}
+
+/// Gaussian elimination in the given order.
+///
+/// A zero pivot divides its own component, which then can't be finite; nothing has to be tested.
+#[inline]
+fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>, mut z: SVector<T, D>) -> (SVector<T, D>, T) {
+    let mut det = T::one();
+    for k in 0..D {
+        det *= a[(k, k)];
+        for i in k + 1..D {
+            let factor = a[(i, k)] / a[(k, k)];
+            for j in k + 1..D {
+                let product = factor * a[(k, j)];
+                a[(i, j)] -= product;
+            }
+            let product = factor * z[k];
+            z[i] -= product;
+        }
+    }
+    for k in (0..D).rev() {
+        for j in k + 1..D {
+            let product = a[(k, j)] * z[j];
+            z[k] -= product;
+        }
+        z[k] /= a[(k, k)];
+    }
+    (z, det)
 }

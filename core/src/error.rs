@@ -84,7 +84,8 @@ pub enum StepError {
     },
     /// The iteration settled on a solution that doesn't continue the identity.
     WrongBranch {
-        /// The determinant of the Jacobian there, whose sign differs from that at the identity, or NaN.
+        /// The determinant of the Jacobian there, or NaN. Its sign differs from that at the identity, or else the
+        /// trace's does.
         determinant: f64,
     },
     /// The Jacobian is singular at an iterate.

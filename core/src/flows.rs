@@ -64,7 +64,20 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         }
         let constants = lagrangian.constants(h);
         let orientation = orientation(h, <Group<L> as LieGroup>::DIMENSION);
-        Ok(Self { lagrangian, h, constants, orientation })
+        let flow = Self { lagrangian, h, constants, orientation };
+        if flow.h == real(0.0) || flow.is_in_range() {
+            return Ok(flow);
+        }
+        Err(SetupError::InvalidStep { step: reported(h) })
+    }
+
+    /// Whether the Newton system at rest can be solved in this scalar: with an extreme `h` its determinant can't.
+    fn is_in_range(&self) -> bool {
+        let zero = Vector::<L>::zero();
+        let terms = L::step_terms(&self.constants, &zero, &self.lagrangian.advected());
+        let (_, jacobian) = L::newton_system(&self.constants, &terms, &zero);
+        let (_, determinant) = Vector::<L>::solve(&jacobian, &zero);
+        is_finite(determinant) && !determinant.simd_eq(real(0.0)).any()
     }
 
     /// The declared Lagrangian.
@@ -175,7 +188,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         if largest == real(0.0) {
             return error;
         }
-        StepError::BeyondSolvable { step: reported(self.h), largest: reported(largest) }
+        StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(reported(largest)) }
     }
 
     /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
@@ -248,4 +261,10 @@ impl<L: DiscreteLagrangian> DiscreteEulerPoincare<L> {
 #[must_use]
 pub fn reconstruct<G: LieGroup>(g: &G, f: &G) -> G {
     g.advance(&f.increment())
+}
+
+/// Rounded towards zero, as a step a little larger than the largest wouldn't do.
+fn six_digits(step: f64) -> f64 {
+    let unit = 10.0_f64.powf(5.0 - step.abs().log10().floor());
+    (step * unit).trunc() / unit
 }

@@ -12,12 +12,13 @@
 extern crate self as liestep;
 
 pub mod conventions;
+pub mod groups;
+pub mod laws;
 
 mod advected;
 mod coordinates;
 mod error;
 mod flows;
-mod groups;
 mod inertia;
 mod lagrangian;
 mod newton;
@@ -30,11 +31,12 @@ mod stepper;
 #[path = "private.rs"]
 pub mod __private;
 
-pub use advected::Advected;
+pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 pub use coordinates::Coordinates;
 pub use error::{SetupError, StepError};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
-pub use groups::{LieGroup, NotARotation, SO3};
+pub use groups::{Generators, LieGroup, MatrixGroup, NotARotation, NotInGroup};
+pub use groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2};
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
 pub use liestep_macros::lagrangian;

@@ -3,10 +3,11 @@
 pub use core;
 pub use nalgebra;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector};
 
 pub use crate::scalar::real;
-use crate::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Real, SetupError};
+use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};
 
 /// A field of a declared Lagrangian: its value for the declared expression, and whether it can be used.
 pub trait Parameter {
@@ -38,25 +39,77 @@ pub fn validate_scalar<T: Real>(value: T, field: &'static str) -> Result<(), Set
     if crate::scalar::is_finite(value) { Ok(()) } else { Err(SetupError::Parameter { field, cause: "is not finite" }) }
 }
 
-macro_rules! matrix_parameter {
-    ($type:ty, $value:ty, $get:expr) => {
+/// The value of a vector or a matrix is itself, that of an inertia its matrix.
+impl<T: Real, const R: usize, const C: usize> Parameter for SMatrix<T, R, C> {
+    type Value = Self;
+
+    #[inline(always)]
+    fn value(&self) -> Self {
+        *self
+    }
+
+    fn is_finite(&self) -> bool {
+        self.iter().all(|&entry| crate::scalar::is_finite(entry))
+    }
+}
+
+macro_rules! inertia_parameter {
+    ($type:ty, $get:expr) => {
         impl<T: Real> Parameter for $type {
-            type Value = $value;
+            type Value = Matrix3<T>;
 
             #[inline(always)]
-            fn value(&self) -> $value {
+            fn value(&self) -> Matrix3<T> {
                 $get(self)
             }
 
             fn is_finite(&self) -> bool {
-                Parameter::value(self).iter().all(|&entry| crate::scalar::is_finite(entry))
+                Parameter::value(self).is_finite()
             }
         }
     };
 }
 
-matrix_parameter!(Vector3<T>, Vector3<T>, Clone::clone);
-matrix_parameter!(Matrix3<T>, Matrix3<T>, Clone::clone);
-matrix_parameter!(NonstandardInertia<T>, Matrix3<T>, |inertia: &Self| *inertia.as_matrix());
-matrix_parameter!(Inertia<T>, Matrix3<T>, |inertia: &Self| *inertia.as_matrix());
-matrix_parameter!(DiagonalNonstandardInertia<T>, Matrix3<T>, Self::to_matrix);
+inertia_parameter!(NonstandardInertia<T>, |inertia: &Self| *inertia.as_matrix());
+inertia_parameter!(Inertia<T>, |inertia: &Self| *inertia.as_matrix());
+inertia_parameter!(DiagonalNonstandardInertia<T>, Self::to_matrix);
+
+macro_rules! advected_parameter {
+    ($($name:ident $value:ident<$($argument:ident),+>),+) => {
+        $(impl<T: Real, const N: usize> Parameter for $name<T, N> {
+            type Value = $value<$($argument),+>;
+
+            #[inline(always)]
+            fn value(&self) -> Self::Value {
+                self.0
+            }
+
+            fn is_finite(&self) -> bool {
+                Parameter::is_finite(&self.0)
+            }
+        })+
+    };
+}
+
+advected_parameter!(
+    ContravariantVector SVector<T, N>,
+    ContravariantTensor SMatrix<T, N, N>,
+    CovariantTensor SMatrix<T, N, N>,
+    MixedTensor SMatrix<T, N, N>
+);
+
+impl<K: Generators<N, D>, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
+    /// Whether an expansion has the generators of this group, by rows.
+    #[must_use]
+    pub const fn has_generators(matrices: &[[[f64; N]; N]; D]) -> bool {
+        let mut place = 0;
+        while place < D * N * N {
+            let (k, row, column) = (place / (N * N), place / N % N, place % N);
+            if K::GENERATORS[k][row][column] != matrices[k][row][column] {
+                return false;
+            }
+            place += 1;
+        }
+        true
+    }
+}

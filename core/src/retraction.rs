@@ -4,6 +4,8 @@
 //! of a Newton solve is such a coordinate vector, and `F` is rebuilt from it in every step: composing small
 //! corrections onto the previous `F` would let its rounding errors pile up.
 
+mod matrix_group;
+
 use nalgebra::{Matrix3, RealField, Vector3};
 
 use crate::groups::{LieGroup, SO3};
@@ -29,14 +31,17 @@ pub trait Retraction<G: LieGroup> {
     /// Whether `ξ` lies so near to the identity that a solution there is the one that continues the identity.
     ///
     /// On SO(3) that is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
-    /// such solution. Farther out a solver looks closer.
+    /// such solution. On a [`MatrixGroup`](crate::MatrixGroup) it is what the
+    /// [`Generators`](crate::Generators::is_near_identity) say. Farther out a solver looks closer.
     fn is_near_identity(xi: &G::Vector) -> bool;
 }
 
 /// The Cayley map `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`.
 ///
-/// `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`; only half turns are out of reach. No transcendental function
-/// is evaluated, so a step in these coordinates gives the same bits on every IEEE machine.
+/// No transcendental function is evaluated, so a step in these coordinates gives the same bits on every IEEE machine.
+/// On SO(3) `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`, and only half turns are out of reach; elsewhere it is
+/// the elements with the eigenvalue −1. A group that the map leaves, like SL(3), is an error when the user's crate is
+/// built.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyRetraction;
 
@@ -72,7 +77,10 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 }
 
-/// The exponential map, `ξ = θ n`.
+/// The exponential map; on SO(3) `ξ = θ n`.
+///
+/// For a group declared by [`Generators`](crate::Generators) it is a series with scaling and squaring, exact to some
+/// roundings for `‖ξ̂‖` up to a few; coordinates are the principal logarithm, `None` where an eigenvalue is negative.
 #[derive(Clone, Copy, Debug)]
 pub struct ExponentialRetraction;
 

@@ -132,8 +132,9 @@ impl<L: DiscreteLagrangian> Stepper<L> {
         // guess saves one iteration of three.
         state.guess = step.coordinates + (step.coordinates - state.coordinates);
         // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Written as a selection
-        // this would lie on the way to the next iteration, and cost a tenth of a step.
-        if !L::Retraction::is_near_identity(&(step.coordinates * real(1.5))) {
+        // this would lie on the way to the next iteration, and cost a tenth of a step. Before the first step there was no
+        // increment but an estimate.
+        if state.steps == 0 || !L::Retraction::is_near_identity(&(step.coordinates * real(1.5))) {
             state.guess = step.coordinates;
         }
         state.coordinates = step.coordinates;

@@ -27,6 +27,13 @@ pub(crate) struct Schedule {
     pub(crate) step: f64,
     /// How many.
     pub(crate) steps: u64,
+}
+
+/// A stretch of a run whose samples are equally far apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stretch {
+    /// Where it ends, in steps from the start.
+    pub(crate) end: u64,
     /// A sample is kept every so many steps.
     pub(crate) stride: u64,
 }
@@ -57,7 +64,13 @@ impl std::error::Error for NoSchedule {}
 const MOST_STEPS: f64 = 1e10;
 
 /// More samples than a figure has room for, few enough for any memory.
-const MOST_SAMPLES: u64 = 50_000;
+const MOST_SAMPLES: u64 = 20_000;
+
+/// The beginning that is kept in detail, s: two flips of the free body.
+const BEGINNING: f64 = 20.0;
+
+/// The end that is kept in detail, s: from 100 s to 200 s in the thesis.
+pub(crate) const ENDING: f64 = 100.0;
 
 impl Common {
     /// The whole number of steps nearest to the time asked for.
@@ -70,9 +83,7 @@ impl Common {
         if steps > MOST_STEPS {
             return Err(NoSchedule::Endless { steps });
         }
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 1 and MOST_STEPS
-        let steps = steps as u64;
-        Ok(Schedule { step, steps, stride: steps.div_ceil(MOST_SAMPLES) })
+        Ok(Schedule { step, steps: whole(steps) })
     }
 
     /// The folder asked for, or `out/` and the example's name.
@@ -92,6 +103,25 @@ impl Schedule {
     pub(crate) fn end(&self) -> f64 {
         self.time_after(self.steps)
     }
+
+    /// The beginning, the middle and the end, each with as many samples as can be drawn.
+    pub(crate) fn stretches(&self) -> [Stretch; 3] {
+        let beginning = whole(BEGINNING / self.step).min(self.steps);
+        let ending = self.steps.saturating_sub(whole(ENDING / self.step)).max(beginning);
+        let mut start = 0;
+        [beginning, ending, self.steps].map(|end| {
+            let stride = (end - start).div_ceil(MOST_SAMPLES).max(1);
+            start = end;
+            Stretch { end, stride }
+        })
+    }
+}
+
+/// The nearest whole number of steps; beyond the most that are allowed, that.
+fn whole(steps: f64) -> u64 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
+    let whole = steps.round().clamp(0.0, MOST_STEPS) as u64;
+    whole
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -24,3 +24,8 @@ pub(crate) fn aligned(rows: &[Vec<String>]) -> String {
 pub(crate) fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:.1e}") } else { "not finite".to_owned() }
 }
+
+/// A number as a person would write it, without the rounding errors of the last digits.
+pub(crate) fn short(value: f64) -> String {
+    format!("{value:.9e}").parse::<f64>().unwrap_or(value).to_string()
+}

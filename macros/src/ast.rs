@@ -5,7 +5,8 @@ use std::rc::Rc;
 use proc_macro2::Span;
 use syn::{Expr, Ident, ItemStruct, Path};
 
-use crate::symbolic::{Function, Rational};
+use crate::group::Group;
+use crate::symbolic::{Function, Rational, Variance};
 
 /// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
 pub(crate) struct Declaration {
@@ -14,17 +15,32 @@ pub(crate) struct Declaration {
     pub(crate) root: Path,
     /// The group as written.
     pub(crate) group: Path,
+    /// What is known of it.
+    pub(crate) structure: Group,
     pub(crate) advected: Vec<AdvectedParameter>,
-    pub(crate) l_d: Expr,
+    /// `None` where a mistake elsewhere hides what it means.
+    pub(crate) l_d: Option<Expr>,
     pub(crate) fields: Vec<Field>,
+    /// The fields whose type has no meaning.
+    pub(crate) unreadable: Vec<String>,
     pub(crate) scalar: Scalar,
 }
 
 /// `w = up`: `w` in the expression is the field `up`, carried by the group.
 pub(crate) struct AdvectedParameter {
     pub(crate) name: Ident,
-    /// The index of the field.
-    pub(crate) field: usize,
+    /// The index of the field; `None` where there is no such field of a known type.
+    pub(crate) field: Option<usize>,
+}
+
+impl Declaration {
+    /// What an advected parameter's field promises; a plain vector after a mistake.
+    pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
+        let size = self.structure.size;
+        let field = self.advected.get(index).and_then(|w| self.fields.get(w.field?));
+        let kind = field.map(|field| field.kind).filter(|kind| kind.is_carried_by(size));
+        kind.unwrap_or(FieldKind::Vector(size))
+    }
 }
 
 /// A field of the struct.
@@ -37,8 +53,12 @@ pub(crate) struct Field {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FieldKind {
     Scalar,
-    Vector,
-    Matrix,
+    /// Rows.
+    Vector(usize),
+    /// Rows, as many columns.
+    Matrix(usize),
+    /// An advected parameter with its kind in its type.
+    Advected(Variance, usize),
     /// `NonstandardInertia`, `Inertia`.
     SymmetricInertia,
     /// `DiagonalNonstandardInertia`.
@@ -46,11 +66,31 @@ pub(crate) enum FieldKind {
 }
 
 impl FieldKind {
+    /// How the group moves it: a plain vector is a covector.
+    pub(crate) fn variance(self) -> Variance {
+        match self {
+            Self::Advected(variance, _) => variance,
+            _ => Variance::Covector,
+        }
+    }
+
+    /// Whether a group of matrices of this size can move it.
+    pub(crate) fn is_carried_by(self, size: usize) -> bool {
+        matches!(self, Self::Vector(rows) | Self::Advected(_, rows) if rows == size)
+    }
+
+    /// Whether its value is wrapped in a type that says how the group moves it.
+    pub(crate) fn is_wrapped(self) -> bool {
+        matches!(self, Self::Advected(..))
+    }
+
     pub(crate) fn shape(self) -> Shape {
         match self {
             Self::Scalar => Shape::Scalar,
-            Self::Vector => Shape::Matrix(3, 1),
-            Self::Matrix | Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
+            Self::Vector(rows) => Shape::Matrix(rows, 1),
+            Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
+            Self::Matrix(rows) => Shape::Matrix(rows, rows),
+            Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
         }
     }
 }

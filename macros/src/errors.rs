@@ -1,6 +1,7 @@
 //! Errors accumulate, so that one compilation reports all mistakes of a declaration.
 
 use proc_macro2::{Span, TokenStream};
+use quote::ToTokens;
 
 /// The mistakes found so far.
 #[derive(Debug, Default)]
@@ -10,6 +11,11 @@ impl Errors {
     /// A mistake at a token: what is wrong, then what to write.
     pub(crate) fn push(&mut self, span: Span, message: impl std::fmt::Display) {
         self.0.push(syn::Error::new(span, message));
+    }
+
+    /// A mistake that a whole expression or type makes.
+    pub(crate) fn push_over(&mut self, tokens: impl ToTokens, message: impl std::fmt::Display) {
+        self.0.push(syn::Error::new_spanned(tokens, message));
     }
 
     pub(crate) fn extend(&mut self, error: syn::Error) {
@@ -27,34 +33,35 @@ impl Errors {
 
 /// ` (did you mean …?)` for the known name nearest to an unknown one, if it is near.
 pub(crate) fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let length = unknown.chars().count();
     let nearest = known.into_iter().map(|name| (distance(unknown, name), name)).min();
     match nearest {
-        Some((distance, name)) if distance <= 1 + unknown.chars().count() / 3 => format!("; did you mean `{name}`?"),
+        // A name of which every letter differs is another name.
+        Some((distance, name)) if distance < length && distance <= 1 + length / 3 => {
+            format!("; did you mean `{name}`?")
+        }
         _ => String::new(),
     }
 }
 
-/// Levenshtein's distance, with a change of case for free but for a tie.
+/// Levenshtein's distance with swaps of neighbours, and a change of case for free.
 fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.to_lowercase().chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.to_lowercase().chars().enumerate() {
-        let mut diagonal = i;
-        let mut left = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let above = row.get(j + 1).copied().unwrap_or(0);
-            let best = (diagonal + usize::from(x != *y)).min(above + 1).min(left + 1);
-            if let Some(cell) = row.get_mut(j) {
-                *cell = left;
+    let [a, b] = [a, b].map(|name| name.to_lowercase().chars().collect::<Vec<char>>());
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut best = replaced.min(last[j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(before[j - 2] + 1);
             }
-            diagonal = above;
-            left = best;
+            row.push(best);
         }
-        if let Some(cell) = row.last_mut() {
-            *cell = left;
-        }
+        before = std::mem::replace(&mut last, row);
     }
-    row.last().copied().unwrap_or(0)
+    last[b.len()]
 }
 
 #[cfg(test)]
@@ -64,10 +71,14 @@ mod tests {
     #[test]
     fn distances() {
         assert_eq!(distance("rho", "rho"), 0);
-        assert_eq!(distance("roh", "rho"), 2);
+        assert_eq!(distance("roh", "rho"), 1);
+        assert_eq!(distance("J_D", "J_d"), 0);
         assert_eq!(distance("kitten", "sitting"), 3);
         assert_eq!(distance("", "abc"), 3);
         assert_eq!(suggestion("rh", ["m", "rho", "g"]), "; did you mean `rho`?");
+        assert_eq!(suggestion("roh", ["h", "rho"]), "; did you mean `rho`?");
+        assert_eq!(suggestion("f", ["m", "F"]), "; did you mean `F`?");
+        assert_eq!(suggestion("w", ["m", "F"]), "");
         assert_eq!(suggestion("velocity", ["m", "rho"]), "");
     }
 }

@@ -1,25 +1,23 @@
 //! What stands in for the implementation after a mistake, so that one mistake gives one error.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote_spanned;
-use syn::ItemStruct;
+use syn::{Item, ItemStruct};
 
+use crate::emit::Header;
+use crate::errors::Errors;
 use crate::parse;
 
 /// An implementation that type-checks wherever the real one would be used.
-pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStream {
+pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStream {
+    let Some(item) = as_struct(item) else { return TokenStream::new() };
     let span = Span::mixed_site();
-    let root = parse::root(arguments);
-    let mut silent = crate::errors::Errors::default();
-    // Without a readable Lagrangian the shape of the advected parameters is still in the arguments, if they parse.
-    let declaration = parse::parse(arguments.clone(), item.clone(), &mut silent);
-    let header = declaration.as_ref().map(crate::emit::Header::new);
-    let Some(header) = header else {
-        return TokenStream::new();
-    };
+    let mut silent = Errors::default();
+    let header = Header::new(&parse::parse(without_lagrangian(arguments), item, &mut silent));
+    let root = &header.root;
     let none = quote_spanned!(span=> ());
     let types = header.types(&none, &none);
-    let (vector, square, scalar) = (header.vector(), header.square(), &header.scalar);
+    let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let implementation = header.implementation();
     let core = quote_spanned!(span=> #root::__private::core);
     let of_increment = [
@@ -32,7 +30,7 @@ pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStrea
     ];
     let of_increment = of_increment.map(|(name, result)| {
         let name = syn::Ident::new(name, span);
-        quote_spanned!(span=> fn #name(&self, _: &#square, _: &Self::Advected, _: #scalar) -> #result { loop {} })
+        quote_spanned!(span=> fn #name(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #result { loop {} })
     });
     quote_spanned! {span=>
         #[automatically_derived]
@@ -50,7 +48,31 @@ pub(crate) fn stand_in(arguments: &TokenStream, item: &ItemStruct) -> TokenStrea
             fn kick_before(_: &Self::Constants, _: &Self::Advected) -> #vector { loop {} }
             fn step_terms(_: &Self::Constants, _: &#vector, _: &Self::Advected) -> Self::StepTerms {}
             fn newton_system(_: &Self::Constants, _: &Self::StepTerms, _: &#vector) -> (#vector, #square) { loop {} }
-            fn kick_after(_: &Self::Constants, _: &#square, _: &Self::Advected) -> #vector { loop {} }
+            fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
         }
     }
+}
+
+/// The struct, or one of the same name in the place of an enum.
+fn as_struct(item: &TokenStream) -> Option<ItemStruct> {
+    match syn::parse2(item.clone()).ok()? {
+        Item::Struct(item) => Some(item),
+        Item::Enum(item) => {
+            let name = &item.ident;
+            Some(ItemStruct { generics: item.generics, ..syn::parse_quote!(struct #name;) })
+        }
+        _ => None,
+    }
+}
+
+/// The other arguments: the Lagrangian may be too large to be parsed.
+fn without_lagrangian(arguments: TokenStream) -> TokenStream {
+    let mut is_lagrangian = false;
+    let other = arguments.into_iter().filter(|token| {
+        is_lagrangian |= matches!(token, TokenTree::Ident(key) if key == "l_d");
+        let is_other = !is_lagrangian;
+        is_lagrangian &= !matches!(token, TokenTree::Punct(comma) if comma.as_char() == ',');
+        is_other
+    });
+    other.collect()
 }

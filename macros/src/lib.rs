@@ -1,7 +1,7 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
 //! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+//! `lib → expand → {parse, check, lower, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
 
 mod ast;
 mod check;
@@ -9,7 +9,9 @@ mod derive;
 mod emit;
 mod errors;
 mod expand;
+mod explain;
 mod fallback;
+mod group;
 mod lower;
 mod parse;
 mod scalar;
@@ -21,6 +23,7 @@ mod verify;
 /// ```text
 /// #[lagrangian(
 ///     group = SO3,                    the group that F belongs to
+///     generators = […],               its generators, row by row, if it is a group of your own
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings
 ///     crate = path,                   where liestep is found, if not at `::liestep`
@@ -33,12 +36,14 @@ mod verify;
 /// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
 /// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, `vee(A)`, indexing, and decimal literals.
 ///
-/// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>`, `NonstandardInertia`, `DiagonalNonstandardInertia` and
-/// `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct. Their types say what may be
-/// used: an inertia is symmetric, a diagonal one has six zeros.
+/// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
+/// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct.
+/// Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. An advected vector is a
+/// covector, moved by `ρ(f)ᵀ`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and `MixedTensor` are the
+/// other kinds.
 ///
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
 pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(&arguments.into(), &item.into()).into()
+    expand::expand(arguments.into(), &item.into()).into()
 }

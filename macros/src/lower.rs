@@ -26,15 +26,17 @@ pub(crate) struct Lowered {
 pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Lowered> {
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
+    let size = declaration.structure.size;
+    let structure = if declaration.structure.orthogonal { Structure::Orthogonal } else { Structure::General };
     let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
-    let increment = symbols.add("F", (3, 3), Structure::Orthogonal, Stage::Iteration);
+    let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
     names.insert(Name::Step, step);
     names.insert(Name::Increment, increment);
     for (index, field) in declaration.fields.iter().enumerate() {
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
-            FieldKind::Vector => ((3, 1), Structure::General),
-            FieldKind::Matrix => ((3, 3), Structure::General),
+            FieldKind::Vector(_) | FieldKind::Advected(..) => (ambient(field.kind.shape()), Structure::General),
+            FieldKind::Matrix(rows) => ((rows, rows), Structure::General),
             FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
         };
@@ -43,9 +45,11 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
     }
     let mut advected = Vec::new();
     for (index, w) in declaration.advected.iter().enumerate() {
-        let id = symbols.add(w.name.unraw().to_string(), (3, 1), Structure::General, Stage::Step);
+        let kind = declaration.advected_kind(index);
+        let shape = ambient(kind.shape());
+        let id = symbols.add(w.name.unraw().to_string(), shape, Structure::General, Stage::Step);
         names.insert(Name::Advected(index), id);
-        advected.push(id);
+        advected.push((id, kind.variance()));
     }
     let mut lowering = Lowering { symbols: &symbols, names: &names, known: BTreeMap::new() };
     match lowering.expression(tree) {
@@ -54,7 +58,10 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
                 .push(tree.span, "the coefficients leave the range of exact arithmetic: make the large numbers fields");
             None
         }
-        Ok(l_d) => Some(Lowered { declared: Declared { symbols, l_d, increment, step, advected }, names }),
+        Ok(l_d) => Some(Lowered {
+            declared: Declared { group: declaration.structure.clone(), symbols, l_d, increment, step, advected },
+            names,
+        }),
         Err(TooLarge(span)) => {
             errors.push(
                 span,
@@ -95,7 +102,7 @@ impl Lowering<'_> {
         let symbols = self.symbols;
         let result = match &tree.kind {
             Kind::Number(value) => Expression::rational(*value),
-            Kind::Identity => Expression::identity(3),
+            Kind::Identity => Expression::identity(ambient(tree.shape).0),
             Kind::Name(name) => match self.names.get(name) {
                 Some(&id) => Expression::symbol(id, self.symbols),
                 None => Expression::zero(ambient(tree.shape)),

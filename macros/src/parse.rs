@@ -1,89 +1,27 @@
 //! The attribute's arguments and the struct's fields.
 
-use proc_macro2::{Span, TokenStream, TokenTree};
+mod group;
+mod size;
+
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::spanned::Spanned as _;
-use syn::{Expr, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, parenthesized};
+use syn::{
+    Expr, ExprArray, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, braced,
+    parenthesized,
+};
 
 use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
 use crate::errors::{Errors, suggestion};
+use crate::symbolic::Variance;
 
-/// More tokens than this, or deeper nesting, are no Lagrangian that a person wrote, and parsing them recursively could
-/// overflow the compiler's stack.
-const MOST_TOKENS: usize = 5_000;
-const DEEPEST: usize = 64;
+pub(crate) use size::check_size;
 
-/// Words after which a part of an expression or of a type follows that may begin with such a word again.
-const NESTING_WORDS: [&str; 20] = [
-    "as", "async", "await", "break", "const", "dyn", "else", "fn", "for", "if", "impl", "loop", "match", "move", "mut",
-    "raw", "return", "unsafe", "while", "yield",
-];
-
-/// A stream of tokens within brackets, half read.
-struct Open {
-    tokens: proc_macro2::token_stream::IntoIter,
-    /// How many brackets are around it.
-    depth: usize,
-    /// How many operators in a row were last.
-    operators: usize,
-    /// How many tokens since the last `;` or `,` may each nest what follows.
-    nesting: usize,
-}
-
-impl Open {
-    fn new(tokens: TokenStream, depth: usize) -> Self {
-        Self { tokens: tokens.into_iter(), depth, operators: 0, nesting: 0 }
-    }
-
-    fn count(&mut self, token: &TokenTree) {
-        match token {
-            TokenTree::Punct(operator) if [';', ','].contains(&operator.as_char()) => {
-                (self.operators, self.nesting) = (0, 0);
-            }
-            TokenTree::Punct(operator) => {
-                self.operators += 1;
-                self.nesting += usize::from(['=', '|', '<', '@', '#', '\''].contains(&operator.as_char()));
-            }
-            TokenTree::Ident(word) => {
-                self.operators = 0;
-                self.nesting += usize::from(NESTING_WORDS.iter().any(|nesting| word == nesting));
-            }
-            TokenTree::Group(_) | TokenTree::Literal(_) => self.operators = 0,
-        }
-    }
-
-    fn is_too_deep(&self) -> bool {
-        self.depth.max(self.operators).max(self.nesting) > DEEPEST
-    }
-}
-
-/// Reports arguments that are too large to be parsed.
-pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) {
-    let mut open = vec![Open::new(arguments.clone(), 0)];
-    let mut count = 0;
-    while let Some(mut innermost) = open.pop() {
-        let Some(token) = innermost.tokens.next() else { continue };
-        count += 1;
-        if count > MOST_TOKENS {
-            errors.push(
-                token.span(),
-                format!("the Lagrangian has more than {MOST_TOKENS} tokens: the expression is too large"),
-            );
-            return;
-        }
-        innermost.count(&token);
-        if innermost.is_too_deep() {
-            errors.push(token.span(), format!("nested more than {DEEPEST} deep: bind parts with `let`"));
-            return;
-        }
-        let inside = match token {
-            TokenTree::Group(group) => Some(Open::new(group.stream(), innermost.depth + 1)),
-            _ => None,
-        };
-        open.push(innermost);
-        open.extend(inside);
-    }
+/// The annotated struct.
+pub(crate) fn item(item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
+    let parsed = syn::parse2(item.clone());
+    parsed.map_err(|error| errors.push(error.span(), "`lagrangian` belongs on a struct with named fields")).ok()
 }
 
 /// The arguments as written.
@@ -93,64 +31,64 @@ struct Arguments {
     advected: Vec<(Ident, Ident)>,
     l_d: Option<Expr>,
     root: Option<Path>,
+    generators: Option<ExprArray>,
 }
 
-const KEYS: [&str; 4] = ["group", "advected", "l_d", "crate"];
-
-/// The path of the crate that expansions name: as given, or `::liestep`.
-pub(crate) fn root(arguments: &TokenStream) -> Path {
-    let mut ignored = Errors::default();
-    let parsed = (|input: ParseStream| Ok(arguments_from(input, &mut ignored))).parse2(arguments.clone());
-    parsed.ok().and_then(|arguments| arguments.root).unwrap_or_else(default_root)
-}
+const KEYS: [&str; 5] = ["group", "advected", "l_d", "generators", "crate"];
 
 fn default_root() -> Path {
     syn::parse_quote!(::liestep)
 }
 
-/// The declaration, or `None` if there is nothing to go on with.
-pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Option<Declaration> {
-    let parser = |input: ParseStream| Ok(arguments_from(input, errors));
-    let arguments = match parser.parse2(arguments) {
-        Ok(arguments) => arguments,
-        Err(error) => {
-            errors.extend(error);
-            return None;
-        }
+/// The declaration as far as it can be read.
+pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
+    // In braces that span the last token, so that what ends too early is reported there.
+    let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
+    let mut braces = Group::new(Delimiter::Brace, arguments);
+    braces.set_span(last);
+    let parser = |input: ParseStream| {
+        let content;
+        braced!(content in input);
+        Ok(arguments_from(&content, errors))
     };
-    match &arguments.group {
-        None => errors.push(Span::call_site(), "the group is missing: write `group = SO3`"),
-        Some(path) if path.segments.last().is_none_or(|segment| segment.ident != "SO3") => {
-            errors.push(path.span(), "this group isn't known: write `group = SO3`");
-        }
-        Some(_) => {}
-    }
-    if arguments.l_d.is_none() {
+    let arguments = parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
+        errors.extend(error);
+        Arguments::default()
+    });
+    // What seems to be missing may stand in an argument that couldn't be read.
+    let is_readable = errors.is_empty();
+    let root = arguments.root.unwrap_or_else(default_root);
+    let (group, structure) = group::group(arguments.group, arguments.generators.as_ref(), &root, is_readable, errors);
+    if arguments.l_d.is_none() && is_readable {
         errors.push(Span::call_site(), "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`");
     }
-    let fields = fields(&item, errors);
+    let (fields, unreadable) = fields(&item, errors);
     let scalar = scalar(&item, errors);
-    let advected = advected(&arguments.advected, &fields, errors);
-    Some(Declaration {
-        root: arguments.root.unwrap_or_else(default_root),
-        group: arguments.group.unwrap_or_else(|| syn::parse_quote!(SO3)),
+    let advected = advected(&arguments.advected, &fields, &unreadable, structure.size, errors);
+    let has_names = matches!(item.fields, Fields::Named(_));
+    Declaration {
+        root,
+        group,
+        structure,
         advected,
-        l_d: arguments.l_d?,
+        l_d: arguments.l_d.filter(|_| is_readable && has_names),
         fields: fields.into_iter().map(|(field, _)| field).collect(),
+        unreadable,
         scalar,
         item,
-    })
+    }
 }
 
-/// Reads `key = value` pairs; after a syntax error the rest is skipped, as nothing tells where the next key begins.
+/// Reads `key = value` pairs; after a syntax error it goes on behind the next comma.
 fn arguments_from(input: ParseStream, errors: &mut Errors) -> Arguments {
     let mut arguments = Arguments::default();
     while !input.is_empty() {
         if let Err(error) = argument(input, &mut arguments, errors) {
             errors.extend(error);
-            // Whatever is left would only be reported as unexpected.
-            let _ = input.parse::<TokenStream>();
-            break;
+            while !input.is_empty() && !input.peek(Token![,]) {
+                let _ = input.parse::<TokenTree>();
+            }
+            let _ = input.parse::<Token![,]>();
         }
     }
     arguments
@@ -179,6 +117,11 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             input.parse::<Token![=]>()?;
             arguments.l_d = Some(input.parse()?);
         }
+        "generators" => {
+            once(arguments.generators.is_some());
+            input.parse::<Token![=]>()?;
+            arguments.generators = Some(input.parse()?);
+        }
         "advected" => {
             if !input.peek(syn::token::Paren) {
                 return Err(syn::Error::new(
@@ -188,13 +131,18 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             }
             let content;
             parenthesized!(content in input);
-            for (name, field) in content.parse_terminated(advected_pair, Token![,])? {
-                arguments.advected.push((name, field));
-            }
+            let pairs = content.parse_terminated(advected_pair, Token![,]);
+            // What is left after a mistake would be reported as unexpected.
+            content.parse::<TokenStream>()?;
+            arguments.advected.extend(pairs?);
         }
         other => {
-            let message = format!("`{other}` isn't an argument of `lagrangian`{}", suggestion(other, KEYS));
-            return Err(syn::Error::new(key.span(), format!("{message}\nknown: group, advected, l_d, crate")));
+            let near = suggestion(other, KEYS);
+            let list = if near.is_empty() { format!("\nknown: {}", KEYS.join(", ")) } else { String::new() };
+            return Err(syn::Error::new(
+                key.span(),
+                format!("`{other}` isn't an argument of `lagrangian`{near}{list}"),
+            ));
         }
     }
     if !input.is_empty() {
@@ -213,25 +161,27 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
     Ok((name, input.parse()?))
 }
 
-fn fields(item: &ItemStruct, errors: &mut Errors) -> Vec<(Field, Span)> {
+/// The fields with the place of their types, and the names of those whose type has no meaning.
+fn fields(item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<String>) {
     let Fields::Named(named) = &item.fields else {
         errors.push(item.ident.span(), "a Lagrangian is a struct with named fields: its parameters");
-        return Vec::new();
+        return Default::default();
     };
-    let mut fields = Vec::new();
+    let (mut fields, mut unreadable) = (Vec::new(), Vec::new());
     for field in &named.named {
         let Some(name) = field.ident.clone() else { continue };
-        let kind = field_kind(&field.ty, item).unwrap_or_else(|| {
-            errors.push(
-                field.ty.span(),
+        if let Some(kind) = field_kind(&field.ty, item) {
+            fields.push((Field { name, kind }, field.ty.span()));
+        } else {
+            unreadable.push(name.unraw().to_string());
+            errors.push_over(
+                &field.ty,
                 "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Matrix3<f64>, NonstandardInertia, \
                  DiagonalNonstandardInertia or Inertia (or the same with the struct's type parameter)",
             );
-            FieldKind::Scalar
-        });
-        fields.push((Field { name, kind }, field.ty.span()));
+        }
     }
-    fields
+    (fields, unreadable)
 }
 
 fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {
@@ -248,13 +198,34 @@ fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     let name = last_segment(ty)?.ident.to_string();
     Some(match name.as_str() {
         "f64" | "f32" => FieldKind::Scalar,
-        "Vector3" => FieldKind::Vector,
-        "Matrix3" => FieldKind::Matrix,
+        "Vector2" | "Vector3" | "Vector4" => FieldKind::Vector(digit(&name)?),
+        "Matrix2" | "Matrix3" | "Matrix4" => FieldKind::Matrix(digit(&name)?),
+        "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
+        "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
+        "CovariantTensor" => FieldKind::Advected(Variance::Covariant, length(ty)?),
+        "MixedTensor" => FieldKind::Advected(Variance::Mixed, length(ty)?),
         "NonstandardInertia" | "Inertia" => FieldKind::SymmetricInertia,
         "DiagonalNonstandardInertia" => FieldKind::DiagonalInertia,
         _ if item.generics.type_params().any(|parameter| parameter.ident == name) => FieldKind::Scalar,
         _ => return None,
     })
+}
+
+/// The number in a type's arguments, `3` in `MixedTensor<f64, 3>`.
+fn length(ty: &Type) -> Option<usize> {
+    let PathArguments::AngleBracketed(arguments) = &last_segment(ty)?.arguments else { return None };
+    match arguments.args.last()? {
+        GenericArgument::Const(Expr::Lit(literal)) => match &literal.lit {
+            syn::Lit::Int(integer) => integer.base10_parse().ok(),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The number that a type's name ends with.
+fn digit(name: &str) -> Option<usize> {
+    usize::try_from(name.chars().last()?.to_digit(10)?).ok()
 }
 
 /// The scalar that a type is made of; an inertia without arguments has `f64`.
@@ -296,7 +267,13 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
-fn advected(pairs: &[(Ident, Ident)], fields: &[(Field, Span)], errors: &mut Errors) -> Vec<AdvectedParameter> {
+fn advected(
+    pairs: &[(Ident, Ident)],
+    fields: &[(Field, Span)],
+    unreadable: &[String],
+    size: usize,
+    errors: &mut Errors,
+) -> Vec<AdvectedParameter> {
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for (name, field) in pairs {
         let unraw = name.unraw().to_string();
@@ -310,16 +287,19 @@ fn advected(pairs: &[(Ident, Ident)], fields: &[(Field, Span)], errors: &mut Err
             continue;
         }
         let wanted = field.unraw().to_string();
-        let Some(index) = field_names.iter().position(|known| *known == wanted) else {
+        let index = field_names.iter().position(|known| *known == wanted);
+        if index.is_none() && !unreadable.contains(&wanted) {
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
-            continue;
-        };
-        if let Some((found, span)) = fields.get(index)
-            && found.kind != FieldKind::Vector
+        }
+        if let Some((found, span)) = index.and_then(|index| fields.get(index))
+            && !found.kind.is_carried_by(size)
         {
             let shape = found.kind.shape().describe();
-            errors.push(*span, format!("`{wanted}` is {shape}, but SO3 carries a vector of 3: use Vector3<f64>"));
+            errors.push(
+                *span,
+                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>"),
+            );
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index });
     }

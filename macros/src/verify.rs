@@ -8,9 +8,10 @@ use std::rc::Rc;
 
 use crate::ast::{Declaration, FieldKind, Kind, Name, Shape, Tree};
 use crate::derive::Derived;
+use crate::group::Group;
 use crate::lower::Lowered;
 use crate::scalar::{Graph, Input, components, square};
-use crate::symbolic::SymbolId;
+use crate::symbolic::{SymbolId, Variance};
 
 /// Central differences at this spacing are right to about eight digits.
 const SPACING: f64 = 1e-5;
@@ -77,20 +78,22 @@ impl Value {
         Self { rows: 3, columns: 3, entries }
     }
 
-    fn unit(k: usize) -> Self {
-        Self::new(3, 1, |row, _| if row == k { 1.0 } else { 0.0 })
-    }
-
-    fn identity() -> Self {
-        Self::new(3, 3, |row, column| if row == column { 1.0 } else { 0.0 })
+    fn identity(size: usize) -> Self {
+        Self::new(size, size, |row, column| if row == column { 1.0 } else { 0.0 })
     }
 }
 
-/// `exp(s E_k)`.
-fn turn(k: usize, s: f64) -> Value {
-    let hat = Value::hat(&Value::unit(k));
-    let square = hat.times(&hat);
-    Value::identity().zip(&hat, |i, a| i + s.sin() * a).zip(&square, |i, a| i + (1.0 - s.cos()) * a)
+/// `exp(s E_k)`, by its series: `s` is small.
+fn turn(group: &Group, k: usize, s: f64) -> Value {
+    let size = group.size;
+    let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
+    let step = Value { rows: size, columns: size, entries: entries.iter().map(|entry| s * entry.to_f64()).collect() };
+    let (mut sum, mut power) = (Value::identity(size), Value::identity(size));
+    for order in 1..12 {
+        power = power.times(&step).map(|x| x / f64::from(order));
+        sum = sum.zip(&power, |x, y| x + y);
+    }
+    sum
 }
 
 /// Numbers for all names.
@@ -98,7 +101,7 @@ struct Sample<'a> {
     derived: &'a Derived,
     values: BTreeMap<Name, Value>,
     symbols: BTreeMap<SymbolId, Name>,
-    advected: Vec<Name>,
+    advected: Vec<(Name, Variance)>,
 }
 
 impl<'a> Sample<'a> {
@@ -112,8 +115,11 @@ impl<'a> Sample<'a> {
         };
         let mut values = BTreeMap::new();
         values.insert(Name::Step, Value::scalar(0.1 + 0.1 * number()));
-        let angles = [number(), number(), number()].map(|x| 0.6 * x - 0.3);
-        let f = (0..3).fold(Value::identity(), |f, k| f.times(&turn(k, angles[k])));
+        let group = &declaration.structure;
+        let f = (0..group.dimension()).fold(Value::identity(group.size), |f, k| {
+            let angle = 0.6 * number() - 0.3;
+            f.times(&turn(group, k, angle))
+        });
         values.insert(Name::Increment, f);
         for (index, field) in declaration.fields.iter().enumerate() {
             let value = match field.kind {
@@ -138,9 +144,11 @@ impl<'a> Sample<'a> {
         }
         let mut advected = Vec::new();
         for index in 0..declaration.advected.len() {
-            let entries = (0..3).map(|_| 2.0 * number() - 1.0).collect();
-            values.insert(Name::Advected(index), Value { rows: 3, columns: 1, entries });
-            advected.push(Name::Advected(index));
+            let kind = declaration.advected_kind(index);
+            let Shape::Matrix(rows, columns) = kind.shape() else { continue };
+            let entries = (0..rows * columns).map(|_| 2.0 * number() - 1.0).collect();
+            values.insert(Name::Advected(index), Value { rows, columns, entries });
+            advected.push((Name::Advected(index), kind.variance()));
         }
         let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
         Self { derived, values, symbols, advected }
@@ -149,7 +157,8 @@ impl<'a> Sample<'a> {
     fn disagreement(&self, tree: &Rc<Tree>) -> Option<&'static str> {
         let d = self.derived;
         let none = BTreeMap::new();
-        let first = d.directions.first;
+        let group = &d.group;
+        let identity = Value::identity(group.size);
         let evaluated = |graph: &Graph, outputs: &[crate::scalar::NodeId]| {
             graph.evaluate(outputs, &|input: Input| {
                 let value = self.symbols.get(&input.symbol).and_then(|name| self.values.get(name));
@@ -158,16 +167,17 @@ impl<'a> Sample<'a> {
         };
         let covector = |expression| {
             let mut graph = Graph::default();
-            let outputs = components(&mut graph, &d.symbols, &none, expression, first);
+            let outputs = components(&mut graph, d, &none, expression);
             evaluated(&graph, &outputs)
         };
         let mut graph = Graph::default();
-        let outputs = square(&mut graph, &d.symbols, &none, &d.jacobian, (first, d.directions.second));
+        let outputs = square(&mut graph, d, &none, &d.jacobian);
         let jacobian = evaluated(&graph, &outputs);
         let f = self.values.get(&Name::Increment)?.clone();
         // One function of two turns holds all terms: exp(sE_k) exp(tE_j) F and exp(sE_k)·w.
         let at = |k: usize, s: f64, j: usize, t: f64, w: f64| {
-            self.moved(tree, &turn(k, s).times(&turn(j, t)).times(&f), &turn(k, w))
+            let f = turn(group, k, s).times(&turn(group, j, t)).times(&f);
+            self.moved(tree, &f, (&turn(group, k, w), &turn(group, k, -w)))
         };
         let slope = |g: &dyn Fn(f64) -> f64| (g(SPACING) - g(-SPACING)) / (2.0 * SPACING);
         let size: f64 = jacobian.iter().map(|x| x.abs()).sum::<f64>() + at(0, 0.0, 0, 0.0, 0.0).abs();
@@ -178,9 +188,9 @@ impl<'a> Sample<'a> {
         };
         let (right, left) = (covector(&d.right_momentum), covector(&d.left_momentum));
         let (diamond, momentum) = (covector(&d.diamond), covector(&d.momentum));
-        for k in 0..3 {
-            let identity = Value::identity();
-            let on_the_right = |s: f64| self.moved(tree, &f.times(&turn(k, s)), &identity);
+        let dimension = group.dimension();
+        for k in 0..dimension {
+            let on_the_right = |s: f64| self.moved(tree, &f.times(&turn(group, k, s)), (&identity, &identity));
             let checks = [
                 ("right momentum map", &right, slope(&|s| at(k, s, 0, 0.0, 0.0))),
                 ("left momentum map", &left, slope(&on_the_right)),
@@ -192,12 +202,12 @@ impl<'a> Sample<'a> {
                     return Some(name);
                 }
             }
-            for j in 0..3 {
+            for j in 0..dimension {
                 // A second difference needs a wider spacing, and is less exact for it.
                 let e = 30.0 * SPACING;
                 let mixed = |s: f64, t: f64| at(k, s, j, t, s);
                 let second = (mixed(e, e) - mixed(e, -e) - mixed(-e, e) + mixed(-e, -e)) / (4.0 * e * e);
-                if differs(jacobian[3 * k + j], second, 100.0) {
+                if differs(jacobian[dimension * k + j], second, 100.0) {
                     return Some("Newton Jacobian");
                 }
             }
@@ -205,14 +215,20 @@ impl<'a> Sample<'a> {
         None
     }
 
-    /// `l_d` at another `F`, with all advected parameters turned.
-    fn moved(&self, tree: &Rc<Tree>, f: &Value, turned: &Value) -> f64 {
+    /// `l_d` at another `F`, with all advected parameters moved by a group element, given with its inverse.
+    fn moved(&self, tree: &Rc<Tree>, f: &Value, (g, inverse): (&Value, &Value)) -> f64 {
         let mut values = self.values.clone();
         values.insert(Name::Increment, f.clone());
-        for name in &self.advected {
-            if let Some(w) = self.values.get(name) {
-                values.insert(*name, turned.times(w));
-            }
+        for (name, variance) in &self.advected {
+            let Some(w) = self.values.get(name) else { continue };
+            let moved = match variance {
+                Variance::Vector => g.times(w),
+                Variance::Covector => inverse.transpose().times(w),
+                Variance::Contravariant => g.times(w).times(&g.transpose()),
+                Variance::Covariant => inverse.transpose().times(w).times(inverse),
+                Variance::Mixed => g.times(w).times(inverse),
+            };
+            values.insert(*name, moved);
         }
         Evaluation { values: &values, known: BTreeMap::new() }.of(tree).first()
     }
@@ -239,7 +255,10 @@ impl Evaluation<'_> {
     fn operation(&mut self, tree: &Rc<Tree>) -> Value {
         match &tree.kind {
             Kind::Number(value) => Value::scalar(value.to_f64()),
-            Kind::Identity => Value::identity(),
+            Kind::Identity => Value::identity(match tree.shape {
+                Shape::Matrix(rows, _) => rows,
+                Shape::Scalar => 1,
+            }),
             Kind::Name(name) => self.values.get(name).cloned().unwrap_or_else(|| Value::scalar(f64::NAN)),
             Kind::Negate(a) => self.of(a).map(|x| -x),
             Kind::Add(a, b) => self.of(a).zip(&self.of(b), |x, y| x + y),

@@ -17,12 +17,11 @@
 
 mod by_hand;
 mod runge_kutta;
-mod temporary;
 
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::{DiagonalNonstandardInertia, SO3, State, Stepper};
+use liestep::{DiagonalNonstandardInertia, SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.01;
@@ -33,12 +32,28 @@ const RHO: [f64; 3] = [0.0, 0.0, 1.0];
 const BATCH: u32 = 20_000;
 const ROUNDS: usize = 300;
 
-type Derived = Stepper<temporary::HeavyTop>;
+/// (3.13) in principal axes.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
+)]
+#[allow(non_snake_case)] // the letters of the field
+struct HeavyTop {
+    J_d: DiagonalNonstandardInertia,
+    m: f64,
+    g: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+type Derived = Stepper<HeavyTop>;
 type DerivedState = State<SO3, Vector3<f64>>;
 
 fn derived() -> (Derived, DerivedState) {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(MOMENTS.into()).expect("a body");
-    let top = temporary::HeavyTop { inertia, weight: WEIGHT, rho: RHO.into() };
+    let top = HeavyTop { J_d: inertia, m: 1.0, g: WEIGHT, rho: RHO.into(), up: Vector3::z() };
     let stepper = Stepper::new(top, STEP).expect("a usable step");
     let (tilt, precession, nutation, spin) = (0.8_f64, 3.0, 0.5, 10.0);
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(tilt, 0.0, 0.0));

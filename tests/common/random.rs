@@ -1,4 +1,4 @@
-//! Random states from a fixed seed: SplitMix64 of Steele, Lea and Flood (2014), so that a failure repeats.
+//! Random states from a fixed seed: `SplitMix64` of Steele, Lea and Flood (2014), so that a failure repeats.
 
 use liestep::{LieGroup as _, SO3};
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};

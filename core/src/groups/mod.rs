@@ -9,9 +9,45 @@
 //! | `ad_ξ η = (ξ̂ η̂ − η̂ ξ̂)^∨` | [`lie_bracket`](LieGroup::lie_bracket) |
 //! | `⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩` | [`lie_bracket_transpose`](LieGroup::lie_bracket_transpose) |
 
-mod so3;
+//!
+//! The groups, and what declares each:
+//!
+//! | group | | declared by |
+//! |---|---|---|
+//! | [`SO2`], [`SO3`] | rotations of the plane and of space | [`SO2Generators`]; SO(3) is written out |
+//! | [`SE2`], [`SE3`] | rigid motions | [`SE2Generators`], [`SE3Generators`] |
+//! | [`SU2`] | unit quaternions | [`SU2Generators`] |
+//! | [`SL2`] | area-preserving linear maps of the plane | [`SL2Generators`] |
+//! | [`Heisenberg`] | unitriangular matrices | [`HeisenbergGenerators`] |
+//! | [`R1`], [`R2`], [`R3`] | translations | [`TranslationGenerators`] |
+//!
+//! Any other is declared in the same way, outside of this crate too: see [`Generators`].
 
+mod exponential;
+mod generators;
+mod heisenberg;
+mod matrix_group;
+mod se2;
+mod se3;
+mod sl2;
+mod so2;
+mod so3;
+mod su2;
+mod translations;
+
+pub(crate) use exponential::{exponential, logarithm};
+pub use generators::{Generators, matrix};
+pub(crate) use generators::{inverse, is_closed_under_cayley};
+pub use heisenberg::{Heisenberg, HeisenbergGenerators};
+pub(crate) use matrix_group::basis;
+pub use matrix_group::{MatrixGroup, NotInGroup};
+pub use se2::{SE2, SE2Generators};
+pub use se3::{SE3, SE3Generators};
+pub use sl2::{SL2, SL2Generators};
+pub use so2::{SO2, SO2Generators};
 pub use so3::{NotARotation, SO3};
+pub use su2::{SU2, SU2Generators};
+pub use translations::{R1, R2, R3, TranslationGenerators};
 
 use core::fmt::Debug;
 

@@ -13,6 +13,9 @@ pub(crate) struct Figures<'a> {
 
 const HEADER: u32 = 84;
 
+/// For how long single flips can be told apart in a small panel, s.
+const DISTINCT: f64 = 200.0;
+
 impl Figures<'_> {
     /// Writes all of them.
     pub(crate) fn write(&self, output: &mut Output) -> Drawn {
@@ -49,18 +52,16 @@ impl Figures<'_> {
                 let lines = [0, 2, 1].map(|axis: usize| Line {
                     colour: axes[axis].1,
                     width: 3,
-                    points: series.values.iter().map(|q| (q.time, q.rates[axis])).collect(),
+                    points: series.bounded(|q| q.rates[axis]),
                 });
-                let (across, up) = ("time, s", "rad/s");
-                let (vertical, lines) = (Vertical::Linear, lines.into());
-                Panel { title: series.name, across, up, vertical, function: true, lines }.draw(place)?;
+                Panel::over_time(series.name, "rad/s", Vertical::Linear, lines.into()).draw(place)?;
             }
             Ok(())
         })
     }
 
     pub(crate) fn energy_ratio<'a>(&self, title: &'a str) -> Panel<'a> {
-        self.panel(title, "E / E(0)", Vertical::Linear, |s| s.relative_energy().collect())
+        self.panel(title, "E / E(0)", Vertical::Linear, Series::relative_energy)
     }
 
     fn energy_error<'a>(&self, title: &'a str) -> Panel<'a> {
@@ -71,10 +72,13 @@ impl Figures<'_> {
         self.panel(title, "|RΠ − RΠ(0)| / |Π(0)|", Vertical::Logarithmic, |s| s.momentum_error().collect())
     }
 
-    /// The rate about the middle axis, of all methods.
+    /// The rate about the middle axis, of all methods, while flips can be told apart.
     pub(crate) fn flips<'a>(&self, title: &'a str) -> Panel<'a> {
-        let rate = |s: &Series| s.values.iter().map(|q| (q.time, q.rates.y)).collect();
-        self.panel(title, "Ω_Y, rad/s", Vertical::Linear, rate)
+        self.panel(title, "Ω_Y, rad/s", Vertical::Linear, |s| {
+            let mut rates = s.bounded(|q| q.rates.y);
+            rates.retain(|(time, _)| *time <= DISTINCT);
+            rates
+        })
     }
 
     fn setting(&self) -> String {
@@ -99,6 +103,6 @@ impl Figures<'_> {
     ) -> Panel<'a> {
         // The variational line comes first in the legend and last, on top, in the drawing.
         let lines = self.series.iter().rev().map(|s| Line { colour: s.colour, width: 3, points: points(s) });
-        Panel { title, across: "time, s", up, vertical, function: true, lines: lines.collect() }
+        Panel::over_time(title, up, vertical, lines.collect())
     }
 }

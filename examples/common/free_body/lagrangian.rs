@@ -1,12 +1,12 @@
 //! The declaration that the integrator is made from.
 
-use liestep::DiagonalNonstandardInertia;
+use liestep::{DiagonalNonstandardInertia, SO3, lagrangian};
 
 /// A free rigid body: the kinetic part of the reduced discrete Lagrangian \[RDAE, (3.13)\].
-// #[liestep::lagrangian(
-//     group = SO3,
-//     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h),
-// )]
+#[lagrangian(
+    group = SO3,
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h),
+)]
 #[allow(non_snake_case)] // the paper's name
 #[derive(Clone, Debug)]
 pub(crate) struct FreeBody {

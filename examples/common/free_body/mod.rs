@@ -5,5 +5,3 @@ pub(crate) mod figures;
 pub(crate) mod lagrangian;
 pub(crate) mod overview;
 pub(crate) mod quantities;
-
-mod lagrangian_by_hand;

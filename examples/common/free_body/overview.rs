@@ -2,8 +2,9 @@
 
 use super::figures::Figures;
 use crate::common::plot::{Drawn, Path, px, render, sphere};
+use crate::common::table::short;
 
-/// About two flips: more would cover their own path.
+/// Two flips, s: more would cover their own path.
 const SHOWN: f64 = 19.0;
 
 /// The path of the middle axis on the sphere, the flips, and what is conserved.
@@ -18,9 +19,10 @@ pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
         let shown = ours.values.iter().take_while(|q| q.time <= SHOWN);
         let points: Vec<_> = shown.map(|q| q.axis).collect();
         let axis = (ours.values[0].spatial.normalize(), "RΠ");
-        let title = "Path of the middle axis in space, two flips";
-        sphere(&top, &Path { title, colour: ours.colour, points: &points, axis })?;
-        figures.flips("Its rate, all methods").draw(&bottom)?;
+        let title =
+            format!("Path of the middle axis in space, the first {} s", short(SHOWN.min(figures.schedule.end())));
+        sphere(&top, &Path { title: &title, colour: ours.colour, width: 3, points: &points, axis })?;
+        figures.flips("The rate about it, all methods").draw(&bottom)?;
         let panels = [
             figures.energy_ratio("Energy over its initial value"),
             figures.momentum_error("Angular momentum in space: how far from its start"),

@@ -50,10 +50,18 @@ impl Series {
         Self { name, file, colour, values: quantities.collect(), iterations, nanoseconds }
     }
 
+    /// A quantity of each sample, and nothing where the energy has quadrupled: a run that blows up would press all
+    /// others flat.
+    pub(crate) fn bounded(&self, quantity: impl Fn(&Quantities) -> f64) -> Vec<(f64, f64)> {
+        let most = 4.0 * self.values[0].energy;
+        let shown = |q: &Quantities| if q.energy <= most { quantity(q) } else { f64::NAN };
+        self.values.iter().map(|q| (q.time, shown(q))).collect()
+    }
+
     /// `E/E(0)` of each sample.
-    pub(crate) fn relative_energy(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub(crate) fn relative_energy(&self) -> Vec<(f64, f64)> {
         let start = self.values[0].energy;
-        self.values.iter().map(move |q| (q.time, q.energy / start))
+        self.bounded(|q| q.energy / start)
     }
 
     /// `|E − E(0)|/E(0)` of each sample.

@@ -47,6 +47,8 @@ impl fmt::Display for Reading {
 }
 
 impl Case {
+    pub(crate) const ALL: [Self; 3] = [Self::Looping, Self::Cuspidal, Self::Unidirectional];
+
     /// The figure of the thesis that shows it.
     pub(crate) fn figure(self) -> &'static str {
         match self {

@@ -4,10 +4,11 @@ use nalgebra::Vector3;
 
 use super::cases::{Case, Reading};
 use super::quantities::{Quantities, Series};
-use crate::common::args::Schedule;
+use crate::common::args::{ENDING, Schedule};
 use crate::common::output::Output;
 use crate::common::plot::{Area, BLUE, Drawn, GREEN, Line, PURPLE, Panel, Path, Vertical, heading, legend, px};
 use crate::common::plot::{render, sphere};
+use crate::common::table::short;
 
 /// What the figures are of: the variational run first, then its rivals.
 pub(crate) struct Figures<'a> {
@@ -17,7 +18,7 @@ pub(crate) struct Figures<'a> {
     pub(crate) series: &'a [Series],
 }
 
-/// Long enough for ten nutations.
+/// What is drawn in close-up, s: ten nutations.
 const SHORT: f64 = 4.0;
 
 /// A figure's part below its heading.
@@ -28,22 +29,28 @@ impl Figures<'_> {
     pub(crate) fn write(&self, output: &mut Output) -> Drawn {
         let whole = |panel: Panel<'_>, figure: &str, title: &str| self.single(&panel, figure, title);
         let end = self.schedule.end();
-        let short = SHORT.min(end);
+        let beginning = SHORT.min(end);
         output.write("geometry.svg", &whole(self.geometry(""), "3.4", "How far R leaves the rotations")?)?;
         let title = "Angular momentum about the vertical";
         output.write("vertical-momentum.svg", &whole(self.vertical_momentum(""), "3.5", title)?)?;
-        let title = format!("Energy, the first {short} s");
+        let title = format!("Energy, the first {} s", short(beginning));
         output.write("energy-short.svg", &whole(self.energy_short(""), "3.6 (a)", &title)?)?;
-        let title = format!("Energy, all {end} s");
+        let title = format!("Energy, all {} s", short(end));
         output.write("energy-long.svg", &whole(self.energy_long(""), "3.6 (b)", &title)?)?;
         output.write("body-rates.svg", &self.body_rates()?)?;
+        self.write_tip(output)
+    }
+
+    /// Writes the path of the tip, figure 3.8, 3.9 or 3.10.
+    pub(crate) fn write_tip(&self, output: &mut Output) -> Drawn {
         output.write(&format!("tip-{}.svg", self.case), &self.tip()?)?;
         Ok(())
     }
 
     /// The case, the reading and the step: beside every figure.
     pub(crate) fn setting(&self) -> String {
-        format!("{}, {}, h = {} s", self.case, self.reading, self.schedule.step)
+        let in_fact = if self.case.caveat(self.reading).is_some() { " (here looping)" } else { "" };
+        format!("{}{in_fact}, {}, h = {} s", self.case, self.reading, self.schedule.step)
     }
 
     /// The names and colours of all series.
@@ -53,56 +60,29 @@ impl Figures<'_> {
     }
 
     pub(crate) fn geometry<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "‖RᵀR − I‖",
-            vertical: Vertical::Logarithmic,
-            function: true,
-            lines: vec![],
-        };
-        self.with_lines(panel, self.schedule.end(), |q, _| q.defect)
+        let lines = self.lines(self.schedule.end(), |q, _| q.defect);
+        Panel::over_time(title, "‖RᵀR − I‖", Vertical::Logarithmic, lines)
     }
 
     pub(crate) fn vertical_momentum<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "|e₃·RΠ − its start|, kg m²/s",
-            vertical: Vertical::Logarithmic,
-            function: true,
-            lines: vec![],
-        };
-        self.with_lines(panel, self.schedule.end(), |q, start| (q.vertical - start.vertical).abs())
+        let lines = self.lines(self.schedule.end(), |q, start| (q.vertical - start.vertical).abs());
+        Panel::over_time(title, "|e₃·RΠ − its start|, kg m²/s", Vertical::Logarithmic, lines)
     }
 
     /// The oscillation of the variational energy, which is of the order of the scheme.
     pub(crate) fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "E − E(0), J",
-            vertical: Vertical::Linear,
-            function: true,
-            lines: vec![],
-        };
-        let mut panel = self.with_lines(panel, SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
+        let mut lines = self.lines(SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
         // The rivals' lines coincide here.
-        panel.lines.iter_mut().take(1).for_each(|line| line.width = 7);
-        panel
+        lines.iter_mut().take(1).for_each(|line| line.width = 7);
+        Panel::over_time(title, "E − E(0), J", Vertical::Linear, lines)
     }
 
     /// Whether it stays an oscillation.
     pub(crate) fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
-        let panel = Panel {
-            title,
-            across: "time, s",
-            up: "|E − E(0)|, J",
-            vertical: Vertical::Logarithmic,
-            function: true,
-            lines: vec![],
-        };
-        self.with_lines(panel, self.schedule.end(), |q, start| (q.energy - start.energy).abs())
+        let mut lines = self.lines(self.schedule.end(), |q, start| (q.energy - start.energy).abs());
+        // The oscillation would hide the rivals' drift.
+        lines.reverse();
+        Panel::over_time(title, "|E − E(0)|, J", Vertical::Logarithmic, lines)
     }
 
     /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
@@ -119,25 +99,25 @@ impl Figures<'_> {
         }
     }
 
-    /// The second half of the run, as the thesis' 100 to 200 s, but no more than 100 s.
-    pub(crate) fn late(&self) -> (f64, f64) {
-        let end = self.schedule.end();
-        ((end / 2.0).max(end - 100.0), end)
+    pub(crate) fn close_up_title(&self) -> String {
+        format!("Its last {} s", short(SHORT.min(self.schedule.end())))
     }
 
-    fn with_lines<'a>(
-        &self,
-        panel: Panel<'a>,
-        end: f64,
-        height: impl Fn(&Quantities, &Quantities) -> f64,
-    ) -> Panel<'a> {
+    /// The second half of the run, as the thesis' 100 to 200 s, but no more than is kept in detail.
+    pub(crate) fn late(&self) -> (f64, f64) {
+        let end = self.schedule.end();
+        ((end / 2.0).max(end - ENDING), end)
+    }
+
+    /// A line for every method, of a quantity at each time and at the start.
+    fn lines(&self, end: f64, height: impl Fn(&Quantities, &Quantities) -> f64) -> Vec<Line> {
         // The variational line comes first in the legend and last, on top, in the drawing.
         let lines = self.series.iter().rev().map(|s| Line {
             colour: s.colour,
             width: 3,
             points: s.between(0.0, end).iter().map(|q| (q.time, height(q, &s.first()))).collect(),
         });
-        Panel { lines: lines.collect(), ..panel }
+        lines.collect()
     }
 
     fn single(&self, panel: &Panel<'_>, figure: &str, title: &str) -> Drawn<String> {
@@ -156,7 +136,7 @@ impl Figures<'_> {
         render((900, 620), |area| {
             let (header, body) = area.split_vertically(px(HEADER));
             let subtitle = format!("{}, {name}; after figure 3.7 of the thesis", self.setting());
-            heading(&header, &format!("Body rates, the first {end} s"), &subtitle)?;
+            heading(&header, &format!("Body rates, the first {} s", short(end)), &subtitle)?;
             for (axis, (place, (up, colour))) in body.split_evenly((3, 1)).iter().zip(axes).enumerate() {
                 let points = self.series.iter().take(1).flat_map(|s| s.between(0.0, end));
                 let line = Line { colour, width: 3, points: points.map(|q| (q.time, q.rates[axis])).collect() };
@@ -176,18 +156,23 @@ impl Figures<'_> {
         };
         render((1000, 800), |area| {
             let (header, body) = area.split_vertically(px(HEADER));
-            let title = format!("Path of the tip on the sphere, {start} s to {end} s");
+            let title = format!("Path of the tip on the sphere, {} s to {} s", short(start), short(end));
             let subtitle = format!("{}; after figure {} of the thesis", self.setting(), self.case.figure());
             heading(&header, &title, &subtitle)?;
-            let close_up = format!("Its last {} s", SHORT.min(end));
             for (place, series) in body.split_evenly((1, 2)).iter().zip([ours, theirs]) {
                 let (above, below) = place.split_vertically(px(470));
                 let points: Vec<_> = series.between(start, end).iter().map(|q| q.tip).collect();
                 sphere(
                     &above,
-                    &Path { title: series.name, colour: series.colour, points: &points, axis: (Vector3::z(), "e₃") },
+                    &Path {
+                        title: series.name,
+                        colour: series.colour,
+                        width: 1,
+                        points: &points,
+                        axis: (Vector3::z(), "e₃"),
+                    },
                 )?;
-                self.close_up(&close_up, series).draw(&below)?;
+                self.close_up(&self.close_up_title(), series).draw(&below)?;
             }
             Ok(())
         })

@@ -1,15 +1,15 @@
 //! The declaration that the integrator is made from.
 
-use liestep::DiagonalNonstandardInertia;
+use liestep::{DiagonalNonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
 /// A heavy top: the reduced discrete Lagrangian \[RDAE, (3.13)\].
-// #[liestep::lagrangian(
-//     group = SO3,
-//     advected(w = up),
-//     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-//         - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
-// )]
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
+)]
 #[allow(non_snake_case)] // the paper's name
 #[derive(Clone, Debug)]
 pub(crate) struct HeavyTop {

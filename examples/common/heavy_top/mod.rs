@@ -6,5 +6,3 @@ pub(crate) mod lagrangian;
 pub(crate) mod overview;
 pub(crate) mod quantities;
 pub(crate) mod rk4;
-
-mod lagrangian_by_hand;

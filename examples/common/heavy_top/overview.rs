@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::figures::Figures;
 use crate::common::plot::{Drawn, Path, heading, px, render, sphere};
+use crate::common::table::short;
 
 /// The path on the sphere, its last seconds, and what is conserved.
 pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
@@ -18,9 +19,12 @@ pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
         let (left, right) = body.split_horizontally(px(520));
         let (top, bottom) = left.split_vertically(px(470));
         let points: Vec<_> = ours.between(start, end).iter().map(|q| q.tip).collect();
-        let title = format!("Path of the tip, {start} s to {end} s");
-        sphere(&top, &Path { title: &title, colour: ours.colour, points: &points, axis: (Vector3::z(), "e₃") })?;
-        figures.close_up("The last of it, loop by loop", ours).draw(&bottom)?;
+        let title = format!("Path of the tip, {} s to {} s", short(start), short(end));
+        sphere(
+            &top,
+            &Path { title: &title, colour: ours.colour, width: 1, points: &points, axis: (Vector3::z(), "e₃") },
+        )?;
+        figures.close_up(&figures.close_up_title(), ours).draw(&bottom)?;
         let panels = [
             figures.geometry("Rigidity: how far R leaves the rotations"),
             figures.vertical_momentum("Angular momentum about the vertical: how far from its start"),

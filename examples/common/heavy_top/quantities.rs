@@ -74,9 +74,9 @@ impl Series {
     /// The largest of a quantity in the last tenth of the run, over that in the first: about 1 for an oscillation, 10
     /// for what grows in proportion to time.
     pub(crate) fn growth(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
-        let tenth = self.values.len().div_ceil(10);
+        let end = self.values.last().map_or(0.0, |q| q.time);
         let largest = |values: &[Quantities]| values.iter().map(&quantity).fold(0.0, f64::max);
-        largest(&self.values[self.values.len() - tenth..]) / largest(&self.values[..tenth])
+        largest(self.between(0.9 * end, end)) / largest(self.between(0.0, 0.1 * end))
     }
 
     /// As comma-separated values.

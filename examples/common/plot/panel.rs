@@ -38,6 +38,13 @@ pub(crate) struct Panel<'a> {
 /// Below a double's rounding at one.
 const FLOOR: f64 = 1e-17;
 
+impl<'a> Panel<'a> {
+    /// Functions of time.
+    pub(crate) fn over_time(title: &'a str, up: &'a str, vertical: Vertical, lines: Vec<Line>) -> Self {
+        Self { title, across: "time, s", up, vertical, function: true, lines }
+    }
+}
+
 impl Panel<'_> {
     /// Draws it into the area.
     pub(crate) fn draw(&self, area: &Area<'_>) -> Drawn {
@@ -86,7 +93,7 @@ impl Panel<'_> {
     fn prepared(&self, line: &Line, columns: u32) -> Line {
         let points = match self.vertical {
             Vertical::Linear if self.function => envelope(&line.points, columns),
-            Vertical::Linear => line.points.clone(),
+            Vertical::Linear => line.points.iter().copied().filter(|(x, y)| (x + y).is_finite()).collect(),
             Vertical::Logarithmic => {
                 let crest = crest(&line.points, columns);
                 // A moment without any deviation would be drawn as a line down to the bottom.
@@ -109,7 +116,7 @@ fn range(values: impl Iterator<Item = f64>, margin: f64) -> Range<f64> {
     }
     // A constant is drawn in the middle, not magnified to its rounding errors.
     let size = low.abs().max(high.abs());
-    let constant = high - low <= 1e-9 * size || high == low;
+    let constant = high - low <= 1e-9 * size;
     let room = if constant { (0.1 * size).max(f64::MIN_POSITIVE.sqrt()) } else { margin * (high - low) };
     low - room..high + room
 }
@@ -129,7 +136,7 @@ fn tick_step(range: &Range<f64>) -> f64 {
 fn decimal(value: f64, distance: f64) -> String {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped
     let places = (-distance.log10().floor()).clamp(0.0, 12.0) as usize;
-    let text = if places > 6 { format!("{value:.1e}") } else { format!("{value:.places$}") };
+    let text = if places > 6 || value.abs() >= 1e6 { format!("{value:.1e}") } else { format!("{value:.places$}") };
     let text = if text.contains('.') && !text.contains('e') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {

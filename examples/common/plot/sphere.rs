@@ -10,6 +10,8 @@ use super::style::{INK, at, letters, px};
 pub(crate) struct Path<'a> {
     pub(crate) title: &'a str,
     pub(crate) colour: RGBColor,
+    /// Half pixels; thin where a path covers itself many times.
+    pub(crate) width: u32,
     pub(crate) points: &'a [Vector3<f64>],
     /// A direction to mark, and its name.
     pub(crate) axis: (Vector3<f64>, &'a str),
@@ -39,10 +41,15 @@ pub(crate) fn sphere(area: &Area<'_>, path: &Path<'_>) -> Drawn {
             view.axis(area, path.axis)?;
         }
         for arc in arcs.iter().filter(|arc| arc.near == near) {
-            area.draw(&PathElement::new(arc.points.clone(), ink.stroke_width(px(1) / 2)))?;
+            area.draw(&PathElement::new(arc.points.clone(), ink.stroke_width(path.width)))?;
         }
     }
     area.draw(&Circle::new(view.centre, view.size, NEAR_GRATICULE.stroke_width(px(1))))?;
+    // The end of the path is marked: a path that shrinks to a point would not be seen otherwise.
+    if let Some((arc, end)) = arcs.last().and_then(|arc| Some((arc, arc.points.last()?))) {
+        let ink = if arc.near { path.colour } else { faint(path.colour) };
+        area.draw(&Circle::new(*end, px(3), ink.filled()))?;
+    }
     Ok(())
 }
 

@@ -3,8 +3,9 @@
 use std::rc::Rc;
 
 use proc_macro2::Span;
+use syn::punctuated::Punctuated;
 use syn::spanned::Spanned as _;
-use syn::{Expr, ExprCall, ExprMethodCall, Lit, UnOp};
+use syn::{Expr, ExprCall, ExprMethodCall, Lit, Token, UnOp};
 
 use super::Checker;
 use crate::ast::{Kind, Shape, Tree};
@@ -38,6 +39,7 @@ impl Checker<'_> {
         let name = call.method.to_string();
         if !METHODS.contains(&name.as_str()) {
             self.unknown_method(&name, call.method.span());
+            self.arguments(&call.args);
             return None;
         }
         if let Some(arguments) = &call.turbofish {
@@ -45,8 +47,13 @@ impl Checker<'_> {
         }
         let wanted = usize::from(matches!(name.as_str(), "dot" | "cross" | "component_mul" | "powi"));
         if call.args.len() != wanted {
-            let count = if wanted == 0 { "no argument" } else { "one argument" };
-            self.errors.push(call.method.span(), format!("`{name}` takes {count}"));
+            let count = match (wanted, name.as_str()) {
+                (0, _) => "no argument",
+                (_, "powi") => "one argument: write `.powi(2)`",
+                _ => "one argument, a reference: write `(&v)`",
+            };
+            let span = call.args.get(wanted).map_or(call.method.span(), syn::spanned::Spanned::span);
+            self.errors.push(span, format!("`{name}` takes {count}"));
             return None;
         }
         let (receiver, span, at) = (receiver?, call.span(), call.method.span());
@@ -68,11 +75,13 @@ impl Checker<'_> {
                 return Some(Tree::new(span, Shape::Matrix(columns, rows), Kind::Transpose(receiver)));
             }
             ("transpose", Shape::Scalar) => ("a matrix", None),
-            ("trace", SQUARE) => ("", Some((Shape::Scalar, Kind::Trace(receiver)))),
+            ("trace", Shape::Matrix(rows, columns)) if rows == columns => {
+                ("", Some((Shape::Scalar, Kind::Trace(receiver))))
+            }
             ("trace", _) => ("a square matrix", None),
             ("cross_matrix", VECTOR) => ("", Some((SQUARE, Kind::CrossMatrix(receiver)))),
             ("cross_matrix", _) => ("a vector of 3", None),
-            ("norm_squared" | "norm", VECTOR) => {
+            ("norm_squared" | "norm", Shape::Matrix(_, 1)) => {
                 let squared = Tree::new(span, Shape::Scalar, Kind::Dot(receiver.clone(), receiver));
                 let norm = |squared| Kind::Apply(Function::Sqrt, squared);
                 return Some(if name == "norm" { Tree::new(span, Shape::Scalar, norm(squared)) } else { squared });
@@ -106,14 +115,18 @@ impl Checker<'_> {
 
     fn of_two(&mut self, name: &str, left: Rc<Tree>, right: Rc<Tree>, span: Span, at: Span) -> Option<Rc<Tree>> {
         for operand in [&left, &right] {
-            if operand.shape != VECTOR {
-                return self.mismatch(name, "two vectors of 3", operand.shape, at);
+            let fits =
+                if name == "cross" { operand.shape == VECTOR } else { matches!(operand.shape, Shape::Matrix(_, 1)) };
+            if !fits || operand.shape != left.shape {
+                let expected = if name == "cross" { "two vectors of 3" } else { "two vectors of one size" };
+                return self.mismatch(name, expected, operand.shape, at);
             }
         }
+        let shape = left.shape;
         Some(match name {
             "dot" => Tree::new(span, Shape::Scalar, Kind::Dot(left, right)),
             "cross" => Tree::new(span, VECTOR, Kind::Cross(left, right)),
-            _ => Tree::new(span, VECTOR, Kind::ComponentMultiply(left, right)),
+            _ => Tree::new(span, shape, Kind::ComponentMultiply(left, right)),
         })
     }
 
@@ -145,20 +158,34 @@ impl Checker<'_> {
             _ => {
                 let known = METHODS.iter().copied().filter(|known| *known != "clone").collect::<Vec<_>>().join(", ");
                 let near = suggestion(name, METHODS);
-                format!("`{name}` isn't known in a Lagrangian{near}\nknown: {known}")
+                let list = if near.is_empty() { format!("\nknown: {known}") } else { String::new() };
+                format!("`{name}` isn't known in a Lagrangian{near}{list}")
             }
         };
         self.errors.push(span, message);
     }
 
+    /// What is given to an unknown function may have mistakes of its own.
+    fn arguments(&mut self, arguments: &Punctuated<Expr, Token![,]>) {
+        for argument in arguments {
+            self.expression(argument);
+        }
+    }
+
     /// `vee(A)`, the only free function.
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
-        let is_vee = matches!(&*call.func, Expr::Path(path) if path.path.is_ident("vee"));
-        if !is_vee {
-            self.errors.push(
-                call.func.span(),
-                "this function isn't known in a Lagrangian; there is `vee(A)`, the vector of a skew matrix",
-            );
+        let function = match &*call.func {
+            Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
+            _ => String::new(),
+        };
+        if function != "vee" {
+            let advice = if METHODS.contains(&function.as_str()) {
+                format!("write `{function}` as a method, `x.{function}(…)`")
+            } else {
+                "there is `vee(A)`, the vector of a skew matrix".to_owned()
+            };
+            self.errors.push_over(&call.func, format!("this function isn't known in a Lagrangian: {advice}"));
+            self.arguments(&call.args);
             return None;
         }
         let mut arguments = call.args.iter();

@@ -21,20 +21,37 @@ const DEEPEST: usize = 250;
 
 /// The declared expression as a tree, with every mistake reported.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
-    let mut checker = Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0 };
-    let tree = checker.expression(&declaration.l_d);
+    let l_d = declaration.l_d.as_ref()?;
+    let mut checker =
+        Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0, is_too_deep: false };
+    let tree = checker.expression(l_d);
     let used = checker.used;
     let tree = tree?;
     if tree.shape != Shape::Scalar {
         let shape = tree.shape.describe();
-        errors.push(
-            tree.span,
+        errors.push_over(
+            value(l_d),
             format!("a Lagrangian is a scalar, but this is {shape}: take a `.trace()` or a `.dot(…)`"),
         );
         return None;
     }
-    usage::check(declaration, &used, errors);
+    // Only what has been read as a whole says what is used.
+    if errors.is_empty() {
+        usage::check(declaration, &used, errors);
+    }
     Some(tree)
+}
+
+/// What a block ends with, or the expression itself.
+pub(crate) fn value(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Group(inner) => value(&inner.expr),
+        Expr::Block(block) => match block.block.stmts.last() {
+            Some(Stmt::Expr(last, None)) => value(last),
+            _ => expression,
+        },
+        _ => expression,
+    }
 }
 
 /// A `let`: its tree, or nothing if that had a mistake, and whether it has been used.
@@ -50,13 +67,18 @@ struct Checker<'a> {
     scopes: Vec<BTreeMap<String, Binding>>,
     used: Vec<Name>,
     depth: usize,
+    /// Both operands of an operation may be too deep, and one message says it.
+    is_too_deep: bool,
 }
 
 impl Checker<'_> {
     /// `None` where a mistake has been reported.
     fn expression(&mut self, expression: &Expr) -> Option<Rc<Tree>> {
         if self.depth > DEEPEST {
-            self.errors.push(expression.span(), format!("nested more than {DEEPEST} deep: bind parts with `let`"));
+            if !self.is_too_deep {
+                self.errors.push(expression.span(), format!("nested more than {DEEPEST} deep: bind parts with `let`"));
+            }
+            self.is_too_deep = true;
             return None;
         }
         self.depth += 1;
@@ -115,8 +137,10 @@ impl Checker<'_> {
     fn block(&mut self, block: &Block) -> Option<Rc<Tree>> {
         self.scopes.push(BTreeMap::new());
         let result = self.statements(&block.stmts, block.brace_token.span.join());
+        // What couldn't be read may use any name.
+        let is_read = self.errors.is_empty();
         for binding in self.scopes.pop().into_iter().flat_map(BTreeMap::into_values) {
-            if !binding.used {
+            if is_read && !binding.used {
                 self.errors.push(binding.span, "this `let` isn't used: remove it");
             }
         }
@@ -136,6 +160,10 @@ impl Checker<'_> {
         }
         match last {
             Stmt::Expr(expression, None) => self.expression(expression),
+            Stmt::Expr(_, Some(semicolon)) => {
+                self.errors.push(semicolon.span(), "the block must end with the Lagrangian: remove the semicolon");
+                None
+            }
             other => {
                 self.errors.push(other.span(), "the block must end with the Lagrangian, without a semicolon");
                 None
@@ -153,7 +181,8 @@ impl Checker<'_> {
                 &name.ident
             }
             other => {
-                self.errors.push(other.span(), "bind one plain name: `let name = …;`");
+                self.errors.push_over(other, "bind one plain name: `let name = …;`");
+                self.bind_nothing(other);
                 return;
             }
         };
@@ -162,12 +191,27 @@ impl Checker<'_> {
         }
         let Some(init) = local.init.as_ref().filter(|init| init.diverge.is_none()) else {
             self.errors.push(local.span(), "a binding needs a value: `let name = …;`");
+            self.bind_nothing(pattern);
             return;
         };
         let tree = self.expression(&init.expr);
         let binding = Binding { tree, span: name.span(), used: false };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.unraw().to_string(), binding);
+        }
+    }
+
+    /// The names of a `let` with a mistake are known, and have no tree.
+    fn bind_nothing(&mut self, pattern: &Pat) {
+        match pattern {
+            Pat::Ident(name) => {
+                let binding = Binding { tree: None, span: name.span(), used: true };
+                if let Some(scope) = self.scopes.last_mut() {
+                    scope.insert(name.ident.unraw().to_string(), binding);
+                }
+            }
+            Pat::Tuple(tuple) => tuple.elems.iter().for_each(|part| self.bind_nothing(part)),
+            _ => {}
         }
     }
 
@@ -203,15 +247,17 @@ impl Checker<'_> {
         }
         let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.name.unraw() == name);
         let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.name.unraw() == name);
+        let size = self.declaration.structure.size;
+        let square = Shape::Matrix(size, size);
         let (shape, found) = match name.as_str() {
-            "I" => return Some(Tree::new(span, Shape::Matrix(3, 3), Kind::Identity)),
-            "F" => (Shape::Matrix(3, 3), Name::Increment),
+            "I" => return Some(Tree::new(span, square, Kind::Identity)),
+            "F" => (square, Name::Increment),
             "h" => (Shape::Scalar, Name::Step),
             _ => {
                 if let Some(index) = advected(self.declaration) {
-                    (Shape::Matrix(3, 1), Name::Advected(index))
+                    (self.declaration.advected_kind(index).shape(), Name::Advected(index))
                 } else if let Some(index) = field(self.declaration) {
-                    if let Some(w) = self.declaration.advected.iter().find(|w| w.field == index) {
+                    if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
                         let w = w.name.unraw();
                         self.errors.push(
                             span,
@@ -221,7 +267,9 @@ impl Checker<'_> {
                     }
                     (self.declaration.fields[index].kind.shape(), Name::Field(index))
                 } else {
-                    self.unknown_name(&name, span);
+                    if !self.declaration.unreadable.contains(&name) {
+                        self.unknown_name(&name, span);
+                    }
                     return None;
                 }
             }

@@ -19,7 +19,13 @@ impl Checker<'_> {
                     let (a, b) = (left.shape.describe(), right.shape.describe());
                     let verb = if matches!(binary.op, BinOp::Add(_)) { "added to" } else { "subtracted from" };
                     let (a, b) = if matches!(binary.op, BinOp::Add(_)) { (a, b) } else { (b, a) };
-                    self.errors.push(operator, format!("{a} can't be {verb} {b}: both sides need one shape"));
+                    let advice = match (left.shape, right.shape) {
+                        (Shape::Scalar, Shape::Matrix(3, 3)) | (Shape::Matrix(3, 3), Shape::Scalar) => {
+                            ": write `a * I` for a scalar `a`"
+                        }
+                        _ => ": both sides need one shape",
+                    };
+                    self.errors.push(operator, format!("{a} can't be {verb} {b}{advice}"));
                     return None;
                 }
                 let shape = left.shape;
@@ -51,7 +57,10 @@ impl Checker<'_> {
             BinOp::Div(_) => {
                 if right.shape != Shape::Scalar {
                     let shape = right.shape.describe();
-                    self.errors.push(operator, format!("only a scalar can divide, and this is {shape}"));
+                    self.errors.push(
+                        operator,
+                        format!("only a scalar can divide, and this is {shape}: the inverse of `F` is `F.transpose()`"),
+                    );
                     return None;
                 }
                 let shape = left.shape;
@@ -65,7 +74,7 @@ impl Checker<'_> {
     pub(super) fn index(&mut self, index: &ExprIndex) -> Option<Rc<Tree>> {
         let operand = self.expression(&index.expr)?;
         let Shape::Matrix(rows, columns) = operand.shape else {
-            self.errors.push(index.index.span(), "a scalar has no entries");
+            self.errors.push(index.index.span(), "a scalar has no entries: remove the index");
             return None;
         };
         let place = match &*index.index {
@@ -85,7 +94,11 @@ impl Checker<'_> {
                 None
             }
             None => {
-                self.errors.push(index.index.span(), "write indices as numbers: `v[0]`, `A[(0, 1)]`");
+                let culprit = match &*index.index {
+                    Expr::Tuple(pair) => pair.elems.iter().find(|index| number(index).is_none()),
+                    _ => None,
+                };
+                self.errors.push_over(culprit.unwrap_or(&index.index), "write indices as numbers: `v[0]`, `A[(0, 1)]`");
                 None
             }
         }

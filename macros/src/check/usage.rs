@@ -1,15 +1,14 @@
 //! What is declared must be used, as a forgotten name is a forgotten force.
 
 use syn::ext::IdentExt as _;
-use syn::spanned::Spanned as _;
 
 use crate::ast::{Declaration, Name};
 use crate::errors::Errors;
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     if !used.contains(&Name::Increment) {
-        errors.push(
-            declaration.l_d.span(),
+        errors.push_over(
+            declaration.l_d.as_ref().map(super::value),
             "the Lagrangian doesn't depend on `F`, the increment of a step: nothing would move",
         );
     }
@@ -20,8 +19,14 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         }
     }
     for (index, field) in declaration.fields.iter().enumerate() {
-        let carried = declaration.advected.iter().any(|w| w.field == index);
-        if !carried && !used.contains(&Name::Field(index)) {
+        let carried = declaration.advected.iter().any(|w| w.field == Some(index));
+        if field.kind.is_wrapped() && !carried {
+            let name = field.name.unraw();
+            errors.push(
+                field.name.span(),
+                format!("the type of `{name}` is for what the group carries: declare it with `advected(w = {name})`"),
+            );
+        } else if !carried && !used.contains(&Name::Field(index)) {
             let name = field.name.unraw();
             errors
                 .push(field.name.span(), format!("`{name}` isn't used in the Lagrangian: remove the field, or use it"));

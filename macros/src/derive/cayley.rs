@@ -1,4 +1,4 @@
-//! The momentum equation in Cayley coordinates with the denominators cleared.
+//! The momentum equation on SO(3) in Cayley coordinates with the denominators cleared.
 //!
 //! `F = cay(ξ) = ((4 − |ξ|²) I + 2 ξξᵀ + 4 ξ̂) / (4 + |ξ|²)`. Where `U(F, w)` is polynomial in `F`, multiplying
 //! `U(F, w) − a` by a power of `D = 4 + |ξ|²` leaves a polynomial in `ξ`: for (3.13) a quadratic one.
@@ -20,7 +20,10 @@ const MOST_TERMS: usize = 100;
 
 pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared> {
     let directions = context.directions;
-    if unknown.contains_closed(context.declared.increment) || terms_in_coordinates(context, unknown) > MOST_TERMS {
+    if !context.declared.group.is_so3
+        || unknown.contains_closed(context.declared.increment)
+        || terms_in_coordinates(context, unknown) > MOST_TERMS
+    {
         return None;
     }
     let integer = |n| Expression::rational(Rational::integer(n));

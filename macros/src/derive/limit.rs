@@ -60,6 +60,6 @@ fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {
 }
 
 fn at_identity(context: &Context, expression: &Expression) -> Expression {
-    let map = BTreeMap::from([(context.declared.increment, Expression::identity(3))]);
+    let map = BTreeMap::from([(context.declared.increment, Expression::identity(context.declared.group.size))]);
     context.substituted(expression, &map)
 }

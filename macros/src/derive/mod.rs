@@ -1,5 +1,6 @@
 //! From `l_d` to all that an integrator needs, in the order of the thesis. Knows no token.
 
+mod action;
 mod cayley;
 mod diamond;
 mod energy;
@@ -10,7 +11,8 @@ mod transport;
 
 use std::collections::BTreeMap;
 
-use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols};
+use crate::group::Group;
+use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance};
 
 pub(crate) use cayley::Cleared;
 pub(crate) use limit::{Limit, LimitError};
@@ -18,6 +20,7 @@ pub(crate) use limit::{Limit, LimitError};
 /// A declared Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
 pub(crate) struct Declared {
+    pub(crate) group: Group,
     pub(crate) symbols: Symbols,
     pub(crate) l_d: Expression,
     /// The increment `F`.
@@ -25,7 +28,7 @@ pub(crate) struct Declared {
     /// The step `h`.
     pub(crate) step: SymbolId,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<SymbolId>,
+    pub(crate) advected: Vec<(SymbolId, Variance)>,
 }
 
 /// The symbols that the derivation adds.
@@ -37,6 +40,10 @@ pub(crate) struct Directions {
     pub(crate) second: SymbolId,
     /// The covector `a` that the unknown part of the momentum equation has to equal.
     pub(crate) target: SymbolId,
+    /// `D = F − I`.
+    pub(crate) small: SymbolId,
+    /// `F⁻¹`.
+    pub(crate) inverse: SymbolId,
     /// The coordinates `ξ` of `F = cay(ξ)`.
     pub(crate) coordinates: SymbolId,
     /// `4 + |ξ|²`, the denominator of the Cayley map.
@@ -51,6 +58,7 @@ pub(crate) struct Directions {
 #[derive(Clone, Debug)]
 pub(crate) struct Derived {
     pub(crate) symbols: Symbols,
+    pub(crate) group: Group,
     increment: SymbolId,
     pub(crate) directions: Directions,
     /// `(R_F)* δl_d/δF`.
@@ -69,7 +77,8 @@ pub(crate) struct Derived {
     pub(crate) limit: Limit,
     /// The part of the diamond without `F`.
     pub(crate) kick_before: Expression,
-    /// The part of `μ` with `F`.
+    /// The part of `μ` with `F`, written in `D = F − I`: its constants cancel exactly, so that a small step keeps its
+    /// digits.
     pub(crate) unknown: Expression,
     /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`.
     pub(crate) kick_after: Expression,
@@ -99,6 +108,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     let parts = transport::parts(&context, &momentum, &diamond);
     let cleared = cayley::cleared(&context, &parts.unknown);
     Ok(Derived {
+        group: declared.group.clone(),
         increment: declared.increment,
         right_momentum,
         left_momentum,
@@ -108,7 +118,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         energy,
         limit,
         kick_before: parts.kick_before,
-        unknown: parts.unknown,
+        unknown: transport::in_small_increment(&context, &parts.unknown),
         kick_after: parts.kick_after,
         cleared,
         directions,
@@ -138,21 +148,29 @@ impl Context<'_> {
 }
 
 fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
-    let vector = |symbols: &mut Symbols, name: &str, stage| symbols.add(name, (3, 1), Structure::General, stage);
-    let algebra = |symbols: &mut Symbols, name: &str| symbols.add(name, (3, 3), Structure::Skew, Stage::Construction);
+    let (size, dimension) = (declared.group.size, declared.group.dimension());
+    let structure = if declared.group.orthogonal { Structure::Skew } else { Structure::General };
+    let column =
+        |symbols: &mut Symbols, name: &str, rows, stage| symbols.add(name, (rows, 1), Structure::General, stage);
+    let algebra = |symbols: &mut Symbols, name: &str| symbols.add(name, (size, size), structure, Stage::Construction);
+    let inverse = symbols.add("F⁻¹", (size, size), Structure::General, Stage::Iteration);
+    symbols.set_inverse(declared.increment, inverse);
     Directions {
+        inverse,
         first: algebra(symbols, "E_k"),
         second: algebra(symbols, "E_j"),
-        target: vector(symbols, "a", Stage::Step),
-        coordinates: vector(symbols, "ξ", Stage::Iteration),
+        target: column(symbols, "a", dimension, Stage::Step),
+        small: symbols.add("D", (size, size), Structure::General, Stage::Iteration),
+        coordinates: column(symbols, "ξ", dimension, Stage::Iteration),
         denominator: symbols.add("(4 + |ξ|²)", (1, 1), Structure::General, Stage::Iteration),
-        coordinate_direction: vector(symbols, "δξ", Stage::Construction),
+        coordinate_direction: column(symbols, "δξ", dimension, Stage::Construction),
         next: declared
             .advected
             .iter()
-            .map(|&w| {
+            .map(|&(w, variance)| {
                 let name = format!("{}⁺", symbols.get(w).name);
-                vector(symbols, &name, Stage::Step)
+                let columns = if variance.is_tensor() { size } else { 1 };
+                symbols.add(name, (size, columns), Structure::General, Stage::Step)
             })
             .collect(),
     }

@@ -4,15 +4,15 @@
 //! all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
 //!
 //! ```text
-//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E Fᵀ⟩,     w = F w⁺
+//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
 //! ```
 //!
 //! Written in `w⁺`, the second part loses its `F` for a potential of the new position, as `FᵀF = I` finds by itself.
 
 use std::collections::BTreeMap;
 
-use super::Context;
-use crate::symbolic::{Expression, monomial_contains};
+use super::{Context, action};
+use crate::symbolic::{Expression, degree, monomial_contains};
 
 pub(super) struct Parts {
     pub(super) kick_before: Expression,
@@ -27,10 +27,24 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
     let moved = diamond.clone().minus(kick_before.clone());
     let f = context.symbol(increment);
     let direction = context.symbol(context.directions.first);
-    let turned = context.product(&context.product(&f, &direction), &f.transpose(context.symbols));
+    let inverse = Expression::inverse(increment, context.symbols);
+    let turned = context.product(&context.product(&f, &direction), &inverse);
     let mut map = BTreeMap::from([(context.directions.first, turned)]);
-    for (&w, &next) in context.declared.advected.iter().zip(&context.directions.next) {
-        map.insert(w, context.product(&f, &context.symbol(next)));
+    for (&(w, variance), &next) in context.declared.advected.iter().zip(&context.directions.next) {
+        map.insert(w, action::moved_back(context, variance, (&f, &inverse), &context.symbol(next)));
     }
     Parts { kick_before, unknown, kick_after: context.substituted(&moved, &map) }
+}
+
+/// With `F = I + D`; as it is where that would multiply the terms.
+pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
+    let increment = context.declared.increment;
+    // Each F becomes two terms.
+    let factors = |monomial| u32::try_from(degree(monomial, increment)).unwrap_or(u32::MAX);
+    let terms = unknown.terms().map(|(monomial, _)| 2_usize.saturating_pow(factors(monomial)));
+    if terms.fold(0, usize::saturating_add) > 4 * unknown.len() + 16 {
+        return unknown.clone();
+    }
+    let small = Expression::identity(context.declared.group.size).plus(context.symbol(context.directions.small));
+    context.substituted(unknown, &BTreeMap::from([(increment, small)]))
 }

@@ -10,13 +10,22 @@ use super::Emitter;
 use crate::scalar::{Graph, Node, NodeId};
 use crate::symbolic::{Function, Rational};
 
+/// What the outputs make together.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    Scalar,
+    Vector,
+    Square,
+}
+
 /// The token of a node that isn't computed here: an input, or what an earlier stage has left.
 pub(super) type Given<'a> = &'a dyn Fn(NodeId) -> Option<TokenStream>;
 
 impl Emitter<'_> {
-    /// The `let`s that the outputs need, and the outputs as one value: a scalar, a vector or a matrix.
+    /// The `let`s that the outputs need, and the outputs as one value.
     pub(super) fn body(
         &self,
+        form: Form,
         graph: &Graph,
         outputs: &[NodeId],
         input: &dyn Fn(crate::scalar::Input) -> TokenStream,
@@ -26,16 +35,34 @@ impl Emitter<'_> {
             _ => None,
         };
         let (lets, values) = self.statements(graph, outputs, &given);
-        let value = self.assembled(&values);
+        let value = self.assembled(form, &values);
         quote_spanned!(Span::mixed_site()=> #lets #value)
     }
 
-    pub(super) fn assembled(&self, values: &[TokenStream]) -> TokenStream {
-        let root = &self.header.root;
-        match values {
-            [value] => value.clone(),
-            [x, y, z] => quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Vector3::new(#x, #y, #z)),
-            entries => quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Matrix3::new(#(#entries),*)),
+    /// One value from its entries, a square matrix row by row.
+    pub(super) fn assembled(&self, form: Form, values: &[TokenStream]) -> TokenStream {
+        let (root, span) = (&self.header.root, Span::mixed_site());
+        let dimension = self.derived.group.dimension();
+        let nalgebra = quote_spanned!(span=> #root::__private::nalgebra);
+        match (form, dimension, values) {
+            (Form::Scalar, ..) => values.iter().cloned().collect(),
+            (Form::Vector, 3, entries) => quote_spanned!(span=> #nalgebra::Vector3::new(#(#entries),*)),
+            (Form::Square, 3, entries) => quote_spanned!(span=> #nalgebra::Matrix3::new(#(#entries),*)),
+            (Form::Vector, _, entries) => self.columns(dimension, &[entries.to_vec()]),
+            (Form::Square, _, entries) => {
+                let column = |j: usize| entries.iter().skip(j).step_by(dimension).cloned().collect();
+                self.columns(dimension, &(0..dimension).map(column).collect::<Vec<_>>())
+            }
+        }
+    }
+
+    fn columns(&self, rows: usize, columns: &[Vec<TokenStream>]) -> TokenStream {
+        let (root, span, scalar) = (&self.header.root, Span::mixed_site(), &self.header.scalar);
+        let nalgebra = quote_spanned!(span=> #root::__private::nalgebra);
+        let (rows, count) = (Literal::usize_unsuffixed(rows), Literal::usize_unsuffixed(columns.len()));
+        let columns = columns.iter().map(|entries| quote_spanned!(span=> [#(#entries),*]));
+        quote_spanned! {span=>
+            #nalgebra::SMatrix::<#scalar, #rows, #count>::from_array_storage(#nalgebra::ArrayStorage([#(#columns),*]))
         }
     }
 

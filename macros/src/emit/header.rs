@@ -1,10 +1,11 @@
 //! Types and generics of the implementation.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
-use crate::ast::{Declaration, Scalar};
+use crate::ast::{Declaration, FieldKind, Scalar};
+use crate::symbolic::Variance;
 
 /// What the signatures are written with.
 pub(crate) struct Header {
@@ -15,7 +16,9 @@ pub(crate) struct Header {
     pub(crate) parameter: Option<Ident>,
     name: Ident,
     generics: syn::Generics,
-    advected: usize,
+    advected: Vec<FieldKind>,
+    size: usize,
+    dimension: usize,
 }
 
 impl Header {
@@ -35,18 +38,48 @@ impl Header {
             parameter,
             name: declaration.item.ident.clone(),
             generics: declaration.item.generics.clone(),
-            advected: declaration.advected.len(),
+            advected: (0..declaration.advected.len()).map(|index| declaration.advected_kind(index)).collect(),
+            size: declaration.structure.size,
+            dimension: declaration.structure.dimension(),
         }
     }
 
+    /// Components of covectors.
     pub(crate) fn vector(&self) -> TokenStream {
-        let (root, scalar) = (&self.root, &self.scalar);
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Vector3<#scalar>)
+        self.column(self.dimension)
     }
 
+    /// Linear maps of components.
     pub(crate) fn square(&self) -> TokenStream {
-        let (root, scalar) = (&self.root, &self.scalar);
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Matrix3<#scalar>)
+        self.matrix_of(self.dimension)
+    }
+
+    /// The matrices of the group.
+    pub(crate) fn matrix(&self) -> TokenStream {
+        self.matrix_of(self.size)
+    }
+
+    fn column(&self, rows: usize) -> TokenStream {
+        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
+        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SVector<#scalar, #rows>)
+    }
+
+    fn advected_type(&self, kind: FieldKind) -> TokenStream {
+        let FieldKind::Advected(variance, rows) = kind else { return self.column(self.size) };
+        let name = match variance {
+            Variance::Vector | Variance::Covector => "ContravariantVector",
+            Variance::Contravariant => "ContravariantTensor",
+            Variance::Covariant => "CovariantTensor",
+            Variance::Mixed => "MixedTensor",
+        };
+        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
+        let name = Ident::new(name, Span::mixed_site());
+        quote_spanned!(Span::mixed_site()=> #root::#name<#scalar, #rows>)
+    }
+
+    fn matrix_of(&self, rows: usize) -> TokenStream {
+        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
+        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SMatrix<#scalar, #rows, #rows>)
     }
 
     /// `impl … DiscreteLagrangian for …`.
@@ -63,10 +96,12 @@ impl Header {
     }
 
     pub(crate) fn types(&self, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
-        let (root, group, scalar, vector) = (&self.root, &self.group, &self.scalar, self.vector());
-        let vectors = (0..self.advected).map(|_| &vector);
-        let advected =
-            if self.advected == 1 { vector.clone() } else { quote_spanned!(Span::mixed_site()=> (#(#vectors),*)) };
+        let (root, group, scalar) = (&self.root, &self.group, &self.scalar);
+        let values: Vec<TokenStream> = self.advected.iter().map(|kind| self.advected_type(*kind)).collect();
+        let advected = match values.as_slice() {
+            [single] => single.clone(),
+            values => quote_spanned!(Span::mixed_site()=> (#(#values),*)),
+        };
         quote_spanned! {Span::mixed_site()=>
             type Scalar = #scalar;
             type Group = #group<#scalar>;

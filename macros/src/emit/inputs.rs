@@ -31,6 +31,12 @@ impl Emitter<'_> {
         if input.symbol == directions.coordinates {
             return entry(&quote_spanned!(span=> xi), input);
         }
+        if input.symbol == directions.small {
+            return entry(&quote_spanned!(span=> increment), input);
+        }
+        if input.symbol == directions.inverse {
+            return entry(&quote_spanned!(span=> inverse), input);
+        }
         if input.symbol == directions.target {
             return entry(&quote_spanned!(span=> a), input);
         }
@@ -40,13 +46,16 @@ impl Emitter<'_> {
         quote_spanned!(span=> compile_error!(#message))
     }
 
-    /// One of several advected parameters.
+    /// The vector or matrix of one advected parameter.
     fn part(&self, all: &TokenStream, index: usize) -> TokenStream {
-        if self.declaration.advected.len() == 1 {
-            return all.clone();
-        }
-        let index = syn::Index::from(index);
-        quote_spanned!(Span::mixed_site()=> #all.#index)
+        let span = Span::mixed_site();
+        let part = if self.declaration.advected.len() == 1 {
+            all.clone()
+        } else {
+            let index = syn::Index::from(index);
+            quote_spanned!(span=> #all.#index)
+        };
+        if self.declaration.advected_kind(index).is_wrapped() { quote_spanned!(span=> #part.0) } else { part }
     }
 
     fn field_entry(&self, index: usize, input: Input) -> TokenStream {
@@ -56,7 +65,9 @@ impl Emitter<'_> {
         let place = |value: TokenStream| entry(&value, input);
         match field.kind {
             FieldKind::Scalar => quote_spanned!(span=> self.#name),
-            FieldKind::Vector | FieldKind::Matrix => place(quote_spanned!(span=> self.#name)),
+            FieldKind::Vector(_) | FieldKind::Matrix(_) | FieldKind::Advected(..) => {
+                place(quote_spanned!(span=> self.#name))
+            }
             FieldKind::SymmetricInertia => place(quote_spanned!(span=> self.#name.as_matrix())),
             FieldKind::DiagonalInertia => {
                 let diagonal = Input { column: 0, ..input };

@@ -15,9 +15,10 @@ use quote::quote_spanned;
 use crate::ast::Declaration;
 use crate::derive::Derived;
 use crate::lower::Lowered;
-use crate::scalar::{Graph, NodeId, Scalariser, components, kernel, square};
+use crate::scalar::{Graph, Scalariser, components, kernel, square};
 use crate::symbolic::{Expression, SymbolId};
 
+use code::Form;
 pub(crate) use header::Header;
 
 /// The whole implementation.
@@ -53,6 +54,14 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
     }
 }
 
+/// The arguments of a method.
+#[derive(Clone, Copy, Debug)]
+enum Takes {
+    Nothing,
+    Advected,
+    Increment,
+}
+
 /// What the pieces share.
 struct Emitter<'a> {
     declaration: &'a Declaration,
@@ -65,99 +74,63 @@ impl Emitter<'_> {
     /// The derived terms that don't know stages.
     fn mathematics(&self, kernel: &crate::scalar::Kernel) -> (TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
-        let direction = d.directions.first;
         let mut methods = TokenStream::new();
         let equations = docs::equations(d, &self.lowered.declared, kernel);
-        let vectors = [
+        let covectors = [
             ("right_momentum", &d.right_momentum),
             ("left_momentum", &d.left_momentum),
             ("diamond", &d.diamond),
             ("legendre_minus", &d.momentum),
         ];
-        for (name, covector) in vectors {
-            let mut graph = Graph::default();
-            let outputs = components(&mut graph, &d.symbols, &BTreeMap::new(), covector, direction);
-            let documentation = docs::of(&equations, name, &graph, &outputs);
-            methods.extend(self.method_of_increment(name, &documentation, &graph, &outputs, &self.header.vector()));
+        for (name, covector) in covectors {
+            methods.extend(self.method(name, Takes::Increment, Form::Vector, covector, &equations));
         }
-        let mut graph = Graph::default();
-        let pair = (direction, d.directions.second);
-        let outputs = square(&mut graph, &d.symbols, &BTreeMap::new(), &d.jacobian, pair);
-        let documentation = docs::of(&equations, "momentum_jacobian", &graph, &outputs);
-        methods.extend(self.method_of_increment(
-            "momentum_jacobian",
-            &documentation,
-            &graph,
-            &outputs,
-            &self.header.square(),
-        ));
-        let (graph, outputs) = self.scalar(&d.energy);
-        let documentation = docs::of(&equations, "discrete_energy", &graph, &outputs);
-        methods.extend(self.method_of_increment(
-            "discrete_energy",
-            &documentation,
-            &graph,
-            &outputs,
-            &self.header.scalar,
-        ));
-        methods.extend(self.limit(&equations));
+        let others = [
+            ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
+            ("discrete_energy", Takes::Increment, Form::Scalar, &d.energy),
+            ("inertia", Takes::Nothing, Form::Square, &d.limit.inertia),
+            ("momentum_bias", Takes::Advected, Form::Vector, &d.limit.bias),
+            ("potential", Takes::Advected, Form::Scalar, &d.limit.potential),
+        ];
+        for (name, takes, form, expression) in others {
+            methods.extend(self.method(name, takes, form, expression, &equations));
+        }
         (methods, equations)
     }
 
-    fn scalar(&self, expression: &Expression) -> (Graph, Vec<NodeId>) {
-        let mut graph = Graph::default();
-        let mut scalariser = Scalariser { graph: &mut graph, symbols: &self.derived.symbols, given: BTreeMap::new() };
-        let output = scalariser.scalar(expression);
-        (graph, vec![output])
-    }
-
-    fn method_of_increment(
+    /// One derived term as a method, with its equation as documentation.
+    fn method(
         &self,
         name: &str,
-        documentation: &str,
-        graph: &Graph,
-        outputs: &[NodeId],
-        result: &TokenStream,
+        takes: Takes,
+        form: Form,
+        expression: &Expression,
+        equations: &[docs::Equation],
     ) -> TokenStream {
-        let span = Span::mixed_site();
+        let (span, d, root) = (Span::mixed_site(), self.derived, &self.header.root);
+        let mut graph = Graph::default();
+        let none = BTreeMap::new();
+        let (outputs, result) = match form {
+            Form::Scalar => {
+                let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };
+                (vec![scalariser.scalar(expression)], self.header.scalar.clone())
+            }
+            Form::Vector => (components(&mut graph, d, &none, expression), self.header.vector()),
+            Form::Square => (square(&mut graph, d, &none, expression), self.header.square()),
+        };
+        let documentation = docs::of(equations, name, &graph, &outputs);
+        let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
-        let (matrix, scalar) = (self.header.square(), &self.header.scalar);
-        let root = &self.header.root;
-        let body = self.body(graph, outputs, &|id| self.input_token(id));
+        let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
+        let w = quote_spanned!(span=> w: &<Self as #root::DiscreteLagrangian>::Advected);
+        let arguments = match takes {
+            Takes::Nothing => TokenStream::new(),
+            Takes::Advected => w,
+            Takes::Increment => quote_spanned!(span=> f: &#matrix, #w, h: #scalar),
+        };
         quote_spanned! {span=>
             #[doc = #documentation]
-            fn #name(&self, f: &#matrix, w: &<Self as #root::DiscreteLagrangian>::Advected, h: #scalar) -> #result {
-                #body
-            }
-        }
-    }
-
-    fn limit(&self, equations: &[docs::Equation]) -> TokenStream {
-        let d = self.derived;
-        let span = Span::mixed_site();
-        let root = &self.header.root;
-        let mut graph = Graph::default();
-        let pair = (d.directions.first, d.directions.second);
-        let outputs = square(&mut graph, &d.symbols, &BTreeMap::new(), &d.limit.inertia, pair);
-        let inertia_text = docs::of(equations, "inertia", &graph, &outputs);
-        let inertia = self.body(&graph, &outputs, &|id| self.input_token(id));
-        let mut graph = Graph::default();
-        let outputs = components(&mut graph, &d.symbols, &BTreeMap::new(), &d.limit.bias, d.directions.first);
-        let bias_text = docs::of(equations, "momentum_bias", &graph, &outputs);
-        let bias = self.body(&graph, &outputs, &|id| self.input_token(id));
-        let (graph, outputs) = self.scalar(&d.limit.potential);
-        let potential_text = docs::of(equations, "potential", &graph, &outputs);
-        let potential = self.body(&graph, &outputs, &|id| self.input_token(id));
-        let (vector, square, scalar) = (self.header.vector(), self.header.square(), &self.header.scalar);
-        quote_spanned! {span=>
-            #[doc = #inertia_text]
-            fn inertia(&self) -> #square { #inertia }
-
-            #[doc = #bias_text]
-            fn momentum_bias(&self, w: &<Self as #root::DiscreteLagrangian>::Advected) -> #vector { #bias }
-
-            #[doc = #potential_text]
-            fn potential(&self, w: &<Self as #root::DiscreteLagrangian>::Advected) -> #scalar { #potential }
+            fn #name(&self, #arguments) -> #result { #body }
         }
     }
 
@@ -183,7 +156,7 @@ impl Emitter<'_> {
 
     fn advected(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let fields = self.declaration.advected.iter().filter_map(|w| self.declaration.fields.get(w.field));
+        let fields = self.declaration.advected.iter().filter_map(|w| self.declaration.fields.get(w.field?));
         let names: Vec<_> = fields.map(|field| &field.name).collect();
         let value = match names.as_slice() {
             [single] => quote_spanned!(span=> self.#single),

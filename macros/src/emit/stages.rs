@@ -6,7 +6,7 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
 
 use super::Emitter;
-use super::code::needed;
+use super::code::{Form, needed};
 use crate::scalar::{Graph, Kernel, Node, NodeId};
 use crate::symbolic::Stage;
 
@@ -25,18 +25,10 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
     let step_terms = boundary(graph, &system, Stage::Step);
     let (span, root) = (Span::mixed_site(), &emitter.header.root);
     let (vector, square, scalar) = (emitter.header.vector(), emitter.header.square(), &emitter.header.scalar);
+    let matrix = emitter.header.matrix();
     let from_parameters = |id: NodeId| input(emitter, graph, id);
     let from_constants = |id: NodeId| slot(&constants, id, "constants").or_else(|| input(emitter, graph, id));
     let from_terms = |id: NodeId| slot(&step_terms, id, "terms").or_else(|| from_constants(id));
-    let after_step = |id: NodeId| {
-        slot(&constants, id, "constants").or_else(|| match graph.node(id) {
-            Node::Input(entry) if entry.symbol == emitter.derived.increment() => {
-                let (row, column) = (Literal::usize_unsuffixed(entry.row), Literal::usize_unsuffixed(entry.column));
-                Some(quote_spanned!(span=> increment.data.0[#column][#row]))
-            }
-            _ => input(emitter, graph, id),
-        })
-    };
     let array = |nodes: &BTreeMap<NodeId, usize>, given: super::code::Given| {
         let nodes: Vec<NodeId> = nodes.keys().copied().collect();
         let (lets, values) = emitter.statements(graph, &nodes, given);
@@ -46,14 +38,32 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
     let step_terms_body = array(&step_terms, &from_constants);
     let value = |outputs: &[NodeId], given: super::code::Given| {
         let (lets, values) = emitter.statements(graph, outputs, given);
-        let value = emitter.assembled(&values);
+        let value = emitter.assembled(Form::Vector, &values);
         quote_spanned!(span=> #lets #value)
     };
     let kick_before = value(&kernel.kick_before, &from_constants);
-    let kick_after = value(&kernel.kick_after, &after_step);
+    let kick_after = value(&kernel.kick_after, &from_constants);
     let (lets, values) = emitter.statements(graph, &system, &from_terms);
     let (residual, jacobian) = values.split_at(kernel.residual.len());
-    let (residual, jacobian) = (emitter.assembled(residual), emitter.assembled(jacobian));
+    let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
+    let retraction = quote_spanned!(span=> <Self::Retraction as #root::Retraction<Self::Group>>);
+    // Off SO(3) the system is written in F, and the retraction's tangent brings its Jacobian to the coordinates.
+    let (increment, jacobian) = if kernel.in_increment {
+        let increment = quote_spanned!(span=> let increment = #retraction::increment(xi););
+        (increment, quote_spanned!(span=> (#jacobian) * #retraction::tangent(xi)))
+    } else {
+        (TokenStream::new(), jacobian)
+    };
+    let inverse = emitter.derived.directions.inverse;
+    let needs_inverse = needed(graph, &kernel.kick_after, &|_| None)
+        .into_iter()
+        .any(|id| matches!(graph.node(id), Node::Input(entry) if entry.symbol == inverse));
+    let inverse = needs_inverse.then(|| {
+        let group = quote_spanned!(span=> <Self::Group as #root::LieGroup>);
+        quote_spanned! {span=>
+            let inverse = #group::matrix(&#group::inverse(&#group::from_increment(increment)));
+        }
+    });
     let length = |nodes: &BTreeMap<NodeId, usize>| {
         let length = Literal::usize_unsuffixed(nodes.len());
         quote_spanned!(span=> [#scalar; #length])
@@ -67,9 +77,13 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
     );
     let construction =
         super::docs::stage(graph, &constants.keys().copied().collect::<Vec<_>>(), Stage::Construction, "construction");
+    let generators = same_generators(emitter);
     let methods = quote_spanned! {span=>
         #[doc = #construction]
-        fn constants(&self, h: #scalar) -> Self::Constants { #constants_body }
+        fn constants(&self, h: #scalar) -> Self::Constants {
+            #generators
+            #constants_body
+        }
 
         #[inline(always)]
         fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> #vector { #kick_before }
@@ -86,17 +100,46 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
             constants: &Self::Constants,
             terms: &Self::StepTerms,
             xi: &#vector,
-        ) -> (#vector, #root::__private::nalgebra::Matrix3<#scalar>) {
+        ) -> (#vector, #square) {
+            #increment
             #lets
             (#residual, #jacobian)
         }
 
         #[inline(always)]
-        fn kick_after(constants: &Self::Constants, increment: &#square, next: &Self::Advected) -> #vector {
+        fn kick_after(constants: &Self::Constants, increment: &#matrix, next: &Self::Advected) -> #vector {
+            #inverse
             #kick_after
         }
     };
     Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
+}
+
+/// The compiler's check that the generators that were derived with are those of the group that is run with.
+fn same_generators(emitter: &Emitter) -> TokenStream {
+    let (span, root, group) = (Span::mixed_site(), &emitter.header.root, &emitter.derived.group);
+    if group.is_so3 {
+        return TokenStream::new();
+    }
+    let matrices = group.generators.iter().map(|entries| {
+        let rows = entries.chunks(group.size).map(|row| {
+            let entries = row.iter().map(|entry| {
+                let mut size = Literal::f64_unsuffixed(entry.to_f64().abs());
+                size.set_span(span);
+                if entry.is_negative() { quote_spanned!(span=> -#size) } else { quote_spanned!(span=> #size) }
+            });
+            quote_spanned!(span=> [#(#entries),*])
+        });
+        quote_spanned!(span=> [#(#rows),*])
+    });
+    quote_spanned! {span=>
+        const {
+            #root::__private::core::assert!(
+                <Self::Group>::has_generators(&[#(#matrices),*]),
+                "the generators of the declaration aren't those of the group"
+            )
+        };
+    }
 }
 
 fn input(emitter: &Emitter, graph: &Graph, id: NodeId) -> Option<TokenStream> {

@@ -15,8 +15,8 @@ use crate::ast::{Declaration, FieldKind};
 
 pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
-    let (root, scalar, square) = (&header.root, &header.scalar, header.square());
-    let mut expression = declaration.l_d.clone();
+    let (root, scalar, square) = (&header.root, &header.scalar, header.matrix());
+    let Some(mut expression) = declaration.l_d.clone() else { return TokenStream::new() };
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let mut names: Vec<Ident> = Vec::new();
@@ -29,18 +29,17 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     };
     bind("F", quote_spanned!(span=> *f));
     bind("I", quote_spanned!(span=> <#square>::identity()));
-    let vector = header.vector();
-    bind(
-        "vee",
-        quote_spanned!(span=> |matrix: #square| -> #vector { <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix) }),
-    );
+    let three = quote_spanned!(span=> #root::__private::nalgebra::Matrix3<#scalar>);
+    bind("vee", quote_spanned!(span=> |matrix: #three| <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix)));
     for (index, parameter) in declaration.advected.iter().enumerate() {
-        let value = if declaration.advected.len() == 1 {
-            quote_spanned!(span=> *w)
+        let part = if declaration.advected.len() == 1 {
+            quote_spanned!(span=> (*w))
         } else {
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
+        let is_wrapped = declaration.advected_kind(index).is_wrapped();
+        let value = if is_wrapped { quote_spanned!(span=> #part.0) } else { part };
         bind(&parameter.name.unraw().to_string(), value);
     }
     for field in &declaration.fields {
@@ -52,11 +51,16 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
         };
         bind(&field.name.unraw().to_string(), value);
     }
+    // In the user's scope `F` and `I` may be constants or unit structs, which a pattern would compare with instead of
+    // binding the name; the nearer functions can be hidden.
+    let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
+    let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
     let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));
     quote_spanned! {span=>
         /// The Lagrangian as declared.
         fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar {
             #traits
+            #hidden
             // In one pattern, so that no name hides a value that a later one needs.
             let (#(#names,)*) = (#(#values,)*);
             #expression

@@ -27,14 +27,14 @@ fn tokens(text: &str) -> TokenStream {
 }
 
 fn expanded(arguments: &str, item: &str) -> TokenStream {
-    expand(&tokens(arguments), &tokens(item))
+    expand(tokens(arguments), &tokens(item))
 }
 
 /// What is derived from a declaration, through all phases.
 pub(crate) fn derived(arguments: &str, item: &str) -> Derived {
     let mut errors = Errors::default();
     let item = syn::parse_str(item).expect("a struct");
-    let declaration = parse::parse(tokens(arguments), item, &mut errors).expect("a declaration");
+    let declaration = parse::parse(tokens(arguments), item, &mut errors);
     let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
     let lowered = lower::lower(&declaration, &tree, &mut errors).expect("small");
     assert!(errors.is_empty(), "{}", errors.to_compile_errors());

@@ -7,7 +7,8 @@ use super::expand::expanded;
 use super::graph::{Graph, Input, NodeId};
 use super::scalarise::{Entries, Scalariser};
 use crate::derive::{Cleared, Derived};
-use crate::symbolic::{Expression, Rational, Stage, SymbolId, Symbols};
+use crate::group::Group;
+use crate::symbolic::{Expression, Rational, Stage, SymbolId};
 
 /// A way to write the Newton system, with its operations an iteration.
 #[derive(Clone, Debug)]
@@ -24,6 +25,9 @@ pub(crate) struct Kernel {
     pub(crate) residual: Vec<NodeId>,
     pub(crate) jacobian: Vec<NodeId>,
     pub(crate) kick_after: Vec<NodeId>,
+    /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
+    /// Cayley coordinates.
+    pub(crate) in_increment: bool,
     /// The first is the one that was taken.
     pub(crate) candidates: Vec<Candidate>,
 }
@@ -31,65 +35,72 @@ pub(crate) struct Kernel {
 /// `tr(E_k W)` and the like for each generator: the components of a covector.
 pub(crate) fn components(
     graph: &mut Graph,
-    symbols: &Symbols,
+    derived: &Derived,
     given: &BTreeMap<SymbolId, Entries>,
     covector: &Expression,
-    direction: SymbolId,
 ) -> Vec<NodeId> {
-    (0..3)
+    (0..derived.group.dimension())
         .map(|k| {
             let mut given = given.clone();
-            given.insert(direction, generator(graph, k));
-            Scalariser { graph, symbols, given }.scalar(covector)
+            given.insert(derived.directions.first, generator(graph, &derived.group, k));
+            Scalariser { graph, symbols: &derived.symbols, given }.scalar(covector)
         })
         .collect()
 }
 
-/// `E_k = ê_k` of so(3).
-pub(crate) fn generator(graph: &mut Graph, k: usize) -> Entries {
-    let (zero, one) = (graph.zero(), graph.one());
-    let minus = graph.negate(one);
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    Entries::new(3, 3, |row, column| match (row, column) {
-        place if place == (j, i) => one,
-        place if place == (i, j) => minus,
-        _ => zero,
+/// The constant matrix `E_k`.
+fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
+    let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
+    Entries::new(group.size, group.size, |row, column| {
+        let entry = entries.get(row * group.size + column).copied();
+        graph.constant(entry.unwrap_or(Rational::ZERO))
     })
 }
 
-/// A Jacobian, row by row.
+/// A Jacobian, linear in `E_k` and `E_j`, row by row.
 pub(crate) fn square(
     graph: &mut Graph,
-    symbols: &Symbols,
+    derived: &Derived,
     given: &BTreeMap<SymbolId, Entries>,
     bilinear: &Expression,
-    (row, column): (SymbolId, SymbolId),
 ) -> Vec<NodeId> {
-    let mut columns = Vec::new();
-    for j in 0..3 {
-        let mut given = given.clone();
-        given.insert(column, generator(graph, j));
-        columns.push(components(graph, symbols, &given, bilinear, row));
-    }
-    (0..3).flat_map(|k| columns.iter().map(move |column| column[k])).collect()
+    let dimension = derived.group.dimension();
+    let columns: Vec<Vec<NodeId>> = (0..dimension)
+        .map(|j| {
+            let mut given = given.clone();
+            given.insert(derived.directions.second, generator(graph, &derived.group, j));
+            components(graph, derived, &given, bilinear)
+        })
+        .collect();
+    by_rows(dimension, &columns)
+}
+
+fn by_rows(dimension: usize, columns: &[Vec<NodeId>]) -> Vec<NodeId> {
+    (0..dimension).flat_map(|k| columns.iter().filter_map(move |column| column.get(k).copied())).collect()
 }
 
 pub(crate) fn kernel(derived: &Derived) -> Kernel {
     let mut graph = Graph::default();
-    let (symbols, first) = (&derived.symbols, derived.directions.first);
-    let none = BTreeMap::new();
-    let kick_before = components(&mut graph, symbols, &none, &derived.kick_before, first);
-    let increment = shifted_by_identity(&mut graph, derived);
-    let kick_after = components(&mut graph, symbols, &increment, &derived.kick_after, first);
+    let kick_before = components(&mut graph, derived, &BTreeMap::new(), &derived.kick_before);
+    let increment = by_increment(&mut graph, derived, |graph, row, column| {
+        graph.input(Input { symbol: derived.directions.small, row, column }, Stage::Iteration)
+    });
+    let kick_after = components(&mut graph, derived, &increment, &derived.kick_after);
     let mut found: Vec<(Candidate, Vec<NodeId>)> = Vec::new();
     let mut add = |graph: &Graph, name, outputs: Vec<NodeId>| {
         let operations = count(graph, &outputs, Some(Stage::Iteration));
         found.push((Candidate { name, operations }, outputs));
     };
-    let (retracted, opaque) = retracted(&mut graph, derived);
-    add(&graph, "F rebuilt from ξ", retracted.clone());
-    if let Some(outputs) = expanded(&mut graph, &retracted, &opaque) {
-        add(&graph, "F rebuilt from ξ, multiplied out", outputs);
+    let in_increment = !derived.group.is_so3;
+    if in_increment {
+        let outputs = system(&mut graph, derived, &increment);
+        add(&graph, "in F", outputs);
+    } else {
+        let (retracted, opaque) = retracted(&mut graph, derived);
+        add(&graph, "F rebuilt from ξ", retracted.clone());
+        if let Some(outputs) = expanded(&mut graph, &retracted, &opaque) {
+            add(&graph, "F rebuilt from ξ, multiplied out", outputs);
+        }
     }
     if let Some(cleared) = &derived.cleared {
         let (nested, denominator) = cleared_system(&mut graph, derived, cleared);
@@ -100,26 +111,48 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     }
     found.sort_by_key(|(candidate, _)| candidate.operations.cost());
     let outputs = found.first().map(|(_, outputs)| outputs.clone()).unwrap_or_default();
-    let (residual, jacobian) = outputs.split_at(3);
+    let (residual, jacobian) = outputs.split_at(derived.group.dimension().min(outputs.len()));
     Kernel {
         kick_before,
         residual: residual.to_vec(),
         jacobian: jacobian.to_vec(),
         kick_after,
+        in_increment,
         candidates: found.into_iter().map(|(candidate, _)| candidate).collect(),
         graph,
     }
 }
 
-/// `F = I + D`, where the inputs named `F` are the entries of `D`.
-fn shifted_by_identity(graph: &mut Graph, derived: &Derived) -> BTreeMap<SymbolId, Entries> {
-    let symbol = derived.increment();
+/// `D` by its entries, and `F = I + D`.
+fn by_increment(
+    graph: &mut Graph,
+    derived: &Derived,
+    mut entry: impl FnMut(&mut Graph, usize, usize) -> NodeId,
+) -> BTreeMap<SymbolId, Entries> {
+    let size = derived.group.size;
+    let small = Entries::new(size, size, |row, column| entry(graph, row, column));
     let one = graph.one();
-    let entries = Entries::new(3, 3, |row, column| {
-        let entry = graph.input(Input { symbol, row, column }, Stage::Iteration);
+    let f = Entries::new(size, size, |row, column| {
+        let entry = small.at(row, column);
         if row == column { graph.add(entry, one) } else { entry }
     });
-    BTreeMap::from([(symbol, entries)])
+    BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
+}
+
+/// `U(F) − a` and `∂U_k` along `E_j`, with `F` and `D` given.
+fn system(graph: &mut Graph, derived: &Derived, given: &BTreeMap<SymbolId, Entries>) -> Vec<NodeId> {
+    let symbol = derived.directions.target;
+    let unknown = components(graph, derived, given, &derived.unknown);
+    let mut outputs: Vec<NodeId> = unknown
+        .into_iter()
+        .enumerate()
+        .map(|(row, value)| {
+            let a = graph.input(Input { symbol, row, column: 0 }, Stage::Step);
+            graph.subtract(value, a)
+        })
+        .collect();
+    outputs.extend(square(graph, derived, given, &derived.jacobian));
+    outputs
 }
 
 fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
@@ -141,25 +174,24 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
     let xi = coordinates(graph, derived);
     let d = denominator(graph, &xi);
     let given = BTreeMap::from([(directions.denominator, Entries::new(1, 1, |_, _| d))]);
-    let mut outputs = components(graph, &derived.symbols, &given, &cleared.residual, directions.first);
+    let mut outputs = components(graph, derived, &given, &cleared.residual);
     let mut columns = Vec::new();
     for j in 0..3 {
         let (zero, one) = (graph.zero(), graph.one());
         let mut given = given.clone();
         let unit = Entries::new(3, 1, |row, _| if row == j { one } else { zero });
         given.insert(directions.coordinate_direction, unit);
-        columns.push(components(graph, &derived.symbols, &given, &cleared.jacobian, directions.first));
+        columns.push(components(graph, derived, &given, &cleared.jacobian));
     }
-    outputs.extend((0..3).flat_map(|k| columns.iter().map(move |column| column[k])));
+    outputs.extend(by_rows(3, &columns));
     (outputs, d)
 }
 
-/// `U(F) − a` with `F` computed from `ξ`, and its Jacobian `∂U/∂E_j · T_j`, with the tangent `T` of the retraction.
+/// `U(F) − a` with `F = cay(ξ)`, and its Jacobian `∂U/∂E_j · T_j`, with the tangent `T` of the retraction.
 fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, BTreeSet<NodeId>) {
-    let directions = &derived.directions;
     let xi = coordinates(graph, derived);
     let d = denominator(graph, &xi);
-    let (one, half) = (graph.one(), graph.constant(Rational::new(1, 2)));
+    let half = graph.constant(Rational::new(1, 2));
     let four = graph.constant(Rational::integer(4));
     let scale = graph.divide(four, d);
     let half_scale = graph.multiply(half, scale);
@@ -173,37 +205,24 @@ fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, BTreeSet<Nod
         let scaled = graph.multiply(half_scale, entry);
         if row == column { scale } else { scaled }
     });
-    // ξ̂² = ξξᵀ − |ξ|² I.
-    let squared = {
-        let squares: Vec<NodeId> = xi.iter().map(|&x| graph.multiply(x, x)).collect();
-        graph.sum(&squares)
-    };
-    let f = Entries::new(3, 3, |row, column| {
+    // D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²), ξ̂² = ξξᵀ − |ξ|² I; on the diagonal the squares cancel before they are formed.
+    let given = by_increment(graph, derived, |graph, row, column| {
+        if row == column {
+            let others: Vec<NodeId> = (0..3).filter(|&k| k != row).map(|k| graph.multiply(xi[k], xi[k])).collect();
+            let sum = graph.sum(&others);
+            let shrink = graph.multiply(half_scale, sum);
+            return graph.negate(shrink);
+        }
         let product = graph.multiply(xi[row], xi[column]);
         let outer = graph.multiply(half_scale, product);
         let skew = hat(graph, row, column);
         let skew = graph.multiply(scale, skew);
-        if row != column {
-            return graph.sum(&[outer, skew]);
-        }
-        let shrink = graph.multiply(half_scale, squared);
-        let kept = graph.subtract(outer, shrink);
-        graph.add(kept, one)
+        graph.sum(&[outer, skew])
     });
-    let opaque: BTreeSet<NodeId> = f.all().iter().chain(tangent.all()).copied().collect();
-    let given = BTreeMap::from([(derived.increment(), f)]);
-    let symbol = directions.target;
-    let unknown = components(graph, &derived.symbols, &given, &derived.unknown, directions.first);
-    let mut outputs: Vec<NodeId> = unknown
-        .into_iter()
-        .enumerate()
-        .map(|(row, value)| {
-            let a = graph.input(Input { symbol, row, column: 0 }, Stage::Step);
-            graph.subtract(value, a)
-        })
-        .collect();
-    let pair = (directions.first, directions.second);
-    let jacobian = square(graph, &derived.symbols, &given, &derived.jacobian, pair);
+    let opaque: BTreeSet<NodeId> =
+        given.values().chain([&tangent]).flat_map(|entries| entries.all().to_vec()).collect();
+    let mut outputs = system(graph, derived, &given);
+    let jacobian = outputs.split_off(3);
     for row in 0..3 {
         for column in 0..3 {
             let terms: Vec<NodeId> =

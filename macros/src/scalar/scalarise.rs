@@ -132,6 +132,7 @@ impl Scalariser<'_> {
         let turned = |entries: Entries, transposed: bool| if transposed { entries.transposed() } else { entries };
         match factor {
             Factor::Symbol { id, transposed } => turned(self.symbol(*id), *transposed),
+            Factor::Inverse { id, transposed } => turned(self.symbol(self.symbols.inverse_of(*id)), *transposed),
             Factor::Unit { index, size, transposed } => {
                 let (zero, one) = (self.graph.zero(), self.graph.one());
                 turned(Entries::new(*size, 1, |row, _| if row == *index { one } else { zero }), *transposed)

@@ -54,19 +54,20 @@ fn opened(word: &[Factor], direction: SymbolId, symbols: &Symbols) -> Option<Vec
     let after = rest.get(1..)?;
     let others = [after, before].concat();
     let once = !others.iter().any(|factor| factor.contains(direction));
-    (once && !others.is_empty() && symbols.get(direction).shape.0 == 3).then_some(others)
+    (once && !others.is_empty() && symbols.get(direction).name == "E_k" && symbols.get(direction).is_rotation())
+        .then_some(others)
 }
 
 /// Terms with their signs.
 fn join(terms: impl Iterator<Item = (Rational, String, String)>) -> String {
     let mut sum = String::new();
     for (coefficient, prefix, body) in terms {
-        let sign = if coefficient.is_negative() { "−" } else { "+" };
-        if sum.is_empty() {
-            sum.push_str(if coefficient.is_negative() { "−" } else { "" });
-        } else {
-            sum.extend([" ", sign, " "]);
-        }
+        sum.push_str(match (sum.is_empty(), coefficient.is_negative()) {
+            (true, true) => "−",
+            (true, false) => "",
+            (false, true) => " − ",
+            (false, false) => " + ",
+        });
         sum.push_str(&prefix);
         if !prefix.is_empty() && !body.is_empty() {
             sum.push(' ');
@@ -148,6 +149,9 @@ fn factor_text(factor: &Factor, symbols: &Symbols) -> String {
     let mark = |transposed: bool| if transposed { "ᵀ" } else { "" };
     match factor {
         Factor::Symbol { id, transposed } => format!("{}{}", symbols.get(*id).name, mark(*transposed)),
+        Factor::Inverse { id, transposed } => {
+            format!("{}⁻{}", symbols.get(*id).name, if *transposed { "ᵀ" } else { "¹" })
+        }
         Factor::Unit { index, transposed, .. } => format!("e{}{}", index + 1, mark(*transposed)),
         Factor::Hat(word) => format!("hat({})", word_text(word, symbols)),
         Factor::Diagonal(word) => format!("diag({})", word_text(word, symbols)),

@@ -79,6 +79,17 @@ impl Expression {
         Self::from_word(vec![Factor::symbol(id)], shape, symbols)
     }
 
+    /// The inverse of a group element.
+    pub(crate) fn inverse(id: SymbolId, symbols: &Symbols) -> Self {
+        let symbol = symbols.get(id);
+        let factor = if symbol.structure == Structure::Orthogonal {
+            Factor::Symbol { id, transposed: true }
+        } else {
+            Factor::Inverse { id, transposed: false }
+        };
+        Self::from_word(vec![factor], symbol.shape, symbols)
+    }
+
     pub(crate) fn function(function: Function, argument: Self) -> Self {
         Self::atom(Atom::Function(function, Box::new(argument)), 1)
     }

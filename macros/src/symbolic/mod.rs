@@ -12,6 +12,7 @@ mod substitution;
 mod symbols;
 #[cfg(test)]
 pub(crate) mod tests;
+mod variance;
 mod variation;
 mod word;
 
@@ -21,5 +22,6 @@ pub(crate) use functions::Function;
 pub(crate) use rational::Rational;
 pub(crate) use substitution::substitute;
 pub(crate) use symbols::{Stage, Structure, SymbolId, Symbols};
+pub(crate) use variance::Variance;
 pub(crate) use variation::{Variations, variation};
 pub(crate) use word::Factor;

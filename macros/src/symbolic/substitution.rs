@@ -58,7 +58,7 @@ fn factor_image(factor: &Factor, map: &BTreeMap<SymbolId, Expression>, symbols: 
             Some(image) => image.clone(),
             None => single(factor, symbols),
         },
-        Factor::Unit { .. } => single(factor, symbols),
+        Factor::Unit { .. } | Factor::Inverse { .. } => single(factor, symbols),
         Factor::Hat(word) => inner(word).hat(symbols),
         Factor::Diagonal(word) => inner(word).diagonal(symbols),
         Factor::Vee { word, transposed } => {

@@ -39,9 +39,20 @@ pub(crate) struct Symbol {
     pub(crate) stage: Stage,
 }
 
+impl Symbol {
+    /// Whether it stands for an element of so(3), which pairs with vectors.
+    pub(crate) fn is_rotation(&self) -> bool {
+        self.structure == Structure::Skew && self.shape == (3, 3)
+    }
+}
+
 /// All symbols of a declaration, in the order of their creation.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Symbols(Vec<Symbol>);
+pub(crate) struct Symbols {
+    all: Vec<Symbol>,
+    /// A matrix and the symbol whose entries are those of its inverse.
+    inverse: Option<(SymbolId, SymbolId)>,
+}
 
 impl Symbols {
     pub(crate) fn add(
@@ -51,11 +62,20 @@ impl Symbols {
         structure: Structure,
         stage: Stage,
     ) -> SymbolId {
-        self.0.push(Symbol { name: name.into(), shape, structure, stage });
-        SymbolId(self.0.len() - 1)
+        self.all.push(Symbol { name: name.into(), shape, structure, stage });
+        SymbolId(self.all.len() - 1)
     }
 
     pub(crate) fn get(&self, id: SymbolId) -> &Symbol {
-        &self.0[id.0]
+        &self.all[id.0]
+    }
+
+    pub(crate) fn set_inverse(&mut self, matrix: SymbolId, inverse: SymbolId) {
+        self.inverse = Some((matrix, inverse));
+    }
+
+    /// The symbol for the entries of the inverse, the matrix itself where none was set.
+    pub(crate) fn inverse_of(&self, id: SymbolId) -> SymbolId {
+        self.inverse.filter(|(matrix, _)| *matrix == id).map_or(id, |(_, inverse)| inverse)
     }
 }

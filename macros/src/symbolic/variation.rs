@@ -107,6 +107,15 @@ fn vary_factor(factor: &Factor, variations: &Variations, symbols: &Symbols) -> E
             Some(varied) => varied.clone(),
             None => Expression::zero(factor.shape(symbols)),
         },
+        // δ(F⁻¹) = −F⁻¹ δF F⁻¹.
+        Factor::Inverse { id, transposed } => match variations.get(id) {
+            Some(varied) => {
+                let inverse = single(&Factor::Inverse { id: *id, transposed: false }, symbols);
+                let varied = inverse.times(varied, symbols).times(&inverse, symbols).scaled(-Rational::ONE);
+                if *transposed { varied.transpose(symbols) } else { varied }
+            }
+            None => Expression::zero(factor.shape(symbols)),
+        },
         Factor::Unit { .. } => Expression::zero(factor.shape(symbols)),
         Factor::Hat(word) => linear(word, (3, 1)).hat(symbols),
         Factor::Diagonal(word) => linear(word, (factor.shape(symbols).0, 1)).diagonal(symbols),

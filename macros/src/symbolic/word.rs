@@ -8,6 +8,8 @@ use super::symbols::{Structure, SymbolId, Symbols};
 pub(crate) enum Factor {
     /// A matrix or a vector (a matrix of one column).
     Symbol { id: SymbolId, transposed: bool },
+    /// The inverse of an invertible matrix that isn't orthogonal.
+    Inverse { id: SymbolId, transposed: bool },
     /// A column `e_i` of the identity.
     Unit { index: usize, size: usize, transposed: bool },
     /// `û` of a vector word.
@@ -28,7 +30,9 @@ impl Factor {
             if transposed { (columns, rows) } else { (rows, columns) }
         };
         match self {
-            Self::Symbol { id, transposed } => turned(*transposed, symbols.get(*id).shape),
+            Self::Symbol { id, transposed } | Self::Inverse { id, transposed } => {
+                turned(*transposed, symbols.get(*id).shape)
+            }
             Self::Unit { size, transposed, .. } => turned(*transposed, (*size, 1)),
             Self::Hat(_) => (3, 3),
             Self::Diagonal(word) => {
@@ -47,6 +51,7 @@ impl Factor {
                 Structure::Skew => (-1, self.clone()),
                 Structure::General | Structure::Orthogonal => (1, Self::Symbol { id: *id, transposed: !transposed }),
             },
+            Self::Inverse { id, transposed } => (1, Self::Inverse { id: *id, transposed: !transposed }),
             Self::Unit { index, size, transposed } => {
                 (1, Self::Unit { index: *index, size: *size, transposed: !transposed })
             }
@@ -61,6 +66,8 @@ impl Factor {
             (Self::Symbol { id: a, transposed: s }, Self::Symbol { id: b, transposed: t }) => {
                 a == b && s != t && symbols.get(*a).structure == Structure::Orthogonal
             }
+            (Self::Symbol { id: a, transposed: s }, Self::Inverse { id: b, transposed: t })
+            | (Self::Inverse { id: a, transposed: s }, Self::Symbol { id: b, transposed: t }) => a == b && s == t,
             _ => false,
         }
     }
@@ -72,7 +79,7 @@ impl Factor {
     /// How often the symbol occurs.
     pub(crate) fn degree(&self, symbol: SymbolId) -> usize {
         match self {
-            Self::Symbol { id, .. } => usize::from(*id == symbol),
+            Self::Symbol { id, .. } | Self::Inverse { id, .. } => usize::from(*id == symbol),
             Self::Unit { .. } => 0,
             Self::Hat(word) | Self::Diagonal(word) | Self::Vee { word, .. } => {
                 word.iter().map(|factor| factor.degree(symbol)).sum()
@@ -84,7 +91,7 @@ impl Factor {
 /// How many factors are written down, inside others too.
 pub(crate) fn size(word: &[Factor]) -> usize {
     let sizes = word.iter().map(|factor| match factor {
-        Factor::Symbol { .. } | Factor::Unit { .. } => 1,
+        Factor::Symbol { .. } | Factor::Inverse { .. } | Factor::Unit { .. } => 1,
         Factor::Hat(inner) | Factor::Diagonal(inner) | Factor::Vee { word: inner, .. } => 1 + size(inner),
     });
     sizes.sum()
@@ -112,6 +119,8 @@ pub(crate) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
         }
         if let [.., left, Factor::Hat(inner)] = stack.as_slice()
             && left.is_inverse_of(&factor, symbols)
+            && matches!(left, Factor::Symbol { .. })
+            && matches!(factor, Factor::Symbol { .. })
         {
             let rotated = reduce([vec![left.clone()], inner.clone()].concat(), symbols);
             stack.truncate(stack.len() - 2);

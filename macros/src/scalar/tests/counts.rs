@@ -16,16 +16,16 @@ fn heavy_top(inertia: &str) -> Derived {
 fn on_matrices(derived: &Derived, stage: Stage) -> Operations {
     let mut graph = Graph::default();
     let (directions, none) = (&derived.directions, BTreeMap::new());
-    let unknown = components(&mut graph, &derived.symbols, &none, &derived.unknown, directions.first);
+    let unknown = derived.momentum.clone().plus(derived.kick_before.clone());
+    let unknown = components(&mut graph, derived, &none, &unknown);
     let target = |graph: &mut Graph, row| graph.input(Input { symbol: directions.target, row, column: 0 }, Stage::Step);
     let mut outputs: Vec<NodeId> = Vec::new();
     for (row, value) in unknown.into_iter().enumerate() {
         let a = target(&mut graph, row);
         outputs.push(graph.subtract(value, a));
     }
-    let pair = (directions.first, directions.second);
-    outputs.extend(square(&mut graph, &derived.symbols, &none, &derived.jacobian, pair));
-    outputs.extend(components(&mut graph, &derived.symbols, &none, &derived.kick_before, directions.first));
+    outputs.extend(square(&mut graph, derived, &none, &derived.jacobian));
+    outputs.extend(components(&mut graph, derived, &none, &derived.kick_before));
     count(&graph, &outputs, Some(stage))
 }
 
@@ -47,8 +47,7 @@ fn before_the_solve(kernel: &Kernel) -> usize {
 
 fn left_momentum(derived: &Derived) -> Operations {
     let mut graph = Graph::default();
-    let direction = derived.directions.first;
-    let outputs = components(&mut graph, &derived.symbols, &BTreeMap::new(), &derived.left_momentum, direction);
+    let outputs = components(&mut graph, derived, &BTreeMap::new(), &derived.left_momentum);
     count(&graph, &outputs, None)
 }
 

@@ -1,0 +1,233 @@
+//! What declares a matrix group, and what is computed of it when the user's crate is compiled.
+
+use core::fmt::Debug;
+
+use nalgebra::{RealField, SMatrix};
+
+use crate::scalar::{Real, real};
+
+/// The declaration of a matrix group: the basis `E_k` of its Lie algebra, and the relation its elements satisfy.
+///
+/// `N` is the size of the matrices and `D` the dimension of the group. Implement it for an empty marker type; the group
+/// is then [`MatrixGroup`](crate::MatrixGroup) of that marker, best under an alias.
+///
+/// The basis must be orthogonal, `tr(E_jᵀ E_k) = 0` for `j ≠ k`, of any lengths, and span a Lie algebra. Both are checked
+/// when the user's crate is compiled. That the elements satisfy the relation is a law to be tested:
+/// [`lie_group_laws`](crate::lie_group_laws).
+///
+/// # Examples
+///
+/// The affine maps `x ↦ a x + b` of the line, `a > 0`:
+///
+/// ```
+/// use liestep::groups::matrix;
+/// use liestep::{CayleyRetraction, Generators, LieGroup, MatrixGroup, Retraction};
+/// use nalgebra::{Matrix2, RealField, SMatrix, Vector2};
+///
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct AffineGenerators;
+///
+/// impl Generators<2, 2> for AffineGenerators {
+///     const GENERATORS: [[[f64; 2]; 2]; 2] = [matrix(&[(0, 0, 1.0)]), matrix(&[(0, 1, 1.0)])];
+///
+///     fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+///         m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
+///     }
+/// }
+///
+/// type Affine<T = f64> = MatrixGroup<AffineGenerators, T, 2, 2>;
+///
+/// let map: Affine = CayleyRetraction::retract(&Vector2::new(1.0, 1.0));
+/// assert_eq!(map.matrix(), Matrix2::new(3.0, 2.0, 0.0, 1.0));
+/// ```
+///
+/// Generators that aren't orthogonal, or a Cayley map that leaves the group, are errors when a program is built. Here
+/// `diag(1, 2)³` isn't a multiple of `diag(1, 2)`:
+///
+/// ```compile_fail,E0080
+/// # use liestep::groups::matrix;
+/// # use liestep::{CayleyRetraction, Generators, MatrixGroup, Retraction};
+/// # use nalgebra::{RealField, SMatrix, Vector1};
+/// # #[derive(Clone, Copy, Debug, PartialEq)]
+/// # struct Stretch;
+/// impl Generators<2, 1> for Stretch {
+///     const GENERATORS: [[[f64; 2]; 2]; 1] = [matrix(&[(0, 0, 1.0), (1, 1, 2.0)])];
+/// #     fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+/// #         (m.m11 * m.m11 - m.m22).abs()
+/// #     }
+/// }
+///
+/// let map: MatrixGroup<Stretch, f64, 2, 1> = CayleyRetraction::retract(&Vector1::new(0.1));
+/// ```
+pub trait Generators<const N: usize, const D: usize>: Copy + Debug + PartialEq + 'static {
+    /// The basis `E_k`, each matrix by rows; [`matrix`] writes one by its entries.
+    const GENERATORS: [[[f64; N]; N]; D];
+
+    /// How far a matrix is from the relation of the group; zero on it, and not elsewhere.
+    fn relation<T: RealField + Copy>(matrix: &SMatrix<T, N, N>) -> T;
+
+    /// The inverse of an element; where there is none, not finite.
+    ///
+    /// To be overridden where the relation gives it in closed form.
+    #[must_use]
+    fn inverse<T: RealField + Copy>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        inverse(matrix)
+    }
+
+    /// Whether an increment with the coordinates `ξ̂` is so small that a solution there surely continues the identity.
+    ///
+    /// Unless overridden, `‖ξ̂‖ < 1` in the Frobenius norm. No theorem like that of SO(3) stands behind it, so it errs
+    /// on the side of a closer look at the solution, which costs time and nothing else.
+    #[must_use]
+    fn is_near_identity<T: RealField + Copy>(algebra: &SMatrix<T, N, N>) -> bool {
+        algebra.norm_squared() < T::one()
+    }
+}
+
+/// The matrix with the entries `(row, column, value)`, counted from zero, and zeros elsewhere.
+#[must_use]
+pub const fn matrix<const N: usize>(entries: &[(usize, usize, f64)]) -> [[f64; N]; N] {
+    let mut matrix = [[0.0; N]; N];
+    let mut next = 0;
+    while next < entries.len() {
+        let (row, column, value) = entries[next];
+        matrix[row][column] = value;
+        next += 1;
+    }
+    matrix
+}
+
+/// `A⁻¹`, or infinities.
+pub(crate) fn inverse<T: RealField + Copy, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    matrix.try_inverse().unwrap_or_else(|| SMatrix::repeat(T::one() / T::zero()))
+}
+
+/// `A` as a matrix of the scalar.
+pub(crate) fn dynamic<T: Real, const N: usize>(matrix: &[[f64; N]; N]) -> SMatrix<T, N, N> {
+    SMatrix::from_fn(|row, column| real(matrix[row][column]))
+}
+
+/// Rounding of products of written-out generators, squared.
+const ROUNDING_SQUARED: f64 = 1e-24;
+
+/// `tr(AᵀB)`.
+const fn pairing<const N: usize>(a: &[[f64; N]; N], b: &[[f64; N]; N]) -> f64 {
+    let (mut sum, mut i) = (0.0, 0);
+    while i < N {
+        let mut j = 0;
+        while j < N {
+            sum += a[i][j] * b[i][j];
+            j += 1;
+        }
+        i += 1;
+    }
+    sum
+}
+
+/// `C + s A B`.
+const fn add_product<const N: usize>(c: &[[f64; N]; N], s: f64, a: &[[f64; N]; N], b: &[[f64; N]; N]) -> [[f64; N]; N] {
+    let (mut result, mut i) = (*c, 0);
+    while i < N {
+        let mut j = 0;
+        while j < N {
+            let mut k = 0;
+            while k < N {
+                result[i][j] += s * a[i][k] * b[k][j];
+                k += 1;
+            }
+            j += 1;
+        }
+        i += 1;
+    }
+    result
+}
+
+/// `tr(E_kᵀ E_k)`, checked to be orthogonal.
+pub(super) const fn squared_lengths<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> [f64; D] {
+    let (mut lengths, mut i) = ([0.0; D], 0);
+    while i < D {
+        lengths[i] = pairing(&basis[i], &basis[i]);
+        assert!(lengths[i] > 0.0, "a generator is zero");
+        let mut j = 0;
+        while j < i {
+            let product = pairing(&basis[i], &basis[j]);
+            assert!(
+                product * product <= ROUNDING_SQUARED * lengths[i] * lengths[j],
+                "two generators aren't orthogonal: tr(E_jᵀ E_k) ≠ 0"
+            );
+            j += 1;
+        }
+        i += 1;
+    }
+    lengths
+}
+
+/// The components of `A` in the basis, and whether nothing is left of it, measured by `scale`.
+const fn components<const N: usize, const D: usize>(
+    basis: &[[[f64; N]; N]; D],
+    a: &[[f64; N]; N],
+    scale: f64,
+) -> ([f64; D], bool) {
+    let lengths = squared_lengths(basis);
+    let (mut result, mut covered, mut k) = ([0.0; D], 0.0, 0);
+    while k < D {
+        result[k] = pairing(a, &basis[k]) / lengths[k];
+        covered += result[k] * result[k] * lengths[k];
+        k += 1;
+    }
+    // By Pythagoras: the square of what is left.
+    let left = pairing(a, a) - covered;
+    (result, left.abs() <= 1e-12 * scale)
+}
+
+/// `c[i][j][k]` with `[E_i, E_j] = Σ c[i][j][k] E_k`, checked to be an algebra.
+pub(super) const fn structure_constants<const N: usize, const D: usize>(
+    basis: &[[[f64; N]; N]; D],
+) -> [[[f64; D]; D]; D] {
+    let lengths = squared_lengths(basis);
+    let (mut constants, mut i) = ([[[0.0; D]; D]; D], 0);
+    while i < D {
+        let mut j = 0;
+        while j < D {
+            let product = add_product(&[[0.0; N]; N], 1.0, &basis[i], &basis[j]);
+            let commutator = add_product(&product, -1.0, &basis[j], &basis[i]);
+            let (bracket, closed) = components(basis, &commutator, lengths[i] * lengths[j]);
+            assert!(closed, "the generators don't span a Lie algebra: a commutator leaves their span");
+            constants[i][j] = bracket;
+            j += 1;
+        }
+        i += 1;
+    }
+    constants
+}
+
+/// Whether the symmetrised products of any three generators lie in their span.
+///
+/// With them all odd powers of `ξ̂` do, and then `(d/dt cay(tξ)) cay(tξ)⁻¹ = ξ̂ (I − t²ξ̂²/4)⁻¹`, so that the Cayley map
+/// stays in the group.
+pub(crate) const fn is_closed_under_cayley<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> bool {
+    let lengths = squared_lengths(basis);
+    let zero = [[0.0; N]; N];
+    let mut i = 0;
+    while i < D {
+        let mut j = i;
+        while j < D {
+            let anticommutator = add_product(&add_product(&zero, 1.0, &basis[i], &basis[j]), 1.0, &basis[j], &basis[i]);
+            let mut k = j;
+            while k < D {
+                let of_ik = add_product(&add_product(&zero, 1.0, &basis[i], &basis[k]), 1.0, &basis[k], &basis[i]);
+                let of_jk = add_product(&add_product(&zero, 1.0, &basis[j], &basis[k]), 1.0, &basis[k], &basis[j]);
+                let sum = add_product(&zero, 1.0, &basis[k], &anticommutator);
+                let sum = add_product(&sum, 1.0, &basis[j], &of_ik);
+                let sum = add_product(&sum, 1.0, &basis[i], &of_jk);
+                if !components(basis, &sum, lengths[i] * lengths[j] * lengths[k]).1 {
+                    return false;
+                }
+                k += 1;
+            }
+            j += 1;
+        }
+        i += 1;
+    }
+    true
+}

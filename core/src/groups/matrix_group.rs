@@ -1,0 +1,217 @@
+//! The group of matrices that a set of generators declares.
+
+use core::fmt;
+use core::marker::PhantomData;
+
+use nalgebra::{RealField, SMatrix, SVector};
+
+use super::LieGroup;
+use super::generators::{Generators, dynamic, squared_lengths, structure_constants};
+use crate::scalar::{real, reported};
+
+/// An element of the matrix group that `K` declares by its [`Generators`].
+///
+/// Tangent space: `ξ̂ = Σ ξ_k E_k`; `ad_ξ η` by the structure constants, which are computed when the user's crate is
+/// compiled. Covector components are `μ_k = ⟨μ, E_k⟩`; as a matrix a covector is `Σ μ_k E_k / tr(E_kᵀ E_k)`, paired by
+/// `tr(AᵀB)`.
+///
+/// # Shape and units
+///
+/// An `N` × `N` matrix; the units of its entries are those that the group's own page gives.
+#[derive(Clone, Copy, PartialEq)]
+pub struct MatrixGroup<K, T, const N: usize, const D: usize>(SMatrix<T, N, N>, PhantomData<K>);
+
+/// A matrix that isn't in the group was given as an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NotInGroup {
+    /// How far the matrix is from the relation of the group, or NaN.
+    pub defect: f64,
+}
+
+impl fmt::Display for NotInGroup {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "the matrix is not in the group: it misses the group's relation by {:e}; project it first",
+            self.defect
+        )
+    }
+}
+
+impl core::error::Error for NotInGroup {}
+
+impl<K: fmt::Debug, T: RealField + Copy, const N: usize, const D: usize> fmt::Debug for MatrixGroup<K, T, N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("MatrixGroup").field(&self.0).finish()
+    }
+}
+
+impl<K, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
+    /// Takes the matrix as it is; what depends on the relation of the group is then only as right as the matrix.
+    #[must_use]
+    pub const fn from_matrix_unchecked(matrix: SMatrix<T, N, N>) -> Self {
+        Self(matrix, PhantomData)
+    }
+
+    /// The matrix.
+    #[must_use]
+    pub const fn as_matrix(&self) -> &SMatrix<T, N, N> {
+        &self.0
+    }
+}
+
+impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> TryFrom<SMatrix<T, N, N>>
+    for MatrixGroup<K, T, N, D>
+{
+    type Error = NotInGroup;
+
+    /// Accepts a matrix that satisfies the relation to 10⁴ roundings, so that one printed to a dozen digits passes.
+    fn try_from(matrix: SMatrix<T, N, N>) -> Result<Self, NotInGroup> {
+        let candidate = Self::from_matrix_unchecked(matrix);
+        let defect = candidate.defect();
+        if defect < T::default_epsilon() * real(1e4) {
+            Ok(candidate)
+        } else {
+            Err(NotInGroup { defect: reported(defect) })
+        }
+    }
+}
+
+impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
+    const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
+    const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
+
+    /// `tr(E_kᵀ M)` for all `k`.
+    #[inline]
+    fn pairings(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
+        SVector::from_fn(|k, _| {
+            nonzero(&K::GENERATORS[k]).fold(T::zero(), |sum, (i, j, entry)| sum + matrix[(i, j)] * real(entry))
+        })
+    }
+
+    /// The covector as a matrix, `Σ μ_k E_k / tr(E_kᵀ E_k)`.
+    #[inline]
+    fn dual_hat(momentum: &SVector<T, D>) -> SMatrix<T, N, N> {
+        Self::hat(&SVector::from_fn(|k, _| momentum[k] * real(1.0 / Self::SQUARED_LENGTHS[k])))
+    }
+}
+
+/// The entries that aren't zero, with their places.
+#[inline]
+fn nonzero<const N: usize>(matrix: &[[f64; N]; N]) -> impl Iterator<Item = (usize, usize, f64)> {
+    (0..N * N).map(|place| (place / N, place % N, matrix[place / N][place % N])).filter(|entry| entry.2 != 0.0)
+}
+
+impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> LieGroup for MatrixGroup<K, T, N, D> {
+    type Scalar = T;
+    type Vector = SVector<T, D>;
+    type Matrix = SMatrix<T, N, N>;
+
+    const DIMENSION: usize = D;
+
+    fn identity() -> Self {
+        Self::from_matrix_unchecked(SMatrix::identity())
+    }
+
+    #[inline]
+    fn compose(&self, right: &Self) -> Self {
+        Self::from_matrix_unchecked(self.0 * right.0)
+    }
+
+    #[inline]
+    fn inverse(&self) -> Self {
+        Self::from_matrix_unchecked(K::inverse(&self.0))
+    }
+
+    #[inline]
+    fn matrix(&self) -> SMatrix<T, N, N> {
+        self.0
+    }
+
+    #[inline]
+    fn hat(components: &SVector<T, D>) -> SMatrix<T, N, N> {
+        let mut algebra = SMatrix::zeros();
+        for (k, generator) in K::GENERATORS.iter().enumerate() {
+            for (i, j, entry) in nonzero(generator) {
+                algebra[(i, j)] += components[k] * real(entry);
+            }
+        }
+        algebra
+    }
+
+    /// Of a matrix that isn't in the algebra, the components of its orthogonal projection.
+    #[inline]
+    fn vee(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
+        let pairings = Self::pairings(matrix);
+        SVector::from_fn(|k, _| pairings[k] * real(1.0 / Self::SQUARED_LENGTHS[k]))
+    }
+
+    #[inline]
+    fn adjoint(&self, velocity: &SVector<T, D>) -> SVector<T, D> {
+        Self::vee(&(self.0 * Self::hat(velocity) * K::inverse(&self.0)))
+    }
+
+    /// Components `⟨μ, F E_k F⁻¹⟩`.
+    #[inline]
+    fn adjoint_transpose(&self, momentum: &SVector<T, D>) -> SVector<T, D> {
+        Self::pairings(&(self.0.transpose() * Self::dual_hat(momentum) * K::inverse(&self.0).transpose()))
+    }
+
+    #[inline]
+    fn lie_bracket(xi: &SVector<T, D>, eta: &SVector<T, D>) -> SVector<T, D> {
+        let mut bracket = SVector::zeros();
+        for (i, constants) in Self::STRUCTURE.iter().enumerate() {
+            for (j, k, constant) in nonzero(constants) {
+                bracket[k] += xi[i] * eta[j] * real(constant);
+            }
+        }
+        bracket
+    }
+
+    #[inline]
+    fn lie_bracket_transpose(xi: &SVector<T, D>, momentum: &SVector<T, D>) -> SVector<T, D> {
+        let mut transposed = SVector::zeros();
+        for (i, constants) in Self::STRUCTURE.iter().enumerate() {
+            for (j, k, constant) in nonzero(constants) {
+                transposed[j] += xi[i] * momentum[k] * real(constant);
+            }
+        }
+        transposed
+    }
+
+    #[inline]
+    fn from_increment(increment: &SMatrix<T, N, N>) -> Self {
+        Self::from_matrix_unchecked(increment + SMatrix::identity())
+    }
+
+    #[inline]
+    fn increment(&self) -> SMatrix<T, N, N> {
+        self.0 - SMatrix::identity()
+    }
+
+    #[inline]
+    fn advance(&self, increment: &SMatrix<T, N, N>) -> Self {
+        Self::from_matrix_unchecked(self.0 + self.0 * increment)
+    }
+
+    /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
+    #[inline]
+    fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
+        let inverse_increment = -(K::inverse(&(increment + SMatrix::identity())) * increment);
+        let covector = Self::dual_hat(momentum);
+        let moved = increment.transpose() * covector;
+        Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))
+    }
+
+    /// NaN where an entry isn't finite, whether or not the relation depends on it.
+    fn defect(&self) -> T {
+        K::relation(&self.0) + self.0.sum() * T::zero()
+    }
+}
+
+/// The generators as matrices of the scalar.
+pub(crate) fn basis<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize>(
+    k: usize,
+) -> SMatrix<T, N, N> {
+    dynamic(&K::GENERATORS[k])
+}

@@ -1,0 +1,108 @@
+//! The laws of `Advected`.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::samples::{Entries, MatrixLieGroup, ROUNDING, Random, assert_small, condition, eliminated_inverse};
+use crate::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+
+/// `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, and linear in `w`.
+pub fn parameter_is_acted_on<G, A, const N: usize, const D: usize>()
+where
+    G: MatrixLieGroup<N, D>,
+    A: Advected<G> + Entries,
+{
+    let mut random = Random::new(21);
+    for f in random.elements::<G, N, D>() {
+        let g = random.element::<G, N, D>();
+        let w: A = random.sample();
+        // A tensor meets each element twice.
+        let allowed = ROUNDING * (condition(&f) * condition(&g)).powi(2);
+        assert_same(&w.seen_from(&G::identity()), &w, 0.0, "e · w = w");
+        assert_same(&w.advect(&SMatrix::zeros()), &w, 0.0, "e⁻¹ · w = w");
+        let (at_once, in_turn) = (w.seen_from(&g.compose(&f)), w.seen_from(&g).advect(&f.increment()));
+        assert_same(&at_once, &in_turn, allowed, "(g f)⁻¹ · w = f⁻¹ · (g⁻¹ · w)");
+        let back = w.advect(&f.increment()).advect(&f.inverse().increment());
+        assert_same(&back, &w, allowed, "f · (f⁻¹ · w) = w");
+
+        let v: A = random.sample();
+        let sum = combined(&w, &v).advect(&f.increment());
+        let expected = combined(&w.advect(&f.increment()), &v.advect(&f.increment()));
+        assert_same(&sum, &expected, allowed, "the action is linear");
+        assert_small(f64::from(u8::from(!w.is_finite())), 0.0, "finite entries are finite");
+    }
+    let lost = A::from_entries(|| f64::NAN).is_finite();
+    assert_small(f64::from(u8::from(lost)), 0.0, "NaN isn't finite");
+}
+
+/// [`parameter_is_acted_on`] for the five kinds.
+pub fn kinds_act<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    parameter_is_acted_on::<G, SVector<f64, N>, N, D>();
+    parameter_is_acted_on::<G, ContravariantVector<f64, N>, N, D>();
+    parameter_is_acted_on::<G, ContravariantTensor<f64, N>, N, D>();
+    parameter_is_acted_on::<G, CovariantTensor<f64, N>, N, D>();
+    parameter_is_acted_on::<G, MixedTensor<f64, N>, N, D>();
+}
+
+/// Each kind by the product that defines it.
+pub fn kinds_move_as_declared<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(22);
+    for f in random.elements::<G, N, D>() {
+        let (w, s): (SVector<f64, N>, SMatrix<f64, N, N>) = (random.sample(), random.sample());
+        let (matrix, inverse) = (f.matrix(), eliminated_inverse(&f));
+        moves_as(&f, &w, &(matrix.transpose() * w), "V*: Fᵀ w");
+        moves_as(&f, &ContravariantVector(w), &(inverse * w), "V: F⁻¹ v");
+        moves_as(&f, &ContravariantTensor(s), &(inverse * s * inverse.transpose()), "V ⊗ V: F⁻¹ S F⁻ᵀ");
+        moves_as(&f, &CovariantTensor(s), &(matrix.transpose() * s * matrix), "V* ⊗ V*: Fᵀ S F");
+        moves_as(&f, &MixedTensor(s), &(inverse * s * matrix), "V ⊗ V*: F⁻¹ S F");
+    }
+}
+
+/// `⟨w, v⟩` and the values of tensors, when all that they are made of moves.
+pub fn pairings_are_invariant<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(23);
+    for f in random.elements::<G, N, D>() {
+        let d = f.increment();
+        let covectors: [SVector<f64, N>; 2] = [random.sample(), random.sample()];
+        let vectors: [ContravariantVector<f64, N>; 2] = [random.sample(), random.sample()];
+        let contravariant: ContravariantTensor<f64, N> = random.sample();
+        let covariant: CovariantTensor<f64, N> = random.sample();
+        let mixed: MixedTensor<f64, N> = random.sample();
+        let values = |[w, u]: [SVector<f64, N>; 2], [v, x]: [ContravariantVector<f64, N>; 2], s, t, m| {
+            let (s, t, m): (ContravariantTensor<f64, N>, CovariantTensor<f64, N>, MixedTensor<f64, N>) = (s, t, m);
+            [w.dot(&v.0), w.dot(&(s.0 * u)), v.0.dot(&(t.0 * x.0)), w.dot(&(m.0 * v.0))]
+        };
+        let before = values(covectors, vectors, contravariant, covariant, mixed);
+        let after = values(
+            covectors.map(|w| Advected::<G>::advect(&w, &d)),
+            vectors.map(|v| Advected::<G>::advect(&v, &d)),
+            Advected::<G>::advect(&contravariant, &d),
+            Advected::<G>::advect(&covariant, &d),
+            Advected::<G>::advect(&mixed, &d),
+        );
+        for (before, after) in before.iter().zip(after) {
+            assert_small((before - after).abs(), ROUNDING * condition(&f).powi(2), "a pairing doesn't change");
+        }
+    }
+}
+
+fn moves_as<G, A, const N: usize, const D: usize>(f: &G, parameter: &A, expected: &impl Entries, law: &str)
+where
+    G: MatrixLieGroup<N, D>,
+    A: Advected<G> + Entries,
+{
+    let allowed = ROUNDING * condition(f).powi(2);
+    assert_same(&parameter.seen_from(f), expected, allowed, law);
+    assert_same(&parameter.advect(&f.increment()), expected, allowed, law);
+}
+
+/// `2 w + v`.
+fn combined<A: Entries>(w: &A, v: &A) -> A {
+    let mut sums = w.entries().into_iter().zip(v.entries()).map(|(w, v)| 2.0 * w + v);
+    A::from_entries(|| sums.next().unwrap_or(f64::NAN))
+}
+
+#[track_caller]
+fn assert_same(a: &impl Entries, b: &impl Entries, allowed: f64, law: &str) {
+    let squared: f64 = a.entries().iter().zip(b.entries()).map(|(a, b)| (a - b).powi(2)).sum();
+    assert_small(squared.sqrt(), allowed, law);
+}

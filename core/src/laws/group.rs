@@ -1,0 +1,137 @@
+//! The laws of `LieGroup`.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::samples::{
+    DIFFERENCE, MatrixLieGroup, ROUNDING, Random, along, assert_close, assert_small, condition, derivative,
+    eliminated_inverse,
+};
+
+/// Closure, associativity, neutral and inverse elements.
+pub fn group_axioms<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(1);
+    let identity = SMatrix::<f64, N, N>::identity();
+    assert_close(&G::identity().matrix(), &identity, 0.0, "e = I");
+    for f in random.elements::<G, N, D>() {
+        let (g, h) = (random.element::<G, N, D>(), random.element::<G, N, D>());
+        let allowed = ROUNDING * condition(&f) * condition(&g);
+        assert_small(f.defect(), allowed, "exp ξ̂ is in the group");
+        assert_small(f.compose(&g).defect(), allowed, "F G is in the group");
+        assert_small(f.inverse().defect(), allowed, "F⁻¹ is in the group");
+        assert_close(&f.compose(&f.inverse()).matrix(), &identity, allowed, "F F⁻¹ = I");
+        assert_close(&f.inverse().compose(&f).matrix(), &identity, allowed, "F⁻¹ F = I");
+        assert_close(&f.compose(&g).matrix(), &(f.matrix() * g.matrix()), allowed, "the product is that of matrices");
+        assert_close(&f.compose(&G::identity()).matrix(), &f.matrix(), 0.0, "F e = F");
+        let (left, right) = (f.compose(&g).compose(&h), f.compose(&g.compose(&h)));
+        assert_close(&left.matrix(), &right.matrix(), allowed * condition(&h), "(F G) H = F (G H)");
+    }
+}
+
+/// `ξ̂^∨ = ξ`, and the hat is linear.
+pub fn hat_and_vee<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(2);
+    assert_small(f64::from(u8::from(G::DIMENSION != D)), 0.0, "the dimension is that of the vectors");
+    for _ in 0..20 {
+        let (xi, eta): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
+        assert_close(&G::vee(&G::hat(&xi)), &xi, ROUNDING, "ξ̂^∨ = ξ");
+        let sum = G::hat(&xi) * 2.0 + G::hat(&eta);
+        assert_close(&G::hat(&(xi * 2.0 + eta)), &sum, ROUNDING, "the hat is linear");
+    }
+}
+
+/// `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`.
+pub fn brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(3);
+    for _ in 0..20 {
+        let (x, y, z): (SVector<f64, D>, SVector<f64, D>, SVector<f64, D>) =
+            (random.sample(), random.sample(), random.sample());
+        let commutator = G::hat(&x) * G::hat(&y) - G::hat(&y) * G::hat(&x);
+        assert_close(&G::hat(&G::lie_bracket(&x, &y)), &commutator, ROUNDING, "[ξ, η]^ = ξ̂η̂ − η̂ξ̂");
+        assert_close(&G::lie_bracket(&x, &y), &-G::lie_bracket(&y, &x), ROUNDING, "[ξ, η] = −[η, ξ]");
+        let jacobi = G::lie_bracket(&x, &G::lie_bracket(&y, &z))
+            + G::lie_bracket(&y, &G::lie_bracket(&z, &x))
+            + G::lie_bracket(&z, &G::lie_bracket(&x, &y));
+        assert_close(&jacobi, &SVector::zeros(), ROUNDING, "Jacobi's identity");
+    }
+}
+
+/// `Ad_F ξ = (F ξ̂ F⁻¹)^∨`.
+pub fn adjoint_action<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(4);
+    for f in random.elements::<G, N, D>() {
+        let (xi, eta): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
+        let g = random.element::<G, N, D>();
+        let allowed = ROUNDING * condition(&f) * condition(&g);
+        let conjugated = f.matrix() * G::hat(&xi) * eliminated_inverse(&f);
+        assert_close(&G::hat(&f.adjoint(&xi)), &conjugated, allowed, "(Ad_F ξ)^ = F ξ̂ F⁻¹");
+        let twice = f.adjoint(&g.adjoint(&xi));
+        assert_close(&f.compose(&g).adjoint(&xi), &twice, allowed, "Ad_FG = Ad_F Ad_G");
+        let moved = G::lie_bracket(&f.adjoint(&xi), &f.adjoint(&eta));
+        let allowed = allowed * condition(&f);
+        assert_close(&f.adjoint(&G::lie_bracket(&xi, &eta)), &moved, allowed, "Ad_F [ξ, η] = [Ad_F ξ, Ad_F η]");
+    }
+}
+
+/// `Ad*` and `ad*` are transposes.
+pub fn pairings<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(5);
+    for f in random.elements::<G, N, D>() {
+        let (xi, eta): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
+        let momentum: SVector<f64, D> = random.sample();
+        let difference = f.adjoint_transpose(&momentum).dot(&xi) - momentum.dot(&f.adjoint(&xi));
+        assert_small(difference.abs(), ROUNDING * condition(&f), "⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩");
+        let paired = G::lie_bracket_transpose(&xi, &momentum).dot(&eta);
+        let difference = paired - momentum.dot(&G::lie_bracket(&xi, &eta));
+        assert_small(difference.abs(), ROUNDING, "⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩");
+    }
+}
+
+/// The derivatives of `Ad_{exp tξ}` and `Ad*_{exp tξ}` at `t = 0`.
+pub fn brackets_are_derivatives<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(6);
+    for _ in 0..20 {
+        let (xi, eta): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
+        let rate = derivative(|t| along::<G, N, D>(&xi, t).adjoint(&eta));
+        assert_close(&rate, &G::lie_bracket(&xi, &eta), DIFFERENCE, "ad is the derivative of Ad");
+        let rate = derivative(|t| along::<G, N, D>(&xi, t).adjoint_transpose(&eta));
+        assert_close(&rate, &G::lie_bracket_transpose(&xi, &eta), DIFFERENCE, "ad* is the derivative of Ad*");
+    }
+}
+
+/// `D` stands for `F = I + D`.
+pub fn increments<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(7);
+    for f in random.elements::<G, N, D>() {
+        let (g, d) = (random.element::<G, N, D>(), f.increment());
+        let momentum: SVector<f64, D> = random.sample();
+        let allowed = ROUNDING * condition(&f) * condition(&g);
+        assert_close(&G::from_increment(&d).matrix(), &f.matrix(), allowed, "I + D = F");
+        assert_close(&g.advance(&d).matrix(), &(g.matrix() * f.matrix()), allowed, "g + g D = g F");
+        let change = f.adjoint_transpose(&momentum) - momentum;
+        let by_increment = G::adjoint_transpose_increment(&d, &momentum);
+        assert_close(&by_increment, &change, allowed, "Ad*_F μ − μ from D");
+    }
+    // With `‖D‖ = 10⁻¹²` the second order is 10⁻²⁴, and a subtraction of one would leave 10⁻¹⁶.
+    for _ in 0..20 {
+        let (xi, momentum): (SVector<f64, D>, SVector<f64, D>) =
+            (random.sample::<SVector<f64, D>>() * 1e-12, random.sample());
+        let change = G::adjoint_transpose_increment(&G::hat(&xi), &momentum);
+        let expected = G::lie_bracket_transpose(&xi, &momentum);
+        assert_close(&change, &expected, 1e-22, "Ad*_F μ − μ loses no digit of a small D");
+    }
+}
+
+/// Zero is the defect of elements only.
+pub fn the_relation_tells<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(8);
+    if D == N * N {
+        return;
+    }
+    for f in random.elements::<G, N, D>() {
+        let matrix: SMatrix<f64, N, N> = random.sample();
+        let off = (matrix - G::hat(&G::vee(&matrix))).normalize() * 1e-3;
+        let defect = G::from_increment(&(f.increment() + f.matrix() * off)).defect();
+        // What is off by 10⁻³ across the group misses the relation by about as much.
+        assert_small(1e-6 / defect.abs(), 1.0, "a matrix off the group has a defect");
+    }
+}

@@ -1,0 +1,161 @@
+//! Where the laws are tried, and how two sides are compared.
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::groups::{LieGroup, exponential};
+use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+
+/// A group of `N` × `N` matrices of dimension `D` over `f64`.
+pub trait MatrixLieGroup<const N: usize, const D: usize>:
+    LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>
+{
+}
+
+impl<G, const N: usize, const D: usize> MatrixLieGroup<N, D> for G where
+    G: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>
+{
+}
+
+/// A parameter that can be made of numbers and taken apart into them.
+pub trait Entries {
+    /// Made of the next numbers of a stream.
+    fn from_entries(next: impl FnMut() -> f64) -> Self;
+
+    /// The numbers, in the order that they were taken in.
+    fn entries(&self) -> Vec<f64>;
+}
+
+impl<const R: usize, const C: usize> Entries for SMatrix<f64, R, C> {
+    fn from_entries(mut next: impl FnMut() -> f64) -> Self {
+        Self::from_fn(|_, _| next())
+    }
+
+    fn entries(&self) -> Vec<f64> {
+        self.iter().copied().collect()
+    }
+}
+
+macro_rules! entries {
+    ($($type:ident)+) => {$(
+        impl<const N: usize> Entries for $type<f64, N> {
+            fn from_entries(next: impl FnMut() -> f64) -> Self {
+                Self(Entries::from_entries(next))
+            }
+
+            fn entries(&self) -> Vec<f64> {
+                self.0.entries()
+            }
+        }
+    )+};
+}
+
+entries!(ContravariantVector ContravariantTensor CovariantTensor MixedTensor);
+
+/// A stream of pseudo-random numbers, `SplitMix64` of Steele, Lea and Flood (2014).
+#[derive(Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// The stream of a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// Uniform in `[−1, 1)`.
+    #[allow(clippy::cast_precision_loss)] // 53 bits are left
+    pub fn signed(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Entries uniform in `[−1, 1)`.
+    pub fn sample<A: Entries>(&mut self) -> A {
+        A::from_entries(|| self.signed())
+    }
+
+    /// Coordinates of the identity, next to it, and anywhere within reach.
+    pub fn coordinates<const D: usize>(&mut self) -> Vec<SVector<f64, D>> {
+        let mut coordinates = vec![SVector::zeros()];
+        for _ in 0..20 {
+            coordinates.push(self.sample::<SVector<f64, D>>() * 1e-8);
+            coordinates.push(self.sample());
+        }
+        coordinates
+    }
+
+    /// A product of two exponentials: not on a one-parameter subgroup that is sampled elsewhere.
+    pub fn element<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(&mut self) -> G {
+        let (first, second) = (self.sample(), self.sample());
+        along::<G, N, D>(&first, 1.0).compose(&along::<G, N, D>(&second, 1.0))
+    }
+
+    /// The identity, elements next to it, and elements anywhere.
+    pub fn elements<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(&mut self) -> Vec<G> {
+        let mut elements: Vec<G> = self.coordinates().iter().map(|xi| along::<G, N, D>(xi, 1.0)).collect();
+        for _ in 0..20 {
+            elements.push(self.element::<G, N, D>());
+        }
+        elements
+    }
+}
+
+/// `exp(t ξ̂)`, by the group's basis and nothing else of it.
+#[must_use]
+pub fn along<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(xi: &SVector<f64, D>, t: f64) -> G {
+    G::from_increment(&exponential(&(G::hat(xi) * t)).0)
+}
+
+/// `F⁻¹` by elimination, whatever the group does.
+#[must_use]
+pub fn eliminated_inverse<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(f: &G) -> SMatrix<f64, N, N> {
+    crate::groups::inverse(&f.matrix())
+}
+
+/// `‖F‖ ‖F⁻¹‖`: what rounding is multiplied by when `F` conjugates.
+#[must_use]
+pub fn condition<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(f: &G) -> f64 {
+    f.matrix().norm() * eliminated_inverse(f).norm()
+}
+
+/// `f'(0)` from six values at a spacing of 10⁻³.
+///
+/// The remainder is of the order of 10⁻¹⁸ by the seventh derivative, rounding of 10⁻¹³ by the size of `f`.
+pub fn derivative<const R: usize, const C: usize>(f: impl Fn(f64) -> SMatrix<f64, R, C>) -> SMatrix<f64, R, C> {
+    let d = 1e-3;
+    let odd = |k: f64| f(k * d) - f(-k * d);
+    (odd(1.0) * 45.0 - odd(2.0) * 9.0 + odd(3.0)) / (60.0 * d)
+}
+
+/// What some products of small matrices leave, for a scale of one.
+pub const ROUNDING: f64 = 2e-14;
+/// What [`derivative`] leaves, for a scale of one.
+pub const DIFFERENCE: f64 = 1e-11;
+
+/// `‖a − b‖ ≤ allowed`; a NaN fails it.
+///
+/// # Panics
+///
+/// Where it doesn't hold.
+#[track_caller]
+pub fn assert_close<const R: usize, const C: usize>(
+    a: &SMatrix<f64, R, C>,
+    b: &SMatrix<f64, R, C>,
+    allowed: f64,
+    law: &str,
+) {
+    assert_small((a - b).norm(), allowed, law);
+}
+
+/// `size ≤ allowed`; a NaN fails it.
+///
+/// # Panics
+///
+/// Where it doesn't hold.
+#[track_caller]
+pub fn assert_small(size: f64, allowed: f64, law: &str) {
+    assert!(size <= allowed, "{law}: off by {size:e}, allowed are {allowed:e}");
+}

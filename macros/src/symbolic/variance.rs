@@ -1,0 +1,23 @@
+//! How the group moves an advected parameter.
+
+/// Vectors, covectors, and the three kinds of second rank, in the defining representation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Variance {
+    /// `V`.
+    Vector,
+    /// `V*`, the thesis' case and the default.
+    Covector,
+    /// `V ⊗ V`.
+    Contravariant,
+    /// `V* ⊗ V*`.
+    Covariant,
+    /// `V ⊗ V*`.
+    Mixed,
+}
+
+impl Variance {
+    /// Whether it is a matrix.
+    pub(crate) fn is_tensor(self) -> bool {
+        !matches!(self, Self::Vector | Self::Covector)
+    }
+}

@@ -1,0 +1,80 @@
+//! `Coordinates` in all dimensions that a group may have: the solution of a linear system, and what a singular one gives.
+
+use liestep::Coordinates;
+use liestep::laws::samples::Random;
+use nalgebra::{SMatrix, SVector};
+
+/// A symmetric positive definite matrix and a smaller one without symmetry, like a Jacobian at a finite step.
+fn jacobian<const D: usize>(random: &mut Random) -> SMatrix<f64, D, D> {
+    let root: SMatrix<f64, D, D> = random.sample();
+    let rest: SMatrix<f64, D, D> = random.sample();
+    root.transpose() * root + SMatrix::identity() * 0.1 + rest * 0.1
+}
+
+fn assert_solves<const D: usize>() {
+    let mut random = Random::new(41);
+    for _ in 0..50 {
+        let (a, b): (SMatrix<f64, D, D>, SVector<f64, D>) = (jacobian(&mut random), random.sample());
+        let (z, _) = SVector::<f64, D>::solve(&a, &b);
+        // Backward stability: the residual is a rounding of the products in it, whatever the condition of `A` is.
+        assert!((a * z - b).norm() <= 2e-14 * (a.norm() * z.norm() + b.norm()), "{D}");
+        assert!((SVector::<f64, D>::trace(&a) - a.trace()).abs() < 1e-14);
+        assert!(z.is_finite() && !Coordinates::is_finite(&(z * f64::NAN)) && !Coordinates::is_finite(&(z / 0.0)));
+        assert!((Coordinates::dot(&z, &b) - b.dot(&z)).abs() <= 1e-13 * z.norm());
+    }
+}
+
+/// Singular without rounding: small integers, the last row half of the first, or all zero.
+fn assert_refuses<const D: usize>() {
+    let mut random = Random::new(42);
+    let (mut dependent, b): (SMatrix<f64, D, D>, SVector<f64, D>) = (jacobian(&mut random) * 16.0, random.sample());
+    dependent.apply(|entry| *entry = entry.round());
+    let row = if D == 1 { dependent.row(0) * 0.0 } else { dependent.row(0) * 0.5 };
+    dependent.set_row(D - 1, &row);
+    for (matrix, right_side) in [(dependent, b), (SMatrix::zeros(), b), (SMatrix::zeros(), SVector::zeros())] {
+        let (z, det) = SVector::<f64, D>::solve(&matrix, &right_side);
+        assert!(!Coordinates::is_finite(&z), "{D}: {z}");
+        assert!(det == 0.0 || !det.is_finite(), "{D}: {det}");
+    }
+}
+
+/// The determinant against that of a triangular factorisation known beforehand.
+fn assert_determinant<const D: usize>() {
+    let mut random = Random::new(43);
+    let (mut lower, mut upper) = (SMatrix::<f64, D, D>::identity(), SMatrix::<f64, D, D>::identity());
+    let mut expected = 1.0;
+    for i in 0..D {
+        for j in 0..i {
+            (lower[(i, j)], upper[(j, i)]) = (random.signed(), random.signed());
+        }
+        upper[(i, i)] = 1.5 + random.signed();
+        expected *= upper[(i, i)];
+    }
+    let (_, det) = SVector::<f64, D>::solve(&(lower * upper), &SVector::zeros());
+    assert!((det / expected - 1.0).abs() < 1e-12, "{D}: {det} against {expected}");
+}
+
+macro_rules! dimensions {
+    ($($name:ident $dimension:literal)+) => {$(
+        #[test]
+        fn $name() {
+            assert_solves::<$dimension>();
+            assert_refuses::<$dimension>();
+            assert_determinant::<$dimension>();
+        }
+    )+};
+}
+
+dimensions! { one 1 two 2 three 3 four 4 five 5 six 6 eight 8 }
+
+/// Another unit of length scales some rows and columns; by a power of two that changes no digit of the solution.
+#[test]
+fn units_change_no_digit() {
+    let mut random = Random::new(44);
+    let unit = SVector::<f64, 6>::from_fn(|k, _| if k < 3 { 1.0 } else { f64::powi(2.0, -20) });
+    let (a, b): (SMatrix<f64, 6, 6>, SVector<f64, 6>) = (jacobian(&mut random), random.sample());
+    let scale = SMatrix::from_diagonal(&unit);
+    let (z, _) = SVector::<f64, 6>::solve(&a, &b);
+    let (scaled, _) = SVector::<f64, 6>::solve(&(scale * a * scale), &(scale * b));
+    assert_eq!(scale * scaled, z);
+}

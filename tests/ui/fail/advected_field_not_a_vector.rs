@@ -1,0 +1,18 @@
+use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * F[(2, 2)] * w[0],
+)]
+struct Top {
+    J_d: NonstandardInertia,
+    up: f64,
+}
+
+fn run(top: Top) {
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+use liestep::{NonstandardInertia, SO3, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (F * rho).dot(&rho).powi(2.5),
+)]
+struct Top {
+    J_d: NonstandardInertia,
+    rho: Vector3<f64>,
+}
+
+fn main() {}

@@ -1,0 +1,13 @@
+use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+
+#[lagrangian(group = SO3, l_d = (F * J_d).trace() /)]
+struct Top {
+    J_d: NonstandardInertia,
+}
+
+fn run(top: Top) {
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+}
+
+fn main() {}

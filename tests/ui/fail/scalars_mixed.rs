@@ -1,0 +1,21 @@
+use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * w.dot(&(rho + F * rho)) - h * m * F.trace(),
+)]
+struct Top {
+    J_d: NonstandardInertia,
+    m: f32,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+fn run(top: Top) {
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+}
+
+fn main() {}

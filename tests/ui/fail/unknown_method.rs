@@ -1,0 +1,13 @@
+use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+
+#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).tranpose()).trace() / (2.0 * h))]
+struct Top {
+    J_d: NonstandardInertia,
+}
+
+fn run(top: Top) {
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+}
+
+fn main() {}

@@ -1,0 +1,19 @@
+use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * (m + rho).dot(&(F * rho)),
+)]
+struct Top {
+    J_d: NonstandardInertia,
+    m: f64,
+    rho: Vector3<f64>,
+}
+
+fn run(top: Top) {
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+}
+
+fn main() {}

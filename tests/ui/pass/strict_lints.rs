@@ -1,0 +1,40 @@
+//! A crate that denies what it can.
+
+#![deny(
+    warnings,
+    missing_docs,
+    non_snake_case,
+    unused,
+    rust_2018_idioms,
+    unreachable_pub,
+    clippy::all,
+    clippy::pedantic
+)]
+#![forbid(unsafe_code)]
+
+use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::Vector3;
+
+/// A heavy top.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * inertia * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * w.dot(&(rho + F * rho)),
+)]
+#[derive(Clone, Debug)]
+struct Top {
+    /// About the pivot, kg m².
+    inertia: NonstandardInertia,
+    /// The centre of mass times the weight, N m.
+    rho: Vector3<f64>,
+    /// The vertical.
+    up: Vector3<f64>,
+}
+
+fn main() {
+    let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
+    let stepper = Stepper::new(Top { inertia, rho: Vector3::z(), up: Vector3::z() }, 0.01).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 5.0)).unwrap();
+    stepper.step(&mut state).unwrap();
+    assert_eq!(state.steps(), 1);
+}
