@@ -23,6 +23,7 @@ fn derivation(arguments: &str, item: &str) -> String {
 
 /// (3.17) is `μ`, (3.18) is `(L_F)* δl_d/δF`, and the diamond is that of section 3.2.1, item 3.
 #[test]
+#[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them
 fn of_the_heavy_top() {
     expect![[r#"
         l_d
