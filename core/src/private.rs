@@ -101,6 +101,7 @@ advected_parameter!(
 impl<K: Generators<N, D>, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     /// Whether an expansion has the generators of this group, by rows.
     #[must_use]
+    #[allow(clippy::float_cmp)] // both come from decimal literals
     pub const fn has_generators(matrices: &[[[f64; N]; N]; D]) -> bool {
         let mut place = 0;
         while place < D * N * N {

@@ -69,7 +69,11 @@ pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) -> Option
         }
         innermost.count(&token);
         if innermost.is_too_deep() {
-            errors.push(token.span(), format!("nested more than {DEEPEST} deep: bind parts with `let`"));
+            let span = match &token {
+                TokenTree::Group(group) => group.span_open(),
+                other => other.span(),
+            };
+            errors.push(span, format!("nested more than {DEEPEST} deep: bind parts with `let`"));
             return None;
         }
         let inside = match token {
