@@ -7,7 +7,7 @@ use super::{expanded, is_refused};
 /// What threads get by default.
 const STACK: usize = 2 << 20;
 /// Far more than the largest accepted declaration needs without optimisation.
-const PATIENCE: Duration = Duration::from_secs(5);
+const PATIENCE: Duration = Duration::from_secs(10);
 
 const ITEM: &str =
     "struct Top { J_d: NonstandardInertia, A: Matrix3<f64>, k: f64, rho: Vector3<f64>, up: Vector3<f64> }";
