@@ -13,8 +13,8 @@ use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
 /// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
-const MOST_FACTORS: usize = 2_000;
-const LONGEST_PRODUCT: usize = 32;
+const MOST_FACTORS: usize = 800;
+const LONGEST_PRODUCT: usize = 24;
 
 /// The declared Lagrangian in symbols; the names say which symbol stands for what.
 pub(crate) struct Lowered {
@@ -66,7 +66,8 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
             errors.push(
                 span,
                 format!(
-                    "multiplied out, this has more than {MOST_TERMS} terms or factors: the expression is too large"
+                    "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than \
+                     {LONGEST_PRODUCT} matrices: the expression is too large"
                 ),
             );
             None

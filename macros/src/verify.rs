@@ -10,7 +10,7 @@ use crate::ast::{Declaration, FieldKind, Kind, Name, Shape, Tree};
 use crate::derive::Derived;
 use crate::group::Group;
 use crate::lower::Lowered;
-use crate::scalar::{Graph, Input, components, square};
+use crate::scalar::{Graph, Input, NodeId, components, square};
 use crate::symbolic::{SymbolId, Variance};
 
 /// Central differences at this spacing are right to about eight digits.
@@ -25,7 +25,27 @@ pub(crate) fn disagreement(
     lowered: &Lowered,
     derived: &Derived,
 ) -> Option<&'static str> {
-    (1..=3).find_map(|seed| Sample::new(declaration, lowered, derived, seed).disagreement(tree))
+    let terms = Terms::new(derived);
+    (1..=3).find_map(|seed| Sample::new(declaration, lowered, derived, seed).disagreement(tree, &terms))
+}
+
+/// The derived terms as operations, for all samples.
+struct Terms {
+    graph: Graph,
+    /// Right and left momentum map, diamond and momentum, each as long as the group has dimensions.
+    covectors: Vec<NodeId>,
+    jacobian: Vec<NodeId>,
+}
+
+impl Terms {
+    fn new(derived: &Derived) -> Self {
+        let (mut graph, none) = (Graph::default(), BTreeMap::new());
+        let covectors = [&derived.right_momentum, &derived.left_momentum, &derived.diamond, &derived.momentum];
+        let covectors =
+            covectors.into_iter().flat_map(|covector| components(&mut graph, derived, &none, covector)).collect();
+        let jacobian = square(&mut graph, derived, &none, &derived.jacobian);
+        Self { graph, covectors, jacobian }
+    }
 }
 
 /// A matrix, row by row.
@@ -89,8 +109,11 @@ fn turn(group: &Group, k: usize, s: f64) -> Value {
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
     let step = Value { rows: size, columns: size, entries: entries.iter().map(|entry| s * entry.to_f64()).collect() };
     let (mut sum, mut power) = (Value::identity(size), Value::identity(size));
-    for order in 1..12 {
+    for order in 1..20 {
         power = power.times(&step).map(|x| x / f64::from(order));
+        if power.entries.iter().all(|entry| entry.abs() < f64::EPSILON * f64::EPSILON) {
+            break;
+        }
         sum = sum.zip(&power, |x, y| x + y);
     }
     sum
@@ -154,25 +177,17 @@ impl<'a> Sample<'a> {
         Self { derived, values, symbols, advected }
     }
 
-    fn disagreement(&self, tree: &Rc<Tree>) -> Option<&'static str> {
-        let d = self.derived;
-        let none = BTreeMap::new();
-        let group = &d.group;
+    fn disagreement(&self, tree: &Rc<Tree>, terms: &Terms) -> Option<&'static str> {
+        let group = &self.derived.group;
+        let dimension = group.dimension();
         let identity = Value::identity(group.size);
-        let evaluated = |graph: &Graph, outputs: &[crate::scalar::NodeId]| {
-            graph.evaluate(outputs, &|input: Input| {
+        let evaluated = |outputs: &[NodeId]| {
+            terms.graph.evaluate(outputs, &|input: Input| {
                 let value = self.symbols.get(&input.symbol).and_then(|name| self.values.get(name));
                 value.map_or(f64::NAN, |value| value.at(input.row, input.column))
             })
         };
-        let covector = |expression| {
-            let mut graph = Graph::default();
-            let outputs = components(&mut graph, d, &none, expression);
-            evaluated(&graph, &outputs)
-        };
-        let mut graph = Graph::default();
-        let outputs = square(&mut graph, d, &none, &d.jacobian);
-        let jacobian = evaluated(&graph, &outputs);
+        let (covectors, jacobian) = (evaluated(&terms.covectors), evaluated(&terms.jacobian));
         let f = self.values.get(&Name::Increment)?.clone();
         // One function of two turns holds all terms: exp(sE_k) exp(tE_j) F and exp(sE_k)·w.
         let at = |k: usize, s: f64, j: usize, t: f64, w: f64| {
@@ -186,19 +201,16 @@ impl<'a> Sample<'a> {
             let agrees = (found - expected).abs() <= slack * TOLERANCE * (1.0 + size);
             expected.is_finite() && !agrees
         };
-        let (right, left) = (covector(&d.right_momentum), covector(&d.left_momentum));
-        let (diamond, momentum) = (covector(&d.diamond), covector(&d.momentum));
-        let dimension = group.dimension();
         for k in 0..dimension {
             let on_the_right = |s: f64| self.moved(tree, &f.times(&turn(group, k, s)), (&identity, &identity));
             let checks = [
-                ("right momentum map", &right, slope(&|s| at(k, s, 0, 0.0, 0.0))),
-                ("left momentum map", &left, slope(&on_the_right)),
-                ("diamond term", &diamond, -slope(&|s| at(k, 0.0, 0, 0.0, s))),
-                ("momentum equation", &momentum, slope(&|s| at(k, s, 0, 0.0, s))),
+                ("right momentum map", slope(&|s| at(k, s, 0, 0.0, 0.0))),
+                ("left momentum map", slope(&on_the_right)),
+                ("diamond term", -slope(&|s| at(k, 0.0, 0, 0.0, s))),
+                ("momentum equation", slope(&|s| at(k, s, 0, 0.0, s))),
             ];
-            for (name, found, expected) in checks {
-                if differs(found[k], expected, 1.0) {
+            for (index, (name, expected)) in checks.into_iter().enumerate() {
+                if differs(covectors[dimension * index + k], expected, 1.0) {
                     return Some(name);
                 }
             }
