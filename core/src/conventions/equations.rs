@@ -40,6 +40,19 @@
 //! The second line of (2.9) is computed in its transport form `μ_{i+1} = Ad*_F (μ_i + δl_d/δw ⋄ w)`. It equals the
 //! printed one where (2.7) holds, and keeps `μ·w` to rounding even where (2.7) has been solved to fewer digits.
 //!
+//! # What the macro derives
+//!
+//! Files are relative to `macros/src/derive`; the rules of differentiation are in `macros/src/symbolic/variation.rs`.
+//!
+//! | equation | what | file |
+//! |---|---|---|
+//! | (1.26), (1.31), (3.18); section 3.2.1, items 1 and 2 | `(R_F)* δl_d/δF`, `(L_F)* δl_d/δF` | `momentum_maps.rs` |
+//! | (2.1); section 3.2.1, item 3 | `δl_d/δw ⋄ w` | `diamond.rs`, with the action in `action.rs` |
+//! | (2.7), (3.17) | the momentum equation and its Newton Jacobian | `momentum_equation.rs` |
+//! | (2.9) | the kicks of the transport form | `transport.rs` |
+//! | (3.17) in Cayley coordinates | residual and Jacobian without denominators | `cayley.rs` |
+//! | (2.3) from (3.13) | inertia, bias and potential of the limit `h → 0` | `limit.rs` |
+//!
 //! # Chapter 3: the heavy top
 //!
 //! | equation | what | file | item |
