@@ -5,9 +5,9 @@ use proc_macro2::{TokenStream, TokenTree};
 use crate::errors::Errors;
 
 /// More tokens than this, or deeper nesting, are no Lagrangian that a person wrote, and parsing them recursively could
-/// overflow the compiler's stack.
-const MOST_TOKENS: usize = 5_000;
-const DEEPEST: usize = 64;
+/// overflow a stack of 2 MB without optimisation.
+const MOST_TOKENS: usize = 2_000;
+const DEEPEST: usize = 32;
 
 /// Words after which a part of an expression or of a type follows that may begin with such a word again.
 const NESTING_WORDS: [&str; 20] = [

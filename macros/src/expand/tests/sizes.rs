@@ -57,14 +57,14 @@ fn nested_tokens() {
     ];
     let closed = brackets.iter().map(|[open, close]| (*open, *close));
     for (open, close) in closed.chain(prefixes.iter().map(|open| (*open, ""))) {
-        for count in [30, 60, 400, 2_000, 100_000] {
+        for count in [20, 60, 400, 2_000, 100_000] {
             // The lexer of a real compilation has its own limit for brackets; here it would recurse.
             if !close.is_empty() && count > 400 {
                 continue;
             }
             let nested = format!("{}k{}", open.repeat(count), close.repeat(count));
             let result = refused(&with_term(&format!("{KINETIC} + h * {nested}")));
-            assert!(result || count <= 60, "{open} {count}");
+            assert!(result || count <= 20, "{open} {count}");
             refused(&nested);
         }
     }
@@ -74,7 +74,7 @@ fn nested_tokens() {
 fn long_sums_and_products() {
     for (operator, operand) in [("+", "k"), ("-", "k"), ("*", "k"), ("/", "k"), ("+", "F[(0, 1)]"), ("*", "F.trace()")]
     {
-        for count in [100, 1_000, 2_400, 50_000] {
+        for count in [100, 900, 2_400, 50_000] {
             let term = vec![operand; count].join(operator);
             let result = refused(&with_term(&format!("{KINETIC} + h * ({term})")));
             assert!(result || count <= 100);
