@@ -109,7 +109,7 @@ pub(crate) fn transpose(word: &[Factor], symbols: &Symbols) -> (i8, Vec<Factor>)
     (sign, factors)
 }
 
-/// Applies `FᵀF = FFᵀ = I` and `Fᵀ û F = (Fᵀu)^` until nothing changes; `None` for a word that is zero.
+/// Applies `FᵀF = FFᵀ = I` and `Fᵀ û F = (Fᵀu)^` between neighbours until nothing changes.
 pub(crate) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
     let mut stack: Vec<Factor> = Vec::with_capacity(word.len());
     for factor in word {
