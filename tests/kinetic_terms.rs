@@ -40,16 +40,70 @@ struct LogTraceTop {
     up: Vector3<f64>,
 }
 
+/// The geodesic kinetic term: the exact one of a sphere.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let xi = log(F);
+        xi.dot(&(J * xi)) / (2.0 * h) - 0.5 * h * weight * w.dot(&(rho + F * rho))
+    },
+)]
+struct LogTop {
+    J: Inertia,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// L4 of MATH 2.4 with the tangent half-angle vector in the small terms: order 4 in one solve.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let xi = log(F);
+        let x = 2.0 * vee(F) / (1.0 + F.trace()).sqrt();
+        let next = F.transpose() * w;
+        let f = (J * x).cross(&x) / h.powi(2) + 0.5 * weight * (w + next).cross(&rho);
+        xi.dot(&(J * xi)) / (2.0 * h) - 0.5 * h * weight * (w + next).dot(&rho)
+            + (h / 12.0) * weight * (next - w).cross(&x).dot(&rho)
+            - (h.powi(3) / 24.0) * f.dot(&(inverse(J) * f))
+    },
+)]
+struct FourthOrderTop {
+    J: Inertia,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
 #[test]
 fn golden_entries_of_the_cayley_top_are_reproduced() {
+    golden("cayley_trapezoid", |J, weight, rho, up| CayleyTop { J, weight, rho, up });
+}
+
+#[test]
+fn golden_entries_of_the_log_top_are_reproduced() {
+    golden("log_trapezoid", |J, weight, rho, up| LogTop { J, weight, rho, up });
+}
+
+#[test]
+fn golden_entries_of_the_fourth_order_top_are_reproduced() {
+    golden("L4_log", |J, weight, rho, up| FourthOrderTop { J, weight, rho, up });
+}
+
+fn golden<L>(name: &str, top: impl Fn(Inertia, f64, Vector3<f64>, Vector3<f64>) -> L)
+where
+    L: liestep::DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+{
     let data = read("golden_steps");
     let steps = data["steps"].as_array().unwrap();
-    let entries: Vec<_> = steps.iter().filter(|entry| entry["l_d"] == "cayley_trapezoid").collect();
+    let entries: Vec<_> = steps.iter().filter(|entry| entry["l_d"] == name).collect();
     assert_eq!(entries.len(), 4, "two bodies, two steps");
     for entry in entries {
         let J = Inertia::from_principal_moments(vector(&entry["J"])).unwrap();
         let (weight, rho, up) = (number(&entry["mg"]), vector(&entry["rho"]), Vector3::z());
-        let flow = DiscreteLiePoisson::new(CayleyTop { J, weight, rho, up }, number(&entry["h"])).unwrap();
+        let flow = DiscreteLiePoisson::new(top(J, weight, rho, up), number(&entry["h"])).unwrap();
         let (mut momentum, mut w, mut guess) = (vector(&entry["Pi0"]), vector(&entry["w0"]), Vector3::zeros());
         for i in 1..=10 {
             let step = flow.step(&momentum, &w, &guess).unwrap();

@@ -19,6 +19,7 @@ mod advected;
 mod coordinates;
 mod error;
 mod flows;
+mod functions;
 mod inertia;
 mod lagrangian;
 mod newton;

@@ -174,6 +174,8 @@ pub(crate) enum Kind {
     Power(Rc<Tree>, i32),
     Apply(Function, Rc<Tree>),
     Vee(Rc<Tree>),
+    /// Of a parameter.
+    Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
 }
 
@@ -188,6 +190,7 @@ impl Kind {
             | Self::Power(a, _)
             | Self::Apply(_, a)
             | Self::Vee(a)
+            | Self::Inverse(a)
             | Self::Entry(a, ..) => [Some(a), None],
             Self::Add(a, b)
             | Self::Subtract(a, b)

@@ -132,6 +132,13 @@ impl Lowering<'_> {
             }
             Kind::Apply(function, a) => Expression::function(*function, self.expression(a)?),
             Kind::Vee(a) => self.expression(a)?.vee(self.symbols),
+            Kind::Inverse(a) => match &a.kind {
+                Kind::Name(name) => match self.names.get(name) {
+                    Some(&id) => Expression::inverse(id, self.symbols),
+                    None => Expression::zero(ambient(tree.shape)),
+                },
+                _ => Expression::zero(ambient(tree.shape)),
+            },
             Kind::Entry(a, row, column) => {
                 let operand = self.expression(a)?;
                 let (rows, columns) = operand.shape();

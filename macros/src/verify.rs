@@ -92,6 +92,28 @@ impl Value {
         })
     }
 
+    /// By Cramer's rule.
+    fn inverse(&self) -> Self {
+        let determinant = self.determinant();
+        Self::new(self.rows, self.rows, |row, column| {
+            let sign = if (row + column) % 2 == 0 { 1.0 } else { -1.0 };
+            sign * self.without(column, row).determinant() / determinant
+        })
+    }
+
+    fn determinant(&self) -> f64 {
+        if self.rows == 0 {
+            return 1.0;
+        }
+        let sign = |row: usize| if row % 2 == 0 { 1.0 } else { -1.0 };
+        (0..self.rows).map(|row| sign(row) * self.at(row, 0) * self.without(row, 0).determinant()).sum()
+    }
+
+    fn without(&self, row: usize, column: usize) -> Self {
+        let size = self.rows - 1;
+        Self::new(size, size, |i, j| self.at(i + usize::from(i >= row), j + usize::from(j >= column)))
+    }
+
     fn hat(v: &Self) -> Self {
         let [x, y, z] = [v.at(0, 0), v.at(1, 0), v.at(2, 0)];
         let entries = vec![0.0, -z, y, z, 0.0, -x, -y, x, 0.0];
@@ -308,6 +330,7 @@ impl Evaluation<'_> {
                     0.5 * (a.at(i, j) - a.at(j, i))
                 })
             }
+            Kind::Inverse(a) => self.of(a).inverse(),
             Kind::Entry(a, row, column) => Value::scalar(self.of(a).at(*row, *column)),
         }
     }

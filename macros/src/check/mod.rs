@@ -1,5 +1,6 @@
 //! From Rust syntax to a tree with shapes. Nothing is derived before all shapes fit.
 
+mod functions;
 mod methods;
 mod operators;
 mod usage;

@@ -91,6 +91,11 @@ impl Expression {
     }
 
     pub(crate) fn function(function: Function, argument: Self) -> Self {
+        if argument.is_zero()
+            && let Some(value) = function.at_zero()
+        {
+            return Self::rational(value);
+        }
         Self::atom(Atom::Function(function, Box::new(argument)), 1)
     }
 

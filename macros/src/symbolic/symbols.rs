@@ -74,8 +74,8 @@ impl Symbols {
         self.inverse = Some((matrix, inverse));
     }
 
-    /// The symbol for the entries of the inverse, the matrix itself where none was set.
-    pub(crate) fn inverse_of(&self, id: SymbolId) -> SymbolId {
-        self.inverse.filter(|(matrix, _)| *matrix == id).map_or(id, |(_, inverse)| inverse)
+    /// The symbol for the entries of the inverse, where one was set.
+    pub(crate) fn inverse_of(&self, id: SymbolId) -> Option<SymbolId> {
+        self.inverse.filter(|(matrix, _)| *matrix == id).map(|(_, inverse)| inverse)
     }
 }
