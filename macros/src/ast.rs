@@ -177,6 +177,8 @@ pub(crate) enum Kind {
     /// Of a parameter.
     Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
+    /// What a `let` has named.
+    Bound(String, Rc<Tree>),
 }
 
 impl Kind {
@@ -191,7 +193,8 @@ impl Kind {
             | Self::Apply(_, a)
             | Self::Vee(a)
             | Self::Inverse(a)
-            | Self::Entry(a, ..) => [Some(a), None],
+            | Self::Entry(a, ..)
+            | Self::Bound(_, a) => [Some(a), None],
             Self::Add(a, b)
             | Self::Subtract(a, b)
             | Self::Multiply(a, b)

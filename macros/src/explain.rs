@@ -29,6 +29,9 @@ pub(crate) fn explain(error: LimitError, declaration: &Declaration, tree: &Rc<Tr
                                       quadratic term in `F - I` by `h`"
                 .to_owned()
         }
+        LimitError::NotALagrangian => {
+            "as h → 0 this doesn't become h times a Lagrangian that is quadratic in the velocity".to_owned()
+        }
         LimitError::NotStationary => {
             "the kinetic part isn't stationary at `F = I`, so at rest the momentum would grow \
                                       like 1/h: write it as a square of `F - I`"
@@ -67,7 +70,7 @@ fn is_sum(tree: &Tree) -> bool {
     match &tree.kind {
         Kind::Add(..) | Kind::Subtract(..) => true,
         Kind::Multiply(a, b) | Kind::Divide(a, b) => is_sum(a) || is_sum(b),
-        Kind::Negate(a) | Kind::Power(a, _) => is_sum(a),
+        Kind::Negate(a) | Kind::Power(a, _) | Kind::Bound(_, a) => is_sum(a),
         _ => false,
     }
 }

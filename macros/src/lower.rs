@@ -6,15 +6,17 @@ use std::rc::Rc;
 use syn::ext::IdentExt as _;
 
 use crate::ast::{Declaration, FieldKind, Kind, Name, Shape, Tree};
-use crate::derive::Declared;
+use crate::derive::{Declared, Let};
 use crate::errors::Errors;
-use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols};
+use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
 /// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
 const MOST_FACTORS: usize = 800;
 const LONGEST_PRODUCT: usize = 24;
+/// The eighth power of a smaller number is in range.
+const MANY_DIGITS: u128 = 10_000;
 
 /// The declared Lagrangian in symbols; the names say which symbol stands for what.
 pub(crate) struct Lowered {
@@ -51,40 +53,111 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }
-    let mut lowering = Lowering { symbols: &symbols, names: &names, known: BTreeMap::new() };
-    match lowering.expression(tree) {
-        Ok(l_d) if l_d.has_overflow() => {
-            errors
-                .push(tree.span, "the coefficients leave the range of exact arithmetic: make the large numbers fields");
-            None
-        }
-        Ok(l_d) => Some(Lowered {
-            declared: Declared { group: declaration.structure.clone(), symbols, l_d, increment, step, advected },
-            names,
-        }),
-        Err(TooLarge(span)) => {
-            errors.push(
-                span,
-                format!(
-                    "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than \
-                     {LONGEST_PRODUCT} matrices: the expression is too large"
-                ),
-            );
-            None
+    let declared = |symbols, l_d, lets| Lowered {
+        declared: Declared {
+            group: declaration.structure.clone(),
+            symbols,
+            lets,
+            l_d,
+            increment,
+            step,
+            advected: advected.clone(),
+        },
+        names: names.clone(),
+    };
+    // Multiplied out what cancels is found; where that is too large, the `let`s stay closed.
+    let mut failure = None;
+    for closes in [false, true] {
+        let mut lowering =
+            Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets: closes.then(Vec::new) };
+        match lowering.expression(tree) {
+            Ok(l_d) if !l_d.has_overflow() => {
+                let Lowering { symbols, lets, .. } = lowering;
+                return Some(declared(symbols, l_d, lets.unwrap_or_default()));
+            }
+            Ok(_) => {
+                failure = Some((
+                    tree.span,
+                    "the coefficients leave the range of exact arithmetic: make the large numbers fields".to_owned(),
+                ));
+            }
+            Err(TooLarge(span)) => {
+                failure = Some((
+                    span,
+                    format!(
+                        "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than \
+                         {LONGEST_PRODUCT} matrices: the expression is too large, bind its parts with `let`"
+                    ),
+                ));
+            }
         }
     }
+    let (span, message) = failure?;
+    errors.push(span, message);
+    None
 }
 
 struct TooLarge(proc_macro2::Span);
 
 struct Lowering<'a> {
-    symbols: &'a Symbols,
+    symbols: Symbols,
     names: &'a BTreeMap<Name, SymbolId>,
     /// What a `let` has bound is lowered once, however often it is used.
     known: BTreeMap<*const Tree, Expression>,
+    /// The `let`s so far, where they stay closed.
+    lets: Option<Vec<Let>>,
 }
 
 impl Lowering<'_> {
+    /// The expression of a `let`, or the symbol that stands for it.
+    fn bound(&mut self, name: &str, value: Expression) -> Expression {
+        let is_small = value.len() <= 1 && value.size() <= 2;
+        let Some(lets) = self.lets.as_mut().filter(|_| !is_small) else { return value };
+        let structure = match value.shape() {
+            (rows, columns) if rows == columns && rows > 1 && value.transpose(&self.symbols) == value => {
+                Structure::Symmetric
+            }
+            _ => Structure::General,
+        };
+        let stage = stage_of(&value, &self.symbols);
+        let symbol = self.symbols.add(name, value.shape(), structure, stage);
+        lets.push(Let { symbol, value });
+        Expression::symbol(symbol, &self.symbols)
+    }
+
+    /// A number; with many digits it stays closed too, as its powers would leave the range of exact arithmetic.
+    fn number(&mut self, value: Rational) -> Expression {
+        let expression = Expression::rational(value);
+        let (numerator, denominator) = value.parts();
+        if numerator.unsigned_abs().max(denominator.unsigned_abs()) < MANY_DIGITS {
+            return expression;
+        }
+        let Some(lets) = self.lets.as_mut() else { return expression };
+        let name = value.to_f64().to_string();
+        let symbol = self.symbols.add(name, (1, 1), Structure::General, Stage::Construction);
+        lets.push(Let { symbol, value: expression });
+        Expression::symbol(symbol, &self.symbols)
+    }
+
+    /// Two factors of a product. The action of a sum of matrices on a vector is cheaper term by term.
+    fn factors(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<(Expression, Expression), TooLarge> {
+        let acts = matches!((a.shape, b.shape), (Shape::Matrix(_, 2..), Shape::Matrix(_, 1)));
+        let left = if acts { self.expression(a)? } else { self.factor(a)? };
+        Ok((left, self.factor(b)?))
+    }
+
+    /// A sum that is about to be multiplied: where `let`s stay closed, a product of sums isn't multiplied out either.
+    fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+        let value = self.expression(tree)?;
+        if value.len() < 2 {
+            return Ok(value);
+        }
+        let number = self.lets.as_ref().map_or(0, |lets| lets.len() + 1);
+        let closed = self.bound(&format!("t{number}"), value);
+        self.known.insert(Rc::as_ptr(tree), closed.clone());
+        Ok(closed)
+    }
+
     fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
         if let Some(known) = self.known.get(&Rc::as_ptr(tree)) {
             return Ok(known.clone());
@@ -100,41 +173,55 @@ impl Lowering<'_> {
     }
 
     fn operation(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
-        let symbols = self.symbols;
         let result = match &tree.kind {
-            Kind::Number(value) => Expression::rational(*value),
+            Kind::Number(value) => self.number(*value),
             Kind::Identity => Expression::identity(ambient(tree.shape).0),
             Kind::Name(name) => match self.names.get(name) {
-                Some(&id) => Expression::symbol(id, self.symbols),
+                Some(&id) => Expression::symbol(id, &self.symbols),
                 None => Expression::zero(ambient(tree.shape)),
             },
+            Kind::Bound(name, a) => {
+                let value = self.expression(a)?;
+                self.bound(name, value)
+            }
             Kind::Negate(a) => self.expression(a)?.scaled(-Rational::ONE),
             Kind::Add(a, b) => self.expression(a)?.plus(self.expression(b)?),
             Kind::Subtract(a, b) => self.expression(a)?.minus(self.expression(b)?),
-            Kind::Multiply(a, b) => product(tree, &self.expression(a)?, &self.expression(b)?, symbols)?,
-            Kind::Divide(a, b) => {
-                product(tree, &self.expression(a)?, &self.expression(b)?.power(-1, symbols), symbols)?
+            Kind::Multiply(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left, &right)?
             }
-            Kind::Transpose(a) => self.expression(a)?.transpose(self.symbols),
-            Kind::Trace(a) => self.expression(a)?.trace(self.symbols),
-            Kind::Dot(a, b) => product(tree, &self.expression(a)?.transpose(symbols), &self.expression(b)?, symbols)?,
-            Kind::Cross(a, b) => product(tree, &self.expression(a)?.hat(symbols), &self.expression(b)?, symbols)?,
-            Kind::CrossMatrix(a) => self.expression(a)?.hat(self.symbols),
+            Kind::Divide(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left, &right.power(-1, &self.symbols))?
+            }
+            Kind::Transpose(a) => self.expression(a)?.transpose(&self.symbols),
+            Kind::Trace(a) => self.expression(a)?.trace(&self.symbols),
+            Kind::Dot(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.transpose(&self.symbols), &right)?
+            }
+            Kind::Cross(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.hat(&self.symbols), &right)?
+            }
+            Kind::CrossMatrix(a) => self.expression(a)?.hat(&self.symbols),
             Kind::ComponentMultiply(a, b) => {
-                product(tree, &self.expression(a)?.diagonal(symbols), &self.expression(b)?, symbols)?
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.diagonal(&self.symbols), &right)?
             }
             Kind::Power(a, exponent) => {
-                let base = self.expression(a)?;
+                let base = self.factor(a)?;
                 if base.len().checked_pow(exponent.unsigned_abs().min(4)).is_none_or(|terms| terms > MOST_TERMS) {
                     return Err(TooLarge(tree.span));
                 }
-                base.power(*exponent, self.symbols)
+                base.power(*exponent, &self.symbols)
             }
-            Kind::Apply(function, a) => Expression::function(*function, self.expression(a)?),
-            Kind::Vee(a) => self.expression(a)?.vee(self.symbols),
+            Kind::Apply(function, a) => Expression::function(*function, self.factor(a)?),
+            Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
             Kind::Inverse(a) => match &a.kind {
                 Kind::Name(name) => match self.names.get(name) {
-                    Some(&id) => Expression::inverse(id, self.symbols),
+                    Some(&id) => Expression::inverse(id, &self.symbols),
                     None => Expression::zero(ambient(tree.shape)),
                 },
                 _ => Expression::zero(ambient(tree.shape)),
@@ -142,8 +229,8 @@ impl Lowering<'_> {
             Kind::Entry(a, row, column) => {
                 let operand = self.expression(a)?;
                 let (rows, columns) = operand.shape();
-                let left = self.unit(*row, rows, true).times(&operand, self.symbols);
-                if columns == 1 { left } else { left.times(&self.unit(*column, columns, false), self.symbols) }
+                let left = self.unit(*row, rows, true).times(&operand, &self.symbols);
+                if columns == 1 { left } else { left.times(&self.unit(*column, columns, false), &self.symbols) }
             }
         };
         Ok(result)
@@ -151,15 +238,15 @@ impl Lowering<'_> {
 
     fn unit(&self, index: usize, size: usize, transposed: bool) -> Expression {
         let shape = if transposed { (1, size) } else { (size, 1) };
-        Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, self.symbols)
+        Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, &self.symbols)
     }
-}
 
-fn product(tree: &Tree, left: &Expression, right: &Expression, symbols: &Symbols) -> Result<Expression, TooLarge> {
-    if left.len().saturating_mul(right.len()) > MOST_TERMS {
-        return Err(TooLarge(tree.span));
+    fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, TooLarge> {
+        if left.len().saturating_mul(right.len()) > MOST_TERMS {
+            return Err(TooLarge(tree.span));
+        }
+        Ok(left.times(right, &self.symbols))
     }
-    Ok(left.times(right, symbols))
 }
 
 fn ambient(shape: Shape) -> (usize, usize) {

@@ -10,7 +10,7 @@ use crate::ast::{Declaration, FieldKind, Kind, Name, Shape, Tree};
 use crate::derive::Derived;
 use crate::group::Group;
 use crate::lower::Lowered;
-use crate::scalar::{Graph, Input, NodeId, components, square};
+use crate::scalar::{Given, Graph, Input, NodeId, components, square, with_lets};
 use crate::symbolic::{SymbolId, Variance};
 
 /// Central differences at this spacing are right to about eight digits.
@@ -39,7 +39,8 @@ struct Terms {
 
 impl Terms {
     fn new(derived: &Derived) -> Self {
-        let (mut graph, none) = (Graph::default(), BTreeMap::new());
+        let mut graph = Graph::default();
+        let none = with_lets(&mut graph, derived, Given::new());
         let covectors = [&derived.right_momentum, &derived.left_momentum, &derived.diamond, &derived.momentum];
         let covectors =
             covectors.into_iter().flat_map(|covector| components(&mut graph, derived, &none, covector)).collect();
@@ -331,6 +332,7 @@ impl Evaluation<'_> {
                 })
             }
             Kind::Inverse(a) => self.of(a).inverse(),
+            Kind::Bound(_, a) => self.of(a),
             Kind::Entry(a, row, column) => Value::scalar(self.of(a).at(*row, *column)),
         }
     }

@@ -2,11 +2,13 @@
 
 mod action;
 mod cayley;
+mod closed;
 mod diamond;
 mod energy;
 mod limit;
 mod momentum_equation;
 mod momentum_maps;
+mod series;
 mod transport;
 
 use std::collections::BTreeMap;
@@ -15,6 +17,7 @@ use crate::group::Group;
 use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance};
 
 pub(crate) use cayley::Cleared;
+pub(crate) use closed::{Closed, Let};
 pub(crate) use limit::{Limit, LimitError};
 
 /// A declared Lagrangian with the symbols that it is written in.
@@ -22,6 +25,8 @@ pub(crate) use limit::{Limit, LimitError};
 pub(crate) struct Declared {
     pub(crate) group: Group,
     pub(crate) symbols: Symbols,
+    /// The `let`s that aren't multiplied out, in their order; none where `l_d` is small enough.
+    pub(crate) lets: Vec<Let>,
     pub(crate) l_d: Expression,
     /// The increment `F`.
     pub(crate) increment: SymbolId,
@@ -52,6 +57,10 @@ pub(crate) struct Directions {
     pub(crate) coordinate_direction: SymbolId,
     /// The new advected parameters `w⁺ = F⁻¹·w`.
     pub(crate) next: Vec<SymbolId>,
+    /// `ξ̂` in the limit `F = exp(hξ̂)`.
+    velocity: SymbolId,
+    /// A scalar to differentiate functions by.
+    scratch: SymbolId,
 }
 
 /// All that follows from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
@@ -61,6 +70,10 @@ pub(crate) struct Derived {
     pub(crate) group: Group,
     increment: SymbolId,
     pub(crate) directions: Directions,
+    /// The closed `let`s with their derivatives.
+    pub(crate) closed: Vec<Closed>,
+    /// `w = F·w⁺`.
+    pub(crate) previous: Vec<(SymbolId, Expression)>,
     /// `(R_F)* δl_d/δF`.
     pub(crate) right_momentum: Expression,
     /// `(L_F)* δl_d/δF`.
@@ -97,16 +110,20 @@ impl Derived {
 pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
-    let context = Context { declared, symbols: &symbols, directions: &directions };
+    let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.l_d, &mut symbols);
+    let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
+    closed::tangents(&context, &mut closed);
     let right_momentum = momentum_maps::right(&context);
     let left_momentum = momentum_maps::left(&context);
     let diamond = diamond::diamond(&context);
     let momentum = momentum_equation::momentum(&right_momentum, &diamond);
-    let jacobian = momentum_equation::jacobian(&context, &momentum);
+    let jacobian = momentum_equation::jacobian(&context, &momentum, &closed);
     let energy = energy::discrete(&context);
     let limit = limit::limit(&context, &momentum)?;
     let parts = transport::parts(&context, &momentum, &diamond);
-    let cleared = cayley::cleared(&context, &parts.unknown);
+    let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
+    let unknown =
+        if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
     Ok(Derived {
         group: declared.group.clone(),
         increment: declared.increment,
@@ -118,9 +135,11 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         energy,
         limit,
         kick_before: parts.kick_before,
-        unknown: transport::in_small_increment(&context, &parts.unknown),
+        unknown,
         kick_after: parts.kick_after,
+        previous: transport::previous(&context),
         cleared,
+        closed,
         directions,
         symbols,
     })
@@ -129,6 +148,8 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
 /// What every rule needs.
 struct Context<'a> {
     declared: &'a Declared,
+    /// What is varied: `l_d`, with its `let`s by multipliers.
+    lagrangian: &'a Expression,
     symbols: &'a Symbols,
     directions: &'a Directions,
 }
@@ -164,6 +185,8 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         coordinates: column(symbols, "ξ", dimension, Stage::Iteration),
         denominator: symbols.add("(4 + |ξ|²)", (1, 1), Structure::General, Stage::Iteration),
         coordinate_direction: column(symbols, "δξ", dimension, Stage::Construction),
+        velocity: algebra(symbols, "ξ̂"),
+        scratch: symbols.add("x", (1, 1), Structure::General, Stage::Construction),
         next: declared
             .advected
             .iter()

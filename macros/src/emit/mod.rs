@@ -7,15 +7,13 @@ mod inputs;
 mod stages;
 mod verbatim;
 
-use std::collections::BTreeMap;
-
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
 use crate::ast::Declaration;
 use crate::derive::Derived;
 use crate::lower::Lowered;
-use crate::scalar::{Graph, Scalariser, components, kernel, square};
+use crate::scalar::{Given, Graph, Scalariser, components, kernel, square, with_lets};
 use crate::symbolic::{Expression, SymbolId};
 
 use code::Form;
@@ -109,7 +107,7 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let (span, d, root) = (Span::mixed_site(), self.derived, &self.header.root);
         let mut graph = Graph::default();
-        let none = BTreeMap::new();
+        let none = with_lets(&mut graph, d, Given::new());
         let (outputs, result) = match form {
             Form::Scalar => {
                 let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };

@@ -1,5 +1,6 @@
 //! From matrix expressions to scalar operations: entries, stages, shared subexpressions, counts.
 
+mod closed;
 mod count;
 mod expand;
 mod graph;
@@ -8,6 +9,7 @@ mod scalarise;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use closed::{Given, with_lets};
 pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
 pub(crate) use kernel::{Kernel, components, kernel, square};

@@ -70,6 +70,14 @@ impl Symbols {
         &self.all[id.0]
     }
 
+    pub(crate) fn set_stage(&mut self, id: SymbolId, stage: Stage) {
+        self.all[id.0].stage = stage;
+    }
+
+    pub(crate) fn ids(&self) -> impl Iterator<Item = SymbolId> {
+        (0..self.all.len()).map(SymbolId)
+    }
+
     pub(crate) fn set_inverse(&mut self, matrix: SymbolId, inverse: SymbolId) {
         self.inverse = Some((matrix, inverse));
     }
