@@ -29,6 +29,7 @@ pub(crate) fn explain(error: LimitError, declaration: &Declaration, tree: &Rc<Tr
                                       quadratic term in `F - I` by `h`"
                 .to_owned()
         }
+        LimitError::TooLarge => "the limit h → 0 has too many terms: the expression is too large".to_owned(),
         LimitError::NotALagrangian => {
             "as h → 0 this doesn't become h times a Lagrangian that is quadratic in the velocity".to_owned()
         }

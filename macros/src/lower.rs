@@ -15,6 +15,8 @@ const MOST_TERMS: usize = 2_000;
 /// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
 const MOST_FACTORS: usize = 800;
 const LONGEST_PRODUCT: usize = 24;
+/// As for the factors: closed `let`s, those of sums included.
+const MOST_LETS: usize = 150;
 /// The eighth power of a smaller number is in range.
 const MANY_DIGITS: u128 = 10_000;
 
@@ -53,51 +55,39 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }
-    let declared = |symbols, l_d, lets| Lowered {
-        declared: Declared {
-            group: declaration.structure.clone(),
-            symbols,
-            lets,
-            l_d,
-            increment,
-            step,
-            advected: advected.clone(),
-        },
-        names: names.clone(),
-    };
     // Multiplied out what cancels is found; where that is too large, the `let`s stay closed.
-    let mut failure = None;
-    for closes in [false, true] {
-        let mut lowering =
-            Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets: closes.then(Vec::new) };
-        match lowering.expression(tree) {
-            Ok(l_d) if !l_d.has_overflow() => {
-                let Lowering { symbols, lets, .. } = lowering;
-                return Some(declared(symbols, l_d, lets.unwrap_or_default()));
-            }
-            Ok(_) => {
-                failure = Some((
-                    tree.span,
-                    "the coefficients leave the range of exact arithmetic: make the large numbers fields".to_owned(),
-                ));
-            }
-            Err(TooLarge(span)) => {
-                failure = Some((
-                    span,
-                    format!(
-                        "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than \
-                         {LONGEST_PRODUCT} matrices: the expression is too large, bind its parts with `let`"
-                    ),
-                ));
-            }
+    let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
+    match attempt(None).or_else(|_| attempt(Some(Vec::new()))) {
+        Ok((symbols, l_d, lets)) => {
+            let group = declaration.structure.clone();
+            Some(Lowered { declared: Declared { group, symbols, lets, l_d, increment, step, advected }, names })
+        }
+        Err(failure) => {
+            report(failure, tree, errors);
+            None
         }
     }
-    let (span, message) = failure?;
-    errors.push(span, message);
-    None
 }
 
-struct TooLarge(proc_macro2::Span);
+/// Why an expression can't be lowered.
+enum Failure {
+    TooLarge(proc_macro2::Span),
+    Overflow,
+}
+
+fn report(failure: Failure, tree: &Tree, errors: &mut Errors) {
+    match failure {
+        Failure::TooLarge(span) => errors.push(
+            span,
+            format!(
+                "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than {LONGEST_PRODUCT} \
+                 matrices: the expression is too large"
+            ),
+        ),
+        Failure::Overflow => errors
+            .push(tree.span, "the coefficients leave the range of exact arithmetic: make the large numbers fields"),
+    }
+}
 
 struct Lowering<'a> {
     symbols: Symbols,
@@ -109,6 +99,18 @@ struct Lowering<'a> {
 }
 
 impl Lowering<'_> {
+    fn whole(mut self, tree: &Rc<Tree>) -> Result<(Symbols, Expression, Vec<Let>), Failure> {
+        let l_d = self.expression(tree)?;
+        let lets = self.lets.unwrap_or_default();
+        if lets.iter().map(|one| &one.value).chain([&l_d]).any(Expression::has_overflow) {
+            return Err(Failure::Overflow);
+        }
+        if lets.len() > MOST_LETS || lets.iter().map(|one| one.value.size()).sum::<usize>() > MOST_FACTORS {
+            return Err(Failure::TooLarge(tree.span));
+        }
+        Ok((self.symbols, l_d, lets))
+    }
+
     /// The expression of a `let`, or the symbol that stands for it.
     fn bound(&mut self, name: &str, value: Expression) -> Expression {
         let is_small = value.len() <= 1 && value.size() <= 2;
@@ -140,14 +142,14 @@ impl Lowering<'_> {
     }
 
     /// Two factors of a product. The action of a sum of matrices on a vector is cheaper term by term.
-    fn factors(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<(Expression, Expression), TooLarge> {
+    fn factors(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<(Expression, Expression), Failure> {
         let acts = matches!((a.shape, b.shape), (Shape::Matrix(_, 2..), Shape::Matrix(_, 1)));
         let left = if acts { self.expression(a)? } else { self.factor(a)? };
         Ok((left, self.factor(b)?))
     }
 
     /// A sum that is about to be multiplied: where `let`s stay closed, a product of sums isn't multiplied out either.
-    fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+    fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         let value = self.expression(tree)?;
         if value.len() < 2 {
             return Ok(value);
@@ -158,13 +160,13 @@ impl Lowering<'_> {
         Ok(closed)
     }
 
-    fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+    fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         if let Some(known) = self.known.get(&Rc::as_ptr(tree)) {
             return Ok(known.clone());
         }
         let result = self.operation(tree)?;
         if result.len() > MOST_TERMS || result.size() > MOST_FACTORS || result.longest_word() > LONGEST_PRODUCT {
-            return Err(TooLarge(tree.span));
+            return Err(Failure::TooLarge(tree.span));
         }
         if Rc::strong_count(tree) > 1 {
             self.known.insert(Rc::as_ptr(tree), result.clone());
@@ -172,7 +174,7 @@ impl Lowering<'_> {
         Ok(result)
     }
 
-    fn operation(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+    fn operation(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         let result = match &tree.kind {
             Kind::Number(value) => self.number(*value),
             Kind::Identity => Expression::identity(ambient(tree.shape).0),
@@ -213,7 +215,7 @@ impl Lowering<'_> {
             Kind::Power(a, exponent) => {
                 let base = self.factor(a)?;
                 if base.len().checked_pow(exponent.unsigned_abs().min(4)).is_none_or(|terms| terms > MOST_TERMS) {
-                    return Err(TooLarge(tree.span));
+                    return Err(Failure::TooLarge(tree.span));
                 }
                 base.power(*exponent, &self.symbols)
             }
@@ -241,9 +243,9 @@ impl Lowering<'_> {
         Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, &self.symbols)
     }
 
-    fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, TooLarge> {
+    fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, Failure> {
         if left.len().saturating_mul(right.len()) > MOST_TERMS {
-            return Err(TooLarge(tree.span));
+            return Err(Failure::TooLarge(tree.span));
         }
         Ok(left.times(right, &self.symbols))
     }

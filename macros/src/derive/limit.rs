@@ -31,6 +31,8 @@ pub(crate) enum LimitError {
     NotStationary,
     /// The limit isn't `½ ξ·Jξ + s·ξ − V`.
     NotALagrangian,
+    /// The limit has too many terms.
+    TooLarge,
 }
 
 pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {

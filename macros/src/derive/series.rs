@@ -7,6 +7,8 @@ use crate::symbolic::{Atom, Expression, Factor, Function, Rational, SymbolId, Va
 
 /// What is of this order or higher isn't looked at: `l_d` is wanted to the first.
 const CUTOFF: i32 = 4;
+/// A limit that a person would write down has a tenth of it.
+const MOST_FACTORS: usize = 2_000;
 
 /// `Σ c_i hⁱ + O(hᵉ)`.
 #[derive(Clone, Debug)]
@@ -114,13 +116,13 @@ impl<'a> Expansion<'a> {
         for (monomial, coefficient) in expression.terms() {
             let mut product = Series::constant(Expression::rational(coefficient));
             for (atom, exponent) in &monomial.scalars {
-                product = self.times(&product, &self.power(self.atom(atom)?, *exponent)?);
+                product = self.times(&product, &self.power(self.atom(atom)?, *exponent)?)?;
             }
             let word = match self.word(&monomial.word)? {
                 Some(word) => word,
                 None => Series::constant(Expression::identity(expression.shape().0)),
             };
-            sum = sum.plus(self.times(&product, &word));
+            sum = sum.plus(self.times(&product, &word)?);
         }
         Ok(sum)
     }
@@ -147,7 +149,7 @@ impl<'a> Expansion<'a> {
         for factor in word {
             let factor = self.factor(factor)?;
             product = Some(match product {
-                Some(product) => self.times(&product, &factor),
+                Some(product) => self.times(&product, &factor)?,
                 None => factor,
             });
         }
@@ -179,7 +181,7 @@ impl<'a> Expansion<'a> {
         })
     }
 
-    fn times(&self, a: &Series, b: &Series) -> Series {
+    fn times(&self, a: &Series, b: &Series) -> Result<Series, LimitError> {
         let shape = match (a.shape, b.shape) {
             ((1, 1), shape) | (shape, (1, 1)) => shape,
             ((rows, _), (_, columns)) => (rows, columns),
@@ -188,6 +190,9 @@ impl<'a> Expansion<'a> {
         let mut coefficients: BTreeMap<i32, Expression> = BTreeMap::new();
         for (i, x) in a.terms() {
             for (j, y) in b.terms().filter(|(j, _)| i + j < end.min(CUTOFF)) {
+                if x.size().saturating_mul(y.size()) > MOST_FACTORS {
+                    return Err(LimitError::TooLarge);
+                }
                 let product = self.context.product(x, y);
                 let sum = match coefficients.remove(&(i + j)) {
                     Some(present) => present.plus(product),
@@ -196,27 +201,27 @@ impl<'a> Expansion<'a> {
                 coefficients.insert(i + j, sum);
             }
         }
-        Series { shape, coefficients, end }.cut(CUTOFF)
+        Ok(Series { shape, coefficients, end }.cut(CUTOFF))
     }
 
     fn power(&self, base: Series, exponent: i32) -> Result<Series, LimitError> {
         let factor = if exponent < 0 { self.reciprocal(&base)? } else { base };
-        Ok((0..exponent.unsigned_abs()).fold(Series::one(), |product, _| self.times(&product, &factor)))
+        (0..exponent.unsigned_abs()).try_fold(Series::one(), |product, _| self.times(&product, &factor))
     }
 
     /// `1/(c hˡ (1 + ε)) = c⁻¹ h⁻ˡ Σ (−ε)ᵐ`.
     fn reciprocal(&self, series: &Series) -> Result<Series, LimitError> {
         let (order, leading) = series.terms().next().ok_or(LimitError::NotALagrangian)?;
         let inverse = Series::constant(leading.clone().power(-1, self.context.symbols)).shifted(-order);
-        let mut epsilon = self.times(series, &inverse);
+        let mut epsilon = self.times(series, &inverse)?;
         epsilon.coefficients.remove(&0);
         let minus = epsilon.mapped(|value| value.clone().scaled(-Rational::ONE), (1, 1));
         let (mut sum, mut power) = (Series::one(), Series::one());
         for _ in 0..=CUTOFF {
-            power = self.times(&power, &minus);
+            power = self.times(&power, &minus)?;
             sum = sum.plus(power.clone());
         }
-        Ok(self.times(&inverse, &sum))
+        self.times(&inverse, &sum)
     }
 
     /// Taylor's series about the value at `h = 0`.
@@ -233,10 +238,10 @@ impl<'a> Expansion<'a> {
         let (mut sum, mut power) = (Series::constant(Expression::zero((1, 1))), Series::one());
         for order in 1..=CUTOFF {
             let value = Series::constant(substitute(&derivative, &map, symbols));
-            sum = sum.plus(self.times(&value, &power));
+            sum = sum.plus(self.times(&value, &power)?);
             derivative = variation(&derivative, &along, symbols);
             power = self
-                .times(&power, &change)
+                .times(&power, &change)?
                 .mapped(|value| value.clone().scaled(Rational::new(1, order.into())), (1, 1));
         }
         Ok(sum)
