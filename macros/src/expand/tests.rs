@@ -3,6 +3,7 @@
 mod derivation;
 mod determinism;
 mod fuzz;
+mod higher_order;
 mod sizes;
 mod time;
 
