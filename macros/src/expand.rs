@@ -5,7 +5,7 @@ use quote::quote;
 
 use crate::derive::Derived;
 use crate::errors::Errors;
-use crate::{check, derive, emit, explain, fallback, lower, parse, verify};
+use crate::{check, derive, emit, explain, fallback, lower, parse, scalar, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 pub(crate) fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
@@ -32,13 +32,18 @@ fn implementation(arguments: &TokenStream, item: &TokenStream, errors: &mut Erro
     let derived =
         derive::derive(&lowered.declared).map_err(|error| explain::explain(error, &declaration, &tree, errors)).ok()?;
     is_sound(&derived, tree.span, errors)?;
-    if let Some(term) = verify::disagreement(&declaration, &tree, &lowered, &derived) {
-        let message =
-            format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
-        errors.push(tree.span, message);
-        return None;
+    let kinetic = verify::kinetic_part(&declaration, &lowered, &derived);
+    explain::kinetic_part(&kinetic, &declaration, errors)?;
+    let kernel = scalar::kernel(&derived);
+    match verify::verify(&declaration, &tree, &lowered, &derived, &kernel) {
+        Ok(self_adjointness) => Some(emit::implementation(&declaration, &lowered, &derived, &kernel, self_adjointness)),
+        Err(term) => {
+            let message =
+                format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
+            errors.push(tree.span, message);
+            None
+        }
     }
-    Some(emit::implementation(&declaration, &lowered, &derived))
 }
 
 /// Coefficients stay exact, or the expansion says that they can't.
@@ -51,6 +56,7 @@ fn is_sound(derived: &Derived, span: Span, errors: &mut Errors) -> Option<()> {
         &derived.momentum,
         &derived.jacobian,
         &derived.energy,
+        &derived.adjoint_defect,
         &limit.inertia,
         &limit.bias,
         &limit.potential,

@@ -12,6 +12,9 @@ use crate::symbolic::{Expression, SymbolId};
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
 pub(crate) struct Limit {
+    /// The first derivative of `K` at the identity (linear in `E_k`): zero for all values of the parameters if there is
+    /// a limit.
+    pub(crate) slope: Expression,
     pub(crate) inertia: Expression,
     pub(crate) bias: Expression,
     pub(crate) potential: Expression,
@@ -26,8 +29,6 @@ pub(crate) enum LimitError {
     TooSingular(i32),
     /// No term in `1/h` depends on `F`.
     NoKineticTerm,
-    /// The kinetic term isn't stationary at the identity.
-    NotStationary,
 }
 
 pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {
@@ -43,16 +44,14 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     if kinetic.is_zero() {
         return Err(LimitError::NoKineticTerm);
     }
-    if !at_identity(context, &kinetic).is_zero() {
-        return Err(LimitError::NotStationary);
-    }
     let step = context.symbol(h);
     let second = momentum_equation::jacobian(context, &kinetic);
     let inertia = context.product(&at_identity(context, &second), &step);
     let bias = at_identity(context, &of_order(momentum, h, 0));
     let inverse_step = step.power(-1, context.symbols);
     let potential = context.product(&at_identity(context, &of_order(l_d, h, 1)), &inverse_step);
-    Ok(Limit { inertia, bias, potential: potential.scaled(-crate::symbolic::Rational::ONE) })
+    let slope = at_identity(context, &kinetic);
+    Ok(Limit { slope, inertia, bias, potential: potential.scaled(-crate::symbolic::Rational::ONE) })
 }
 
 fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {

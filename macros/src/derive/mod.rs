@@ -7,6 +7,7 @@ mod energy;
 mod limit;
 mod momentum_equation;
 mod momentum_maps;
+mod self_adjoint;
 mod transport;
 
 use std::collections::BTreeMap;
@@ -16,6 +17,7 @@ use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance}
 
 pub(crate) use cayley::Cleared;
 pub(crate) use limit::{Limit, LimitError};
+pub(crate) use self_adjoint::SelfAdjointness;
 
 /// A declared Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
@@ -73,6 +75,8 @@ pub(crate) struct Derived {
     pub(crate) jacobian: Expression,
     /// `−∂l_d/∂h`.
     pub(crate) energy: Expression,
+    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero where the Lagrangian is seen to be self-adjoint.
+    pub(crate) adjoint_defect: Expression,
     /// The Lagrangian's limit as `h → 0`.
     pub(crate) limit: Limit,
     /// The part of the diamond without `F`.
@@ -104,6 +108,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     let momentum = momentum_equation::momentum(&right_momentum, &diamond);
     let jacobian = momentum_equation::jacobian(&context, &momentum);
     let energy = energy::discrete(&context);
+    let adjoint_defect = self_adjoint::defect(&context);
     let limit = limit::limit(&context, &momentum)?;
     let parts = transport::parts(&context, &momentum, &diamond);
     let cleared = cayley::cleared(&context, &parts.unknown);
@@ -116,6 +121,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         momentum,
         jacobian,
         energy,
+        adjoint_defect,
         limit,
         kick_before: parts.kick_before,
         unknown: transport::in_small_increment(&context, &parts.unknown),
