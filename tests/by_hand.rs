@@ -35,6 +35,7 @@ impl DiscreteLagrangian for HandWrittenTop {
     type StepTerms = Vector3<f64>;
 
     const DERIVATION: &'static str = "the heavy top (3.13), by hand";
+    const SELF_ADJOINT: bool = true;
 
     fn validate(&self) -> Result<(), SetupError> {
         Ok(())

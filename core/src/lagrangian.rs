@@ -59,6 +59,13 @@ pub trait DiscreteLagrangian {
     /// The declared Lagrangian and everything derived from it, as text.
     const DERIVATION: &'static str;
 
+    /// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` for all values of the parameters.
+    ///
+    /// Then a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
+    /// compositions raise it; otherwise it is 1 in general. The macro finds it out and says in
+    /// [`DERIVATION`](Self::DERIVATION) how; who implements the trait by hand states it.
+    const SELF_ADJOINT: bool;
+
     /// Checks the parameters.
     ///
     /// # Errors

@@ -1,11 +1,11 @@
 //! The flow of one expansion.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::derive::Derived;
+use crate::choose::Chosen;
 use crate::errors::Errors;
-use crate::{check, derive, emit, explain, fallback, lower, parse, verify};
+use crate::{check, choose, emit, explain, fallback, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 pub(crate) fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
@@ -19,7 +19,7 @@ pub(crate) fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream 
     }
 }
 
-/// Parse, check, lower, derive, verify, emit.
+/// Parse, check, lower, derive, choose, verify, emit.
 fn implementation(arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let item = parse::item(item, errors)?;
     parse::check_size(arguments, errors)?;
@@ -28,42 +28,20 @@ fn implementation(arguments: &TokenStream, item: &TokenStream, errors: &mut Erro
     if !errors.is_empty() {
         return None;
     }
-    let lowered = lower::lower(&declaration, &tree, errors)?;
-    let derived =
-        derive::derive(&lowered.declared).map_err(|error| explain::explain(error, &declaration, &tree, errors)).ok()?;
-    is_sound(&derived, tree.span, errors)?;
-    if let Some(term) = verify::disagreement(&declaration, &tree, &lowered, &derived) {
-        let message =
-            format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
-        errors.push(tree.span, message);
-        return None;
+    let candidates = lower::lower(&declaration, &tree, errors);
+    let Chosen { lowered, derived, kernel } =
+        choose::cheapest(candidates?).map_err(|refusal| explain::explain(refusal, &declaration, &tree, errors)).ok()?;
+    let kinetic = verify::kinetic_part(&declaration, &lowered, &derived);
+    explain::kinetic_part(&kinetic, &declaration, errors)?;
+    match verify::verify(&declaration, &tree, &lowered, &derived, &kernel) {
+        Ok(self_adjointness) => Some(emit::implementation(&declaration, &lowered, &derived, &kernel, self_adjointness)),
+        Err(term) => {
+            let message =
+                format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
+            errors.push(tree.span, message);
+            None
+        }
     }
-    Some(emit::implementation(&declaration, &lowered, &derived))
-}
-
-/// Coefficients stay exact, or the expansion says that they can't.
-fn is_sound(derived: &Derived, span: Span, errors: &mut Errors) -> Option<()> {
-    let limit = &derived.limit;
-    let all = [
-        &derived.right_momentum,
-        &derived.left_momentum,
-        &derived.diamond,
-        &derived.momentum,
-        &derived.jacobian,
-        &derived.energy,
-        &limit.inertia,
-        &limit.bias,
-        &limit.potential,
-        &derived.kick_before,
-        &derived.unknown,
-        &derived.kick_after,
-    ];
-    let cleared = derived.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
-    if all.into_iter().chain(cleared).any(crate::symbolic::Expression::has_overflow) {
-        errors.push(span, "the coefficients leave the range of exact arithmetic: make the large numbers fields");
-        return None;
-    }
-    Some(())
 }
 
 #[cfg(test)]

@@ -38,6 +38,7 @@ pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStrea
         #implementation {
             #types
             const DERIVATION: &'static #core::primitive::str = "";
+            const SELF_ADJOINT: #core::primitive::bool = false;
             fn validate(&self) -> #core::result::Result<(), #root::SetupError> { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
             #(#of_increment)*

@@ -5,6 +5,7 @@
 
 mod ast;
 mod check;
+mod choose;
 mod derive;
 mod emit;
 mod errors;

@@ -26,8 +26,8 @@ pub(crate) struct Lowered {
     pub(crate) names: BTreeMap<Name, SymbolId>,
 }
 
-/// Lowers the tree; `None` where it is too large, which has been reported.
-pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Lowered> {
+/// Lowers the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has been reported.
+pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
     let size = declaration.structure.size;
@@ -55,18 +55,37 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }
-    // Multiplied out what cancels is found; where that is too large, the `let`s stay closed.
     let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
-    match attempt(None).or_else(|_| attempt(Some(Vec::new()))) {
-        Ok((symbols, l_d, lets)) => {
-            let group = declaration.structure.clone();
-            Some(Lowered { declared: Declared { group, symbols, lets, l_d, increment, step, advected }, names })
+    let lowered = |(symbols, l_d, lets): (Symbols, Expression, Vec<Let>)| {
+        let (group, advected, names) = (declaration.structure.clone(), advected.clone(), names.clone());
+        Lowered { declared: Declared { group, symbols, lets, l_d, increment, step, advected }, names }
+    };
+    let multiplied_out = attempt(None);
+    let closed = if multiplied_out.is_err() || has_let(tree) { Some(attempt(Some(Vec::new()))) } else { None };
+    let all = [Some(multiplied_out), closed].into_iter().flatten();
+    let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
+    if found.is_empty() {
+        failures.into_iter().filter_map(Result::err).take(1).for_each(|failure| report(failure, tree, errors));
+        return None;
+    }
+    Some(found.into_iter().flatten().map(lowered).collect())
+}
+
+/// Whether a `let` names anything but a name.
+fn has_let(tree: &Rc<Tree>) -> bool {
+    // A shared part is visited once.
+    let mut seen = std::collections::BTreeSet::new();
+    let mut open = vec![tree];
+    while let Some(tree) = open.pop() {
+        if !seen.insert(Rc::as_ptr(tree)) {
+            continue;
         }
-        Err(failure) => {
-            report(failure, tree, errors);
-            None
+        match &tree.kind {
+            Kind::Bound(_, inner) if !matches!(inner.kind, Kind::Name(_) | Kind::Number(_)) => return true,
+            kind => open.extend(kind.operands().into_iter().flatten()),
         }
     }
+    false
 }
 
 /// Why an expression can't be lowered.

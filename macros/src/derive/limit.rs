@@ -13,6 +13,9 @@ use crate::symbolic::{Expression, Rational, SymbolId, Variations, degree, variat
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
 pub(crate) struct Limit {
+    /// The first derivative of `K` at the identity (linear in `E_k`): zero for all values of the parameters if there is
+    /// a limit.
+    pub(crate) slope: Expression,
     pub(crate) inertia: Expression,
     pub(crate) bias: Expression,
     pub(crate) potential: Expression,
@@ -27,8 +30,6 @@ pub(crate) enum LimitError {
     TooSingular(i32),
     /// No term in `1/h` depends on `F`.
     NoKineticTerm,
-    /// The kinetic term isn't stationary at the identity.
-    NotStationary,
     /// The limit isn't `½ ξ·Jξ + s·ξ − V`.
     NotALagrangian,
     /// The limit has too many terms.
@@ -51,16 +52,14 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     if kinetic.is_zero() {
         return Err(LimitError::NoKineticTerm);
     }
-    if !at_identity(context, &kinetic).is_zero() {
-        return Err(LimitError::NotStationary);
-    }
     let step = context.symbol(h);
     let second = momentum_equation::jacobian(context, &kinetic, &[]);
     let inertia = context.product(&at_identity(context, &second), &step);
     let bias = at_identity(context, &of_order(momentum, h, 0));
     let inverse_step = step.power(-1, context.symbols);
     let potential = context.product(&at_identity(context, &of_order(l_d, h, 1)), &inverse_step);
-    Ok(Limit { inertia, bias, potential: potential.scaled(-Rational::ONE) })
+    let slope = at_identity(context, &kinetic);
+    Ok(Limit { slope, inertia, bias, potential: potential.scaled(-Rational::ONE) })
 }
 
 /// As a series in `h` along `F = exp(hξ̂)`, where `let`s hide the powers of `h`.
@@ -71,20 +70,26 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
         return Err(LimitError::NotALagrangian);
     }
     let advected = |value: &Expression| context.declared.advected.iter().any(|&(w, _)| value.contains(w));
-    for (order, value) in series.terms().filter(|&(order, _)| order < 1) {
-        if value.contains(velocity) {
-            return Err(if order < 0 { LimitError::TooSingular(order) } else { LimitError::NotStationary });
-        }
-        if advected(value) {
+    if let Some((order, _)) = series.terms().find(|(order, value)| *order < 0 && value.contains(velocity)) {
+        return Err(LimitError::TooSingular(order));
+    }
+    if series.terms().any(|(order, value)| order < 1 && advected(value)) {
+        return Err(LimitError::NotALagrangian);
+    }
+    // By powers of the velocity: there must be nothing but none, one or two of them.
+    let by_degree = |order: i32| {
+        let zero = Expression::zero((1, 1));
+        let coefficient = series.terms().find(|&(at, _)| at == order).map_or(zero, |(_, value)| value.clone());
+        let parts = [0, 1, 2].map(|n| coefficient.filtered(|monomial| degree(monomial, velocity) == n));
+        let all = parts.iter().cloned().fold(Expression::zero((1, 1)), Expression::plus);
+        if coefficient.contains_closed(velocity) || all != coefficient {
             return Err(LimitError::NotALagrangian);
         }
-    }
-    let zero = Expression::zero((1, 1));
-    let lagrangian = series.terms().find(|&(order, _)| order == 1).map_or(zero, |(_, value)| value.clone());
-    let of_degree = |n| lagrangian.filtered(|monomial| degree(monomial, velocity) == n);
-    let (kinetic, linear, rest) = (of_degree(2), of_degree(1), of_degree(0));
-    let parts = kinetic.clone().plus(linear.clone()).plus(rest.clone());
-    if lagrangian.contains_closed(velocity) || parts != lagrangian {
+        Ok(parts)
+    };
+    let [_, slope, curvature] = by_degree(0)?;
+    let [rest, linear, kinetic] = by_degree(1)?;
+    if !curvature.is_zero() {
         return Err(LimitError::NotALagrangian);
     }
     if kinetic.is_zero() {
@@ -96,7 +101,8 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     };
     let (first, second) = (context.directions.first, context.directions.second);
     let inertia = along(&along(&kinetic, first), second);
-    Ok(Limit { inertia, bias: along(&linear, first), potential: rest.scaled(-Rational::ONE) })
+    let (slope, bias) = (along(&slope, first), along(&linear, first));
+    Ok(Limit { slope, inertia, bias, potential: rest.scaled(-Rational::ONE) })
 }
 
 fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {

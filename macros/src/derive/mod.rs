@@ -8,6 +8,7 @@ mod energy;
 mod limit;
 mod momentum_equation;
 mod momentum_maps;
+mod self_adjoint;
 mod series;
 mod transport;
 
@@ -19,6 +20,7 @@ use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance}
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
 pub(crate) use limit::{Limit, LimitError};
+pub(crate) use self_adjoint::SelfAdjointness;
 
 /// A declared Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
@@ -86,6 +88,8 @@ pub(crate) struct Derived {
     pub(crate) jacobian: Expression,
     /// `−∂l_d/∂h`.
     pub(crate) energy: Expression,
+    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero where the Lagrangian is seen to be self-adjoint.
+    pub(crate) adjoint_defect: Expression,
     /// The Lagrangian's limit as `h → 0`.
     pub(crate) limit: Limit,
     /// The part of the diamond without `F`.
@@ -104,6 +108,31 @@ impl Derived {
     pub(crate) fn increment(&self) -> SymbolId {
         self.increment
     }
+
+    /// Whether all coefficients stayed in the range of exact arithmetic.
+    pub(crate) fn is_exact(&self) -> bool {
+        let limit = &self.limit;
+        let all = [
+            &self.right_momentum,
+            &self.left_momentum,
+            &self.diamond,
+            &self.momentum,
+            &self.jacobian,
+            &self.energy,
+            &self.adjoint_defect,
+            &limit.slope,
+            &limit.inertia,
+            &limit.bias,
+            &limit.potential,
+            &self.kick_before,
+            &self.unknown,
+            &self.kick_after,
+        ];
+        let cleared = self.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
+        let closed =
+            self.closed.iter().flat_map(|one| [&one.value, &one.pairing, &one.tangent.1, &one.multiplier_tangent.1]);
+        !all.into_iter().chain(cleared).chain(closed).any(Expression::has_overflow)
+    }
 }
 
 /// Derives everything.
@@ -119,6 +148,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     let momentum = momentum_equation::momentum(&right_momentum, &diamond);
     let jacobian = momentum_equation::jacobian(&context, &momentum, &closed);
     let energy = energy::discrete(&context);
+    let adjoint_defect = self_adjoint::defect(&context);
     let limit = limit::limit(&context, &momentum)?;
     let parts = transport::parts(&context, &momentum, &diamond);
     let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
@@ -133,6 +163,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         momentum,
         jacobian,
         energy,
+        adjoint_defect,
         limit,
         kick_before: parts.kick_before,
         unknown,

@@ -1,6 +1,6 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
-use crate::derive::{Declared, Derived};
+use crate::derive::{Declared, Derived, SelfAdjointness};
 use crate::scalar::{Graph, Kernel, NodeId, count};
 use crate::symbolic::{Stage, covector_text, text};
 
@@ -56,10 +56,23 @@ pub(super) fn stage(graph: &Graph, outputs: &[NodeId], stage: Stage, when: &str)
 }
 
 /// All equations as one text.
-pub(super) fn derivation(equations: &[Equation]) -> String {
+pub(super) fn derivation(equations: &[Equation], self_adjointness: SelfAdjointness) -> String {
     let line = |equation: &Equation| {
         let source = if equation.source.is_empty() { String::new() } else { format!("    [{}]", equation.source) };
         format!("{}\n    {} = {}{source}\n", equation.method, equation.left, equation.right)
     };
-    equations.iter().map(line).collect()
+    equations.iter().map(line).chain([adjoint(self_adjointness)]).collect()
+}
+
+/// Whether the Lagrangian is self-adjoint, how that was found, and what follows.
+fn adjoint(found: SelfAdjointness) -> String {
+    let (sign, how, consequence) = match found {
+        SelfAdjointness::Symbolic => ("=", "by the normal forms", "even order; a step of −h undoes a step of h"),
+        SelfAdjointness::Numeric => {
+            ("=", "at random points, to rounding", "even order; a step of −h undoes a step of h")
+        }
+        SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),
+        SelfAdjointness::Unknown => ("≟", "no value at the random points", "not known to be its own adjoint"),
+    };
+    format!("self-adjoint\n    l_d(F, w, h) {sign} −l_d(F⁻¹, F⁻¹·w, −h)    [{how}: {consequence}]\n")
 }

@@ -11,23 +11,29 @@ use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
 use crate::ast::Declaration;
-use crate::derive::Derived;
+use crate::derive::{Derived, SelfAdjointness};
 use crate::lower::Lowered;
-use crate::scalar::{Given, Graph, Scalariser, components, kernel, square, with_lets};
+use crate::scalar::{Given, Graph, Kernel, Scalariser, components, square, with_lets};
 use crate::symbolic::{Expression, SymbolId};
 
 use code::Form;
 pub(crate) use header::Header;
 
 /// The whole implementation.
-pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, derived: &Derived) -> TokenStream {
+pub(crate) fn implementation(
+    declaration: &Declaration,
+    lowered: &Lowered,
+    derived: &Derived,
+    kernel: &Kernel,
+    self_adjointness: SelfAdjointness,
+) -> TokenStream {
     let header = Header::new(declaration);
-    let kernel = kernel(derived);
     let emitter = Emitter { declaration, lowered, derived, header: &header };
-    let (mathematics, texts) = emitter.mathematics(&kernel);
-    let stages = stages::stages(&emitter, &kernel);
+    let (mathematics, texts) = emitter.mathematics(kernel);
+    let stages = stages::stages(&emitter, kernel);
     let l_d = verbatim::l_d(declaration, &header);
-    let derivation = docs::derivation(&texts);
+    let derivation = docs::derivation(&texts, self_adjointness);
+    let is_self_adjoint = self_adjointness.is_found();
     let validate = emitter.validate();
     let advected = emitter.advected();
     let root = &header.root;
@@ -42,6 +48,7 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
             #types
 
             const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
+            const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;
 
             #validate
             #advected
@@ -70,7 +77,7 @@ struct Emitter<'a> {
 
 impl Emitter<'_> {
     /// The derived terms that don't know stages.
-    fn mathematics(&self, kernel: &crate::scalar::Kernel) -> (TokenStream, Vec<docs::Equation>) {
+    fn mathematics(&self, kernel: &Kernel) -> (TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
         let mut methods = TokenStream::new();
         let equations = docs::equations(d, &self.lowered.declared, kernel);

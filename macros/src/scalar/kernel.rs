@@ -33,6 +33,14 @@ pub(crate) struct Kernel {
     pub(crate) candidates: Vec<Candidate>,
 }
 
+impl Kernel {
+    /// What a step of two Newton iterations costs.
+    pub(crate) fn cost(&self) -> usize {
+        let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());
+        2 * iteration + count(&self.graph, &self.kick_after, None).cost()
+    }
+}
+
 /// `tr(E_k W)` and the like for each generator: the components of a covector.
 pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
     (0..derived.group.dimension())

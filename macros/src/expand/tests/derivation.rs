@@ -52,5 +52,7 @@ fn of_the_heavy_top() {
             k₁⁺ = (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
         newton_system
             candidates, cheapest first = Cayley, denominators cleared, multiplied out: 111 operations; Cayley, denominators cleared: 112 operations; F rebuilt from ξ: 151 operations, 3 sign flips; F rebuilt from ξ, multiplied out: 275 operations, 3 sign flips    [an iteration]
+        self-adjoint
+            l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)    [by the normal forms: even order; a step of −h undoes a step of h]
     "#]].assert_eq(&derivation(HEAVY_TOP, &top("NonstandardInertia")));
 }

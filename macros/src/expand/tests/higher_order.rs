@@ -65,10 +65,17 @@ fn operations() {
             println!("{}: {}", candidate.name, candidate.operations);
         }
         let g = &kernel.graph;
-        println!("lets {}; residual alone {}", derived.closed.len(), count(g, &kernel.residual, Some(Stage::Iteration)));
+        println!(
+            "lets {}; residual alone {}",
+            derived.closed.len(),
+            count(g, &kernel.residual, Some(Stage::Iteration))
+        );
         println!("kick after {}", count(g, &kernel.kick_after, None));
         println!("step {}", count(g, &[kernel.residual.clone(), kernel.jacobian.clone()].concat(), Some(Stage::Step)));
-        println!("construct {}", count(g, &[kernel.residual.clone(), kernel.jacobian.clone()].concat(), Some(Stage::Construction)));
+        println!(
+            "construct {}",
+            count(g, &[kernel.residual.clone(), kernel.jacobian.clone()].concat(), Some(Stage::Construction))
+        );
         let start = Instant::now();
         drop(expanded(arguments, TOP));
         println!("expanded in {:?}", start.elapsed());
