@@ -1,0 +1,16 @@
+//! The declared systems of `examples/declarations`: the order of each, what each conserves, and its structure.
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../examples/declarations/mod.rs"]
+mod declarations;
+
+mod continuous;
+mod energy;
+mod momenta;
+mod one_sided;
+mod order;
+mod poisson;
+mod reversal;
+mod samples;
+mod symmetry;

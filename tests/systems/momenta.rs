@@ -1,0 +1,18 @@
+//! P2 for every declared system: its momenta, and its step in stages.
+
+use liestep::Coordinates;
+use nalgebra::{SMatrix, SVector};
+
+use crate::common::structure::{System, momenta, stages};
+use crate::samples::every_system;
+
+fn p2<L, const N: usize, const D: usize>(system: &L, _: &str)
+where
+    L: System<N, D>,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    momenta::assert_momenta(system, 42);
+    stages::assert_stages(system, 43);
+}
+
+every_system!(p2);
