@@ -74,7 +74,8 @@ pub fn defect<L: System<N, D>, const N: usize, const D: usize>(
 /// The six-point differences of values near one leave 10⁻¹².
 const TOLERANCE: f64 = 1e-10;
 
-/// The claim holds for any `w`, not only for those on the orbit of the declared one, and for large steps.
+/// The claim holds for any `w`, not only for those on the orbit of the declared one, and for large steps: at `h = 0.3`
+/// the largest turn by some 60°.
 pub fn assert_poisson<L, const N: usize, const D: usize>(lagrangian: &L, steps: &[f64], seed: u64)
 where
     L: System<N, D> + Clone,
@@ -86,7 +87,7 @@ where
         let flow = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
         for _ in 0..5 {
             let w = random_advected(lagrangian, &mut random);
-            let velocity: SVector<f64, D> = random.sample();
+            let velocity = random.sample::<SVector<f64, D>>() * 2.0;
             let f = along::<L::Group, N, D>(&velocity, h).matrix();
             worst = worst.max(defect(&flow, &lagrangian.legendre_minus(&f, &w, h), &w));
         }
