@@ -2,43 +2,23 @@
 
 // The letters of the field.
 #![allow(non_snake_case)]
+// The declarations are shared with the examples.
+#![allow(unreachable_pub)]
 
 mod common;
 
 use common::measure::relative;
 use common::reference::{matrix, number, read, vector};
-use liestep::{DiscreteLiePoisson, Inertia, LieGroup as _, SO3, Stepper, lagrangian};
+use liestep::{DiscreteLiePoisson, Inertia, LieGroup as _, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// The Cayley kinetic term: `x = tan(θ/2) n` has the Legendre transform `h p = 2 (J x + x × J x + (x·J x) x)`, which is
-/// solvable for every `h`.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let x = vee(F - F.transpose()) / (1.0 + F.trace());
-        2.0 * x.dot(&(J * x)) / h - 0.5 * h * weight * w.dot(&(rho + F * rho))
-    },
-)]
-struct CayleyTop {
-    J: Inertia,
-    weight: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
+#[path = "../examples/declarations/cayley_top.rs"]
+mod cayley_top;
+#[path = "../examples/declarations/log_trace_top.rs"]
+mod log_trace_top;
 
-/// The discrete Lagrange top of Bobenko and Suris (1999), with the spin about the axis left to `p₃`.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = -(2.0 * I1 / h) * ((1.0 + F.trace()) / 4.0).ln() - h * weight * w.dot(&rho),
-)]
-struct LogTraceTop {
-    I1: f64,
-    weight: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
+use cayley_top::CayleyTop;
+use log_trace_top::LogTraceTop;
 
 /// The geodesic kinetic term: the exact one of a sphere.
 #[lagrangian(
