@@ -14,99 +14,20 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 #[path = "../examples/declarations/cayley_top.rs"]
 mod cayley_top;
+#[path = "../examples/declarations/fourth_order_top.rs"]
+mod fourth_order_top;
+#[path = "../examples/declarations/log_top.rs"]
+mod log_top;
 #[path = "../examples/declarations/log_trace_top.rs"]
 mod log_trace_top;
+#[path = "../examples/declarations/sixth_order_top.rs"]
+mod sixth_order_top;
 
 use cayley_top::CayleyTop;
+use fourth_order_top::FourthOrderTop;
+use log_top::LogTop;
 use log_trace_top::LogTraceTop;
-
-/// The geodesic kinetic term: the exact one of a sphere.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let xi = log(F);
-        xi.dot(&(J * xi)) / (2.0 * h) - 0.5 * h * weight * w.dot(&(rho + F * rho))
-    },
-)]
-struct LogTop {
-    J: Inertia,
-    weight: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
-
-/// L4 of MATH 2.4 with the tangent half-angle vector in the small terms: order 4 in one solve.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let xi = log(F);
-        let x = 2.0 * vee(F) / (1.0 + F.trace()).sqrt();
-        let next = F.transpose() * w;
-        let f = (J * x).cross(&x) / h.powi(2) + 0.5 * weight * (w + next).cross(&rho);
-        xi.dot(&(J * xi)) / (2.0 * h) - 0.5 * h * weight * (w + next).dot(&rho)
-            + (h / 12.0) * weight * (next - w).cross(&x).dot(&rho)
-            - (h.powi(3) / 24.0) * f.dot(&(inverse(J) * f))
-    },
-)]
-struct FourthOrderTop {
-    J: Inertia,
-    weight: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
-
-/// L6 of MATH 2.4: the action of a path that satisfies the equations of motion to third order, by three-point Gauss
-/// quadrature.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let xi = log(F);
-        let om = xi / h;
-        let middle = exp(-0.5 * xi) * w;
-        let momentum = J * om;
-        let f = momentum.cross(&om) + weight * middle.cross(&rho);
-        let a = inverse(J) * f;
-        let b = inverse(J) * (f.cross(&om) + momentum.cross(&a) - J * om.cross(&a)
-            + weight * middle.cross(&om).cross(&rho));
-
-        // The nodes t = h/2 and h/2 ± σ.
-        let sigma = 0.3872983346207417 * h;
-        let bend = (-h * h / 20.0) * a;
-        let twist = (h * h * sigma / 60.0) * b;
-        let stretch = (h * h / 30.0) * b;
-        let eta1 = bend + twist;
-        let eta2 = (-h * h / 8.0) * a;
-        let eta3 = bend - twist;
-        let rate1 = stretch - sigma * a;
-        let rate2 = (-h * h / 24.0) * b;
-        let rate3 = stretch + sigma * a;
-        let velocity1 = om + rate1 - eta1.cross(&(om + 0.5 * rate1
-            - 0.5 * eta1.cross(&(om + rate1 / 3.0 - eta1.cross(&om) / 3.0))));
-        let velocity2 = om + rate2 - eta2.cross(&(om + 0.5 * rate2
-            - 0.5 * eta2.cross(&(om + rate2 / 3.0 - eta2.cross(&om) / 3.0))));
-        let velocity3 = om + rate3 - eta3.cross(&(om + 0.5 * rate3
-            - 0.5 * eta3.cross(&(om + rate3 / 3.0 - eta3.cross(&om) / 3.0))));
-        let w1 = exp(-0.1127016653792583 * xi) * w;
-        let w3 = exp(-0.8872983346207417 * xi) * w;
-        let kinetic = (5.0 * velocity1.dot(&(J * velocity1)) + 8.0 * velocity2.dot(&(J * velocity2))
-            + 5.0 * velocity3.dot(&(J * velocity3))) / 2.0;
-        let r1 = rho + eta1.cross(&(rho + 0.5 * eta1.cross(&(rho + eta1.cross(&rho) / 3.0))));
-        let r2 = rho + eta2.cross(&(rho + 0.5 * eta2.cross(&(rho + eta2.cross(&rho) / 3.0))));
-        let r3 = rho + eta3.cross(&(rho + 0.5 * eta3.cross(&(rho + eta3.cross(&rho) / 3.0))));
-        let potential = weight * (5.0 * w1.dot(&r1) + 8.0 * middle.dot(&r2)
-            + 5.0 * w3.dot(&r3));
-        (h / 18.0) * (kinetic - potential)
-    },
-)]
-struct SixthOrderTop {
-    J: Inertia,
-    weight: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
+use sixth_order_top::SixthOrderTop;
 
 #[test]
 fn golden_entries_of_the_cayley_top_are_reproduced() {
