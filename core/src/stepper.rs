@@ -131,11 +131,14 @@ impl<L: DiscreteLagrangian> Stepper<L> {
         // Increments change by O(h²) from step to step, and their changes by O(h³): for (3.13) at common steps this
         // guess saves one iteration of three.
         state.guess = step.coordinates + (step.coordinates - state.coordinates);
-        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Written as a selection
-        // this would lie on the way to the next iteration, and cost a tenth of a step. Before the first step there was no
-        // increment but an estimate.
-        if state.steps == 0 || !L::Retraction::is_near_identity(&(step.coordinates * real(1.5))) {
+        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Before the first step
+        // there was no increment but an estimate. A selection without the branch would lie on the way to the next
+        // iteration, and cost a tenth of a step.
+        let far = !L::Retraction::is_near_identity(&(step.coordinates * real(1.5)));
+        if state.steps == 0 {
             state.guess = step.coordinates;
+        } else if far.any() {
+            state.guess = step.coordinates.select(far, state.guess);
         }
         state.coordinates = step.coordinates;
         state.steps += 1;
