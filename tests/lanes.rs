@@ -88,7 +88,11 @@ fn assert_independent<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N],
         unequal += u32::from(iterations.iter().any(|count| *count != iterations[0]));
         assert_eq!(report.iterations, iterations.into_iter().max().unwrap(), "step {step}");
         for (k, (_, single)) in singles.iter().enumerate() {
-            assert_eq!(state.attitude().as_matrix().extract(k), *single.attitude().as_matrix(), "step {step}, lane {k}");
+            assert_eq!(
+                state.attitude().as_matrix().extract(k),
+                *single.attitude().as_matrix(),
+                "step {step}, lane {k}"
+            );
             assert_eq!(state.momentum().extract(k), single.momentum(), "step {step}, lane {k}");
             assert_eq!(state.advected().extract(k), single.advected(), "step {step}, lane {k}");
         }
@@ -145,7 +149,10 @@ fn an_unsolvable_lane_leaves_all_as_they_were() {
     let (stepper, mut state) = together::<WideF64x4, 4>(&lanes, 0.01);
     let before = state;
     let refused = stepper.step(&mut state);
-    assert!(matches!(refused, Err(StepError::BeyondSolvable { step, largest }) if step == 0.01 && largest < 0.01), "{refused:?}");
+    assert!(
+        matches!(refused, Err(StepError::BeyondSolvable { step, largest }) if step == 0.01 && largest < 0.01),
+        "{refused:?}"
+    );
     assert_eq!(state, before);
     // Without it the others move.
     lanes[1].velocity = Vector3::x();
