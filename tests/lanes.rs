@@ -117,6 +117,16 @@ fn each_lane_moves_as_alone() {
     assert!(unequal.iter().all(|&steps| steps > 100), "{unequal:?}");
 }
 
+/// A lane that turns by some 70° a step extrapolates no more; the others still do.
+#[test]
+fn a_lane_near_a_quarter_turn_changes_no_other() {
+    let mut lanes: [Lane<f64>; 4] = spread(8, 4.0);
+    lanes[1].top.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    lanes[1].top.weight = 0.01;
+    lanes[1].velocity = Vector3::z() * 9.5;
+    assert_independent::<WideF64x4, 4>(&lanes, 0.1, 200);
+}
+
 /// A guess on another branch makes its lane start anew from the identity, and no other.
 #[test]
 fn a_lane_with_a_bad_guess_changes_no_other() {
