@@ -9,8 +9,8 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// # Dual numbers
 ///
 /// A dual number carries derivatives with respect to parameters or initial values through every step, so that the
-/// sensitivity of a whole trajectory is there at its end. Newton's iteration stops by the values; the derivatives are
-/// then exact to about `1e-12` of themselves, as the last iteration squares their error too.
+/// sensitivity of a whole trajectory is there at its end. Newton's iteration stops by the values; as each iteration
+/// multiplies the error of the derivatives by that of the values before it, they are then solved to rounding too.
 ///
 /// # Lanes
 ///
