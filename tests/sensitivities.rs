@@ -3,7 +3,7 @@
 use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian as _, LieGroup as _};
 use liestep::{Real, SO3, State, Stepper, lagrangian};
 use nalgebra::{RealField, UnitQuaternion, Vector3};
-use num_dual::{Dual64, DualNum as _};
+use num_dual::Dual64;
 
 /// (3.13) in principal axes, for any scalar.
 #[lagrangian(
@@ -34,9 +34,11 @@ enum Scaled {
     Velocity,
 }
 
+type Running<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
+
 /// The asymmetric top with a parameter scaled, at its start.
 #[allow(non_snake_case)] // the letter of the field
-fn start<T: Real + RealField>(scaled: Scaled, s: T) -> (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>) {
+fn start<T: Real + RealField>(scaled: Scaled, s: T) -> Running<T> {
     let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(nalgebra::convert::<f64, T>);
     let mut moments = vector(2.0, 3.0, 4.5);
     let mut weight: T = nalgebra::convert(9.81);

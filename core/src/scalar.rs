@@ -19,12 +19,14 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// [`SimdValue::extract`]:
 ///
 /// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled.
+///   Only `l_d` with a sine or a cosine may differ by roundings, where the lanes compute these in their own way.
 /// - Every lane's step is solved, or the whole step is an error and the state of all lanes is what it was. An error's
 ///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is.
 /// - The group is [`SO3`](crate::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::MatrixGroup) inverts matrices by
 ///   pivots and asks for `RealField`, of which lanes aren't one.
 ///
-/// How much faster that is depends on the registers of the target: `cargo bench --bench ensemble` measures it.
+/// How much faster that is depends on the registers of the target: two `f64` on x86-64 unless the compiler is told
+/// more, as by `-C target-cpu=native`. `cargo bench --bench ensemble` measures it.
 pub trait Real: SimdRealField + Copy {}
 
 impl<T: SimdRealField + Copy> Real for T {}

@@ -16,7 +16,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepReport {
-    /// Newton iterations; above 20 where the first guess had to be given up.
+    /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up.
     pub iterations: u32,
 }
 
@@ -26,6 +26,7 @@ pub struct StepReport {
 ///
 /// - A step satisfies its momentum equation to rounding on the branch of the identity, or returns an error and leaves
 ///   the state as it was.
+/// - With a scalar of several [lanes](crate::Real#lanes) all of them move or none does, each as it would alone.
 /// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
 ///   that holds from machine to machine.
 /// - Nothing is allocated, and no loop is unbounded.
