@@ -42,7 +42,7 @@ pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, Nonstandard
 pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
 pub use liestep_macros::lagrangian;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
-pub use scalar::Real;
+pub use scalar::{Mask, Real};
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
 
