@@ -15,6 +15,7 @@ pub(crate) struct Chosen {
 }
 
 /// Why nothing can be.
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Refusal {
     Limit(LimitError),
     /// A coefficient left the range of exact arithmetic.

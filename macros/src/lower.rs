@@ -89,6 +89,7 @@ fn has_let(tree: &Rc<Tree>) -> bool {
 }
 
 /// Why an expression can't be lowered.
+#[derive(Clone, Copy, Debug)]
 enum Failure {
     TooLarge(proc_macro2::Span),
     Overflow,

@@ -108,7 +108,7 @@ impl Value {
     fn inverse(&self) -> Self {
         let determinant = self.determinant();
         Self::new(self.rows, self.rows, |row, column| {
-            let sign = if (row + column) % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if (row + column).is_multiple_of(2) { 1.0 } else { -1.0 };
             sign * self.without(column, row).determinant() / determinant
         })
     }
@@ -117,7 +117,7 @@ impl Value {
         if self.rows == 0 {
             return 1.0;
         }
-        let sign = |row: usize| if row % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |row: usize| if row.is_multiple_of(2) { 1.0 } else { -1.0 };
         (0..self.rows).map(|row| sign(row) * self.at(row, 0) * self.without(row, 0).determinant()).sum()
     }
 

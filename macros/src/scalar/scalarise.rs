@@ -133,12 +133,11 @@ impl Scalariser<'_> {
         match factor {
             Factor::Symbol { id, transposed } => turned(self.symbol(*id), *transposed),
             Factor::Inverse { id, transposed } => {
-                let inverse = match self.symbols.inverse_of(*id) {
-                    Some(inverse) => self.symbol(inverse),
-                    None => {
-                        let entries = self.symbol(*id);
-                        inverse(self.graph, &entries)
-                    }
+                let inverse = if let Some(inverse) = self.symbols.inverse_of(*id) {
+                    self.symbol(inverse)
+                } else {
+                    let entries = self.symbol(*id);
+                    inverse(self.graph, &entries)
                 };
                 turned(inverse, *transposed)
             }
