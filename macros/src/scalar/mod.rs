@@ -10,5 +10,5 @@ mod tests;
 
 pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
-pub(crate) use kernel::{Kernel, components, kernel, square};
+pub(crate) use kernel::{Candidate, Kernel, components, kernel, square};
 pub(crate) use scalarise::Scalariser;
