@@ -4,8 +4,9 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::choose::Chosen;
+use crate::emit::Findings;
 use crate::errors::Errors;
-use crate::{check, choose, emit, explain, fallback, lower, parse, verify};
+use crate::{check, choose, emit, explain, fallback, hypotheses, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 pub(crate) fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
@@ -34,7 +35,11 @@ fn implementation(arguments: &TokenStream, item: &TokenStream, errors: &mut Erro
     let kinetic = verify::kinetic_part(&declaration, &lowered, &derived);
     explain::kinetic_part(&kinetic, &declaration, errors)?;
     match verify::verify(&declaration, &tree, &lowered, &derived, &kernel) {
-        Ok(self_adjointness) => Some(emit::implementation(&declaration, &lowered, &derived, &kernel, self_adjointness)),
+        Ok(self_adjointness) => {
+            let hypotheses = hypotheses::hypotheses(&declaration, &tree, &lowered);
+            let findings = Findings { kernel, self_adjointness, hypotheses };
+            Some(emit::implementation(&declaration, &lowered, &derived, &findings))
+        }
         Err(term) => {
             let message =
                 format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");

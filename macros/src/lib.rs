@@ -1,7 +1,7 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
 //! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+//! `lib → expand → {parse, check, lower, hypotheses, verify, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
 
 mod ast;
 mod check;
@@ -13,6 +13,7 @@ mod expand;
 mod explain;
 mod fallback;
 mod group;
+mod hypotheses;
 mod lower;
 mod parse;
 mod scalar;

@@ -28,11 +28,22 @@ pub(crate) struct Lowered {
 
 /// Lowers the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has been reported.
 pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
+    lower_without(declaration, tree, &|_, structure| structure, errors)
+}
+
+/// The same with less known of some symbols.
+pub(crate) fn lower_without(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    weaker: &dyn Fn(Name, Structure) -> Structure,
+    errors: &mut Errors,
+) -> Option<Vec<Lowered>> {
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
     let size = declaration.structure.size;
     let structure = if declaration.structure.orthogonal { Structure::Orthogonal } else { Structure::General };
     let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
+    let structure = weaker(Name::Increment, structure);
     let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
     names.insert(Name::Step, step);
     names.insert(Name::Increment, increment);
@@ -44,6 +55,7 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
             FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
         };
+        let structure = weaker(Name::Field(index), structure);
         let name = field.name.unraw().to_string();
         names.insert(Name::Field(index), symbols.add(name, shape, structure, Stage::Construction));
     }

@@ -176,6 +176,23 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     })
 }
 
+/// What is derived by one variation, the kicks of the transport form, and the limit.
+pub(crate) fn principal_equations(declared: &Declared) -> Vec<Expression> {
+    let mut symbols = declared.symbols.clone();
+    let directions = directions(declared, &mut symbols);
+    let (closed, lagrangian) = closed::multipliers(&declared.lets, &declared.l_d, &mut symbols);
+    let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
+    let (right, left) = (momentum_maps::right(&context), momentum_maps::left(&context));
+    let diamond = diamond::diamond(&context);
+    let momentum = momentum_equation::momentum(&right, &diamond);
+    let parts = transport::parts(&context, &momentum, &diamond);
+    let limit =
+        limit::limit(&context, &momentum).map(|limit| [limit.slope, limit.inertia, limit.bias, limit.potential]);
+    let all = [declared.l_d.clone(), right, left, diamond, momentum, parts.kick_before, parts.kick_after];
+    let lets = closed.into_iter().flat_map(|one| [one.value, one.pairing]);
+    all.into_iter().chain(limit.into_iter().flatten()).chain(lets).collect()
+}
+
 /// What every rule needs.
 struct Context<'a> {
     declared: &'a Declared,

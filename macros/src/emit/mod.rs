@@ -19,21 +19,28 @@ use crate::symbolic::{Expression, SymbolId};
 use code::Form;
 pub(crate) use header::Header;
 
+/// What has been found out about a derivation.
+pub(crate) struct Findings {
+    pub(crate) kernel: Kernel,
+    pub(crate) self_adjointness: SelfAdjointness,
+    pub(crate) hypotheses: Vec<String>,
+}
+
 /// The whole implementation.
 pub(crate) fn implementation(
     declaration: &Declaration,
     lowered: &Lowered,
     derived: &Derived,
-    kernel: &Kernel,
-    self_adjointness: SelfAdjointness,
+    findings: &Findings,
 ) -> TokenStream {
-    let header = Header::new(declaration);
+    let (header, kernel) = (Header::new(declaration), &findings.kernel);
     let emitter = Emitter { declaration, lowered, derived, header: &header };
-    let (mathematics, texts) = emitter.mathematics(kernel);
-    let stages = stages::stages(&emitter, kernel);
+    let (mathematics, texts) = emitter.mathematics();
+    let stages = stages::stages(&emitter, kernel, &texts);
     let l_d = verbatim::l_d(declaration, &header);
-    let derivation = docs::derivation(&texts, self_adjointness);
-    let is_self_adjoint = self_adjointness.is_found();
+    let derivation = docs::derivation(declaration, derived, &texts, findings);
+    let documentation = format!("```text\n{derivation}```");
+    let is_self_adjoint = findings.self_adjointness.is_found();
     let validate = emitter.validate();
     let advected = emitter.advected();
     let root = &header.root;
@@ -47,6 +54,7 @@ pub(crate) fn implementation(
         #implementation {
             #types
 
+            #[doc = #documentation]
             const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
             const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;
 
@@ -77,10 +85,10 @@ struct Emitter<'a> {
 
 impl Emitter<'_> {
     /// The derived terms that don't know stages.
-    fn mathematics(&self, kernel: &Kernel) -> (TokenStream, Vec<docs::Equation>) {
+    fn mathematics(&self) -> (TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
         let mut methods = TokenStream::new();
-        let equations = docs::equations(d, &self.lowered.declared, kernel);
+        let equations = docs::equations(d, &self.lowered.declared);
         let covectors = [
             ("right_momentum", &d.right_momentum),
             ("left_momentum", &d.left_momentum),

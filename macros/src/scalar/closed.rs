@@ -9,12 +9,24 @@ use crate::symbolic::{Expression, Factor, SymbolId, Symbols};
 
 pub(crate) type Given = BTreeMap<SymbolId, Entries>;
 
-/// With the values of all `let`s and multipliers where `F` and `w` are as given.
-pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
-    for closed in &derived.closed {
-        let entries = entries(graph, &derived.symbols, &given, &closed.value);
-        given.insert(closed.symbol, entries);
+/// With the values of all `let`s where `F` and `w` are as given.
+pub(crate) fn with_values<'a>(
+    graph: &mut Graph,
+    symbols: &Symbols,
+    lets: impl Iterator<Item = (SymbolId, &'a Expression)>,
+    mut given: Given,
+) -> Given {
+    for (symbol, value) in lets {
+        let entries = entries(graph, symbols, &given, value);
+        given.insert(symbol, entries);
     }
+    given
+}
+
+/// With the values of all `let`s and multipliers where `F` and `w` are as given.
+pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> Given {
+    let lets = derived.closed.iter().map(|closed| (closed.symbol, &closed.value));
+    let mut given = with_values(graph, &derived.symbols, lets, given);
     for closed in derived.closed.iter().rev() {
         let shape = derived.symbols.get(closed.symbol).shape;
         let entries = dual(graph, derived, &given, (&closed.pairing, closed.direction, shape));
@@ -25,11 +37,8 @@ pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, mut given: Given) 
 
 /// With their derivatives along the direction that is given.
 pub(crate) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
-    for closed in &derived.closed {
-        let (symbol, value) = &closed.tangent;
-        let entries = entries(graph, &derived.symbols, &given, value);
-        given.insert(*symbol, entries);
-    }
+    let tangents = derived.closed.iter().map(|closed| (closed.tangent.0, &closed.tangent.1));
+    given = with_values(graph, &derived.symbols, tangents, given);
     for closed in derived.closed.iter().rev() {
         let shape = derived.symbols.get(closed.symbol).shape;
         let (symbol, pairing) = &closed.multiplier_tangent;

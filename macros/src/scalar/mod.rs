@@ -9,8 +9,8 @@ mod scalarise;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use closed::{Given, with_lets};
+pub(crate) use closed::{Given, with_lets, with_values};
 pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
-pub(crate) use kernel::{Kernel, components, kernel, square};
+pub(crate) use kernel::{Candidate, Kernel, components, kernel, square};
 pub(crate) use scalarise::Scalariser;
