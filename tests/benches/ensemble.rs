@@ -3,13 +3,17 @@
 //! ```text
 //! cargo bench --bench ensemble                                    the target's common instructions
 //! RUSTFLAGS="-C target-cpu=native" cargo bench --bench ensemble   those of this machine
+//! cargo bench --bench ensemble -- count f64-lanes 1000            1000 steps of all tops by one kernel and nothing else
 //! ```
 //!
-//! The second also compiles the scalar kernels for this machine. What can be gained is bounded by the lanes of a
-//! register: x86-64 has two `f64` or four `f32` in common, four or eight with AVX, eight or sixteen with AVX-512.
+//! The last is for counting instructions, as in `heavy_top_step.rs`; the kernels are `f64`, `f64-lanes`, `f32` and
+//! `f32-lanes`. The second also compiles the scalar kernels for this machine. To be gained is about as much as a register
+//! has lanes: x86-64 has two `f64` or four `f32` in common, with sixteen registers, so that a third of the instructions in
+//! lanes are moves to and from the stack; with AVX four or eight.
 //!
 //! The tops differ in body, tilt and spin about the looping case of \[RDAE, figure 3.8\], `h = 0.01 s`. All kernels make the
-//! same steps, which is asserted before they are timed, and take turns within one run.
+//! same steps, which is asserted before they are timed, and take turns within one run. The fastest batch of each counts:
+//! what else the machine does only slows, and slows the longer batches more often, so that medians would flatter the lanes.
 
 use core::hint::black_box;
 use std::time::Instant;
@@ -19,9 +23,10 @@ use nalgebra::{RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{WideF32x8, WideF64x4};
 
 const TOPS: usize = 8;
-/// Steps of each top in a batch.
-const BATCH: u32 = 5_000;
-const ROUNDS: usize = 200;
+/// Steps of each top in a batch: well below a slice of the scheduler's time, so that some batches of each kernel meet
+/// no other process.
+const BATCH: u32 = 500;
+const ROUNDS: usize = 4_000;
 
 /// (3.13) in principal axes.
 #[lagrangian(
@@ -118,16 +123,6 @@ fn rate<T: Real, const N: usize>(ensemble: &mut [Running<T>; N]) -> f64 {
     f64::from(BATCH) * TOPS as f64 / start.elapsed().as_secs_f64() / 1e6
 }
 
-fn quantiles(mut values: Vec<f64>) -> [f64; 3] {
-    values.sort_by(f64::total_cmp);
-    [values.len() / 10, values.len() / 2, values.len() * 9 / 10].map(|index| values[index])
-}
-
-fn print(name: &str, values: Vec<f64>) {
-    let [low, median, high] = quantiles(values);
-    println!("{name:<36}{low:>8.2}{median:>8.2}{high:>8.2}");
-}
-
 /// Scalars against one kind of lanes.
 fn compare<T, const LANES: usize, const N: usize>(
     name: &str,
@@ -137,21 +132,35 @@ fn compare<T, const LANES: usize, const N: usize>(
     T: Real<Element: Real>,
 {
     assert_same::<T, LANES, N>(wide.clone(), scalars.clone());
-    let (mut fast, mut slow) = (Vec::new(), Vec::new());
+    let (mut fast, mut slow) = (0.0_f64, 0.0_f64);
     for _ in 0..ROUNDS {
-        slow.push(rate(&mut scalars));
-        fast.push(rate(&mut wide));
+        slow = slow.max(rate(&mut scalars));
+        fast = fast.max(rate(&mut wide));
     }
-    let ratios = fast.iter().zip(&slow).map(|(fast, slow)| fast / slow).collect();
-    println!("{:<36}{:>8}{:>8}{:>8}", format!("eight tops in {name}"), "10 %", "median", "90 %");
-    print("one after another, 10⁶ steps a second", slow);
-    print("in lanes", fast);
-    print("lanes : one after another", ratios);
+    println!("{name:<20}{slow:>12.1}{fast:>12.1}{:>12.2}", fast / slow);
+}
+
+fn count(kernel: &str, steps: u32) {
+    match kernel {
+        "f64" => run(black_box(&mut core::array::from_fn::<_, TOPS, _>(single::<f64>)), steps),
+        "f64-lanes" => run(black_box(&mut [lanes::<WideF64x4, 4>(0), lanes::<WideF64x4, 4>(4)]), steps),
+        "f32" => run(black_box(&mut core::array::from_fn::<_, TOPS, _>(single::<f32>)), steps),
+        "f32-lanes" => run(black_box(&mut [lanes::<WideF32x8, 8>(0)]), steps),
+        _ => panic!("the kernels are f64, f64-lanes, f32 and f32-lanes, not {kernel}"),
+    }
 }
 
 fn main() {
-    // Two registers' worth of a type of four lanes: simba has no `f64` in eight but for arrays, which the compiler
-    // doesn't turn into vector code.
+    // Cargo adds `--bench`.
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    if let [word, kernel, steps] = arguments.as_slice()
+        && word == "count"
+    {
+        return count(kernel, steps.parse().expect("a number of steps"));
+    }
+    println!("{:<20}{:>12}{:>12}{:>12}", "10⁶ steps a second", "alone", "in lanes", "ratio");
+    // Two registers' worth of a type of four lanes: simba has no `f64` in eight but for arrays, and those
+    // are measured to be slower.
     let two = [lanes::<WideF64x4, 4>(0), lanes::<WideF64x4, 4>(4)];
     compare::<WideF64x4, 4, 2>("f64, two by four", two, core::array::from_fn(single));
     compare::<WideF32x8, 8, 1>("f32", [lanes::<WideF32x8, 8>(0)], core::array::from_fn(single));
