@@ -63,7 +63,8 @@ pub trait DiscreteLagrangian {
     ///
     /// Then a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
     /// compositions raise it; otherwise it is 1 in general. The macro finds it out and says in
-    /// [`DERIVATION`](Self::DERIVATION) how; who implements the trait by hand states it.
+    /// [`DERIVATION`](Self::DERIVATION) how, and if it holds for points in homogeneous coordinates only; who implements
+    /// the trait by hand states it.
     const SELF_ADJOINT: bool;
 
     /// Checks the parameters.

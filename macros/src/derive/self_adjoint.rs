@@ -13,6 +13,9 @@ pub(crate) enum SelfAdjointness {
     Symbolic,
     /// The values are equal at all sample points, to rounding.
     Numeric,
+    /// The values differ, but not where all vectors are points with one for their last coordinate, which no type
+    /// promises.
+    ForPoints,
     /// The values differ.
     No,
     /// There is no sample point at which the Lagrangian has a value.

@@ -145,6 +145,11 @@ fn adjoint(found: SelfAdjointness) -> String {
         SelfAdjointness::Numeric => {
             ("=", "at random points, to rounding", "even order; a step of −h undoes a step of h")
         }
+        SelfAdjointness::ForPoints => (
+            "≠",
+            "equal, at random points, if all vectors have 1 for their last coordinate, which no type promises",
+            "with such vectors even order, and a step of −h undoes a step of h",
+        ),
         SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),
         SelfAdjointness::Unknown => ("≟", "no value at the random points", "not known to be its own adjoint"),
     };

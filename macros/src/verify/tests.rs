@@ -146,6 +146,20 @@ fn adjoints() {
     assert_eq!(declared.after(|d| d.adjoint_defect = Expression::zero((1, 1))), Err("adjoint"));
 }
 
+/// Isometries keep the distance of points, not of vectors with different last coordinates.
+#[test]
+fn tethers_between_points() {
+    let plate = |tether: &str| {
+        let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * {tether}");
+        let arguments = format!("group = SE2, advected(a = anchor), l_d = {l_d}");
+        let item = "struct Plate { J: Matrix3<f64>, p: Vector3<f64>, anchor: ContravariantVector<f64, 3> }";
+        Declared::new(&arguments, item).verified()
+    };
+    let both = "((a - p).norm_squared() + (a - F * p).norm_squared())";
+    assert_eq!(plate(both), Ok(SelfAdjointness::ForPoints));
+    assert_eq!(plate("(a - p).norm_squared()"), Ok(SelfAdjointness::No));
+}
+
 #[test]
 fn added_mass_has_to_be_symmetrised() {
     let body = |translation: &str| {
