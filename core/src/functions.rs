@@ -41,10 +41,10 @@ pub fn stumpff<T: Real, const K: usize>(q: T) -> T {
             let next = k as f64;
             reciprocal_factorial /= next;
         }
-        let lower = if k % 2 == 0 { &mut even } else { &mut odd };
+        let lower = if k.is_multiple_of(2) { &mut even } else { &mut odd };
         *lower = (real::<T>(reciprocal_factorial) - *lower) / q;
     }
-    series.select(near, if K % 2 == 0 { even } else { odd })
+    series.select(near, if K.is_multiple_of(2) { even } else { odd })
 }
 
 /// The `K`-th derivative of `G(n)` for `0 ≤ n < 1`.
