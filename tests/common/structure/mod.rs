@@ -8,7 +8,7 @@ pub mod stages;
 pub mod symmetry;
 
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
-use liestep::{Advected as _, DiscreteLagrangian};
+use liestep::{Advected as _, DiscreteLagrangian, DiscreteLiePoisson, Increment};
 use nalgebra::SVector;
 
 use numbers::Numbers;
@@ -50,4 +50,16 @@ pub fn random_advected<L: System<N, D>, const N: usize, const D: usize>(
 ) -> L::Advected {
     let seen = seen_at_random(lagrangian, random).numbers();
     L::Advected::from_numbers(seen.into_iter().map(|number| number + 0.1 * random.signed()))
+}
+
+/// A step from the cold guess.
+///
+/// The flow's own is inlined wherever it is called, with all of the generated code: this is one copy for all claims.
+#[inline(never)]
+pub fn step<L: System<N, D>, const N: usize, const D: usize>(
+    flow: &DiscreteLiePoisson<L>,
+    momentum: &SVector<f64, D>,
+    w: &L::Advected,
+) -> Increment<L> {
+    flow.step(momentum, w, &SVector::zeros()).unwrap_or_else(|error| panic!("{error}: {momentum} {w:?}"))
 }
