@@ -26,7 +26,9 @@ pub(crate) enum Refusal {
 pub(crate) fn cheapest(candidates: Vec<Lowered>) -> Result<Chosen, Refusal> {
     let mut chosen: Option<(usize, Chosen)> = None;
     let mut refusal = None;
-    for lowered in candidates {
+    let least = candidates.iter().map(size).min().unwrap_or(0);
+    // What is twice as long is surely not cheaper, and takes long to derive.
+    for lowered in candidates.into_iter().filter(|candidate| size(candidate) <= 2 * least) {
         match derived(lowered) {
             Ok(candidate) => {
                 let cost = candidate.kernel.cost();
@@ -38,6 +40,11 @@ pub(crate) fn cheapest(candidates: Vec<Lowered>) -> Result<Chosen, Refusal> {
         }
     }
     chosen.map(|(_, chosen)| chosen).ok_or(refusal.unwrap_or(Refusal::Overflow))
+}
+
+fn size(lowered: &Lowered) -> usize {
+    let lets = lowered.declared.lets.iter().map(|one| one.value.size());
+    lowered.declared.l_d.size() + lets.sum::<usize>()
 }
 
 fn derived(lowered: Lowered) -> Result<Chosen, Refusal> {

@@ -34,7 +34,9 @@ pub(crate) fn implementation(
     findings: &Findings,
 ) -> TokenStream {
     let (header, kernel) = (Header::new(declaration), &findings.kernel);
-    let emitter = Emitter { declaration, lowered, derived, header: &header };
+    let mut graph = Graph::default();
+    let given = with_lets(&mut graph, derived, Given::new());
+    let emitter = Emitter { declaration, lowered, derived, header: &header, lets: (graph, given) };
     let (mathematics, texts) = emitter.mathematics();
     let stages = stages::stages(&emitter, kernel, &texts);
     let l_d = verbatim::l_d(declaration, &header);
@@ -81,6 +83,8 @@ struct Emitter<'a> {
     lowered: &'a Lowered,
     derived: &'a Derived,
     header: &'a Header,
+    /// The closed `let`s, which the methods share.
+    lets: (Graph, Given),
 }
 
 impl Emitter<'_> {
@@ -121,8 +125,7 @@ impl Emitter<'_> {
         equations: &[docs::Equation],
     ) -> TokenStream {
         let (span, d, root) = (Span::mixed_site(), self.derived, &self.header.root);
-        let mut graph = Graph::default();
-        let none = with_lets(&mut graph, d, Given::new());
+        let (mut graph, none) = self.lets.clone();
         let (outputs, result) = match form {
             Form::Scalar => {
                 let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };

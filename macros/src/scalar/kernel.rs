@@ -64,11 +64,15 @@ fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
 /// A Jacobian, linear in `E_k` and `E_j`, row by row.
 pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
+    let varies = derived
+        .closed
+        .iter()
+        .any(|one| bilinear.contains(one.tangent.0) || bilinear.contains(one.multiplier_tangent.0));
     let columns: Vec<Vec<NodeId>> = (0..dimension)
         .map(|j| {
             let mut given = given.clone();
             given.insert(derived.directions.second, generator(graph, &derived.group, j));
-            let given = with_tangents(graph, derived, given);
+            let given = if varies { with_tangents(graph, derived, given) } else { given };
             components(graph, derived, &given, bilinear)
         })
         .collect();
