@@ -27,8 +27,13 @@ pub(crate) fn cheapest(candidates: Vec<Lowered>) -> Result<Chosen, Refusal> {
     let mut chosen: Option<(usize, Chosen)> = None;
     let mut refusal = None;
     let least = candidates.iter().map(size).min().unwrap_or(0);
-    // What is twice as long is surely not cheaper, and takes long to derive.
-    for lowered in candidates.into_iter().filter(|candidate| size(candidate) <= 2 * least) {
+    // What is twice as long is surely not cheaper and takes long to derive, so it comes last, and only if it has to.
+    let (short, long): (Vec<Lowered>, Vec<Lowered>) =
+        candidates.into_iter().partition(|candidate| size(candidate) <= 2 * least);
+    for (lowered, is_long) in short.into_iter().map(|one| (one, false)).chain(long.into_iter().map(|one| (one, true))) {
+        if is_long && chosen.is_some() {
+            break;
+        }
         match derived(lowered) {
             Ok(candidate) => {
                 let cost = candidate.kernel.cost();

@@ -1,7 +1,7 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
 //! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower, hypotheses, verify, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+//! `lib → expand → {parse, check, lower, choose, hypotheses, verify, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
 
 mod ast;
 mod check;
@@ -36,7 +36,10 @@ mod verify;
 /// In scope in the expression are `F` (the increment `g_i⁻¹ g_{i+1}`, a matrix), `I`, `h` (the step), the advected names
 /// and the fields. It is ordinary Rust over nalgebra, so it also becomes the method `l_d` as it stands: `+ - * /`, unary
 /// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
-/// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, `vee(A)`, indexing, and decimal literals.
+/// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and four functions: `vee(A)`, the vector of
+/// `½ (A − Aᵀ)`; `log(F)`, the rotation vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a
+/// field. A large Lagrangian is best written with `let`s: what isn't cheaper multiplied out is differentiated through
+/// them, by multipliers.
 ///
 /// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
 /// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct.

@@ -38,12 +38,16 @@ fn heavy_tops() {
     assert_conserved(&samples::full_top(), samples::on_so3(), 1);
     assert_conserved(&samples::log_trace_top(), samples::on_so3(), 1);
     assert_conserved(&samples::cayley_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::log_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::fourth_order_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::sixth_order_top(), samples::on_so3(), 1);
 }
 
 /// All turns.
 #[test]
 fn free_body() {
     assert_conserved(&samples::free_body(), samples::on_so3(), 3);
+    assert_conserved(&samples::fourth_order_body(), samples::on_so3(), 3);
 }
 
 /// The turns about the direction of the centre, and of the anchor.

@@ -23,8 +23,10 @@ pub(super) fn lets(derived: &Derived) -> String {
     if derived.closed.is_empty() {
         return String::new();
     }
-    let values = derived.closed.iter().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
-    let pairings = derived.closed.iter().rev().map(|one| {
+    // A number with many digits is its own name.
+    let named = || derived.closed.iter().filter(|one| name(one.symbol).parse::<f64>().is_err());
+    let values = named().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
+    let pairings = named().rev().map(|one| {
         let (multiplier, direction) = (name(one.multiplier), name(one.direction));
         format!("\n    ⟨{multiplier}, {direction}⟩ = {}", text(&one.pairing, symbols))
     });
