@@ -11,7 +11,7 @@ mod common;
 use common::measure::{derivative, relative};
 use common::random::Random;
 use common::tops::{FreeBody, FullTop, HeavyTop};
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Retraction, SO3};
+use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Effect, LieGroup as _, Retraction, SO3};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// Two products of 3 × 3 matrices, relative to the entries of `J/h`.
@@ -125,7 +125,7 @@ fn p2_the_staged_newton_system_is_the_momentum_equation() {
         let constants = top.constants(h);
         for _ in 0..20 {
             let (xi, w) = (random.vector(), random.vector());
-            let f: SO3 = <HeavyTop as DiscreteLagrangian>::Retraction::retract(&xi);
+            let f: SO3 = <HeavyTop as Effect>::Retraction::retract(&xi);
             let f = f.matrix();
             let a = top.legendre_minus(&f, &w, h) + HeavyTop::kick_before(&constants, &w);
             let terms = HeavyTop::step_terms(&constants, &a, &w);

@@ -7,8 +7,8 @@
 //! the component of the identity. Below 90° there is at most one solution, and the determinant alone decides.
 
 use crate::coordinates::Coordinates;
+use crate::effect::{Effect, Matrix, Scalar, Vector};
 use crate::error::StepError;
-use crate::lagrangian::{DiscreteLagrangian, Matrix, Scalar, Vector};
 use crate::retraction::Retraction;
 use crate::scalar::{Real, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
@@ -20,7 +20,7 @@ const MAX_DAMPED_ITERATIONS: u32 = 60;
 
 /// A solution of the momentum equation.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Root<L: DiscreteLagrangian> {
+pub(crate) struct Root<L: Effect> {
     /// Coordinates of `F`.
     pub(crate) xi: Vector<L>,
     /// `F − I`.
@@ -30,7 +30,7 @@ pub(crate) struct Root<L: DiscreteLagrangian> {
 }
 
 /// One momentum equation to be solved.
-pub(crate) struct Problem<'a, L: DiscreteLagrangian> {
+pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) lagrangian: &'a L,
     pub(crate) constants: &'a L::Constants,
     pub(crate) a: Vector<L>,
@@ -40,7 +40,7 @@ pub(crate) struct Problem<'a, L: DiscreteLagrangian> {
     pub(crate) orientation: Scalar<L>,
 }
 
-impl<L: DiscreteLagrangian> Problem<'_, L> {
+impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
     /// What it returns is what [`solve`](Self::solve) returns. Nothing here is lent to a function that isn't inlined,
@@ -160,7 +160,7 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
 #[inline(always)]
-fn settled<L: DiscreteLagrangian>(update: &Vector<L>, xi: &Vector<L>) -> bool {
+fn settled<L: Effect>(update: &Vector<L>, xi: &Vector<L>) -> bool {
     let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 64.0);
     update.dot(update).simd_le(xi.dot(xi) * tolerance).all()
 }

@@ -24,11 +24,6 @@ pub(crate) fn explain(error: LimitError, declaration: &Declaration, tree: &Rc<Tr
         LimitError::TooSingular(power) => {
             format!("a term with `F` goes like h^{power}: the kinetic part of a discrete Lagrangian goes like 1/h")
         }
-        LimitError::NoKineticTerm => {
-            "there is no kinetic part, so a momentum doesn't determine a velocity: divide the \
-                                      quadratic term in `F - I` by `h`"
-                .to_owned()
-        }
         LimitError::NotStationary => {
             "the kinetic part isn't stationary at `F = I`, so at rest the momentum would grow \
                                       like 1/h: write it as a square of `F - I`"

@@ -16,15 +16,16 @@ pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStrea
     let header = Header::new(&parse::parse(without_lagrangian(arguments), item, &mut silent));
     let root = &header.root;
     let none = quote_spanned!(span=> ());
-    let types = header.types(&none, &none);
+    let types = header.types(true, &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
-    let implementation = header.implementation();
+    let (lagrangian, effect) = (header.implementation("DiscreteLagrangian"), header.implementation("Effect"));
+    let invariance = header.implementation("LeftInvariant");
+    let addition = header.addition();
     let core = quote_spanned!(span=> #root::__private::core);
     let of_increment = [
         ("right_momentum", &vector),
         ("left_momentum", &vector),
         ("diamond", &vector),
-        ("momentum_jacobian", &square),
         ("discrete_energy", scalar),
         ("l_d", scalar),
     ];
@@ -35,12 +36,18 @@ pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStrea
     quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic)]
-        #implementation {
+        #lagrangian {
+            #(#of_increment)*
+        }
+
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #effect {
             #types
             const DERIVATION: &'static #core::primitive::str = "";
             fn validate(&self) -> #core::result::Result<(), #root::SetupError> { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
-            #(#of_increment)*
+            fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
             fn inertia(&self) -> #square { loop {} }
             fn momentum_bias(&self, _: &Self::Advected) -> #vector { loop {} }
             fn potential(&self, _: &Self::Advected) -> #scalar { loop {} }
@@ -50,6 +57,11 @@ pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStrea
             fn newton_system(_: &Self::Constants, _: &Self::StepTerms, _: &#vector) -> (#vector, #square) { loop {} }
             fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
         }
+
+        #[automatically_derived]
+        #invariance {}
+
+        #addition
     }
 }
 

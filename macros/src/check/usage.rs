@@ -6,7 +6,8 @@ use crate::ast::{Declaration, Name};
 use crate::errors::Errors;
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
-    if !used.contains(&Name::Increment) {
+    // A potential at the beginning of a step alone has no `F`, and still pushes.
+    if !used.iter().any(|name| matches!(name, Name::Increment | Name::Advected(_))) {
         errors.push_over(
             declaration.l_d.as_ref().map(super::value),
             "the Lagrangian doesn't depend on `F`, the increment of a step: nothing would move",

@@ -12,6 +12,8 @@ use crate::symbolic::{Expression, SymbolId};
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
 pub(crate) struct Limit {
+    /// Whether there is a term in `1/h` that depends on `F`; a potential has none, and can't move by itself.
+    pub(crate) has_kinetic: bool,
     pub(crate) inertia: Expression,
     pub(crate) bias: Expression,
     pub(crate) potential: Expression,
@@ -24,8 +26,6 @@ pub(crate) enum LimitError {
     StepInsideFunction,
     /// A power of `h` below −1.
     TooSingular(i32),
-    /// No term in `1/h` depends on `F`.
-    NoKineticTerm,
     /// The kinetic term isn't stationary at the identity.
     NotStationary,
 }
@@ -40,9 +40,6 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
         return Err(LimitError::TooSingular(power));
     }
     let kinetic = of_order(momentum, h, -1);
-    if kinetic.is_zero() {
-        return Err(LimitError::NoKineticTerm);
-    }
     if !at_identity(context, &kinetic).is_zero() {
         return Err(LimitError::NotStationary);
     }
@@ -52,7 +49,12 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     let bias = at_identity(context, &of_order(momentum, h, 0));
     let inverse_step = step.power(-1, context.symbols);
     let potential = context.product(&at_identity(context, &of_order(l_d, h, 1)), &inverse_step);
-    Ok(Limit { inertia, bias, potential: potential.scaled(-crate::symbolic::Rational::ONE) })
+    Ok(Limit {
+        has_kinetic: !kinetic.is_zero(),
+        inertia,
+        bias,
+        potential: potential.scaled(-crate::symbolic::Rational::ONE),
+    })
 }
 
 fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {

@@ -1,4 +1,4 @@
-//! Tokens: one `impl DiscreteLagrangian`. Makes no mathematical decision.
+//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`. Makes no mathematical decision.
 
 mod code;
 mod docs;
@@ -26,7 +26,7 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
     let header = Header::new(declaration);
     let kernel = kernel(derived);
     let emitter = Emitter { declaration, lowered, derived, header: &header };
-    let (mathematics, texts) = emitter.mathematics(&kernel);
+    let (mathematics, effect, texts) = emitter.mathematics(&kernel);
     let stages = stages::stages(&emitter, &kernel);
     let l_d = verbatim::l_d(declaration, &header);
     let derivation = docs::derivation(&texts);
@@ -34,24 +34,44 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
     let advected = emitter.advected();
     let root = &header.root;
     let span = Span::mixed_site();
-    let types = header.types(&stages.constants_type, &stages.step_terms_type);
-    let implementation = header.implementation();
+    let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
+    let parts = stages::parts(&emitter, &kernel);
+    let (lagrangian, term) = (header.implementation("DiscreteLagrangian"), header.implementation("Effect"));
+    let invariance = derived_invariance(declaration, &header);
+    let addition = header.addition();
     let body = &stages.methods;
     quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
-        #implementation {
+        #lagrangian {
+            #l_d
+            #mathematics
+        }
+
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
+        #term {
             #types
+            #parts
 
             const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
 
             #validate
             #advected
-            #l_d
-            #mathematics
+            #effect
             #body
         }
+
+        #invariance
+        #addition
     }
+}
+
+/// What advects nothing is invariant under the whole group.
+pub(crate) fn derived_invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
+    let implementation = header.implementation("LeftInvariant");
+    let is_invariant = declaration.advected.is_empty();
+    is_invariant.then(|| quote_spanned!(Span::mixed_site()=> #[automatically_derived] #implementation {}))
 }
 
 /// The arguments of a method.
@@ -71,31 +91,25 @@ struct Emitter<'a> {
 }
 
 impl Emitter<'_> {
-    /// The derived terms that don't know stages.
-    fn mathematics(&self, kernel: &crate::scalar::Kernel) -> (TokenStream, Vec<docs::Equation>) {
+    /// The derived terms that don't know stages: those of a Lagrangian, those of any effect, and their equations.
+    fn mathematics(&self, kernel: &crate::scalar::Kernel) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
-        let mut methods = TokenStream::new();
         let equations = docs::equations(d, &self.lowered.declared, kernel);
-        let covectors = [
-            ("right_momentum", &d.right_momentum),
-            ("left_momentum", &d.left_momentum),
-            ("diamond", &d.diamond),
-            ("legendre_minus", &d.momentum),
-        ];
-        for (name, covector) in covectors {
-            methods.extend(self.method(name, Takes::Increment, Form::Vector, covector, &equations));
-        }
-        let others = [
-            ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
+        let method = |(name, takes, form, expression)| self.method(name, takes, form, expression, &equations);
+        let of_lagrangian = [
+            ("right_momentum", Takes::Increment, Form::Vector, &d.right_momentum),
+            ("left_momentum", Takes::Increment, Form::Vector, &d.left_momentum),
+            ("diamond", Takes::Increment, Form::Vector, &d.diamond),
+            ("legendre_minus", Takes::Increment, Form::Vector, &d.momentum),
             ("discrete_energy", Takes::Increment, Form::Scalar, &d.energy),
+        ];
+        let of_effect = [
+            ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
             ("inertia", Takes::Nothing, Form::Square, &d.limit.inertia),
             ("momentum_bias", Takes::Advected, Form::Vector, &d.limit.bias),
             ("potential", Takes::Advected, Form::Scalar, &d.limit.potential),
         ];
-        for (name, takes, form, expression) in others {
-            methods.extend(self.method(name, takes, form, expression, &equations));
-        }
-        (methods, equations)
+        (of_lagrangian.map(method).into_iter().collect(), of_effect.map(method).into_iter().collect(), equations)
     }
 
     /// One derived term as a method, with its equation as documentation.
@@ -122,7 +136,7 @@ impl Emitter<'_> {
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
-        let w = quote_spanned!(span=> w: &<Self as #root::DiscreteLagrangian>::Advected);
+        let w = quote_spanned!(span=> w: &<Self as #root::Effect>::Advected);
         let arguments = match takes {
             Takes::Nothing => TokenStream::new(),
             Takes::Advected => w,
