@@ -52,7 +52,7 @@ pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::Real;
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
-pub use sum::Sum;
+pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
 
 #[cfg(doctest)]

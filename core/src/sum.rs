@@ -5,6 +5,7 @@ use core::ops::Add;
 use crate::coordinates::Coordinates as _;
 use crate::effect::{Effect, Matrix, Parts, Square, Vector};
 use crate::error::SetupError;
+use crate::groups::LieGroup;
 use crate::kinetic::KineticPart;
 use crate::lagrangian::DiscreteLagrangian;
 use crate::scalar::real;
@@ -47,10 +48,21 @@ impl<A, B> Sum<A, B> {
     }
 }
 
+/// The group `G` itself: what the effects `A` and `B` have to share to add. It is there for its message.
+#[diagnostic::on_unimplemented(
+    message = "`{B}` can't be added to `{A}`: the one moves on `{Self}`, the other on `{G}`",
+    label = "effects of different groups, or of different scalars",
+    note = "all effects of a scene share one group and one scalar"
+)]
+pub trait SharedBy<G, A, B> {}
+
+impl<G: LieGroup, A, B> SharedBy<G, A, B> for G {}
+
 impl<A, B, C> Add<C> for Sum<A, B>
 where
     A: Effect,
-    C: Effect<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
+    C: Effect,
+    C::Group: SharedBy<A::Group, Self, C>,
 {
     type Output = Sum<Self, C>;
 

@@ -28,8 +28,8 @@ where
 
 /// Advected parameters that are one vector of space, and no other parameter: rotations about it are a symmetry.
 #[diagnostic::on_unimplemented(
-    message = "no momentum along a direction is conserved: what is advected isn't one vector, but `{Self}`",
-    label = "doesn't advect exactly one vector",
+    message = "no momentum along a direction is conserved, as this scene doesn't advect exactly one vector",
+    label = "advects none or several",
     note = "with two or more, rotations about either change the other; with none, all of the spatial momentum is \
             conserved: `Stepper::spatial_momentum`"
 )]

@@ -94,11 +94,14 @@ impl Header {
         let core = quote_spanned!(span=> #root::__private::core);
         // A name that no type of the user's has.
         let other = Ident::new("LiestepOtherEffect", span);
-        let bound = syn::parse_quote_spanned! {span=>
-            #other: #root::Effect<Scalar = #scalar, Group = #group<#scalar>, Retraction = #root::CayleyRetraction>
-        };
+        let bounds = [
+            syn::parse_quote_spanned!(span=> #other: #root::Effect),
+            syn::parse_quote_spanned! {span=>
+                <#other as #root::Effect>::Group: #root::SharedBy<#group<#scalar>, Self, #other>
+            },
+        ];
         let added = quote_spanned!(span=> #core::ops::Add<#other>);
-        let implementation = self.implementation_of(Some((&other, bound)), &added);
+        let implementation = self.implementation_of(Some((&other, bounds)), &added);
         quote_spanned! {span=>
             #[automatically_derived]
             #implementation {
@@ -112,15 +115,15 @@ impl Header {
     }
 
     /// `impl … trait for …`, with one more type parameter if there is one.
-    fn implementation_of(&self, more: Option<(&Ident, syn::WherePredicate)>, implemented: &TokenStream) -> TokenStream {
+    fn implementation_of(&self, more: Option<(&Ident, [syn::WherePredicate; 2])>, implemented: &TokenStream) -> TokenStream {
         let (root, name) = (&self.root, &self.name);
         let mut generics = self.generics.clone();
         if let Some(parameter) = &self.parameter {
             generics.make_where_clause().predicates.push(syn::parse_quote!(#parameter: #root::Real));
         }
-        if let Some((parameter, bound)) = more {
+        if let Some((parameter, bounds)) = more {
             generics.params.push(syn::parse_quote!(#parameter));
-            generics.make_where_clause().predicates.push(bound);
+            generics.make_where_clause().predicates.extend(bounds);
         }
         let (before, _, _) = generics.split_for_impl();
         let (_, arguments, _) = self.generics.split_for_impl();

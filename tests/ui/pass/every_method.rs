@@ -1,6 +1,6 @@
 //! Everything in the list of the attribute's documentation, in a block whose `let`s hide each other and the fields.
 
-use liestep::{Effect as _, Inertia, LieGroup as _, Real, SO3, Stepper, lagrangian};
+use liestep::{DiscreteLagrangian as _, Inertia, LieGroup as _, Real, SO3, Stepper, lagrangian};
 use nalgebra::{Matrix3, Vector3};
 
 macro_rules! declare {
