@@ -104,6 +104,7 @@ impl Header {
         let implementation = self.implementation_of(Some((&other, bounds)), &added);
         quote_spanned! {span=>
             #[automatically_derived]
+            #[allow(clippy::all, clippy::pedantic, clippy::nursery)]
             #implementation {
                 type Output = #root::Sum<Self, #other>;
 
@@ -115,7 +116,11 @@ impl Header {
     }
 
     /// `impl … trait for …`, with one more type parameter if there is one.
-    fn implementation_of(&self, more: Option<(&Ident, [syn::WherePredicate; 2])>, implemented: &TokenStream) -> TokenStream {
+    fn implementation_of(
+        &self,
+        more: Option<(&Ident, [syn::WherePredicate; 2])>,
+        implemented: &TokenStream,
+    ) -> TokenStream {
         let (root, name) = (&self.root, &self.name);
         let mut generics = self.generics.clone();
         if let Some(parameter) = &self.parameter {

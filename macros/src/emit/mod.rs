@@ -37,7 +37,7 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
     let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, &kernel);
     let (lagrangian, term) = (header.implementation("DiscreteLagrangian"), header.implementation("Effect"));
-    let invariance = derived_invariance(declaration, &header);
+    let invariance = invariance(declaration, &header);
     let addition = header.addition();
     let body = &stages.methods;
     quote_spanned! {span=>
@@ -68,10 +68,16 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
 }
 
 /// What advects nothing is invariant under the whole group.
-pub(crate) fn derived_invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
+fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
     let implementation = header.implementation("LeftInvariant");
     let is_invariant = declaration.advected.is_empty();
-    is_invariant.then(|| quote_spanned!(Span::mixed_site()=> #[automatically_derived] #implementation {}))
+    is_invariant.then(|| {
+        quote_spanned! {Span::mixed_site()=>
+            #[automatically_derived]
+            #[allow(clippy::all, clippy::pedantic, clippy::nursery)]
+            #implementation {}
+        }
+    })
 }
 
 /// The arguments of a method.
