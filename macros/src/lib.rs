@@ -18,7 +18,8 @@ mod scalar;
 mod symbolic;
 mod verify;
 
-/// Derives an integrator from a reduced discrete Lagrangian: `impl DiscreteLagrangian` for the annotated struct.
+/// Derives an integrator from a reduced discrete Lagrangian: `impl Effect`, `impl DiscreteLagrangian` and `impl Add` for
+/// the annotated struct.
 ///
 /// ```text
 /// #[lagrangian(
@@ -41,6 +42,9 @@ mod verify;
 /// Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. An advected vector is a
 /// covector, moved by `ρ(f)ᵀ`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and `MixedTensor` are the
 /// other kinds.
+///
+/// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
+/// `body + potential`.
 ///
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
