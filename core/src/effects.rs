@@ -11,20 +11,29 @@
 //! | [`Dipole`] | `−m·B` |
 //! | [`Spring`] | `½ k (|R r − a| − l)²` |
 //! | [`Rotor`] | none of its own: it shifts the momentum, `JΩ + s` |
+//!
+//! | force | torque |
+//! |---|---|
+//! | [`Drag`] | `−c Ω` |
+//! | [`Torque`] | constant in the body |
 
 // The letters of the field.
 #![allow(non_snake_case)]
 
 mod dipole;
+mod drag;
 mod gravity;
 mod gravity_gradient;
 mod rigid_body;
 mod rotor;
 mod spring;
+mod torque;
 
 pub use dipole::Dipole;
+pub use drag::Drag;
 pub use gravity::Gravity;
 pub use gravity_gradient::GravityGradient;
 pub use rigid_body::{PrincipalBody, RigidBody};
 pub use rotor::Rotor;
 pub use spring::Spring;
+pub use torque::Torque;

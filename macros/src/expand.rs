@@ -1,44 +1,60 @@
 //! The flow of one expansion.
 
+use std::rc::Rc;
+
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
+use crate::ast::{Declaration, Role, Tree};
 use crate::derive::Derived;
 use crate::errors::Errors;
+use crate::lower::Lowered;
 use crate::{check, derive, emit, explain, fallback, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
-pub(crate) fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
+pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
     let mut errors = Errors::default();
-    match implementation(&arguments, item, &mut errors) {
+    match implementation(role, &arguments, item, &mut errors) {
         Some(implementation) if errors.is_empty() => quote!(#item #implementation),
         _ => {
-            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(arguments, item));
+            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(role, arguments, item));
             quote!(#item #mistakes #stand_in)
         }
     }
 }
 
 /// Parse, check, lower, derive, verify, emit.
-fn implementation(arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
+fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let item = parse::item(item, errors)?;
     parse::check_size(arguments, errors)?;
-    let declaration = parse::parse(arguments.clone(), item, errors);
+    let declaration = parse::parse(role, arguments.clone(), item, errors);
     let tree = check::check(&declaration, errors)?;
     if !errors.is_empty() {
         return None;
     }
     let lowered = lower::lower(&declaration, &tree, errors)?;
-    let derived =
-        derive::derive(&lowered.declared).map_err(|error| explain::explain(error, &declaration, &tree, errors)).ok()?;
+    let derived = derived(&declaration, &tree, &lowered, errors)?;
     is_sound(&derived, tree.span, errors)?;
-    if let Some(term) = verify::disagreement(&declaration, &tree, &lowered, &derived) {
+    let disagreement = match declaration.role {
+        Role::Lagrangian => verify::disagreement(&declaration, &tree, &lowered, &derived),
+        Role::Force => verify::disagreement_of_force(&declaration, &tree, &lowered, &derived),
+    };
+    if let Some(term) = disagreement {
         let message =
             format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
         errors.push(tree.span, message);
         return None;
     }
     Some(emit::implementation(&declaration, &lowered, &derived))
+}
+
+fn derived(declaration: &Declaration, tree: &Rc<Tree>, lowered: &Lowered, errors: &mut Errors) -> Option<Derived> {
+    let Some(displacements) = lowered.displacements else {
+        let derived = derive::derive(&lowered.declared);
+        return derived.map_err(|error| explain::explain(error, declaration, tree, errors)).ok();
+    };
+    let derived = derive::force(&lowered.declared, displacements);
+    derived.map_err(|error| explain::explain_force(error, declaration, errors)).ok()
 }
 
 /// Coefficients stay exact, or the expansion says that they can't.

@@ -7,7 +7,7 @@ use proc_macro2::Span;
 
 use crate::ast::{Declaration, Kind, Name, Tree};
 use crate::check;
-use crate::derive::LimitError;
+use crate::derive::{ForceError, LimitError};
 use crate::errors::Errors;
 
 /// Reports a Lagrangian that discretises no continuous one.
@@ -28,6 +28,16 @@ pub(crate) fn explain(error: LimitError, declaration: &Declaration, tree: &Rc<Tr
             "the kinetic part isn't stationary at `F = I`, so at rest the momentum would grow \
                                       like 1/h: write it as a square of `F - I`"
                 .to_owned()
+        }
+    };
+    errors.push_over(declaration.l_d.as_ref().map(check::value), message);
+}
+
+/// Reports virtual work that isn't the work of a force.
+pub(crate) fn explain_force(error: ForceError, declaration: &Declaration, errors: &mut Errors) {
+    let message = match error {
+        ForceError::NotLinear => {
+            "virtual work is linear in the displacements: a force times `eta`, and a force times `eta_next`"
         }
     };
     errors.push_over(declaration.l_d.as_ref().map(check::value), message);

@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use syn::ext::IdentExt as _;
 
-use crate::ast::{Declaration, FieldKind, Kind, Name, Shape, Tree};
-use crate::derive::Declared;
+use crate::ast::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
+use crate::derive::{Declared, Displacements};
 use crate::errors::Errors;
 use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols};
 
@@ -20,6 +20,8 @@ const LONGEST_PRODUCT: usize = 24;
 pub(crate) struct Lowered {
     pub(crate) declared: Declared,
     pub(crate) names: BTreeMap<Name, SymbolId>,
+    /// Those of a force's virtual work.
+    pub(crate) displacements: Option<Displacements>,
 }
 
 /// Lowers the tree; `None` where it is too large, which has been reported.
@@ -51,6 +53,15 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }
+    let displacements = (declaration.role == Role::Force).then(|| {
+        let mut displacement = |name: &str, place| {
+            let id = symbols.add(name, (declaration.structure.dimension(), 1), Structure::General, Stage::Step);
+            names.insert(place, id);
+            id
+        };
+        let before = displacement("η", Name::DisplacementBefore);
+        Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
+    });
     let mut lowering = Lowering { symbols: &symbols, names: &names, known: BTreeMap::new() };
     match lowering.expression(tree) {
         Ok(l_d) if l_d.has_overflow() => {
@@ -61,6 +72,7 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         Ok(l_d) => Some(Lowered {
             declared: Declared { group: declaration.structure.clone(), symbols, l_d, increment, step, advected },
             names,
+            displacements,
         }),
         Err(TooLarge(span)) => {
             errors.push(

@@ -3,6 +3,8 @@
 //! The declared tree is evaluated on numbers by itself, without the symbolic form, so a wrong rewrite can't agree with
 //! itself.
 
+mod force;
+
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -12,6 +14,8 @@ use crate::group::Group;
 use crate::lower::Lowered;
 use crate::scalar::{Graph, Input, NodeId, components, square};
 use crate::symbolic::{SymbolId, Variance};
+
+pub(crate) use force::disagreement_of_force;
 
 /// Central differences at this spacing are right to about eight digits.
 const SPACING: f64 = 1e-5;

@@ -4,6 +4,7 @@ mod action;
 mod cayley;
 mod diamond;
 mod energy;
+mod force;
 mod limit;
 mod momentum_equation;
 mod momentum_maps;
@@ -15,6 +16,7 @@ use crate::group::Group;
 use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance};
 
 pub(crate) use cayley::Cleared;
+pub(crate) use force::{Displacements, ForceError, force};
 pub(crate) use limit::{Limit, LimitError};
 
 /// A declared Lagrangian with the symbols that it is written in.

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
-use crate::ast::Declaration;
+use crate::ast::{Declaration, Role};
 use crate::derive::Derived;
 use crate::lower::Lowered;
 use crate::scalar::{Graph, Scalariser, components, kernel, square};
@@ -28,7 +28,7 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
     let emitter = Emitter { declaration, lowered, derived, header: &header };
     let (mathematics, effect, texts) = emitter.mathematics(&kernel);
     let stages = stages::stages(&emitter, &kernel);
-    let l_d = verbatim::l_d(declaration, &header);
+    let declared = verbatim::declared(declaration, &header);
     let derivation = docs::derivation(&texts);
     let validate = emitter.validate();
     let advected = emitter.advected();
@@ -36,15 +36,19 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
     let span = Span::mixed_site();
     let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, &kernel);
-    let (lagrangian, term) = (header.implementation("DiscreteLagrangian"), header.implementation("Effect"));
+    let (name, mathematics) = match declaration.role {
+        Role::Lagrangian => ("DiscreteLagrangian", mathematics),
+        Role::Force => ("Force", TokenStream::new()),
+    };
+    let (of_role, term) = (header.implementation(name), header.implementation("Effect"));
     let invariance = invariance(declaration, &header);
     let addition = header.addition();
     let body = &stages.methods;
     quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
-        #lagrangian {
-            #l_d
+        #of_role {
+            #declared
             #mathematics
         }
 
@@ -70,7 +74,7 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
 /// What advects nothing is invariant under the whole group.
 fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
     let implementation = header.implementation("LeftInvariant");
-    let is_invariant = declaration.advected.is_empty();
+    let is_invariant = declaration.role == Role::Lagrangian && declaration.advected.is_empty();
     is_invariant.then(|| {
         quote_spanned! {Span::mixed_site()=>
             #[automatically_derived]
@@ -100,7 +104,10 @@ impl Emitter<'_> {
     /// The derived terms that don't know stages: those of a Lagrangian, those of any effect, and their equations.
     fn mathematics(&self, kernel: &crate::scalar::Kernel) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
-        let equations = docs::equations(d, &self.lowered.declared, kernel);
+        let equations = match self.declaration.role {
+            Role::Lagrangian => docs::equations(d, &self.lowered.declared, kernel),
+            Role::Force => docs::equations_of_force(d, &self.lowered.declared, kernel),
+        };
         let method = |(name, takes, form, expression)| self.method(name, takes, form, expression, &equations);
         let of_lagrangian = [
             ("right_momentum", Takes::Increment, Form::Vector, &d.right_momentum),

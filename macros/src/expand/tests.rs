@@ -9,6 +9,7 @@ mod time;
 use proc_macro2::TokenStream;
 
 use super::expand;
+use crate::ast::Role;
 use crate::derive::Derived;
 use crate::errors::Errors;
 use crate::{check, derive, lower, parse};
@@ -27,14 +28,14 @@ fn tokens(text: &str) -> TokenStream {
 }
 
 fn expanded(arguments: &str, item: &str) -> TokenStream {
-    expand(tokens(arguments), &tokens(item))
+    expand(Role::Lagrangian, tokens(arguments), &tokens(item))
 }
 
 /// What is derived from a declaration, through all phases.
 pub(crate) fn derived(arguments: &str, item: &str) -> Derived {
     let mut errors = Errors::default();
     let item = syn::parse_str(item).expect("a struct");
-    let declaration = parse::parse(tokens(arguments), item, &mut errors);
+    let declaration = parse::parse(Role::Lagrangian, tokens(arguments), item, &mut errors);
     let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
     let lowered = lower::lower(&declaration, &tree, &mut errors).expect("small");
     assert!(errors.is_empty(), "{}", errors.to_compile_errors());
