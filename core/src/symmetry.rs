@@ -12,8 +12,8 @@ use crate::sum::Sum;
 /// A sum is left-invariant if both terms are. The attribute implements it; so does a hand-written Lagrangian without
 /// advected parameters, with an empty body.
 #[diagnostic::on_unimplemented(
-    message = "the spatial momentum isn't conserved: `{Self}` depends on the attitude",
-    label = "a term of this scene singles out a direction in space, or is a force",
+    message = "the spatial momentum isn't conserved in a scene with `{Self}`",
+    label = "`{Self}` singles out a direction in space, or is a force",
     note = "`State::spatial_momentum` is its value in any scene; with one advected vector, \
             `Stepper::momentum_along_advected` is conserved"
 )]

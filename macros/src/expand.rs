@@ -40,8 +40,7 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
         Role::Force => verify::disagreement_of_force(&declaration, &tree, &lowered, &derived),
     };
     if let Some(term) = disagreement {
-        let message =
-            format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
+        let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
         errors.push(tree.span, message);
         return None;
     }

@@ -34,8 +34,6 @@ struct Arguments {
     generators: Option<ExprArray>,
 }
 
-const KEYS: [&str; 4] = ["group", "advected", "generators", "crate"];
-
 fn default_root() -> Path {
     syn::parse_quote!(::liestep)
 }
@@ -142,9 +140,10 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             arguments.advected.extend(pairs?);
         }
         other => {
-            let (key, attribute) = (role.key(), role.attribute());
-            let near = suggestion(other, KEYS.into_iter().chain([key]));
-            let list = if near.is_empty() { format!("\nknown: {key}, {}", KEYS.join(", ")) } else { String::new() };
+            let known = ["group", "advected", role.key(), "generators", "crate"];
+            let near = suggestion(other, known);
+            let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
+            let attribute = role.attribute();
             return Err(syn::Error::new(
                 key.span(),
                 format!("`{other}` isn't an argument of `{attribute}`{near}{list}"),

@@ -8,7 +8,6 @@ mod time;
 
 use proc_macro2::TokenStream;
 
-use super::expand;
 use crate::ast::Role;
 use crate::derive::Derived;
 use crate::errors::Errors;
@@ -27,8 +26,12 @@ fn tokens(text: &str) -> TokenStream {
     text.parse().expect("tokens")
 }
 
+fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
+    super::expand(Role::Lagrangian, arguments, item)
+}
+
 fn expanded(arguments: &str, item: &str) -> TokenStream {
-    expand(Role::Lagrangian, tokens(arguments), &tokens(item))
+    expand(tokens(arguments), &tokens(item))
 }
 
 /// What is derived from a declaration, through all phases.
