@@ -13,7 +13,7 @@
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
+use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, PrincipalBody, Rotor, Spring, Torque};
 use liestep::{DiagonalNonstandardInertia, Inertia, Regular, SO3, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -66,6 +66,8 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body + dipole", body + Dipole { moment: rho, field: up });
     visit.visit("body + spring", body + Spring { k: 1.0, length: 0.5, at: rho, anchor: up });
     visit.visit("body + rotor", body + Rotor { spin });
+    visit.visit("body + torque", body + Torque { torque: spin });
+    visit.visit("body + drag", body + Drag { c: 1e-3 });
     visit.visit("gyrostat in one piece", Gyrostat { J_d, spin });
 }
 
