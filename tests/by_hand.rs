@@ -28,6 +28,8 @@ impl HandWrittenTop {
 }
 
 impl DiscreteLagrangian for HandWrittenTop {
+    const SELF_ADJOINT: bool = true;
+
     fn l_d(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
         let d = f - Matrix3::identity();
         (d * self.inertia.as_matrix() * d.transpose()).trace() / (2.0 * h)

@@ -2,54 +2,65 @@
 
 // The letters of the field.
 #![allow(non_snake_case)]
+// The declarations are shared with the examples.
+#![allow(unreachable_pub)]
 
 mod common;
 
 use common::measure::relative;
 use common::reference::{matrix, number, read, vector};
-use liestep::{DiscreteLiePoisson, Inertia, LieGroup as _, SO3, Stepper, lagrangian};
+use liestep::{DiscreteLiePoisson, Inertia, LieGroup as _, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// The Cayley kinetic term: `x = tan(θ/2) n` has the Legendre transform `h p = 2 (J x + x × J x + (x·J x) x)`, which is
-/// solvable for every `h`.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = {
-        let x = vee(F - F.transpose()) / (1.0 + F.trace());
-        2.0 * x.dot(&(J * x)) / h - 0.5 * h * weight * w.dot(&(rho + F * rho))
-    },
-)]
-struct CayleyTop {
-    J: Inertia,
-    weight: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
+#[path = "../examples/declarations/cayley_top.rs"]
+mod cayley_top;
+#[path = "../examples/declarations/fourth_order_top.rs"]
+mod fourth_order_top;
+#[path = "../examples/declarations/log_top.rs"]
+mod log_top;
+#[path = "../examples/declarations/log_trace_top.rs"]
+mod log_trace_top;
+#[path = "../examples/declarations/sixth_order_top.rs"]
+mod sixth_order_top;
 
-/// The discrete Lagrange top of Bobenko and Suris (1999), with the spin about the axis left to `p₃`.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = -(2.0 * I1 / h) * ((1.0 + F.trace()) / 4.0).ln() - h * weight * w.dot(&rho),
-)]
-struct LogTraceTop {
-    I1: f64,
-    weight: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
+use cayley_top::CayleyTop;
+use fourth_order_top::FourthOrderTop;
+use log_top::LogTop;
+use log_trace_top::LogTraceTop;
+use sixth_order_top::SixthOrderTop;
 
 #[test]
 fn golden_entries_of_the_cayley_top_are_reproduced() {
+    golden("cayley_trapezoid", |J, weight, rho, up| CayleyTop { J, weight, rho, up });
+}
+
+#[test]
+fn golden_entries_of_the_log_top_are_reproduced() {
+    golden("log_trapezoid", |J, weight, rho, up| LogTop { J, weight, rho, up });
+}
+
+#[test]
+fn golden_entries_of_the_fourth_order_top_are_reproduced() {
+    golden("L4_log", |J, weight, rho, up| FourthOrderTop { J, weight, rho, up });
+}
+
+#[test]
+fn golden_entries_of_the_sixth_order_top_are_reproduced() {
+    golden("L6_log", |J, weight, rho, up| SixthOrderTop { J, weight, rho, up });
+}
+
+fn golden<L>(name: &str, top: impl Fn(Inertia, f64, Vector3<f64>, Vector3<f64>) -> L)
+where
+    L: liestep::Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+{
     let data = read("golden_steps");
     let steps = data["steps"].as_array().unwrap();
-    let entries: Vec<_> = steps.iter().filter(|entry| entry["l_d"] == "cayley_trapezoid").collect();
+    let entries: Vec<_> = steps.iter().filter(|entry| entry["l_d"] == name).collect();
     assert_eq!(entries.len(), 4, "two bodies, two steps");
     for entry in entries {
         let J = Inertia::from_principal_moments(vector(&entry["J"])).unwrap();
         let (weight, rho, up) = (number(&entry["mg"]), vector(&entry["rho"]), Vector3::z());
-        let flow = DiscreteLiePoisson::new(CayleyTop { J, weight, rho, up }, number(&entry["h"])).unwrap();
+        let flow = DiscreteLiePoisson::new(top(J, weight, rho, up), number(&entry["h"])).unwrap();
         let (mut momentum, mut w, mut guess) = (vector(&entry["Pi0"]), vector(&entry["w0"]), Vector3::zeros());
         for i in 1..=10 {
             let step = flow.step(&momentum, &w, &guess).unwrap();

@@ -15,8 +15,11 @@ use liestep::{
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// A kinetic term of fourth order: its Newton system has the square of the Cayley denominator.
-#[lagrangian(group = SO3, l_d = k * ((F - I) * (F - I).transpose()).trace().powi(2) / h)]
+/// A kinetic term with a part of fourth order: its Newton system has the square of the Cayley denominator.
+#[lagrangian(
+    group = SO3,
+    l_d = k * (((F - I) * (F - I).transpose()).trace() + ((F - I) * (F - I).transpose()).trace().powi(2)) / h,
+)]
 #[derive(Clone, Copy, Debug)]
 struct Quartic {
     k: f64,
@@ -36,7 +39,7 @@ struct Ball {
     l_d = {
         let after = F.transpose() * n;
         ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-            + k_4 * ((F - I) * (F - I).transpose()).trace().powi(2) / h
+            + k_4 * (((F - I) * (F - I).transpose()).trace() + ((F - I) * (F - I).transpose()).trace().powi(2)) / h
             - (2.0 * k_b / h) * (0.25 + 0.25 * F.trace()).ln()
             + spin.dot(&vee(F))
             - 0.5 * h * m * g * w.dot(&(rho + F * rho))

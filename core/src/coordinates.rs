@@ -5,7 +5,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use nalgebra::{SMatrix, SVector, SimdBool as _};
 
-use crate::scalar::Real;
+use crate::scalar::{Mask, Real};
 
 /// Components with respect to the declared basis `E_k` of a Lie algebra, or, for a covector, `μ_k = ⟨μ, E_k⟩`.
 pub trait Coordinates<T: Real>:
@@ -30,6 +30,10 @@ pub trait Coordinates<T: Real>:
 
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
+
+    /// In each lane `self` where the mask is set, and `other` where it isn't.
+    #[must_use]
+    fn select(self, mask: Mask<T>, other: Self) -> Self;
 
     /// The solution `z` of `A z = b`, and `det A`.
     ///
@@ -68,6 +72,11 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     fn is_finite(&self) -> bool {
         // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
         sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
+    }
+
+    #[inline(always)]
+    fn select(self, mask: Mask<T>, other: Self) -> Self {
+        self.zip_map(&other, |a, b| a.select(mask, b))
     }
 
     #[inline(always)]

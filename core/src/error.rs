@@ -60,6 +60,8 @@ impl fmt::Display for SetupError {
 impl core::error::Error for SetupError {}
 
 /// Why a step couldn't be made. The state is then what it was before.
+///
+/// Of several lanes one was enough; a number in which the lanes differ is NaN.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {

@@ -5,12 +5,15 @@
 //! at a solution tells. For (3.13) with a physical body more is known: `det = tr(P) tr(Fᵀ adj J_d)/h² − det J_d/h³` with
 //! `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P` from zero while `det > 0`, so determinant and trace together single out
 //! the component of the identity. Below 90° there is at most one solution, and the determinant alone decides.
+//!
+//! SIMD lanes iterate together until all have settled. One that has settled earlier stays as it is, so that no lane's
+//! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given.
 
 use crate::coordinates::Coordinates;
 use crate::effect::{Effect, Matrix, Scalar, Vector};
 use crate::error::StepError;
 use crate::retraction::Retraction;
-use crate::scalar::{Real, real, reported};
+use crate::scalar::{Mask, Real, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// Quadratic convergence needs at most nine up to 0.999 of the fold; more means that there is no solution.
@@ -27,6 +30,38 @@ pub(crate) struct Root<L: Effect> {
     pub(crate) increment: Matrix<L>,
     /// Newton iterations, those of abandoned attempts included.
     pub(crate) iterations: u32,
+}
+
+/// Where the lanes of an iteration have come to.
+struct Lanes<L: Effect> {
+    xi: Vector<L>,
+    /// Of the Jacobian at the iterate before `xi`.
+    det: Scalar<L>,
+    settled: Mask<Scalar<L>>,
+}
+
+impl<L: Effect> Lanes<L> {
+    #[inline(always)]
+    fn starting_at(xi: &Vector<L>) -> Self {
+        Self { xi: *xi, det: real(0.0), settled: nowhere::<Scalar<L>>() }
+    }
+
+    /// Takes `part` of the update in the lanes that haven't settled.
+    #[inline(always)]
+    fn advance(&mut self, update: &Vector<L>, det: Scalar<L>, part: &Vector<L>) {
+        let next = self.xi - *part;
+        let settled = settled::<L>(update, &next);
+        self.xi = self.xi.select(self.settled, next);
+        self.det = self.det.select(self.settled, det);
+        self.settled = self.settled | settled;
+    }
+
+    /// The lanes of the mask as they are, the others at the identity.
+    fn keeping(mut self, accepted: Mask<Scalar<L>>) -> Self {
+        self.xi = self.xi.select(accepted, Vector::<L>::zero());
+        self.settled = accepted;
+        self
+    }
 }
 
 /// One momentum equation to be solved.
@@ -48,12 +83,13 @@ impl<L: Effect> Problem<'_, L> {
     #[inline(always)]
     pub(crate) fn solve_directly(&self, guess: &Vector<L>) -> Option<Root<L>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
-        let mut xi = *guess;
+        let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 0..MAX_ITERATIONS {
-            let (update, det) = self.update(&terms, &xi);
-            xi = xi - update;
-            if settled::<L>(&update, &xi) {
-                if !self.is_oriented(det) || !L::Retraction::is_near_identity(&xi) {
+            let (update, det) = self.update(&terms, &lanes.xi);
+            lanes.advance(&update, det, &update);
+            if lanes.settled.all() {
+                let xi = lanes.xi;
+                if !self.is_oriented(lanes.det).all() || !L::Retraction::is_near_identity(&xi).all() {
                     return None;
                 }
                 let increment = L::Retraction::increment(&xi);
@@ -63,17 +99,24 @@ impl<L: Effect> Problem<'_, L> {
         None
     }
 
-    /// From the guess; if that fails from the identity; if that fails, once more with shortened steps.
+    /// From the guess; where that fails from the identity; where that fails, once more with shortened steps.
     pub(crate) fn solve(&self, guess: &Vector<L>) -> Result<Root<L>, StepError> {
         if !self.a.is_finite() {
             return Err(StepError::NonFinite { what: "momentum" });
         }
         let terms = L::step_terms(self.constants, &self.a, self.w);
-        if let Ok(root) = self.attempt(&terms, guess) {
-            return Ok(root);
+        let (warm, iterations) = self.iterate(&terms, Lanes::starting_at(guess));
+        let accepted = self.accepted(&warm);
+        if accepted.all() {
+            return Ok(Self::root(&warm, iterations));
         }
-        let cold = Vector::<L>::zero();
-        self.attempt(&terms, &cold).or_else(|_| self.attempt_damped(&terms, &cold)).map(|mut root| {
+        let (cold, iterations) = self.iterate(&terms, warm.keeping(accepted));
+        let accepted = self.accepted(&cold);
+        if accepted.all() {
+            return Ok(Self::root(&cold, MAX_ITERATIONS + iterations));
+        }
+        let (damped, iterations) = self.iterate_damped(&terms, cold.keeping(accepted));
+        self.conclude(&terms, &damped, iterations).map(|mut root| {
             root.iterations += MAX_ITERATIONS;
             root
         })
@@ -81,32 +124,35 @@ impl<L: Effect> Problem<'_, L> {
 
     /// Newton's iteration from one guess, refused where it settles on another branch.
     pub(crate) fn attempt(&self, terms: &L::StepTerms, guess: &Vector<L>) -> Result<Root<L>, StepError> {
-        let mut xi = *guess;
-        for iteration in 1..=MAX_ITERATIONS {
-            let (update, det) = self.update(terms, &xi);
-            xi = xi - update;
-            if settled::<L>(&update, &xi) {
-                return self.accept(xi, det, iteration);
-            }
-        }
-        Err(self.failure(terms, &xi, MAX_ITERATIONS))
+        let (lanes, iterations) = self.iterate(terms, Lanes::starting_at(guess));
+        self.conclude(terms, &lanes, iterations)
     }
 
-    /// As [`attempt`](Self::attempt), with no update longer than half a radian.
-    fn attempt_damped(&self, terms: &L::StepTerms, guess: &Vector<L>) -> Result<Root<L>, StepError> {
-        let mut xi = *guess;
-        for iteration in 1..=MAX_DAMPED_ITERATIONS {
-            let (update, det) = self.update(terms, &xi);
-            let length = update.dot(&update).simd_sqrt();
-            let half = real::<Scalar<L>>(0.5);
-            let shortened = length.simd_gt(half);
-            let factor = (half / length).select(shortened, real(1.0));
-            xi = xi - update * factor;
-            if settled::<L>(&update, &xi) {
-                return self.accept(xi, det, iteration);
+    /// Until all lanes have settled or the iterations are used up; how many there were.
+    fn iterate(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
+        for iteration in 1..=MAX_ITERATIONS {
+            let (update, det) = self.update(terms, &lanes.xi);
+            lanes.advance(&update, det, &update);
+            if lanes.settled.all() {
+                return (lanes, iteration);
             }
         }
-        Err(self.failure(terms, &xi, MAX_DAMPED_ITERATIONS))
+        (lanes, MAX_ITERATIONS)
+    }
+
+    /// As [`iterate`](Self::iterate), with no update longer than half a radian.
+    fn iterate_damped(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
+        for iteration in 1..=MAX_DAMPED_ITERATIONS {
+            let (update, det) = self.update(terms, &lanes.xi);
+            let length = update.dot(&update).simd_sqrt();
+            let half = real::<Scalar<L>>(0.5);
+            let factor = (half / length).select(length.simd_gt(half), real(1.0));
+            lanes.advance(&update, det, &(update * factor));
+            if lanes.settled.all() {
+                return (lanes, iteration);
+            }
+        }
+        (lanes, MAX_DAMPED_ITERATIONS)
     }
 
     #[inline(always)]
@@ -116,42 +162,46 @@ impl<L: Effect> Problem<'_, L> {
     }
 
     #[inline(always)]
-    fn is_oriented(&self, det: Scalar<L>) -> bool {
-        (det * self.orientation).simd_gt(real(0.0)).all()
+    fn is_oriented(&self, det: Scalar<L>) -> Mask<Scalar<L>> {
+        (det * self.orientation).simd_gt(real(0.0))
     }
 
-    fn accept(&self, xi: Vector<L>, det: Scalar<L>, iterations: u32) -> Result<Root<L>, StepError> {
-        if !self.is_oriented(det) {
-            return Err(StepError::WrongBranch { determinant: reported(det) });
-        }
-        let increment = L::Retraction::increment(&xi);
-        if !L::Retraction::is_near_identity(&xi) {
-            self.look_closer(&xi)?;
-        }
-        Ok(Root { xi, increment, iterations })
+    /// The lanes that have settled on the branch of the identity.
+    fn accepted(&self, lanes: &Lanes<L>) -> Mask<Scalar<L>> {
+        let candidates = lanes.settled & self.is_oriented(lanes.det);
+        let near = L::Retraction::is_near_identity(&lanes.xi);
+        if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.xi)) }
     }
 
     /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too.
-    fn look_closer(&self, xi: &Vector<L>) -> Result<(), StepError> {
+    fn look_closer(&self, xi: &Vector<L>) -> Mask<Scalar<L>> {
         use crate::groups::LieGroup as _;
         let f = L::Retraction::retract(xi).matrix();
         let jacobian = self.lagrangian.momentum_jacobian(&f, self.w, self.h);
         let (_, det) = Vector::<L>::solve(&jacobian, &self.a);
         let trace = Vector::<L>::trace(&jacobian) * self.h;
-        if self.is_oriented(det) && trace.simd_gt(real(0.0)).all() {
-            Ok(())
-        } else {
-            Err(StepError::WrongBranch { determinant: reported(det) })
-        }
+        self.is_oriented(det) & trace.simd_gt(real(0.0))
     }
 
-    fn failure(&self, terms: &L::StepTerms, xi: &Vector<L>, iterations: u32) -> StepError {
-        let (update, det) = self.update(terms, xi);
-        if !xi.is_finite() || det == real(0.0) {
-            return StepError::Singular;
+    fn root(lanes: &Lanes<L>, iterations: u32) -> Root<L> {
+        Root { xi: lanes.xi, increment: L::Retraction::increment(&lanes.xi), iterations }
+    }
+
+    /// The root if all lanes have one, otherwise what the others have failed from.
+    fn conclude(&self, terms: &L::StepTerms, lanes: &Lanes<L>, iterations: u32) -> Result<Root<L>, StepError> {
+        let accepted = self.accepted(lanes);
+        if accepted.all() {
+            return Ok(Self::root(lanes, iterations));
         }
-        let residual = reported((update.dot(&update) / xi.dot(xi)).simd_sqrt());
-        StepError::NotConverged { iterations, residual }
+        if lanes.settled.all() {
+            return Err(StepError::WrongBranch { determinant: reported(lanes.det) });
+        }
+        let (update, det) = self.update(terms, &lanes.xi);
+        if !lanes.xi.is_finite() || (det.simd_eq(real(0.0)) & !lanes.settled).any() {
+            return Err(StepError::Singular);
+        }
+        let residual = reported((update.dot(&update) / lanes.xi.dot(&lanes.xi)).simd_sqrt());
+        Err(StepError::NotConverged { iterations, residual })
     }
 }
 
@@ -160,9 +210,9 @@ impl<L: Effect> Problem<'_, L> {
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
 #[inline(always)]
-fn settled<L: Effect>(update: &Vector<L>, xi: &Vector<L>) -> bool {
+fn settled<L: Effect>(update: &Vector<L>, xi: &Vector<L>) -> Mask<Scalar<L>> {
     let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 64.0);
-    update.dot(update).simd_le(xi.dot(xi) * tolerance).all()
+    update.dot(update).simd_le(xi.dot(xi) * tolerance)
 }
 
 /// The sign that the Jacobian's determinant has at the identity: that of `h^d`, as the inertia is positive.

@@ -5,6 +5,7 @@ pub use nalgebra;
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 
+pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::scalar::real;
 use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};

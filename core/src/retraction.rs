@@ -9,7 +9,7 @@ mod matrix_group;
 use nalgebra::{Matrix3, RealField, Vector3};
 
 use crate::groups::{LieGroup, SO3};
-use crate::scalar::{Real, real};
+use crate::scalar::{Mask, Real, real};
 
 /// Coordinates `ξ ↦ τ(ξ)` of a group about its identity.
 pub trait Retraction<G: LieGroup> {
@@ -32,8 +32,9 @@ pub trait Retraction<G: LieGroup> {
     ///
     /// On SO(3) that is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
     /// such solution. On a [`MatrixGroup`](crate::MatrixGroup) it is what the
-    /// [`Generators`](crate::Generators::is_near_identity) say. Farther out a solver looks closer.
-    fn is_near_identity(xi: &G::Vector) -> bool;
+    /// [`Generators`](crate::Generators::is_near_identity) say. Farther out a solver looks closer. Each lane has its
+    /// own answer.
+    fn is_near_identity(xi: &G::Vector) -> Mask<G::Scalar>;
 }
 
 /// The Cayley map `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`.
@@ -71,9 +72,8 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     }
 
     #[inline(always)]
-    fn is_near_identity(xi: &Vector3<T>) -> bool {
-        use nalgebra::SimdBool as _;
-        (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0)).all()
+    fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
+        (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0))
     }
 }
 
@@ -113,7 +113,7 @@ impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
         Matrix3::identity() + quadratic_increment(xi, half * half * real(0.5), third)
     }
 
-    fn is_near_identity(xi: &Vector3<T>) -> bool {
+    fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
         xi.norm_squared() < T::frac_pi_2() * T::frac_pi_2()
     }
 }

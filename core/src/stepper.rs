@@ -17,7 +17,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepReport {
-    /// Newton iterations; above 20 where the first guess had to be given up.
+    /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up.
     pub iterations: u32,
 }
 
@@ -27,6 +27,7 @@ pub struct StepReport {
 ///
 /// - A step satisfies its momentum equation to rounding on the branch of the identity, or returns an error and leaves
 ///   the state as it was.
+/// - With a scalar of several [lanes](crate::Real#lanes) all of them move or none does, each as it would alone.
 /// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
 ///   that holds from machine to machine.
 /// - Nothing is allocated, and no loop is unbounded.
@@ -170,11 +171,14 @@ impl<L: Effect> Stepper<L> {
         // Increments change by O(h²) from step to step, and their changes by O(h³): for (3.13) at common steps this
         // guess saves one iteration of three.
         state.guess = step.coordinates + (step.coordinates - state.coordinates);
-        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Written as a selection
-        // this would lie on the way to the next iteration, and cost a tenth of a step. Before the first step there was no
-        // increment but an estimate.
-        if state.steps == 0 || !L::Retraction::is_near_identity(&(step.coordinates * real(1.5))) {
+        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Before the first step
+        // there was no increment but an estimate. A selection without the branch would lie on the way to the next
+        // iteration, and cost a tenth of a step.
+        let far = !L::Retraction::is_near_identity(&(step.coordinates * real(1.5)));
+        if state.steps == 0 {
             state.guess = step.coordinates;
+        } else if far.any() {
+            state.guess = step.coordinates.select(far, state.guess);
         }
         state.coordinates = step.coordinates;
         state.steps += 1;

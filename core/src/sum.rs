@@ -192,6 +192,8 @@ where
     A: DiscreteLagrangian,
     B: DiscreteLagrangian<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
 {
+    const SELF_ADJOINT: bool = A::SELF_ADJOINT && B::SELF_ADJOINT;
+
     fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
         self.first.l_d(f, &w.0, h) + self.second.l_d(f, &w.1, h)
     }

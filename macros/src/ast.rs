@@ -206,7 +206,11 @@ pub(crate) enum Kind {
     Power(Rc<Tree>, i32),
     Apply(Function, Rc<Tree>),
     Vee(Rc<Tree>),
+    /// Of a parameter.
+    Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
+    /// What a `let` has named.
+    Bound(String, Rc<Tree>),
 }
 
 impl Kind {
@@ -220,7 +224,9 @@ impl Kind {
             | Self::Power(a, _)
             | Self::Apply(_, a)
             | Self::Vee(a)
-            | Self::Entry(a, ..) => [Some(a), None],
+            | Self::Inverse(a)
+            | Self::Entry(a, ..)
+            | Self::Bound(_, a) => [Some(a), None],
             Self::Add(a, b)
             | Self::Subtract(a, b)
             | Self::Multiply(a, b)

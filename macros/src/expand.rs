@@ -2,14 +2,15 @@
 
 use std::rc::Rc;
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 use crate::ast::{Declaration, Role, Tree};
-use crate::derive::Derived;
+use crate::choose::Chosen;
+use crate::derive::SelfAdjointness;
+use crate::emit::Findings;
 use crate::errors::Errors;
-use crate::lower::Lowered;
-use crate::{check, derive, emit, explain, fallback, lower, parse, verify};
+use crate::{check, choose, emit, explain, fallback, hypotheses, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
@@ -23,7 +24,7 @@ pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> 
     }
 }
 
-/// Parse, check, lower, derive, verify, emit.
+/// Parse, check, lower, derive, choose, verify, emit.
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let item = parse::item(item, errors)?;
     parse::check_size(arguments, errors)?;
@@ -32,53 +33,38 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
     if !errors.is_empty() {
         return None;
     }
-    let lowered = lower::lower(&declaration, &tree, errors)?;
-    let derived = derived(&declaration, &tree, &lowered, errors)?;
-    is_sound(&derived, tree.span, errors)?;
-    let disagreement = match declaration.role {
-        Role::Lagrangian => verify::disagreement(&declaration, &tree, &lowered, &derived),
-        Role::Force => verify::disagreement_of_force(&declaration, &tree, &lowered, &derived),
+    let candidates = lower::lower(&declaration, &tree, errors);
+    let chosen =
+        choose::cheapest(candidates?).map_err(|refusal| explain::explain(refusal, &declaration, &tree, errors)).ok()?;
+    let verified = match role {
+        Role::Lagrangian => verified(&declaration, &tree, &chosen, errors)?,
+        Role::Force => verify::force(&declaration, &tree, &chosen).map(|()| (SelfAdjointness::No, Vec::new())),
     };
-    if let Some(term) = disagreement {
-        let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
-        errors.push(tree.span, message);
-        return None;
+    let Chosen { lowered, derived, kernel } = chosen;
+    match verified {
+        Ok((self_adjointness, hypotheses)) => {
+            let findings = Findings { kernel, self_adjointness, hypotheses };
+            Some(emit::implementation(&declaration, &lowered, &derived, &findings))
+        }
+        Err(term) => {
+            let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
+            errors.push(tree.span, message);
+            None
+        }
     }
-    Some(emit::implementation(&declaration, &lowered, &derived))
 }
 
-fn derived(declaration: &Declaration, tree: &Rc<Tree>, lowered: &Lowered, errors: &mut Errors) -> Option<Derived> {
-    let Some(displacements) = lowered.displacements else {
-        let derived = derive::derive(&lowered.declared);
-        return derived.map_err(|error| explain::explain(error, declaration, tree, errors)).ok();
-    };
-    let derived = derive::force(&lowered.declared, displacements);
-    derived.map_err(|error| explain::explain_force(error, declaration, errors)).ok()
-}
+type Verified = Result<(SelfAdjointness, Vec<String>), &'static str>;
 
-/// Coefficients stay exact, or the expansion says that they can't.
-fn is_sound(derived: &Derived, span: Span, errors: &mut Errors) -> Option<()> {
-    let limit = &derived.limit;
-    let all = [
-        &derived.right_momentum,
-        &derived.left_momentum,
-        &derived.diamond,
-        &derived.momentum,
-        &derived.jacobian,
-        &derived.energy,
-        &limit.inertia,
-        &limit.bias,
-        &limit.potential,
-        &derived.kick_before,
-        &derived.unknown,
-        &derived.kick_after,
-    ];
-    let cleared = derived.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
-    if all.into_iter().chain(cleared).any(crate::symbolic::Expression::has_overflow) {
-        errors.push(span, "the coefficients leave the range of exact arithmetic: make the large numbers fields");
-        return None;
+/// What is found out about a Lagrangian; `None` after a mistake that has been reported.
+fn verified(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Verified> {
+    let Chosen { lowered, derived, kernel } = chosen;
+    // What has no kinetic part at all is a term of a scene.
+    if derived.limit.has_kinetic {
+        explain::kinetic_part(&verify::kinetic_part(declaration, lowered, derived), declaration, errors)?;
     }
-    Some(())
+    let verified = verify::verify(declaration, tree, lowered, derived, kernel);
+    Some(verified.map(|self_adjointness| (self_adjointness, hypotheses::hypotheses(declaration, tree, lowered))))
 }
 
 #[cfg(test)]

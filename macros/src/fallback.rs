@@ -39,6 +39,7 @@ pub(crate) fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -
                 (header.implementation("DiscreteLagrangian"), header.implementation("LeftInvariant"));
             quote_spanned! {span=>
                 #lagrangian {
+                    const SELF_ADJOINT: #core::primitive::bool = false;
                     #(#of_increment)*
                 }
 

@@ -1,10 +1,11 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
 //! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+//! `lib → expand → {parse, check, lower, hypotheses, verify, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
 
 mod ast;
 mod check;
+mod choose;
 mod derive;
 mod emit;
 mod errors;
@@ -12,6 +13,7 @@ mod expand;
 mod explain;
 mod fallback;
 mod group;
+mod hypotheses;
 mod lower;
 mod parse;
 mod scalar;

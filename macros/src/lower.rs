@@ -6,15 +6,19 @@ use std::rc::Rc;
 use syn::ext::IdentExt as _;
 
 use crate::ast::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
-use crate::derive::{Declared, Displacements};
+use crate::derive::{Declared, Displacements, Let};
 use crate::errors::Errors;
-use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols};
+use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
 /// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
 const MOST_FACTORS: usize = 800;
 const LONGEST_PRODUCT: usize = 24;
+/// As for the factors: closed `let`s, those of sums included.
+const MOST_LETS: usize = 150;
+/// The eighth power of a smaller number is in range.
+const MANY_DIGITS: u128 = 10_000;
 
 /// The declared Lagrangian in symbols; the names say which symbol stands for what.
 pub(crate) struct Lowered {
@@ -24,13 +28,24 @@ pub(crate) struct Lowered {
     pub(crate) displacements: Option<Displacements>,
 }
 
-/// Lowers the tree; `None` where it is too large, which has been reported.
-pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Lowered> {
+/// Lowers the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has been reported.
+pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
+    lower_without(declaration, tree, &|_, structure| structure, errors)
+}
+
+/// The same with less known of some symbols.
+pub(crate) fn lower_without(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    weaker: &dyn Fn(Name, Structure) -> Structure,
+    errors: &mut Errors,
+) -> Option<Vec<Lowered>> {
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
     let size = declaration.structure.size;
     let structure = if declaration.structure.orthogonal { Structure::Orthogonal } else { Structure::General };
     let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
+    let structure = weaker(Name::Increment, structure);
     let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
     names.insert(Name::Step, step);
     names.insert(Name::Increment, increment);
@@ -42,6 +57,7 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
             FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
         };
+        let structure = weaker(Name::Field(index), structure);
         let name = field.name.unraw().to_string();
         names.insert(Name::Field(index), symbols.add(name, shape, structure, Stage::Construction));
     }
@@ -62,48 +78,141 @@ pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Err
         let before = displacement("η", Name::DisplacementBefore);
         Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
     });
-    let mut lowering = Lowering { symbols: &symbols, names: &names, known: BTreeMap::new() };
-    match lowering.expression(tree) {
-        Ok(l_d) if l_d.has_overflow() => {
-            errors
-                .push(tree.span, "the coefficients leave the range of exact arithmetic: make the large numbers fields");
-            None
+    let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
+    let lowered = |(symbols, l_d, lets): (Symbols, Expression, Vec<Let>)| {
+        let (group, advected, names) = (declaration.structure.clone(), advected.clone(), names.clone());
+        let declared = Declared { group, symbols, lets, l_d, increment, step, advected };
+        Lowered { declared, names, displacements }
+    };
+    let multiplied_out = attempt(None);
+    // The work of a force is always multiplied out: it is linear in the displacements, and short.
+    let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
+    let closed = if may_close { Some(attempt(Some(Vec::new()))) } else { None };
+    let all = [Some(multiplied_out), closed].into_iter().flatten();
+    let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
+    if found.is_empty() {
+        failures.into_iter().filter_map(Result::err).take(1).for_each(|failure| report(failure, tree, errors));
+        return None;
+    }
+    Some(found.into_iter().flatten().map(lowered).collect())
+}
+
+/// Whether a `let` names anything but a name.
+fn has_let(tree: &Rc<Tree>) -> bool {
+    // A shared part is visited once.
+    let mut seen = std::collections::BTreeSet::new();
+    let mut open = vec![tree];
+    while let Some(tree) = open.pop() {
+        if !seen.insert(Rc::as_ptr(tree)) {
+            continue;
         }
-        Ok(l_d) => Some(Lowered {
-            declared: Declared { group: declaration.structure.clone(), symbols, l_d, increment, step, advected },
-            names,
-            displacements,
-        }),
-        Err(TooLarge(span)) => {
-            errors.push(
-                span,
-                format!(
-                    "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than \
-                     {LONGEST_PRODUCT} matrices: the expression is too large"
-                ),
-            );
-            None
+        match &tree.kind {
+            Kind::Bound(_, inner) if !matches!(inner.kind, Kind::Name(_) | Kind::Number(_)) => return true,
+            kind => open.extend(kind.operands().into_iter().flatten()),
         }
+    }
+    false
+}
+
+/// Why an expression can't be lowered.
+#[derive(Clone, Copy, Debug)]
+enum Failure {
+    TooLarge(proc_macro2::Span),
+    Overflow,
+}
+
+fn report(failure: Failure, tree: &Tree, errors: &mut Errors) {
+    match failure {
+        Failure::TooLarge(span) => errors.push(
+            span,
+            format!(
+                "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than {LONGEST_PRODUCT} \
+                 matrices: the expression is too large"
+            ),
+        ),
+        Failure::Overflow => errors
+            .push(tree.span, "the coefficients leave the range of exact arithmetic: make the large numbers fields"),
     }
 }
 
-struct TooLarge(proc_macro2::Span);
-
 struct Lowering<'a> {
-    symbols: &'a Symbols,
+    symbols: Symbols,
     names: &'a BTreeMap<Name, SymbolId>,
     /// What a `let` has bound is lowered once, however often it is used.
     known: BTreeMap<*const Tree, Expression>,
+    /// The `let`s so far, where they stay closed.
+    lets: Option<Vec<Let>>,
 }
 
 impl Lowering<'_> {
-    fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
+    fn whole(mut self, tree: &Rc<Tree>) -> Result<(Symbols, Expression, Vec<Let>), Failure> {
+        let l_d = self.expression(tree)?;
+        let lets = self.lets.unwrap_or_default();
+        if lets.iter().map(|one| &one.value).chain([&l_d]).any(Expression::has_overflow) {
+            return Err(Failure::Overflow);
+        }
+        if lets.len() > MOST_LETS || lets.iter().map(|one| one.value.size()).sum::<usize>() > MOST_FACTORS {
+            return Err(Failure::TooLarge(tree.span));
+        }
+        Ok((self.symbols, l_d, lets))
+    }
+
+    /// The expression of a `let`, or the symbol that stands for it.
+    fn bound(&mut self, name: &str, value: Expression) -> Expression {
+        let is_small = value.len() <= 1 && value.size() <= 2;
+        let Some(lets) = self.lets.as_mut().filter(|_| !is_small) else { return value };
+        let structure = match value.shape() {
+            (rows, columns) if rows == columns && rows > 1 && value.transpose(&self.symbols) == value => {
+                Structure::Symmetric
+            }
+            _ => Structure::General,
+        };
+        let stage = stage_of(&value, &self.symbols);
+        let symbol = self.symbols.add(name, value.shape(), structure, stage);
+        lets.push(Let { symbol, value });
+        Expression::symbol(symbol, &self.symbols)
+    }
+
+    /// A number; with many digits it stays closed too, as its powers would leave the range of exact arithmetic.
+    fn number(&mut self, value: Rational) -> Expression {
+        let expression = Expression::rational(value);
+        let (numerator, denominator) = value.parts();
+        if numerator.unsigned_abs().max(denominator.unsigned_abs()) < MANY_DIGITS {
+            return expression;
+        }
+        let Some(lets) = self.lets.as_mut() else { return expression };
+        let name = value.to_f64().to_string();
+        let symbol = self.symbols.add(name, (1, 1), Structure::General, Stage::Construction);
+        lets.push(Let { symbol, value: expression });
+        Expression::symbol(symbol, &self.symbols)
+    }
+
+    /// Two factors of a product. The action of a sum of matrices on a vector is cheaper term by term.
+    fn factors(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<(Expression, Expression), Failure> {
+        let acts = matches!((a.shape, b.shape), (Shape::Matrix(_, 2..), Shape::Matrix(_, 1)));
+        let left = if acts { self.expression(a)? } else { self.factor(a)? };
+        Ok((left, self.factor(b)?))
+    }
+
+    /// A sum that is about to be multiplied: where `let`s stay closed, a product of sums isn't multiplied out either.
+    fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
+        let value = self.expression(tree)?;
+        if value.len() < 2 {
+            return Ok(value);
+        }
+        let number = self.lets.as_ref().map_or(0, |lets| lets.len() + 1);
+        let closed = self.bound(&format!("t{number}"), value);
+        self.known.insert(Rc::as_ptr(tree), closed.clone());
+        Ok(closed)
+    }
+
+    fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         if let Some(known) = self.known.get(&Rc::as_ptr(tree)) {
             return Ok(known.clone());
         }
         let result = self.operation(tree)?;
         if result.len() > MOST_TERMS || result.size() > MOST_FACTORS || result.longest_word() > LONGEST_PRODUCT {
-            return Err(TooLarge(tree.span));
+            return Err(Failure::TooLarge(tree.span));
         }
         if Rc::strong_count(tree) > 1 {
             self.known.insert(Rc::as_ptr(tree), result.clone());
@@ -111,44 +220,65 @@ impl Lowering<'_> {
         Ok(result)
     }
 
-    fn operation(&mut self, tree: &Rc<Tree>) -> Result<Expression, TooLarge> {
-        let symbols = self.symbols;
+    fn operation(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         let result = match &tree.kind {
-            Kind::Number(value) => Expression::rational(*value),
+            Kind::Number(value) => self.number(*value),
             Kind::Identity => Expression::identity(ambient(tree.shape).0),
             Kind::Name(name) => match self.names.get(name) {
-                Some(&id) => Expression::symbol(id, self.symbols),
+                Some(&id) => Expression::symbol(id, &self.symbols),
                 None => Expression::zero(ambient(tree.shape)),
             },
+            Kind::Bound(name, a) => {
+                let value = self.expression(a)?;
+                self.bound(name, value)
+            }
             Kind::Negate(a) => self.expression(a)?.scaled(-Rational::ONE),
             Kind::Add(a, b) => self.expression(a)?.plus(self.expression(b)?),
             Kind::Subtract(a, b) => self.expression(a)?.minus(self.expression(b)?),
-            Kind::Multiply(a, b) => product(tree, &self.expression(a)?, &self.expression(b)?, symbols)?,
-            Kind::Divide(a, b) => {
-                product(tree, &self.expression(a)?, &self.expression(b)?.power(-1, symbols), symbols)?
+            Kind::Multiply(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left, &right)?
             }
-            Kind::Transpose(a) => self.expression(a)?.transpose(self.symbols),
-            Kind::Trace(a) => self.expression(a)?.trace(self.symbols),
-            Kind::Dot(a, b) => product(tree, &self.expression(a)?.transpose(symbols), &self.expression(b)?, symbols)?,
-            Kind::Cross(a, b) => product(tree, &self.expression(a)?.hat(symbols), &self.expression(b)?, symbols)?,
-            Kind::CrossMatrix(a) => self.expression(a)?.hat(self.symbols),
+            Kind::Divide(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left, &right.power(-1, &self.symbols))?
+            }
+            Kind::Transpose(a) => self.expression(a)?.transpose(&self.symbols),
+            Kind::Trace(a) => self.expression(a)?.trace(&self.symbols),
+            Kind::Dot(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.transpose(&self.symbols), &right)?
+            }
+            Kind::Cross(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.hat(&self.symbols), &right)?
+            }
+            Kind::CrossMatrix(a) => self.expression(a)?.hat(&self.symbols),
             Kind::ComponentMultiply(a, b) => {
-                product(tree, &self.expression(a)?.diagonal(symbols), &self.expression(b)?, symbols)?
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.diagonal(&self.symbols), &right)?
             }
             Kind::Power(a, exponent) => {
-                let base = self.expression(a)?;
+                let base = self.factor(a)?;
                 if base.len().checked_pow(exponent.unsigned_abs().min(4)).is_none_or(|terms| terms > MOST_TERMS) {
-                    return Err(TooLarge(tree.span));
+                    return Err(Failure::TooLarge(tree.span));
                 }
-                base.power(*exponent, self.symbols)
+                base.power(*exponent, &self.symbols)
             }
-            Kind::Apply(function, a) => Expression::function(*function, self.expression(a)?),
-            Kind::Vee(a) => self.expression(a)?.vee(self.symbols),
+            Kind::Apply(function, a) => Expression::function(*function, self.factor(a)?),
+            Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
+            Kind::Inverse(a) => match &a.kind {
+                Kind::Name(name) => match self.names.get(name) {
+                    Some(&id) => Expression::inverse(id, &self.symbols),
+                    None => Expression::zero(ambient(tree.shape)),
+                },
+                _ => Expression::zero(ambient(tree.shape)),
+            },
             Kind::Entry(a, row, column) => {
                 let operand = self.expression(a)?;
                 let (rows, columns) = operand.shape();
-                let left = self.unit(*row, rows, true).times(&operand, self.symbols);
-                if columns == 1 { left } else { left.times(&self.unit(*column, columns, false), self.symbols) }
+                let left = self.unit(*row, rows, true).times(&operand, &self.symbols);
+                if columns == 1 { left } else { left.times(&self.unit(*column, columns, false), &self.symbols) }
             }
         };
         Ok(result)
@@ -156,15 +286,15 @@ impl Lowering<'_> {
 
     fn unit(&self, index: usize, size: usize, transposed: bool) -> Expression {
         let shape = if transposed { (1, size) } else { (size, 1) };
-        Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, self.symbols)
+        Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, &self.symbols)
     }
-}
 
-fn product(tree: &Tree, left: &Expression, right: &Expression, symbols: &Symbols) -> Result<Expression, TooLarge> {
-    if left.len().saturating_mul(right.len()) > MOST_TERMS {
-        return Err(TooLarge(tree.span));
+    fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, Failure> {
+        if left.len().saturating_mul(right.len()) > MOST_TERMS {
+            return Err(Failure::TooLarge(tree.span));
+        }
+        Ok(left.times(right, &self.symbols))
     }
-    Ok(left.times(right, symbols))
 }
 
 fn ambient(shape: Shape) -> (usize, usize) {

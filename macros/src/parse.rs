@@ -301,10 +301,12 @@ fn advected(
             && !found.kind.is_carried_by(size)
         {
             let shape = found.kind.shape().describe();
-            errors.push(
-                *span,
-                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>"),
-            );
+            let message = if found.kind.is_wrapped() {
+                format!("`{wanted}` is {shape}, but the group's matrices have {size} rows: write {size} for its size")
+            } else {
+                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>")
+            };
+            errors.push(*span, message);
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index });
     }

@@ -1,7 +1,15 @@
-//! The self-check: derived terms against central differences of the declared expression, before anything is emitted.
+//! The self-check: derived terms and the emitted step against the declared expression, before anything is emitted.
 //!
 //! The declared tree is evaluated on numbers by itself, without the symbolic form, so a wrong rewrite can't agree with
-//! itself.
+//! itself. First derivatives are compared with its central differences; what is built from them, with them.
+
+mod inertia;
+mod linear;
+mod reversal;
+mod step;
+mod terms;
+#[cfg(test)]
+mod tests;
 
 mod force;
 
@@ -9,47 +17,50 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::ast::{Declaration, FieldKind, Kind, Name, Shape, Tree};
-use crate::derive::Derived;
+use crate::derive::{Derived, SelfAdjointness};
 use crate::group::Group;
 use crate::lower::Lowered;
-use crate::scalar::{Graph, Input, NodeId, components, square};
+use crate::scalar::{Graph, Input, Kernel, NodeId};
 use crate::symbolic::{SymbolId, Variance};
 
-pub(crate) use force::disagreement_of_force;
+pub(crate) use force::force;
+pub(crate) use inertia::{KineticPart, kinetic_part};
+use step::Step;
+use terms::Terms;
 
 /// Central differences at this spacing are right to about eight digits.
 const SPACING: f64 = 1e-5;
 /// What they leave, relative to the size of the terms.
 const TOLERANCE: f64 = 1e-5;
 
-/// The first derived term that disagrees with the declaration, if one does.
-pub(crate) fn disagreement(
+/// Checks all that was derived. The error is the first term that disagrees.
+pub(crate) fn verify(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     lowered: &Lowered,
     derived: &Derived,
-) -> Option<&'static str> {
-    let terms = Terms::new(derived);
-    (1..=3).find_map(|seed| Sample::new(declaration, lowered, derived, seed).disagreement(tree, &terms))
-}
-
-/// The derived terms as operations, for all samples.
-struct Terms {
-    graph: Graph,
-    /// Right and left momentum map, diamond and momentum, each as long as the group has dimensions.
-    covectors: Vec<NodeId>,
-    jacobian: Vec<NodeId>,
-}
-
-impl Terms {
-    fn new(derived: &Derived) -> Self {
-        let (mut graph, none) = (Graph::default(), BTreeMap::new());
-        let covectors = [&derived.right_momentum, &derived.left_momentum, &derived.diamond, &derived.momentum];
-        let covectors =
-            covectors.into_iter().flat_map(|covector| components(&mut graph, derived, &none, covector)).collect();
-        let jacobian = square(&mut graph, derived, &none, &derived.jacobian);
-        Self { graph, covectors, jacobian }
+    kernel: &Kernel,
+) -> Result<SelfAdjointness, &'static str> {
+    let (terms, step) = (Terms::new(derived), Step { derived, kernel });
+    let samples: Vec<Sample> = (1..=3).map(|seed| Sample::new(declaration, lowered, derived, seed)).collect();
+    for sample in &samples {
+        let found = terms.disagreement(sample, tree).or_else(|| step.disagreement(sample, &terms));
+        if let Some(term) = found {
+            return Err(term);
+        }
     }
+    reversal::self_adjointness(&samples, tree, &derived.adjoint_defect)
+}
+
+/// The slope of a function at zero.
+fn slope(function: &dyn Fn(f64) -> f64) -> f64 {
+    (function(SPACING) - function(-SPACING)) / (2.0 * SPACING)
+}
+
+fn evaluated(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value>) -> Vec<f64> {
+    graph.evaluate(outputs, &|input: Input| {
+        inputs.get(&input.symbol).map_or(f64::NAN, |value| value.at(input.row, input.column))
+    })
 }
 
 /// A matrix, row by row.
@@ -96,6 +107,28 @@ impl Value {
         })
     }
 
+    /// By Cramer's rule.
+    fn inverse(&self) -> Self {
+        let determinant = self.determinant();
+        Self::new(self.rows, self.rows, |row, column| {
+            let sign = if (row + column).is_multiple_of(2) { 1.0 } else { -1.0 };
+            sign * self.without(column, row).determinant() / determinant
+        })
+    }
+
+    fn determinant(&self) -> f64 {
+        if self.rows == 0 {
+            return 1.0;
+        }
+        let sign = |row: usize| if row.is_multiple_of(2) { 1.0 } else { -1.0 };
+        (0..self.rows).map(|row| sign(row) * self.at(row, 0) * self.without(row, 0).determinant()).sum()
+    }
+
+    fn without(&self, row: usize, column: usize) -> Self {
+        let size = self.rows - 1;
+        Self::new(size, size, |i, j| self.at(i + usize::from(i >= row), j + usize::from(j >= column)))
+    }
+
     fn hat(v: &Self) -> Self {
         let [x, y, z] = [v.at(0, 0), v.at(1, 0), v.at(2, 0)];
         let entries = vec![0.0, -z, y, z, 0.0, -x, -y, x, 0.0];
@@ -124,8 +157,11 @@ fn turn(group: &Group, k: usize, s: f64) -> Value {
 }
 
 /// Numbers for all names.
+#[derive(Clone)]
 struct Sample<'a> {
     derived: &'a Derived,
+    increment: Value,
+    inverse: Value,
     values: BTreeMap<Name, Value>,
     symbols: BTreeMap<SymbolId, Name>,
     advected: Vec<(Name, Variance)>,
@@ -143,11 +179,13 @@ impl<'a> Sample<'a> {
         let mut values = BTreeMap::new();
         values.insert(Name::Step, Value::scalar(0.1 + 0.1 * number()));
         let group = &declaration.structure;
-        let f = (0..group.dimension()).fold(Value::identity(group.size), |f, k| {
+        let (mut increment, mut inverse) = (Value::identity(group.size), Value::identity(group.size));
+        for k in 0..group.dimension() {
             let angle = 0.6 * number() - 0.3;
-            f.times(&turn(group, k, angle))
-        });
-        values.insert(Name::Increment, f);
+            increment = increment.times(&turn(group, k, angle));
+            inverse = turn(group, k, -angle).times(&inverse);
+        }
+        values.insert(Name::Increment, increment.clone());
         for (index, field) in declaration.fields.iter().enumerate() {
             let value = match field.kind {
                 FieldKind::Scalar => Value::scalar(0.5 + number()),
@@ -178,61 +216,54 @@ impl<'a> Sample<'a> {
             advected.push((Name::Advected(index), kind.variance()));
         }
         let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
-        Self { derived, values, symbols, advected }
+        Self { derived, increment, inverse, values, symbols, advected }
     }
 
-    fn disagreement(&self, tree: &Rc<Tree>, terms: &Terms) -> Option<&'static str> {
-        let group = &self.derived.group;
-        let dimension = group.dimension();
-        let identity = Value::identity(group.size);
-        let evaluated = |outputs: &[NodeId]| {
-            terms.graph.evaluate(outputs, &|input: Input| {
-                let value = self.symbols.get(&input.symbol).and_then(|name| self.values.get(name));
-                value.map_or(f64::NAN, |value| value.at(input.row, input.column))
-            })
-        };
-        let (covectors, jacobian) = (evaluated(&terms.covectors), evaluated(&terms.jacobian));
-        let f = self.values.get(&Name::Increment)?.clone();
-        // One function of two turns holds all terms: exp(sE_k) exp(tE_j) F and exp(sE_k)·w.
-        let at = |k: usize, s: f64, j: usize, t: f64, w: f64| {
-            let f = turn(group, k, s).times(&turn(group, j, t)).times(&f);
-            self.moved(tree, &f, (&turn(group, k, w), &turn(group, k, -w)))
-        };
-        let slope = |g: &dyn Fn(f64) -> f64| (g(SPACING) - g(-SPACING)) / (2.0 * SPACING);
-        let size: f64 = jacobian.iter().map(|x| x.abs()).sum::<f64>() + at(0, 0.0, 0, 0.0, 0.0).abs();
-        // Where the declaration has a value, so have its derivatives; elsewhere (a logarithm of a negative number) none.
-        let differs = |found: f64, expected: f64, slack: f64| {
-            let agrees = (found - expected).abs() <= slack * TOLERANCE * (1.0 + size);
-            expected.is_finite() && !agrees
-        };
-        for k in 0..dimension {
-            let on_the_right = |s: f64| self.moved(tree, &f.times(&turn(group, k, s)), (&identity, &identity));
-            let checks = [
-                ("right momentum map", slope(&|s| at(k, s, 0, 0.0, 0.0))),
-                ("left momentum map", slope(&on_the_right)),
-                ("diamond term", -slope(&|s| at(k, 0.0, 0, 0.0, s))),
-                ("momentum equation", slope(&|s| at(k, s, 0, 0.0, s))),
-            ];
-            for (index, (name, expected)) in checks.into_iter().enumerate() {
-                if differs(covectors[dimension * index + k], expected, 1.0) {
-                    return Some(name);
-                }
-            }
-            for j in 0..dimension {
-                // A second difference needs a wider spacing, and is less exact for it.
-                let e = 30.0 * SPACING;
-                let mixed = |s: f64, t: f64| at(k, s, j, t, s);
-                let second = (mixed(e, e) - mixed(e, -e) - mixed(-e, e) + mixed(-e, -e)) / (4.0 * e * e);
-                if differs(jacobian[dimension * k + j], second, 100.0) {
-                    return Some("Newton Jacobian");
-                }
-            }
+    /// `F` turned by `exp(s E_k)` from the left.
+    fn turned(&self, k: usize, s: f64) -> Value {
+        turn(&self.derived.group, k, s).times(&self.increment)
+    }
+
+    /// The values of all symbols at an increment: of the names, and of what the derivation adds.
+    fn inputs(&self, f: &Value) -> BTreeMap<SymbolId, Value> {
+        let mut inputs: BTreeMap<SymbolId, Value> = BTreeMap::new();
+        for (symbol, name) in &self.symbols {
+            inputs.extend(self.values.get(name).map(|value| (*symbol, value.clone())));
         }
-        None
+        let identity = Value::identity(f.rows);
+        inputs.insert(self.derived.increment(), f.clone());
+        inputs.insert(self.derived.directions.small, f.zip(&identity, |x, y| x - y));
+        inputs
+    }
+
+    /// `l_d` at this point.
+    fn declared(&self, tree: &Rc<Tree>) -> f64 {
+        Evaluation { values: &self.values, known: BTreeMap::new() }.of(tree).first()
+    }
+
+    /// `−l_d` turned back: at `F⁻¹`, `F⁻¹·w` and `−h`.
+    fn reversed(&self, tree: &Rc<Tree>) -> f64 {
+        let mut values = self.moved_values(&self.inverse, (&self.inverse, &self.increment));
+        if let Some(h) = self.values.get(&Name::Step) {
+            values.insert(Name::Step, h.map(|h| -h));
+        }
+        -Evaluation { values: &values, known: BTreeMap::new() }.of(tree).first()
+    }
+
+    /// `l_d` at another step.
+    fn at_step(&self, tree: &Rc<Tree>, h: f64) -> f64 {
+        let mut values = self.values.clone();
+        values.insert(Name::Step, Value::scalar(h));
+        Evaluation { values: &values, known: BTreeMap::new() }.of(tree).first()
     }
 
     /// `l_d` at another `F`, with all advected parameters moved by a group element, given with its inverse.
-    fn moved(&self, tree: &Rc<Tree>, f: &Value, (g, inverse): (&Value, &Value)) -> f64 {
+    fn moved(&self, tree: &Rc<Tree>, f: &Value, element: (&Value, &Value)) -> f64 {
+        let values = self.moved_values(f, element);
+        Evaluation { values: &values, known: BTreeMap::new() }.of(tree).first()
+    }
+
+    fn moved_values(&self, f: &Value, (g, inverse): (&Value, &Value)) -> BTreeMap<Name, Value> {
         let mut values = self.values.clone();
         values.insert(Name::Increment, f.clone());
         for (name, variance) in &self.advected {
@@ -246,7 +277,7 @@ impl<'a> Sample<'a> {
             };
             values.insert(*name, moved);
         }
-        Evaluation { values: &values, known: BTreeMap::new() }.of(tree).first()
+        values
     }
 }
 
@@ -312,6 +343,8 @@ impl Evaluation<'_> {
                     0.5 * (a.at(i, j) - a.at(j, i))
                 })
             }
+            Kind::Inverse(a) => self.of(a).inverse(),
+            Kind::Bound(_, a) => self.of(a),
             Kind::Entry(a, row, column) => Value::scalar(self.of(a).at(*row, *column)),
         }
     }

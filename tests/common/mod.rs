@@ -7,4 +7,5 @@ pub mod continuous;
 pub mod measure;
 pub mod random;
 pub mod reference;
+pub mod structure;
 pub mod tops;

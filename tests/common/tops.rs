@@ -1,49 +1,18 @@
-//! The declarations that the tests integrate.
+//! The tops and free bodies that the tests integrate.
 
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::{DiagonalNonstandardInertia, NonstandardInertia, SO3, lagrangian};
+use liestep::{DiagonalNonstandardInertia, NonstandardInertia};
 use nalgebra::Vector3;
 
-/// The heavy top (3.13) in principal axes.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone, Debug)]
-pub struct HeavyTop {
-    pub J_d: DiagonalNonstandardInertia,
-    pub m: f64,
-    pub g: f64,
-    pub rho: Vector3<f64>,
-    pub up: Vector3<f64>,
-}
+#[path = "../../examples/declarations/free_body.rs"]
+mod free_body;
+#[path = "../../examples/declarations/heavy_top.rs"]
+mod heavy_top;
 
-/// The heavy top (3.13) with a full inertia tensor.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone, Debug)]
-pub struct FullTop {
-    pub J_d: NonstandardInertia,
-    pub m: f64,
-    pub g: f64,
-    pub rho: Vector3<f64>,
-    pub up: Vector3<f64>,
-}
-
-/// The free rigid body: the kinetic term of (3.13) alone.
-#[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-#[derive(Clone, Debug)]
-pub struct FreeBody {
-    pub J_d: NonstandardInertia,
-}
+pub use free_body::FreeBody;
+pub use heavy_top::{FullTop, HeavyTop};
 
 impl HeavyTop {
     /// The thesis' body: `J_d = diag(2, 2, 1)`, one metre below its centre of mass, reading A.

@@ -52,6 +52,7 @@
 //! | (2.9) | the kicks of the transport form | `transport.rs` |
 //! | (3.17) in Cayley coordinates | residual and Jacobian without denominators | `cayley.rs` |
 //! | (2.3) from (3.13) | inertia, bias and potential of the limit `h → 0` | `limit.rs` |
+//! | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` | whether a step of `−h` undoes a step of `h` | `self_adjoint.rs` |
 //!
 //! # Chapter 3: the heavy top
 //!

@@ -13,7 +13,7 @@
 //! | the Lie–Poisson structure of `(μ, w)` | exactly | every Lagrangian |
 //! | `R p`, the spatial momentum | exactly | nothing advected |
 //! | `p_3` | exactly | `J_1 = J_2`, `ρ` along the third axis |
-//! | a step back by `−h` undoes the step | exactly | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`; (3.13) is such |
+//! | a step back by `−h` undoes the step | exactly | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`; (3.13) is such, others by [`SELF_ADJOINT`](crate::DiscreteLagrangian::SELF_ADJOINT) |
 //! | kinetic energy `½ p·J⁻¹p` | exactly | the kinetic term of (3.13) alone; not for other kinetic terms |
 //! | energy with a potential | nearly: it oscillates with an amplitude of order `h²` and doesn't drift | steps well inside the limit below |
 //! | phase, period | not: the error is of order `h²` and grows with time | |

@@ -5,7 +5,7 @@ use core::fmt;
 use nalgebra::{Matrix3, RealField, Rotation3, UnitQuaternion, Vector3};
 
 use super::LieGroup;
-use crate::scalar::{Real, real};
+use crate::scalar::{Real, gathered, real};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -91,6 +91,16 @@ where
 impl<T: Real> From<Rotation3<T>> for SO3<T> {
     fn from(rotation: Rotation3<T>) -> Self {
         Self(rotation.into_inner())
+    }
+}
+
+/// One attitude in each lane.
+impl<T, const LANES: usize> From<[SO3<T::Element>; LANES]> for SO3<T>
+where
+    T: Real<Element: Real> + From<[T::Element; LANES]>,
+{
+    fn from(lanes: [SO3<T::Element>; LANES]) -> Self {
+        Self(gathered(&lanes.map(|lane| lane.0)))
     }
 }
 

@@ -7,7 +7,7 @@ use crate::coordinates::Coordinates as _;
 use crate::groups::{
     Generators, LieGroup as _, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, logarithm,
 };
-use crate::scalar::real;
+use crate::scalar::{Mask, real};
 
 /// Fails to compile for a group that the Cayley map leaves.
 struct Closure<K, const N: usize, const D: usize>(K);
@@ -55,7 +55,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
     }
 
     #[inline]
-    fn is_near_identity(xi: &SVector<T, D>) -> bool {
+    fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
         K::is_near_identity(&MatrixGroup::<K, T, N, D>::hat(xi))
     }
 }
@@ -86,7 +86,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
         exponential(&bracket).1
     }
 
-    fn is_near_identity(xi: &SVector<T, D>) -> bool {
+    fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
         K::is_near_identity(&MatrixGroup::<K, T, N, D>::hat(xi))
     }
 }

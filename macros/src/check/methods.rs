@@ -1,18 +1,18 @@
-//! Methods and functions of the declared syntax.
+//! Methods of the declared syntax.
 
 use std::rc::Rc;
 
 use proc_macro2::Span;
 use syn::punctuated::Punctuated;
 use syn::spanned::Spanned as _;
-use syn::{Expr, ExprCall, ExprMethodCall, Lit, Token, UnOp};
+use syn::{Expr, ExprMethodCall, Lit, Token, UnOp};
 
 use super::Checker;
 use crate::ast::{Kind, Shape, Tree};
 use crate::errors::suggestion;
 use crate::symbolic::Function;
 
-const METHODS: [&str; 15] = [
+pub(super) const METHODS: [&str; 15] = [
     "transpose",
     "trace",
     "dot",
@@ -30,8 +30,8 @@ const METHODS: [&str; 15] = [
     "clone",
 ];
 
-const VECTOR: Shape = Shape::Matrix(3, 1);
-const SQUARE: Shape = Shape::Matrix(3, 3);
+pub(super) const VECTOR: Shape = Shape::Matrix(3, 1);
+pub(super) const SQUARE: Shape = Shape::Matrix(3, 3);
 
 impl Checker<'_> {
     pub(super) fn method(&mut self, call: &ExprMethodCall) -> Option<Rc<Tree>> {
@@ -102,7 +102,7 @@ impl Checker<'_> {
             }
             ("norm_squared" | "norm", Shape::Scalar) => ("a vector or a matrix", None),
             (function, Shape::Scalar) => {
-                let function = Function::ALL.into_iter().find(|known| known.name() == function);
+                let function = Function::METHODS.into_iter().find(|known| known.name() == function);
                 ("", function.map(|function| (Shape::Scalar, Kind::Apply(function, receiver))))
             }
             _ => ("a scalar", None),
@@ -142,7 +142,7 @@ impl Checker<'_> {
         }
     }
 
-    fn mismatch(&mut self, name: &str, expected: &str, found: Shape, at: Span) -> Option<Rc<Tree>> {
+    pub(super) fn mismatch(&mut self, name: &str, expected: &str, found: Shape, at: Span) -> Option<Rc<Tree>> {
         self.errors.push(at, format!("`{name}` needs {expected}, and this is {}", found.describe()));
         None
     }
@@ -166,38 +166,10 @@ impl Checker<'_> {
     }
 
     /// What is given to an unknown function may have mistakes of its own.
-    fn arguments(&mut self, arguments: &Punctuated<Expr, Token![,]>) {
+    pub(super) fn arguments(&mut self, arguments: &Punctuated<Expr, Token![,]>) {
         for argument in arguments {
             self.expression(argument);
         }
-    }
-
-    /// `vee(A)`, the only free function.
-    pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
-        let function = match &*call.func {
-            Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
-            _ => String::new(),
-        };
-        if function != "vee" {
-            let advice = if METHODS.contains(&function.as_str()) {
-                format!("write `{function}` as a method, `x.{function}(…)`")
-            } else {
-                "there is `vee(A)`, the vector of a skew matrix".to_owned()
-            };
-            self.errors.push_over(&call.func, format!("this function isn't known in a Lagrangian: {advice}"));
-            self.arguments(&call.args);
-            return None;
-        }
-        let mut arguments = call.args.iter();
-        let (Some(argument), None) = (arguments.next(), arguments.next()) else {
-            self.errors.push(call.func.span(), "`vee` takes one matrix");
-            return None;
-        };
-        let argument = self.expression(argument)?;
-        if argument.shape != SQUARE {
-            return self.mismatch("vee", "a 3 × 3 matrix", argument.shape, call.func.span());
-        }
-        Some(Tree::new(call.span(), VECTOR, Kind::Vee(argument)))
     }
 }
 

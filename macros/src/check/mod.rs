@@ -1,5 +1,6 @@
 //! From Rust syntax to a tree with shapes. Nothing is derived before all shapes fit.
 
+mod functions;
 mod methods;
 mod operators;
 mod usage;
@@ -194,7 +195,10 @@ impl Checker<'_> {
             self.bind_nothing(pattern);
             return;
         };
-        let tree = self.expression(&init.expr);
+        let tree = self.expression(&init.expr).map(|tree| {
+            let (span, shape, kind) = (tree.span, tree.shape, Kind::Bound(name.unraw().to_string(), tree));
+            Tree::new(span, shape, kind)
+        });
         let binding = Binding { tree, span: name.span(), used: false };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(name.unraw().to_string(), binding);

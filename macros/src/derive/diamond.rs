@@ -17,5 +17,5 @@ pub(super) fn diamond(context: &Context) -> Expression {
         .iter()
         .map(|&(w, variance)| (w, action::infinitesimal(context, variance, &direction, &context.symbol(w))));
     let variations: Variations = carried.collect();
-    variation(&context.declared.l_d, &variations, context.symbols).scaled(-Rational::ONE)
+    variation(context.lagrangian, &variations, context.symbols).scaled(-Rational::ONE)
 }

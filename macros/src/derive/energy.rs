@@ -5,5 +5,5 @@ use crate::symbolic::{Expression, Rational, Variations, variation};
 
 pub(super) fn discrete(context: &Context) -> Expression {
     let variations = Variations::from([(context.declared.step, Expression::rational(-Rational::ONE))]);
-    variation(&context.declared.l_d, &variations, context.symbols)
+    variation(context.lagrangian, &variations, context.symbols)
 }

@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Context, Declared, Derived, Limit, action, cayley, directions, momentum_equation, transport};
+use super::{Context, Declared, Derived, Limit, cayley, directions, momentum_equation, transport};
 use crate::symbolic::{Expression, Rational, SymbolId};
 
 /// Why the virtual work defines no force.
@@ -33,7 +33,7 @@ pub(crate) struct Displacements {
 pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result<Derived, ForceError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
-    let context = Context { declared, symbols: &symbols, directions: &directions };
+    let context = Context { declared, lagrangian: &declared.l_d, symbols: &symbols, directions: &directions };
     let direction = context.symbol(directions.first).vee(&symbols);
     let work = |before: i128, after: i128| {
         let along = |factor| direction.clone().scaled(Rational::integer(factor));
@@ -50,14 +50,10 @@ pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result
         return Err(ForceError::NotLinear);
     }
     let momentum = before.clone().scaled(-Rational::ONE);
-    let jacobian = momentum_equation::jacobian(&context, &momentum);
+    let jacobian = momentum_equation::jacobian(&context, &momentum, &[]);
     let parts = transport::parts(&context, &momentum, &before);
     let cleared = cayley::cleared(&context, &parts.unknown);
-    let (f, inverse) = (context.symbol(declared.increment), Expression::inverse(declared.increment, context.symbols));
-    let next = declared.advected.iter().zip(&directions.next).map(|(&(w, variance), &next)| {
-        (w, action::moved_back(&context, variance, (&f, &inverse), &context.symbol(next)))
-    });
-    let after = context.substituted(&after, &next.collect());
+    let after = context.substituted(&after, &transport::previous(&context).into_iter().collect());
     let none = || Expression::zero((1, 1));
     Ok(Derived {
         group: declared.group.clone(),
@@ -68,7 +64,10 @@ pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result
         momentum,
         jacobian,
         energy: none(),
-        limit: Limit { has_kinetic: false, inertia: none(), bias: none(), potential: none() },
+        adjoint_defect: none(),
+        closed: Vec::new(),
+        previous: transport::previous(&context),
+        limit: Limit { has_kinetic: false, slope: none(), inertia: none(), bias: none(), potential: none() },
         kick_before: parts.kick_before,
         unknown: transport::in_small_increment(&context, &parts.unknown),
         kick_after: parts.kick_after.plus(after),

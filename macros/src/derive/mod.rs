@@ -2,12 +2,15 @@
 
 mod action;
 mod cayley;
+mod closed;
 mod diamond;
 mod energy;
 mod force;
 mod limit;
 mod momentum_equation;
 mod momentum_maps;
+mod self_adjoint;
+mod series;
 mod transport;
 
 use std::collections::BTreeMap;
@@ -16,14 +19,18 @@ use crate::group::Group;
 use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance};
 
 pub(crate) use cayley::Cleared;
+pub(crate) use closed::{Closed, Let};
 pub(crate) use force::{Displacements, ForceError, force};
 pub(crate) use limit::{Limit, LimitError};
+pub(crate) use self_adjoint::SelfAdjointness;
 
 /// A declared Lagrangian with the symbols that it is written in.
 #[derive(Clone, Debug)]
 pub(crate) struct Declared {
     pub(crate) group: Group,
     pub(crate) symbols: Symbols,
+    /// The `let`s that aren't multiplied out, in their order; none where `l_d` is small enough.
+    pub(crate) lets: Vec<Let>,
     pub(crate) l_d: Expression,
     /// The increment `F`.
     pub(crate) increment: SymbolId,
@@ -54,6 +61,10 @@ pub(crate) struct Directions {
     pub(crate) coordinate_direction: SymbolId,
     /// The new advected parameters `w⁺ = F⁻¹·w`.
     pub(crate) next: Vec<SymbolId>,
+    /// `ξ̂` in the limit `F = exp(hξ̂)`.
+    velocity: SymbolId,
+    /// A scalar to differentiate functions by.
+    scratch: SymbolId,
 }
 
 /// All that follows from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
@@ -63,6 +74,10 @@ pub(crate) struct Derived {
     pub(crate) group: Group,
     increment: SymbolId,
     pub(crate) directions: Directions,
+    /// The closed `let`s with their derivatives.
+    pub(crate) closed: Vec<Closed>,
+    /// `w = F·w⁺`.
+    pub(crate) previous: Vec<(SymbolId, Expression)>,
     /// `(R_F)* δl_d/δF`.
     pub(crate) right_momentum: Expression,
     /// `(L_F)* δl_d/δF`.
@@ -75,6 +90,8 @@ pub(crate) struct Derived {
     pub(crate) jacobian: Expression,
     /// `−∂l_d/∂h`.
     pub(crate) energy: Expression,
+    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero where the Lagrangian is seen to be self-adjoint.
+    pub(crate) adjoint_defect: Expression,
     /// The Lagrangian's limit as `h → 0`.
     pub(crate) limit: Limit,
     /// The part of the diamond without `F`.
@@ -93,22 +110,52 @@ impl Derived {
     pub(crate) fn increment(&self) -> SymbolId {
         self.increment
     }
+
+    /// Whether all coefficients stayed in the range of exact arithmetic.
+    pub(crate) fn is_exact(&self) -> bool {
+        let limit = &self.limit;
+        let all = [
+            &self.right_momentum,
+            &self.left_momentum,
+            &self.diamond,
+            &self.momentum,
+            &self.jacobian,
+            &self.energy,
+            &self.adjoint_defect,
+            &limit.slope,
+            &limit.inertia,
+            &limit.bias,
+            &limit.potential,
+            &self.kick_before,
+            &self.unknown,
+            &self.kick_after,
+        ];
+        let cleared = self.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
+        let closed =
+            self.closed.iter().flat_map(|one| [&one.value, &one.pairing, &one.tangent.1, &one.multiplier_tangent.1]);
+        !all.into_iter().chain(cleared).chain(closed).any(Expression::has_overflow)
+    }
 }
 
 /// Derives everything.
 pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
-    let context = Context { declared, symbols: &symbols, directions: &directions };
+    let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.l_d, &mut symbols);
+    let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
+    closed::tangents(&context, &mut closed);
     let right_momentum = momentum_maps::right(&context);
     let left_momentum = momentum_maps::left(&context);
     let diamond = diamond::diamond(&context);
     let momentum = momentum_equation::momentum(&right_momentum, &diamond);
-    let jacobian = momentum_equation::jacobian(&context, &momentum);
+    let jacobian = momentum_equation::jacobian(&context, &momentum, &closed);
     let energy = energy::discrete(&context);
+    let adjoint_defect = self_adjoint::defect(&context);
     let limit = limit::limit(&context, &momentum)?;
     let parts = transport::parts(&context, &momentum, &diamond);
-    let cleared = cayley::cleared(&context, &parts.unknown);
+    let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
+    let unknown =
+        if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
     Ok(Derived {
         group: declared.group.clone(),
         increment: declared.increment,
@@ -118,19 +165,41 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         momentum,
         jacobian,
         energy,
+        adjoint_defect,
         limit,
         kick_before: parts.kick_before,
-        unknown: transport::in_small_increment(&context, &parts.unknown),
+        unknown,
         kick_after: parts.kick_after,
+        previous: transport::previous(&context),
         cleared,
+        closed,
         directions,
         symbols,
     })
 }
 
+/// What is derived by one variation, the kicks of the transport form, and the limit.
+pub(crate) fn principal_equations(declared: &Declared) -> Vec<Expression> {
+    let mut symbols = declared.symbols.clone();
+    let directions = directions(declared, &mut symbols);
+    let (closed, lagrangian) = closed::multipliers(&declared.lets, &declared.l_d, &mut symbols);
+    let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
+    let (right, left) = (momentum_maps::right(&context), momentum_maps::left(&context));
+    let diamond = diamond::diamond(&context);
+    let momentum = momentum_equation::momentum(&right, &diamond);
+    let parts = transport::parts(&context, &momentum, &diamond);
+    let limit =
+        limit::limit(&context, &momentum).map(|limit| [limit.slope, limit.inertia, limit.bias, limit.potential]);
+    let all = [declared.l_d.clone(), right, left, diamond, momentum, parts.kick_before, parts.kick_after];
+    let lets = closed.into_iter().flat_map(|one| [one.value, one.pairing]);
+    all.into_iter().chain(limit.into_iter().flatten()).chain(lets).collect()
+}
+
 /// What every rule needs.
 struct Context<'a> {
     declared: &'a Declared,
+    /// What is varied: `l_d`, with its `let`s by multipliers.
+    lagrangian: &'a Expression,
     symbols: &'a Symbols,
     directions: &'a Directions,
 }
@@ -166,6 +235,8 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         coordinates: column(symbols, "ξ", dimension, Stage::Iteration),
         denominator: symbols.add("(4 + |ξ|²)", (1, 1), Structure::General, Stage::Iteration),
         coordinate_direction: column(symbols, "δξ", dimension, Stage::Construction),
+        velocity: algebra(symbols, "ξ̂"),
+        scratch: symbols.add("x", (1, 1), Structure::General, Stage::Construction),
         next: declared
             .advected
             .iter()

@@ -9,15 +9,13 @@
 //! that an ambient Hessian lacks.
 
 use super::Context;
-use crate::symbolic::{Expression, Variations, variation};
+use super::closed::{Closed, forwards};
+use crate::symbolic::{Expression, variation};
 
 pub(super) fn momentum(right: &Expression, diamond: &Expression) -> Expression {
     right.clone().minus(diamond.clone())
 }
 
-pub(super) fn jacobian(context: &Context, momentum: &Expression) -> Expression {
-    let f = context.symbol(context.declared.increment);
-    let delta_f = context.product(&context.symbol(context.directions.second), &f);
-    let variations = Variations::from([(context.declared.increment, delta_f)]);
-    variation(momentum, &variations, context.symbols)
+pub(super) fn jacobian(context: &Context, momentum: &Expression, closed: &[Closed]) -> Expression {
+    variation(momentum, &forwards(context, closed), context.symbols)
 }

@@ -20,5 +20,5 @@ pub(super) fn left(context: &Context) -> Expression {
 
 fn along(context: &Context, delta_f: Expression) -> Expression {
     let variations = Variations::from([(context.declared.increment, delta_f)]);
-    variation(&context.declared.l_d, &variations, context.symbols)
+    variation(context.lagrangian, &variations, context.symbols)
 }

@@ -12,7 +12,7 @@
 use std::collections::BTreeMap;
 
 use super::{Context, action};
-use crate::symbolic::{Expression, degree, monomial_contains};
+use crate::symbolic::{Expression, Stage, SymbolId, degree, stage_of_monomial};
 
 pub(super) struct Parts {
     pub(super) kick_before: Expression,
@@ -22,7 +22,7 @@ pub(super) struct Parts {
 
 pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expression) -> Parts {
     let increment = context.declared.increment;
-    let unknown = momentum.filtered(|monomial| monomial_contains(monomial, increment));
+    let unknown = momentum.filtered(|monomial| stage_of_monomial(monomial, context.symbols) == Stage::Iteration);
     let kick_before = unknown.clone().minus(momentum.clone());
     let moved = diamond.clone().minus(kick_before.clone());
     let f = context.symbol(increment);
@@ -30,10 +30,19 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
     let inverse = Expression::inverse(increment, context.symbols);
     let turned = context.product(&context.product(&f, &direction), &inverse);
     let mut map = BTreeMap::from([(context.directions.first, turned)]);
-    for (&(w, variance), &next) in context.declared.advected.iter().zip(&context.directions.next) {
-        map.insert(w, action::moved_back(context, variance, (&f, &inverse), &context.symbol(next)));
-    }
+    map.extend(previous(context));
     Parts { kick_before, unknown, kick_after: context.substituted(&moved, &map) }
+}
+
+/// `w = F·w⁺`.
+pub(super) fn previous(context: &Context) -> Vec<(SymbolId, Expression)> {
+    let f = context.symbol(context.declared.increment);
+    let inverse = Expression::inverse(context.declared.increment, context.symbols);
+    let pairs = context.declared.advected.iter().zip(&context.directions.next);
+    let moved = pairs.map(|(&(w, variance), &next)| {
+        (w, action::moved_back(context, variance, (&f, &inverse), &context.symbol(next)))
+    });
+    moved.collect()
 }
 
 /// With `F = I + D`; as it is where that would multiply the terms.

@@ -135,8 +135,17 @@ impl Emitter<'_> {
     }
 
     fn call(&self, function: Function, argument: &TokenStream) -> TokenStream {
-        let root = &self.header.root;
-        let name = Ident::new(&format!("simd_{}", function.name()), Span::mixed_site());
+        let (root, span) = (&self.header.root, Span::mixed_site());
+        let ours = |name: &str, order: u8| {
+            let (name, order) = (Ident::new(name, span), Literal::u8_unsuffixed(order));
+            quote_spanned!(span=> #root::__private::#name::<_, #order>(#argument))
+        };
+        match function {
+            Function::Stumpff(k) => return ours("stumpff", k),
+            Function::LogRatio(k) => return ours("log_ratio", k),
+            _ => {}
+        }
+        let name = Ident::new(&format!("simd_{}", function.name()), span);
         quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SimdComplexField::#name(#argument))
     }
 

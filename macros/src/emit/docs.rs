@@ -1,8 +1,12 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
-use crate::derive::{Declared, Derived};
-use crate::scalar::{Graph, Kernel, NodeId, count};
-use crate::symbolic::{Stage, covector_text, text};
+use syn::ext::IdentExt as _;
+
+use super::Findings;
+use crate::ast::Declaration;
+use crate::derive::{Declared, Derived, SelfAdjointness};
+use crate::scalar::{Candidate, Graph, Kernel, NodeId, count};
+use crate::symbolic::{Stage, Variance, covector_text, text};
 
 /// A method with its equation.
 pub(super) struct Equation {
@@ -12,15 +16,30 @@ pub(super) struct Equation {
     source: &'static str,
 }
 
+/// The closed `let`s and their multipliers, which the equations are written in.
+pub(super) fn lets(derived: &Derived) -> String {
+    let symbols = &derived.symbols;
+    let name = |id| &symbols.get(id).name;
+    if derived.closed.is_empty() {
+        return String::new();
+    }
+    let values = derived.closed.iter().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
+    let pairings = derived.closed.iter().rev().map(|one| {
+        let (multiplier, direction) = (name(one.multiplier), name(one.direction));
+        format!("\n    ⟨{multiplier}, {direction}⟩ = {}", text(&one.pairing, symbols))
+    });
+    let (values, pairings) = (values.collect::<String>(), pairings.collect::<String>());
+    format!("lets, kept closed{values}\nmultipliers, λ_v = ∂l_d/∂v{pairings}\n")
+}
+
 /// The equations of a declaration, in the order of the thesis.
-pub(super) fn equations(derived: &Derived, declared: &Declared, kernel: &Kernel) -> Vec<Equation> {
+pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation> {
     let symbols = &derived.symbols;
     let covector = |expression| covector_text(expression, derived.directions.first, symbols);
     let scalar = |expression| text(expression, symbols);
     let equation = |method, left, right, source| Equation { method, left, right, source };
-    let candidates = kernel.candidates.iter().map(|candidate| format!("{}: {}", candidate.name, candidate.operations));
     vec![
-        equation("l_d", "l_d", scalar(&declared.l_d), "as declared, with FᵀF = I used"),
+        equation("l_d", "l_d", scalar(&declared.l_d), "as declared, in normal form"),
         equation("right_momentum", "(R_F)* δl_d/δF", covector(&derived.right_momentum), "section 3.2.1, item 2"),
         equation("left_momentum", "(L_F)* δl_d/δF", covector(&derived.left_momentum), "section 3.2.1, item 1; (2.6)"),
         equation("diamond", "δl_d/δw ⋄ w", covector(&derived.diamond), "(2.1)"),
@@ -32,34 +51,21 @@ pub(super) fn equations(derived: &Derived, declared: &Declared, kernel: &Kernel)
         equation("potential", "V", scalar(&derived.limit.potential), "continuous limit"),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
         equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
-        equation(
-            "newton_system",
-            "candidates, cheapest first",
-            candidates.collect::<Vec<_>>().join("; "),
-            "an iteration",
-        ),
     ]
 }
 
 /// The equations of a force.
-pub(super) fn equations_of_force(derived: &Derived, declared: &Declared, kernel: &Kernel) -> Vec<Equation> {
+pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<Equation> {
     let symbols = &derived.symbols;
     let covector = |expression| covector_text(expression, derived.directions.first, symbols);
     let equation = |method, left, right, source| Equation { method, left, right, source };
     let (work, jacobian) = (text(&declared.l_d, symbols), text(&derived.jacobian, symbols));
-    let candidates = kernel.candidates.iter().map(|candidate| format!("{}: {}", candidate.name, candidate.operations));
     vec![
         equation("virtual_work", "f⁻·η + f⁺·η⁺", work, "as declared, with FᵀF = I used"),
         equation("momentum", "−f⁻", covector(&derived.momentum), "the share in (2.7)"),
         equation("momentum_jacobian", "−∂f⁻_k along exp(tE_j)F", jacobian, "exact, right-trivialised"),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
         equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
-        equation(
-            "newton_system",
-            "candidates, cheapest first",
-            candidates.collect::<Vec<_>>().join("; "),
-            "an iteration",
-        ),
     ]
 }
 
@@ -77,11 +83,90 @@ pub(super) fn stage(graph: &Graph, outputs: &[NodeId], stage: Stage, when: &str)
     format!("{} at {when}.", count(graph, outputs, Some(stage)))
 }
 
-/// All equations as one text.
-pub(super) fn derivation(equations: &[Equation]) -> String {
+/// The equations, what they rest on, and what they cost, as one text.
+pub(super) fn derivation(
+    declaration: &Declaration,
+    derived: &Derived,
+    equations: &[Equation],
+    findings: &Findings,
+) -> String {
     let line = |equation: &Equation| {
         let source = if equation.source.is_empty() { String::new() } else { format!("    [{}]", equation.source) };
         format!("{}\n    {} = {}{source}\n", equation.method, equation.left, equation.right)
     };
-    equations.iter().map(line).collect()
+    let hypotheses = match findings.hypotheses.as_slice() {
+        [] => "none".to_owned(),
+        used => used.join(", "),
+    };
+    let kernel = &findings.kernel;
+    let before = [kernel.kick_before.as_slice(), &kernel.residual, &kernel.jacobian].concat();
+    // With a = μ + k₀.
+    let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
+    before_the_solve.arithmetic += kernel.residual.len();
+    let operations = format!(
+        "construction: {}\n    step, before the solve: {}\n    Newton iteration: {}\n    step, after the solve: {}",
+        count(&kernel.graph, &[before.as_slice(), &kernel.kick_after].concat(), Some(Stage::Construction)),
+        before_the_solve,
+        count(&kernel.graph, &before, Some(Stage::Iteration)),
+        count(&kernel.graph, &kernel.kick_after, Some(Stage::Step))
+            + count(&kernel.graph, &kernel.kick_after, Some(Stage::Iteration)),
+    );
+    let sections = [
+        ("hypotheses used", hypotheses),
+        ("self-adjoint", adjoint(findings.self_adjointness)),
+        ("Newton system", candidates(kernel)),
+        ("operations", operations),
+    ];
+    let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
+    [setting(declaration), lets(derived)].into_iter().chain(equations.iter().map(line)).chain(sections).collect()
+}
+
+/// The group, and how it moves the advected parameters.
+fn setting(declaration: &Declaration) -> String {
+    let group = declaration.group.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+    let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
+        let (space, moved) = match declaration.advected_kind(index).variance() {
+            Variance::Vector => ("V", "F⁻¹ w"),
+            Variance::Covector => ("V*", "Fᵀ w"),
+            Variance::Contravariant => ("V ⊗ V", "F⁻¹ w F⁻ᵀ"),
+            Variance::Covariant => ("V* ⊗ V*", "Fᵀ w F"),
+            Variance::Mixed => ("V ⊗ V*", "F⁻¹ w F"),
+        };
+        let name = w.name.unraw().to_string();
+        format!("    {name}⁺ = F⁻¹·{name} = {} for {name} in {space}\n", moved.replace('w', &name))
+    });
+    let advected: String = advected.collect();
+    format!("group\n    F = g⁻¹ g⁺ in {group}\n{advected}")
+}
+
+/// The unknown of the Newton system, how it is written, and how it might have been.
+pub(super) fn candidates(kernel: &Kernel) -> String {
+    let unknown = if kernel.in_increment {
+        "U(F, w) = a along F ↦ exp(tE_j)F, right-trivialised"
+    } else {
+        "U(cay(ξ), w) = a in the coordinates ξ of F = cay(ξ)"
+    };
+    let line = |(index, candidate): (usize, &Candidate)| {
+        let verdict = if index == 0 { "taken" } else { "rejected" };
+        format!("\n    {verdict}: {}, {} an iteration", candidate.name, candidate.operations)
+    };
+    kernel.candidates.iter().enumerate().map(line).fold(unknown.to_owned(), |text, line| text + &line)
+}
+
+/// Whether the Lagrangian is self-adjoint, how that was found, and what follows.
+fn adjoint(found: SelfAdjointness) -> String {
+    let (sign, how, consequence) = match found {
+        SelfAdjointness::Symbolic => ("=", "by the normal forms", "even order; a step of −h undoes a step of h"),
+        SelfAdjointness::Numeric => {
+            ("=", "at random points, to rounding", "even order; a step of −h undoes a step of h")
+        }
+        SelfAdjointness::ForPoints => (
+            "≠",
+            "equal, at random points, if all vectors have 1 for their last coordinate, which no type promises",
+            "with such vectors even order, and a step of −h undoes a step of h",
+        ),
+        SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),
+        SelfAdjointness::Unknown => ("≟", "no value at the random points", "not known to be its own adjoint"),
+    };
+    format!("l_d(F, w, h) {sign} −l_d(F⁻¹, F⁻¹·w, −h)    [{how}: {consequence}]")
 }

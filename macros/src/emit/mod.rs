@@ -7,35 +7,45 @@ mod inputs;
 mod stages;
 mod verbatim;
 
-use std::collections::BTreeMap;
-
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
 use crate::ast::{Declaration, Role};
-use crate::derive::Derived;
+use crate::derive::{Derived, SelfAdjointness};
 use crate::lower::Lowered;
-use crate::scalar::{Graph, Scalariser, components, kernel, square};
+use crate::scalar::{Given, Graph, Kernel, Scalariser, components, square, with_lets};
 use crate::symbolic::{Expression, SymbolId};
 
 use code::Form;
 pub(crate) use header::Header;
 
+/// What has been found out about a derivation.
+pub(crate) struct Findings {
+    pub(crate) kernel: Kernel,
+    pub(crate) self_adjointness: SelfAdjointness,
+    pub(crate) hypotheses: Vec<String>,
+}
+
 /// The whole implementation.
-pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, derived: &Derived) -> TokenStream {
-    let header = Header::new(declaration);
-    let kernel = kernel(derived);
+pub(crate) fn implementation(
+    declaration: &Declaration,
+    lowered: &Lowered,
+    derived: &Derived,
+    findings: &Findings,
+) -> TokenStream {
+    let (header, kernel) = (Header::new(declaration), &findings.kernel);
     let emitter = Emitter { declaration, lowered, derived, header: &header };
-    let (mathematics, effect, texts) = emitter.mathematics(&kernel);
-    let stages = stages::stages(&emitter, &kernel);
+    let (mathematics, effect, texts) = emitter.mathematics();
+    let stages = stages::stages(&emitter, kernel, &texts);
     let declared = verbatim::declared(declaration, &header);
-    let derivation = docs::derivation(&texts);
+    let derivation = docs::derivation(declaration, derived, &texts, findings);
+    let documentation = format!("```text\n{derivation}```");
     let validate = emitter.validate();
     let advected = emitter.advected();
     let root = &header.root;
     let span = Span::mixed_site();
     let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
-    let parts = stages::parts(&emitter, &kernel);
+    let parts = stages::parts(&emitter, kernel);
     let (name, mathematics) = match declaration.role {
         Role::Lagrangian => ("DiscreteLagrangian", mathematics),
         Role::Force => ("Force", TokenStream::new()),
@@ -44,10 +54,15 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
     let invariance = invariance(declaration, &header);
     let addition = header.addition();
     let body = &stages.methods;
+    let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
+        let is_self_adjoint = findings.self_adjointness.is_found();
+        quote_spanned!(span=> const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;)
+    });
     quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #of_role {
+            #self_adjoint
             #declared
             #mathematics
         }
@@ -58,6 +73,7 @@ pub(crate) fn implementation(declaration: &Declaration, lowered: &Lowered, deriv
             #types
             #parts
 
+            #[doc = #documentation]
             const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
 
             #validate
@@ -102,11 +118,11 @@ struct Emitter<'a> {
 
 impl Emitter<'_> {
     /// The derived terms that don't know stages: those of a Lagrangian, those of any effect, and their equations.
-    fn mathematics(&self, kernel: &crate::scalar::Kernel) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
+    fn mathematics(&self) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
         let equations = match self.declaration.role {
-            Role::Lagrangian => docs::equations(d, &self.lowered.declared, kernel),
-            Role::Force => docs::equations_of_force(d, &self.lowered.declared, kernel),
+            Role::Lagrangian => docs::equations(d, &self.lowered.declared),
+            Role::Force => docs::equations_of_force(d, &self.lowered.declared),
         };
         let method = |(name, takes, form, expression)| self.method(name, takes, form, expression, &equations);
         let of_lagrangian = [
@@ -136,7 +152,7 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let (span, d, root) = (Span::mixed_site(), self.derived, &self.header.root);
         let mut graph = Graph::default();
-        let none = BTreeMap::new();
+        let none = with_lets(&mut graph, d, Given::new());
         let (outputs, result) = match form {
             Form::Scalar => {
                 let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };

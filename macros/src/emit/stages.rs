@@ -17,7 +17,7 @@ pub(super) struct Stages {
     pub(super) step_terms_type: TokenStream,
 }
 
-pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
+pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::docs::Equation]) -> Stages {
     let graph = &kernel.graph;
     let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
     let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &system, &kernel.kick_after].concat();
@@ -69,6 +69,9 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
         quote_spanned!(span=> [#scalar; #length])
     };
     let iteration = super::docs::stage(graph, &system, Stage::Iteration, "a Newton iteration, residual and Jacobian");
+    let iteration = format!("```text\n{}\n```\n\n{iteration}", super::docs::candidates(kernel));
+    let [before, after] = [("kick_before", &kernel.kick_before), ("kick_after", &kernel.kick_after)]
+        .map(|(method, outputs)| super::docs::of(equations, method, graph, outputs));
     let step = super::docs::stage(
         graph,
         &[kernel.kick_before.clone(), step_terms.keys().copied().collect()].concat(),
@@ -85,6 +88,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
             #constants_body
         }
 
+        #[doc = #before]
         #[inline(always)]
         fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> #vector { #kick_before }
 
@@ -106,6 +110,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel) -> Stages {
             (#residual, #jacobian)
         }
 
+        #[doc = #after]
         #[inline(always)]
         fn kick_after(constants: &Self::Constants, increment: &#matrix, next: &Self::Advected) -> #vector {
             #inverse

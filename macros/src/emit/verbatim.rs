@@ -34,6 +34,8 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     bind("vee", quote_spanned!(span=> |matrix: #three| <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix)));
     bind("eta", quote_spanned!(span=> *eta));
     bind("eta_next", quote_spanned!(span=> *eta_next));
+    bind("log", quote_spanned!(span=> #root::__private::rotation_log::<#scalar>));
+    bind("exp", quote_spanned!(span=> #root::__private::rotation_exp::<#scalar>));
     for (index, parameter) in declaration.advected.iter().enumerate() {
         let part = if declaration.advected.len() == 1 {
             quote_spanned!(span=> (*w))
@@ -120,6 +122,15 @@ impl VisitMut for Rewrite<'_> {
             let root = &self.header.root;
             *expression =
                 syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::real::<#parameter>(#literal));
+        }
+    }
+
+    fn visit_expr_call_mut(&mut self, call: &mut syn::ExprCall) {
+        visit_mut::visit_expr_call_mut(self, call);
+        // A path, as one closure can't be for matrices of several sizes.
+        if matches!(&*call.func, Expr::Path(path) if path.path.is_ident("inverse")) {
+            let root = &self.header.root;
+            *call.func = syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::inverse);
         }
     }
 

@@ -3,6 +3,7 @@
 mod derivation;
 mod determinism;
 mod fuzz;
+mod higher_order;
 mod sizes;
 mod time;
 
@@ -11,7 +12,7 @@ use proc_macro2::TokenStream;
 use crate::ast::Role;
 use crate::derive::Derived;
 use crate::errors::Errors;
-use crate::{check, derive, lower, parse};
+use crate::{check, choose, lower, parse};
 
 /// (3.13).
 pub(crate) const HEAVY_TOP: &str = "group = SO3, advected(w = up),
@@ -40,9 +41,9 @@ pub(crate) fn derived(arguments: &str, item: &str) -> Derived {
     let item = syn::parse_str(item).expect("a struct");
     let declaration = parse::parse(Role::Lagrangian, tokens(arguments), item, &mut errors);
     let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
-    let lowered = lower::lower(&declaration, &tree, &mut errors).expect("small");
+    let candidates = lower::lower(&declaration, &tree, &mut errors).expect("small");
     assert!(errors.is_empty(), "{}", errors.to_compile_errors());
-    derive::derive(&lowered.declared).expect("a limit")
+    choose::cheapest(candidates).unwrap_or_else(|_| panic!("nothing to derive")).derived
 }
 
 /// An expansion is an error for the compiler to show, or items; returns whether it is an error.

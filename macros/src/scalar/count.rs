@@ -23,6 +23,18 @@ impl Operations {
     }
 }
 
+impl std::ops::Add for Operations {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            arithmetic: self.arithmetic + other.arithmetic,
+            sign_flips: self.sign_flips + other.sign_flips,
+            functions: self.functions + other.functions,
+        }
+    }
+}
+
 impl fmt::Display for Operations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} operations", self.arithmetic)?;

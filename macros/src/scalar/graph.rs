@@ -184,8 +184,42 @@ impl Graph {
         }
     }
 
+    /// `f(a)`. Of a family whose members follow from each other only the highest are called: downwards no digit is
+    /// lost, and what one operation has computed another shares.
     pub(crate) fn apply(&mut self, function: Function, a: NodeId) -> NodeId {
-        self.operation(Node::Apply(function, a))
+        match function {
+            // c_k = 1/k! − q c_{k+2}.
+            Function::Stumpff(k) if k < 5 => {
+                let higher = self.apply(Function::Stumpff(k + 2), a);
+                let first = self.constant(function.at_zero().unwrap_or(Rational::ZERO));
+                let rest = self.multiply(a, higher);
+                self.subtract(first, rest)
+            }
+            Function::LogRatio(k) if k < 2 => self.log_ratio(k, a),
+            _ => self.operation(Node::Apply(function, a)),
+        }
+    }
+
+    /// `G` or `G'` from `G''`, with `u = n(1 − n)` and `s = 1 − 2n`: `G' = (2 − 2u s G'')/(3 − 8u)` and
+    /// `G = u G'' + (3/2) s G'`, which hold at every angle.
+    fn log_ratio(&mut self, derivative: u8, n: NodeId) -> NodeId {
+        let second = self.apply(Function::LogRatio(2), n);
+        let integers = [1, 2, 3, 8].map(|value| self.constant(Rational::integer(value)));
+        let [one, two, three, eight] = integers;
+        let (rest, twice) = (self.subtract(one, n), self.multiply(two, n));
+        let (u, s) = (self.multiply(n, rest), self.subtract(one, twice));
+        let product = self.multiply(u, second);
+        let shifted = self.multiply(s, product);
+        let (numerator, multiple) = (self.subtract(one, shifted), self.multiply(eight, u));
+        let (numerator, denominator) = (self.multiply(two, numerator), self.subtract(three, multiple));
+        let first = self.divide(numerator, denominator);
+        if derivative == 1 {
+            return first;
+        }
+        let three_halves = self.constant(Rational::new(3, 2));
+        let scaled = self.multiply(s, first);
+        let scaled = self.multiply(three_halves, scaled);
+        self.add(product, scaled)
     }
 
     /// An integer power by squaring; a negative one is the reciprocal of the positive.

@@ -2,13 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::closed::{Given, entries, with_lets, with_tangents};
 use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, NodeId};
 use super::scalarise::{Entries, Scalariser};
 use crate::derive::{Cleared, Derived};
 use crate::group::Group;
-use crate::symbolic::{Expression, Rational, Stage, SymbolId};
+use crate::symbolic::{Expression, Rational, Stage};
 
 /// A way to write the Newton system, with its operations an iteration.
 #[derive(Clone, Debug)]
@@ -36,13 +37,16 @@ pub(crate) struct Kernel {
     pub(crate) candidates: Vec<Candidate>,
 }
 
+impl Kernel {
+    /// What a step of two Newton iterations costs.
+    pub(crate) fn cost(&self) -> usize {
+        let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());
+        2 * iteration + count(&self.graph, &self.kick_after, None).cost()
+    }
+}
+
 /// `tr(E_k W)` and the like for each generator: the components of a covector.
-pub(crate) fn components(
-    graph: &mut Graph,
-    derived: &Derived,
-    given: &BTreeMap<SymbolId, Entries>,
-    covector: &Expression,
-) -> Vec<NodeId> {
+pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
     (0..derived.group.dimension())
         .map(|k| {
             let mut given = given.clone();
@@ -62,17 +66,13 @@ fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
 }
 
 /// A Jacobian, linear in `E_k` and `E_j`, row by row.
-pub(crate) fn square(
-    graph: &mut Graph,
-    derived: &Derived,
-    given: &BTreeMap<SymbolId, Entries>,
-    bilinear: &Expression,
-) -> Vec<NodeId> {
+pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let columns: Vec<Vec<NodeId>> = (0..dimension)
         .map(|j| {
             let mut given = given.clone();
             given.insert(derived.directions.second, generator(graph, &derived.group, j));
+            let given = with_tangents(graph, derived, given);
             components(graph, derived, &given, bilinear)
         })
         .collect();
@@ -85,11 +85,15 @@ fn by_rows(dimension: usize, columns: &[Vec<NodeId>]) -> Vec<NodeId> {
 
 pub(crate) fn kernel(derived: &Derived) -> Kernel {
     let mut graph = Graph::default();
-    let kick_before = components(&mut graph, derived, &BTreeMap::new(), &derived.kick_before);
+    let none = with_lets(&mut graph, derived, Given::new());
+    let kick_before = components(&mut graph, derived, &none, &derived.kick_before);
     let increment = by_increment(&mut graph, derived, |graph, row, column| {
         graph.input(Input { symbol: derived.directions.small, row, column }, Stage::Iteration)
     });
-    let kick_after = components(&mut graph, derived, &increment, &derived.kick_after);
+    let kick_after = {
+        let given = after(&mut graph, derived, increment.clone());
+        components(&mut graph, derived, &given, &derived.kick_after)
+    };
     let mut found: Vec<(Candidate, Vec<NodeId>)> = Vec::new();
     let mut add = |graph: &Graph, name, denominators, outputs: Vec<NodeId>| {
         let operations = count(graph, &outputs, Some(Stage::Iteration));
@@ -102,7 +106,9 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     } else {
         let (retracted, opaque) = retracted(&mut graph, derived);
         add(&graph, "F rebuilt from ξ", 0, retracted.clone());
-        if let Some(outputs) = expanded(&mut graph, &retracted, &opaque) {
+        if derived.closed.is_empty()
+            && let Some(outputs) = expanded(&mut graph, &retracted, &opaque)
+        {
             add(&graph, "F rebuilt from ξ, multiplied out", 0, outputs);
         }
     }
@@ -128,12 +134,24 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     }
 }
 
+/// With what closed `let`s are at `F` and `w = F·w⁺`.
+fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+    if derived.closed.is_empty() {
+        return given;
+    }
+    for (w, previous) in &derived.previous {
+        let entries = entries(graph, &derived.symbols, &given, previous);
+        given.insert(*w, entries);
+    }
+    with_lets(graph, derived, given)
+}
+
 /// `D` by its entries, and `F = I + D`.
 fn by_increment(
     graph: &mut Graph,
     derived: &Derived,
     mut entry: impl FnMut(&mut Graph, usize, usize) -> NodeId,
-) -> BTreeMap<SymbolId, Entries> {
+) -> Given {
     let size = derived.group.size;
     let small = Entries::new(size, size, |row, column| entry(graph, row, column));
     let one = graph.one();
@@ -145,7 +163,8 @@ fn by_increment(
 }
 
 /// `U(F) − a` and `∂U_k` along `E_j`, with `F` and `D` given.
-fn system(graph: &mut Graph, derived: &Derived, given: &BTreeMap<SymbolId, Entries>) -> Vec<NodeId> {
+fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
+    let given = &with_lets(graph, derived, given.clone());
     let symbol = derived.directions.target;
     let unknown = components(graph, derived, given, &derived.unknown);
     let mut outputs: Vec<NodeId> = unknown

@@ -1,5 +1,6 @@
 //! From matrix expressions to scalar operations: entries, stages, shared subexpressions, counts.
 
+mod closed;
 mod count;
 mod expand;
 mod graph;
@@ -8,7 +9,8 @@ mod scalarise;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use closed::{Given, with_lets, with_values};
 pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
-pub(crate) use kernel::{Kernel, components, kernel, square};
+pub(crate) use kernel::{Candidate, Kernel, components, kernel, square};
 pub(crate) use scalarise::Scalariser;

@@ -132,7 +132,15 @@ impl Scalariser<'_> {
         let turned = |entries: Entries, transposed: bool| if transposed { entries.transposed() } else { entries };
         match factor {
             Factor::Symbol { id, transposed } => turned(self.symbol(*id), *transposed),
-            Factor::Inverse { id, transposed } => turned(self.symbol(self.symbols.inverse_of(*id)), *transposed),
+            Factor::Inverse { id, transposed } => {
+                let inverse = if let Some(inverse) = self.symbols.inverse_of(*id) {
+                    self.symbol(inverse)
+                } else {
+                    let entries = self.symbol(*id);
+                    inverse(self.graph, &entries)
+                };
+                turned(inverse, *transposed)
+            }
             Factor::Unit { index, size, transposed } => {
                 let (zero, one) = (self.graph.zero(), self.graph.one());
                 turned(Entries::new(*size, 1, |row, _| if row == *index { one } else { zero }), *transposed)
@@ -268,4 +276,44 @@ impl Scalariser<'_> {
         }
         (is_own, cost, left.rows * right.columns)
     }
+}
+
+/// The entries of `A⁻¹` by Cramer's rule, for matrices of up to three rows.
+fn inverse(graph: &mut Graph, matrix: &Entries) -> Entries {
+    let size = matrix.rows;
+    let is_diagonal =
+        (0..size).all(|row| (0..size).all(|column| row == column || graph.is_zero(matrix.at(row, column))));
+    let (zero, one) = (graph.zero(), graph.one());
+    if is_diagonal {
+        return Entries::new(
+            size,
+            size,
+            |row, column| {
+                if row == column { graph.divide(one, matrix.at(row, row)) } else { zero }
+            },
+        );
+    }
+    // Minors with rows and columns in cyclic order carry their sign.
+    let cofactor = |graph: &mut Graph, row: usize, column: usize| {
+        let at = |i: usize, j: usize| matrix.at((row + i) % size, (column + j) % size);
+        match size {
+            2 => {
+                if row == column {
+                    at(1, 1)
+                } else {
+                    graph.negate(at(1, 1))
+                }
+            }
+            3 => {
+                let (a, b) = (graph.multiply(at(1, 1), at(2, 2)), graph.multiply(at(1, 2), at(2, 1)));
+                graph.subtract(a, b)
+            }
+            _ => graph.one(),
+        }
+    };
+    let adjugate = Entries::new(size, size, |row, column| cofactor(graph, column, row));
+    let terms: Vec<NodeId> = (0..size).map(|k| graph.multiply(matrix.at(0, k), adjugate.at(k, 0))).collect();
+    let determinant = graph.sum(&terms);
+    let reciprocal = graph.divide(one, determinant);
+    Entries::new(size, size, |row, column| graph.multiply(adjugate.at(row, column), reciprocal))
 }

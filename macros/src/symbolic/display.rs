@@ -20,30 +20,57 @@ pub(crate) fn text(expression: &Expression, symbols: &Symbols) -> String {
 }
 
 /// An expression that is linear in the algebra direction `E`, as the covector that it pairs with: `tr(E W)` is the
-/// `E` component of `−(W − Wᵀ)^∨`.
+/// `E` component of `−(W − Wᵀ)^∨`. What has one coefficient shares it.
 pub(crate) fn covector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> String {
-    join(expression.terms().map(|(monomial, coefficient)| {
-        let closed = monomial.scalars.iter().find_map(|(atom, exponent)| match atom {
-            Atom::Trace(word) if *exponent == 1 => opened(word, direction, symbols).map(|opened| (atom, opened)),
-            _ => None,
-        });
-        if let Some((atom, word)) = closed {
-            let (sign, turned) = transpose(&word, symbols);
-            let (word, turned) = (word_text(&word, symbols), word_text(&turned, symbols));
-            let between = if sign < 0 { "+" } else { "−" };
-            let (coefficient, body) = if coefficient.is_negative() || sign < 0 {
-                (-coefficient, format!("({word} {between} {turned})^∨"))
-            } else {
-                (coefficient, format!("({turned} − {word})^∨"))
-            };
-            let (prefix, mut others) = parts(monomial, coefficient, Some(atom), symbols);
-            others.push(body);
-            (coefficient, prefix, others.join(" "))
-        } else {
-            let (prefix, body) = parts(monomial, coefficient, None, symbols);
-            (coefficient, prefix, body.join(" "))
+    let mut terms: Vec<Term> = Vec::new();
+    for (monomial, coefficient) in expression.terms() {
+        let term = covector_term(monomial, coefficient, direction, symbols);
+        match terms.iter_mut().find(|other| other.shares_coefficient(&term)) {
+            Some(other) => other.vees.extend(term.vees),
+            None => terms.push(term),
         }
+    }
+    join(terms.into_iter().map(|term| {
+        let mut body = term.body;
+        body.extend((!term.vees.is_empty()).then(|| format!("({})^∨", term.vees.join(" + "))));
+        (term.coefficient, term.prefix, body.join(" "))
     }))
+}
+
+/// A term of a covector: a coefficient, other scalars, and `W − Wᵀ` under the `∨`.
+struct Term {
+    coefficient: Rational,
+    prefix: String,
+    body: Vec<String>,
+    vees: Vec<String>,
+}
+
+impl Term {
+    fn shares_coefficient(&self, other: &Self) -> bool {
+        let is_vee = !self.vees.is_empty() && !other.vees.is_empty();
+        is_vee && self.coefficient == other.coefficient && self.prefix == other.prefix && self.body == other.body
+    }
+}
+
+fn covector_term(monomial: &Monomial, coefficient: Rational, direction: SymbolId, symbols: &Symbols) -> Term {
+    let closed = monomial.scalars.iter().find_map(|(atom, exponent)| match atom {
+        Atom::Trace(word) if *exponent == 1 => opened(word, direction, symbols).map(|opened| (atom, opened)),
+        _ => None,
+    });
+    let Some((atom, word)) = closed else {
+        let (prefix, body) = parts(monomial, coefficient, None, symbols);
+        return Term { coefficient, prefix, body, vees: Vec::new() };
+    };
+    let (sign, turned) = transpose(&word, symbols);
+    let (word, turned) = (word_text(&word, symbols), word_text(&turned, symbols));
+    let between = if sign < 0 { "+" } else { "−" };
+    let (coefficient, vee) = if coefficient.is_negative() || sign < 0 {
+        (-coefficient, format!("{word} {between} {turned}"))
+    } else {
+        (coefficient, format!("{turned} − {word}"))
+    };
+    let (prefix, body) = parts(monomial, coefficient, Some(atom), symbols);
+    Term { coefficient, prefix, body, vees: vec![vee] }
 }
 
 /// `W` with `tr(E W)` or `uᵀ A E B v` equal to the closed word, if `E` is one of its factors.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::functions::Function;
 use super::rational::Rational;
-use super::symbols::{Structure, SymbolId, Symbols};
+use super::symbols::{Stage, Structure, SymbolId, Symbols};
 use super::word::{self, Factor};
 
 /// Larger ones are on their way to where exponents saturate.
@@ -91,6 +91,11 @@ impl Expression {
     }
 
     pub(crate) fn function(function: Function, argument: Self) -> Self {
+        if argument.is_zero()
+            && let Some(value) = function.at_zero()
+        {
+            return Self::rational(value);
+        }
         Self::atom(Atom::Function(function, Box::new(argument)), 1)
     }
 
@@ -350,6 +355,17 @@ pub(crate) fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
             Atom::Trace(word) => word.iter().any(|factor| factor.contains(symbol)),
             Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(symbol),
         })
+}
+
+/// When the value of a monomial is known: with the last of its symbols.
+pub(crate) fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage {
+    let present = symbols.ids().filter(|&id| monomial_contains(monomial, id));
+    present.map(|id| symbols.get(id).stage).max().unwrap_or(Stage::Construction)
+}
+
+/// When the value of an expression is known.
+pub(crate) fn stage_of(expression: &Expression, symbols: &Symbols) -> Stage {
+    expression.terms.keys().map(|monomial| stage_of_monomial(monomial, symbols)).max().unwrap_or(Stage::Construction)
 }
 
 /// How often the symbol is multiplied with itself in a monomial, at most.

@@ -70,12 +70,20 @@ impl Symbols {
         &self.all[id.0]
     }
 
+    pub(crate) fn set_stage(&mut self, id: SymbolId, stage: Stage) {
+        self.all[id.0].stage = stage;
+    }
+
+    pub(crate) fn ids(&self) -> impl Iterator<Item = SymbolId> {
+        (0..self.all.len()).map(SymbolId)
+    }
+
     pub(crate) fn set_inverse(&mut self, matrix: SymbolId, inverse: SymbolId) {
         self.inverse = Some((matrix, inverse));
     }
 
-    /// The symbol for the entries of the inverse, the matrix itself where none was set.
-    pub(crate) fn inverse_of(&self, id: SymbolId) -> SymbolId {
-        self.inverse.filter(|(matrix, _)| *matrix == id).map_or(id, |(_, inverse)| inverse)
+    /// The symbol for the entries of the inverse, where one was set.
+    pub(crate) fn inverse_of(&self, id: SymbolId) -> Option<SymbolId> {
+        self.inverse.filter(|(matrix, _)| *matrix == id).map(|(_, inverse)| inverse)
     }
 }

@@ -51,6 +51,7 @@ impl Factor {
                 Structure::Skew => (-1, self.clone()),
                 Structure::General | Structure::Orthogonal => (1, Self::Symbol { id: *id, transposed: !transposed }),
             },
+            Self::Inverse { id, .. } if symbols.get(*id).structure.is_symmetric() => (1, self.clone()),
             Self::Inverse { id, transposed } => (1, Self::Inverse { id: *id, transposed: !transposed }),
             Self::Unit { index, size, transposed } => {
                 (1, Self::Unit { index: *index, size: *size, transposed: !transposed })

@@ -26,14 +26,17 @@ fn derivation(arguments: &str, item: &str) -> String {
 #[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them
 fn of_the_heavy_top() {
     expect![[r#"
+        group
+            F = g⁻¹ g⁺ in SO3
+            w⁺ = F⁻¹·w = Fᵀ w for w in V*
         l_d
-            l_d = −(1/h) tr(F J_d) + (1/h) tr(J_d) − (h m g/2) ⟨rho, Fᵀ w⟩ − (h m g/2) ⟨rho, w⟩    [as declared, with FᵀF = I used]
+            l_d = −(1/h) tr(F J_d) + (1/h) tr(J_d) − (h m g/2) ⟨rho, Fᵀ w⟩ − (h m g/2) ⟨rho, w⟩    [as declared, in normal form]
         right_momentum
             (R_F)* δl_d/δF = (1/h) (F J_d − J_d Fᵀ)^∨ + (h m g/2) (F rho wᵀ − w rhoᵀ Fᵀ)^∨    [section 3.2.1, item 2]
         left_momentum
             (L_F)* δl_d/δF = (1/h) (J_d F − Fᵀ J_d)^∨ + (h m g/2) (rho wᵀ F − Fᵀ w rhoᵀ)^∨    [section 3.2.1, item 1; (2.6)]
         diamond
-            δl_d/δw ⋄ w = (h m g/2) (F rho wᵀ − w rhoᵀ Fᵀ)^∨ + (h m g/2) (rho wᵀ − w rhoᵀ)^∨    [(2.1)]
+            δl_d/δw ⋄ w = (h m g/2) (F rho wᵀ − w rhoᵀ Fᵀ + rho wᵀ − w rhoᵀ)^∨    [(2.1)]
         legendre_minus
             μ = (1/h) (F J_d − J_d Fᵀ)^∨ + (h m g/2) (w rhoᵀ − rho wᵀ)^∨    [(2.7)]
         momentum_jacobian
@@ -50,7 +53,60 @@ fn of_the_heavy_top() {
             k₀ = (h m g/2) (rho wᵀ − w rhoᵀ)^∨    [a = μ + k₀]
         kick_after
             k₁⁺ = (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
-        newton_system
-            candidates, cheapest first = Cayley, denominators cleared, multiplied out: 111 operations; Cayley, denominators cleared: 112 operations; F rebuilt from ξ: 151 operations, 3 sign flips; F rebuilt from ξ, multiplied out: 275 operations, 3 sign flips    [an iteration]
+        hypotheses used
+            FᵀF = I, J_dᵀ = J_d
+        self-adjoint
+            l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)    [by the normal forms: even order; a step of −h undoes a step of h]
+        Newton system
+            U(cay(ξ), w) = a in the coordinates ξ of F = cay(ξ)
+            taken: Cayley, denominators cleared, multiplied out, 111 operations an iteration
+            rejected: Cayley, denominators cleared, 112 operations an iteration
+            rejected: F rebuilt from ξ, 151 operations, 3 sign flips an iteration
+            rejected: F rebuilt from ξ, multiplied out, 275 operations, 3 sign flips an iteration
+        operations
+            construction: 36 operations
+            step, before the solve: 21 operations
+            Newton iteration: 111 operations
+            step, after the solve: 9 operations
     "#]].assert_eq(&derivation(HEAVY_TOP, &top("NonstandardInertia")));
+}
+
+/// The line below a title.
+fn section(arguments: &str, item: &str, title: &str) -> String {
+    let text = derivation(arguments, item);
+    let mut lines = text.lines().skip_while(|line| *line != title).skip(1);
+    lines.next().expect("the section").trim().to_owned()
+}
+
+/// Only what an equation would be different without.
+#[test]
+fn hypotheses_that_are_used() {
+    let hypotheses = |arguments: &str, item: &str| section(arguments, item, "hypotheses used");
+    let diagonal = hypotheses(HEAVY_TOP, &top("DiagonalNonstandardInertia"));
+    assert_eq!(diagonal, "FᵀF = I, J_dᵀ = J_d, J_d diagonal");
+    // Nothing is multiplied by the inertia: neither its symmetry nor its zeros matter.
+    let trace = "group = SO3, advected(w = up),
+        l_d = J_d.trace() * (3.0 - F.trace()) / h - 0.5 * h * k * w.dot(&(rho + F * rho))";
+    let item = "struct Top { J_d: DiagonalNonstandardInertia, k: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+    assert_eq!(hypotheses(trace, item), "FᵀF = I");
+    let free = "group = SO3, l_d = k * (3.0 - F.trace()) / h";
+    assert_eq!(hypotheses(free, "struct Body { k: f64 }"), "none");
+    let without_relation = "group = SO3, l_d = (J_d.trace() - (F * J_d).trace()) / h + (J_d * F * J_d * F).trace() * h";
+    assert_eq!(hypotheses(without_relation, "struct Body { J_d: NonstandardInertia }"), "J_dᵀ = J_d");
+    // Elsewhere nothing is assumed.
+    let planar = "group = SE2, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)";
+    assert_eq!(hypotheses(planar, "struct Planar { J: Matrix3<f64> }"), "none");
+}
+
+/// What is advected moves by its kind, under its own name.
+#[test]
+fn the_setting() {
+    let text = derivation(
+        "group = SE2, advected(w = up, S = field),
+        l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * (w.dot(&(F * r)) + (S * F).trace())",
+        "struct Planar { J: Matrix3<f64>, r: Vector3<f64>, up: Vector3<f64>, field: MixedTensor<f64, 3> }",
+    );
+    assert!(text.starts_with(
+        "group\n    F = g⁻¹ g⁺ in SE2\n    w⁺ = F⁻¹·w = Fᵀ w for w in V*\n    S⁺ = F⁻¹·S = F⁻¹ S F for S in V ⊗ V*\n"
+    ));
 }

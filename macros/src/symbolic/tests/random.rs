@@ -140,7 +140,7 @@ pub(crate) fn both(random: &mut Random, world: &World, shape: (usize, usize), de
     }
     let pick = random.below(9);
     let exponent = [-2, -1, 2, 3, 5][random.below(5)];
-    let function = Function::ALL[random.below(Function::ALL.len())];
+    let function = Function::METHODS[random.below(Function::METHODS.len())];
     let mut part = |shape| both(random, world, shape, depth - 1);
     let product = |a: &Both, b: &Both| Both {
         expression: a.expression.times(&b.expression, symbols),

@@ -1,0 +1,38 @@
+//! Declared systems, one to a file: what the derivation is shown on, and what the tests integrate.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+// Each user takes a part of this.
+#![allow(dead_code, unreachable_pub, unused_imports)]
+
+mod cayley_top;
+mod elastic_flow;
+mod fourth_order_body;
+mod fourth_order_top;
+mod free_body;
+mod heavy_top;
+mod log_top;
+mod log_trace_top;
+mod magnet;
+mod orbiting_body;
+mod satellite;
+mod sixth_order_top;
+mod spring;
+mod tethered_plate;
+mod underwater_body;
+
+pub use cayley_top::CayleyTop;
+pub use elastic_flow::ElasticFlow;
+pub use fourth_order_body::FourthOrderBody;
+pub use fourth_order_top::FourthOrderTop;
+pub use free_body::FreeBody;
+pub use heavy_top::{FullTop, HeavyTop};
+pub use log_top::LogTop;
+pub use log_trace_top::LogTraceTop;
+pub use magnet::Magnet;
+pub use orbiting_body::OrbitingBody;
+pub use satellite::Satellite;
+pub use sixth_order_top::SixthOrderTop;
+pub use spring::Spring;
+pub use tethered_plate::TetheredPlate;
+pub use underwater_body::UnderwaterBody;

@@ -1,0 +1,37 @@
+//! Gravity gradient without expansion, orbit and attitude together.
+
+use liestep::{ContravariantVector, SE3, lagrangian};
+use nalgebra::{Matrix4, Vector4};
+
+/// A rigid body in the 1/r field of a centre fixed in space, attracted at two of its points.
+///
+/// Orbit and attitude act on each other. Places are homogeneous, `(x, y, z, 1)`; the centre is a point of space that
+/// the body sees move, an element of `V`. As `F` keeps distances, `‖F⁻¹c − p‖ = ‖c − F p‖`.
+#[lagrangian(
+    group = SE3,
+    advected(c = centre),
+    l_d = {
+        let d = F - I;
+        let kinetic = (d * J * d.transpose()).trace() / (2.0 * h);
+        let before = m1 / (c - p1).norm() + m2 / (c - p2).norm();
+        let after = m1 / (c - F * p1).norm() + m2 / (c - F * p2).norm();
+        kinetic + 0.5 * h * GM * (before + after)
+    },
+)]
+#[derive(Clone, Debug)]
+pub struct OrbitingBody {
+    /// `∫ X Xᵀ dm` of the whole body in homogeneous coordinates: second moments in kg m², first in kg m, mass in kg.
+    pub J: Matrix4<f64>,
+    /// The mass attracted at the first point, kg.
+    pub m1: f64,
+    /// The first point, body frame.
+    pub p1: Vector4<f64>,
+    /// The mass attracted at the second point, kg.
+    pub m2: f64,
+    /// The second point, body frame.
+    pub p2: Vector4<f64>,
+    /// Gravitational constant times the attracting mass, m³/s².
+    pub GM: f64,
+    /// The attracting centre, in space.
+    pub centre: ContravariantVector<f64, 4>,
+}

@@ -1,0 +1,31 @@
+//! A planar body on a tether.
+
+use liestep::{ContravariantVector, SE2, lagrangian};
+use nalgebra::{Matrix3, Vector3};
+
+/// A rigid body in the plane, one of whose points is tied by an elastic tether to a point of the plane.
+///
+/// Places are homogeneous, `(x, y, 1)`. The anchor is a point of space that the body sees move, an element of `V`.
+#[lagrangian(
+    group = SE2,
+    advected(a = anchor),
+    l_d = {
+        let kinetic = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h);
+        let before = (a - p).norm() - length;
+        let after = (a - F * p).norm() - length;
+        kinetic - 0.25 * h * k * (before.powi(2) + after.powi(2))
+    },
+)]
+#[derive(Clone, Debug)]
+pub struct TetheredPlate {
+    /// `∫ X Xᵀ dm` in homogeneous coordinates: second moments in kg m², first in kg m, mass in kg.
+    pub J: Matrix3<f64>,
+    /// Stiffness, N/m.
+    pub k: f64,
+    /// Length of the tether at rest, m.
+    pub length: f64,
+    /// Where it is tied to the body, body frame.
+    pub p: Vector3<f64>,
+    /// Where it is tied to the plane.
+    pub anchor: ContravariantVector<f64, 3>,
+}

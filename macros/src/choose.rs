@@ -1,0 +1,54 @@
+//! Multiplied out or with closed `let`s: whichever costs less to run.
+//!
+//! Multiplied out, what cancels is found; with closed `let`s, nothing is written twice. Both are derived where there are
+//! `let`s, and counted.
+
+use crate::derive::{self, Derived, ForceError, LimitError};
+use crate::lower::Lowered;
+use crate::scalar::{self, Kernel};
+
+/// What is emitted.
+pub(crate) struct Chosen {
+    pub(crate) lowered: Lowered,
+    pub(crate) derived: Derived,
+    pub(crate) kernel: Kernel,
+}
+
+/// Why nothing can be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Refusal {
+    Limit(LimitError),
+    Force(ForceError),
+    /// A coefficient left the range of exact arithmetic.
+    Overflow,
+}
+
+/// The candidate with the least operations a step; the first, which is simpler to read, if it is nearly as cheap.
+pub(crate) fn cheapest(candidates: Vec<Lowered>) -> Result<Chosen, Refusal> {
+    let mut chosen: Option<(usize, Chosen)> = None;
+    let mut refusal = None;
+    for lowered in candidates {
+        match derived(lowered) {
+            Ok(candidate) => {
+                let cost = candidate.kernel.cost();
+                if chosen.as_ref().is_none_or(|(least, _)| cost < least - least / 8) {
+                    chosen = Some((cost, candidate));
+                }
+            }
+            Err(why) => refusal = refusal.or(Some(why)),
+        }
+    }
+    chosen.map(|(_, chosen)| chosen).ok_or(refusal.unwrap_or(Refusal::Overflow))
+}
+
+fn derived(lowered: Lowered) -> Result<Chosen, Refusal> {
+    let derived = match lowered.displacements {
+        None => derive::derive(&lowered.declared).map_err(Refusal::Limit)?,
+        Some(displacements) => derive::force(&lowered.declared, displacements).map_err(Refusal::Force)?,
+    };
+    if !derived.is_exact() {
+        return Err(Refusal::Overflow);
+    }
+    let kernel = scalar::kernel(&derived);
+    Ok(Chosen { lowered, derived, kernel })
+}

@@ -1,0 +1,81 @@
+//! How long a user waits after an edit: the incremental build of a crate with one declaration.
+//!
+//! ```text
+//! cargo bench --bench compile-time
+//! ```
+//!
+//! Each file in `compile_time/` is the `main.rs` of a crate that depends on liestep. A number in it is changed, then the
+//! crate is checked or built without optimisation, as `cargo check` and `cargo build` do for the user; the whole command
+//! is timed, cargo and linker included. The crate `none` declares nothing: what a declaration costs is the difference.
+//! The first run compiles the dependencies. A new declaration is a new file and its line in [`DECLARATIONS`].
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+use std::{env, fs, io};
+
+const ROUNDS: u32 = 7;
+
+/// Name and source.
+const DECLARATIONS: [(&str, &str); 2] =
+    [("none", include_str!("compile_time/none.rs")), ("(3.13)", include_str!("compile_time/heavy_top.rs"))];
+
+/// The user's crate, in cargo's directory for the temporary files of tests and benchmarks.
+struct Crate {
+    directory: PathBuf,
+    source: &'static str,
+}
+
+impl Crate {
+    fn new(source: &'static str) -> io::Result<Self> {
+        let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compile-time");
+        fs::create_dir_all(directory.join("src"))?;
+        let workspace = Path::new(env!("CARGO_MANIFEST_DIR"));
+        // One name for all crates and one set of versions: the dependencies are then compiled once.
+        let manifest = format!(
+            "[package]\nname = \"user\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
+             [dependencies]\nliestep = {{ path = {:?} }}\nnalgebra = {{ version = \"0.35\", default-features = false }}\n\n\
+             [workspace]\n",
+            workspace.join("core")
+        );
+        fs::write(directory.join("Cargo.toml"), manifest)?;
+        fs::copy(workspace.join("Cargo.lock"), directory.join("Cargo.lock"))?;
+        Ok(Self { directory, source })
+    }
+
+    /// Runs cargo after an edit that no earlier build has seen; in seconds.
+    fn time(&self, command: &str, edit: u32) -> io::Result<f64> {
+        let edited = self.source.replacen("EDIT: u32 = 0", &format!("EDIT: u32 = {edit}"), 1);
+        assert_ne!(edited, self.source, "there is a number to edit");
+        fs::write(self.directory.join("src/main.rs"), edited)?;
+        let start = Instant::now();
+        let output = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+            .args([command, "--offline", "--quiet", "--target-dir", "target"])
+            .current_dir(&self.directory)
+            .env_remove("RUSTFLAGS")
+            .output()?;
+        let elapsed = start.elapsed().as_secs_f64();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        Ok(elapsed)
+    }
+
+    /// The median of some edits after one that fills the cache, in milliseconds.
+    fn median(&self, command: &str) -> io::Result<f64> {
+        // Not a number that an earlier run has used: the build would be found in the cache.
+        let first = std::process::id() % 1_000_000 * 1_000 + 1;
+        self.time(command, first)?;
+        let mut times = (1..=ROUNDS).map(|round| self.time(command, first + round)).collect::<io::Result<Vec<_>>>()?;
+        times.sort_by(f64::total_cmp);
+        Ok(times[times.len() / 2] * 1e3)
+    }
+}
+
+fn main() -> io::Result<()> {
+    println!("{:<16}{:>12}{:>12}", "ms", "check", "build");
+    for (name, source) in DECLARATIONS {
+        let user = Crate::new(source)?;
+        let (check, build) = (user.median("check")?, user.median("build")?);
+        println!("{name:<16}{check:>12.0}{build:>12.0}");
+    }
+    Ok(())
+}

@@ -1,0 +1,80 @@
+//! Advected parameters as columns of numbers.
+
+use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use nalgebra::{SMatrix, SVector};
+
+/// What can be taken apart into numbers and put together again: the parameters of one kind, none, or several.
+pub trait Numbers: Copy {
+    /// Appends the numbers.
+    fn append(&self, numbers: &mut Vec<f64>);
+
+    /// Takes as many numbers as are needed.
+    fn take(numbers: &mut dyn Iterator<Item = f64>) -> Self;
+
+    fn numbers(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        self.append(&mut numbers);
+        numbers
+    }
+
+    fn from_numbers(numbers: impl IntoIterator<Item = f64>) -> Self {
+        let mut numbers = numbers.into_iter();
+        let value = Self::take(&mut numbers);
+        assert!(numbers.next().is_none(), "numbers are left");
+        value
+    }
+}
+
+impl Numbers for () {
+    fn append(&self, _: &mut Vec<f64>) {}
+
+    fn take(_: &mut dyn Iterator<Item = f64>) -> Self {}
+}
+
+impl<const N: usize> Numbers for SVector<f64, N> {
+    fn append(&self, numbers: &mut Vec<f64>) {
+        numbers.extend(self.iter());
+    }
+
+    fn take(numbers: &mut dyn Iterator<Item = f64>) -> Self {
+        Self::from_fn(|_, _| numbers.next().expect("too few numbers"))
+    }
+}
+
+macro_rules! kind {
+    ($($kind:ident: $inner:ty),+ $(,)?) => {$(
+        impl<const N: usize> Numbers for $kind<f64, N> {
+            fn append(&self, numbers: &mut Vec<f64>) {
+                numbers.extend(self.0.iter());
+            }
+
+            fn take(numbers: &mut dyn Iterator<Item = f64>) -> Self {
+                Self(<$inner>::from_fn(|_, _| numbers.next().expect("too few numbers")))
+            }
+        }
+    )+};
+}
+
+kind!(
+    ContravariantVector: SVector<f64, N>,
+    ContravariantTensor: SMatrix<f64, N, N>,
+    CovariantTensor: SMatrix<f64, N, N>,
+    MixedTensor: SMatrix<f64, N, N>,
+);
+
+macro_rules! tuple {
+    ($($name:ident $index:tt),+) => {
+        impl<$($name: Numbers),+> Numbers for ($($name,)+) {
+            fn append(&self, numbers: &mut Vec<f64>) {
+                $(self.$index.append(numbers);)+
+            }
+
+            fn take(numbers: &mut dyn Iterator<Item = f64>) -> Self {
+                ($($name::take(numbers),)+)
+            }
+        }
+    };
+}
+
+tuple!(A 0, B 1);
+tuple!(A 0, B 1, C 2, D 3, E 4);

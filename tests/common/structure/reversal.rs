@@ -1,0 +1,38 @@
+//! The step of `−h` undoes that of `h` where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`.
+//!
+//! A homogeneous `(x, y, z, 1)` stands for a place only with that last number, and only there does `F` keep distances;
+//! so the parameters are taken from the orbit of the declared ones.
+
+use liestep::laws::samples::{Random, along};
+use liestep::{DiscreteLiePoisson, LieGroup as _};
+use nalgebra::SVector;
+
+use super::numbers::Numbers as _;
+use super::{System, seen_at_random};
+
+/// How far a step of `h` and one of `−h` end from where they started, at random states, relative to these.
+pub fn error_of_return<L: System<N, D> + Clone, const N: usize, const D: usize>(
+    lagrangian: &L,
+    h: f64,
+    seed: u64,
+) -> f64 {
+    let mut random = Random::new(seed);
+    let forth = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
+    let back = DiscreteLiePoisson::new(lagrangian.clone(), -h).unwrap();
+    let mut worst = 0.0_f64;
+    for _ in 0..10 {
+        let w = seen_at_random(lagrangian, &mut random);
+        let velocity: SVector<f64, D> = random.sample();
+        let f = along::<L::Group, N, D>(&velocity, h).matrix();
+        let momentum = lagrangian.legendre_minus(&f, &w, h);
+        let there = forth.step(&momentum, &w, &SVector::zeros()).unwrap();
+        let returned = back.step(&there.momentum, &there.advected, &SVector::zeros()).unwrap();
+        // Rounding is that of the parts of `μ`, which are of the order of `J/h` times the increment.
+        let size = lagrangian.inertia().norm() * velocity.norm() + momentum.norm();
+        let (numbers, before) = (returned.advected.numbers(), w.numbers());
+        let missed: f64 = numbers.iter().zip(&before).map(|(a, b)| (a - b).powi(2)).sum();
+        let length: f64 = 1.0 + before.iter().map(|number| number * number).sum::<f64>();
+        worst = worst.max((returned.momentum - momentum).norm() / size).max((missed / length).sqrt());
+    }
+    worst
+}

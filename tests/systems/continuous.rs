@@ -1,0 +1,49 @@
+//! The continuous systems, from their inertia and their potential as a function of the place in space.
+//!
+//! ```text
+//! ġ = g ξ̂,     μ = J ξ,     μ̇ = ad*_ξ μ − dU(g exp(s E_k))/ds
+//! ```
+//!
+//! Nothing of the derivation is used: no advected parameter, no diamond, and inertia and potential are written by hand.
+
+use liestep::laws::samples::{MatrixLieGroup, along};
+use nalgebra::{SMatrix, SVector};
+
+use crate::common::measure::derivative;
+use crate::common::structure::axis;
+
+/// A body on a group: its inertia in the basis of the algebra, and its potential at a place, in J.
+pub(crate) struct Body<'a, const N: usize, const D: usize> {
+    pub(crate) inertia: SMatrix<f64, D, D>,
+    pub(crate) potential: &'a dyn Fn(&SMatrix<f64, N, N>) -> f64,
+}
+
+/// Place and body momentum.
+pub(crate) type Phase<const N: usize, const D: usize> = (SMatrix<f64, N, N>, SVector<f64, D>);
+
+impl<const N: usize, const D: usize> Body<'_, N, D> {
+    fn rate<G: MatrixLieGroup<N, D>>(&self, inverse: &SMatrix<f64, D, D>, (g, momentum): &Phase<N, D>) -> Phase<N, D> {
+        let velocity = inverse * momentum;
+        let force = SVector::<f64, D>::from_fn(|k, _| {
+            -derivative(|s| (self.potential)(&(g * along::<G, N, D>(&axis(k, s), 1.0).matrix())))
+        });
+        (g * G::hat(&velocity), G::lie_bracket_transpose(&velocity, momentum) + force)
+    }
+
+    /// The solution after the time `t`, by the classical Runge–Kutta method.
+    pub(crate) fn solution<G: MatrixLieGroup<N, D>>(&self, start: Phase<N, D>, t: f64, steps: u32) -> Phase<N, D> {
+        let inverse = self.inertia.try_inverse().expect("an inertia");
+        let h = t / f64::from(steps);
+        let after = |z: &Phase<N, D>, rate: &Phase<N, D>, h: f64| (z.0 + rate.0 * h, z.1 + rate.1 * h);
+        let mut z = start;
+        for _ in 0..steps {
+            let k1 = self.rate::<G>(&inverse, &z);
+            let k2 = self.rate::<G>(&inverse, &after(&z, &k1, 0.5 * h));
+            let k3 = self.rate::<G>(&inverse, &after(&z, &k2, 0.5 * h));
+            let k4 = self.rate::<G>(&inverse, &after(&z, &k3, h));
+            let sum = (k1.0 + (k2.0 + k3.0) * 2.0 + k4.0, k1.1 + (k2.1 + k3.1) * 2.0 + k4.1);
+            z = after(&z, &sum, h / 6.0);
+        }
+        z
+    }
+}

@@ -1,0 +1,89 @@
+//! The energy of every declared system oscillates by an amount of order `h²`, and doesn't drift.
+
+use liestep::Stepper;
+
+use crate::common::structure::System;
+use crate::samples::{self, Start};
+
+const STEP: f64 = 0.02;
+
+/// The largest distances of the energy from that at the start, one for each so many steps of a motion.
+fn deviations<L: System<N, D> + Clone, const N: usize, const D: usize, const COUNT: usize>(
+    system: &L,
+    (attitude, velocity): Start<L::Group, D>,
+    h: f64,
+    steps: [u32; COUNT],
+) -> [f64; COUNT] {
+    let stepper = Stepper::new(system.clone(), h).unwrap();
+    let mut state = stepper.start(attitude, velocity).unwrap();
+    let start = stepper.energy(&state);
+    steps.map(|steps| {
+        (0..steps).fold(0.0_f64, |largest, _| {
+            stepper.step(&mut state).unwrap();
+            largest.max((stepper.energy(&state) - start).abs())
+        })
+    })
+}
+
+fn assert_bounded<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, start: Start<L::Group, D>) {
+    // So short that irregular motions are still the same at both steps.
+    let [coarse] = deviations(system, start, STEP, [500]);
+    let [fine] = deviations(system, start, 0.5 * STEP, [1000]);
+    let [early, late] = deviations(system, start, STEP, [10_000, 10_000]);
+    println!("{early:.3e} then {late:.3e}; at half the step less by the factor {:.3}", coarse / fine);
+    assert!((coarse / fine - 4.0).abs() < 0.05, "{coarse:e} becomes {fine:e} at half the step");
+    // A steady drift would double it. Irregular motions come by new places in the second half.
+    assert!(late < 1.5 * early, "{early:e} in the first half and {late:e} in the second");
+}
+
+#[test]
+fn heavy_tops() {
+    assert_bounded(&samples::heavy_top(), samples::on_so3());
+    assert_bounded(&samples::full_top(), samples::on_so3());
+    assert_bounded(&samples::cayley_top(), samples::on_so3());
+}
+
+/// That of (3.13) without gravity is exact.
+#[test]
+fn free_body() {
+    let [largest] = deviations(&samples::free_body(), samples::on_so3(), STEP, [20_000]);
+    assert!(largest < 1e-12, "{largest:e}");
+}
+
+#[test]
+fn satellite() {
+    assert_bounded(&samples::satellite(), samples::on_so3());
+}
+
+#[test]
+fn orbiting_body() {
+    assert_bounded(&samples::orbiting_body(), samples::in_orbit());
+}
+
+#[test]
+fn spring() {
+    assert_bounded(&samples::spring(), samples::on_so3());
+}
+
+#[test]
+fn magnet() {
+    assert_bounded(&samples::magnet(), samples::on_so3());
+}
+
+/// Floating in balance, as a heavier body sinks faster and faster, up to where the step has no solution.
+#[test]
+fn underwater_body() {
+    let mut body = samples::underwater_body();
+    body.weight[3] = 0.0;
+    assert_bounded(&body, samples::on_se3());
+}
+
+#[test]
+fn tethered_plate() {
+    assert_bounded(&samples::tethered_plate(), samples::on_se2());
+}
+
+#[test]
+fn elastic_flow() {
+    assert_bounded(&samples::elastic_flow(), samples::on_sl2());
+}

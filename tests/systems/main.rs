@@ -1,0 +1,21 @@
+//! The declared systems of `examples/declarations`: the order of each, what each conserves, and its structure.
+//!
+//! One crate, so that the declarations on SE(3) are expanded once.
+
+// The tops are declared for the other tests too, in `common`.
+#![allow(clippy::duplicate_mod)]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../examples/declarations/mod.rs"]
+mod declarations;
+
+mod continuous;
+mod energy;
+mod momenta;
+mod one_sided;
+mod order;
+mod poisson;
+mod reversal;
+mod samples;
+mod symmetry;

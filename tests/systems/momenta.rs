@@ -1,0 +1,19 @@
+//! P2 for every declared system: its momenta, its step in stages, and the step.
+
+use liestep::Coordinates;
+use nalgebra::{SMatrix, SVector};
+
+use crate::common::structure::{System, momenta, stages};
+use crate::samples::every_system;
+
+fn p2<L, const N: usize, const D: usize>(system: &L, _: &str)
+where
+    L: System<N, D> + Clone,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    momenta::assert_momenta(system, 42);
+    stages::assert_stages(system, 43);
+    stages::assert_step(system, 48);
+}
+
+every_system!(p2);

@@ -1,0 +1,193 @@
+//! The flow of every self-adjoint declaration converges to the continuous system at second order in the step.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use liestep::{LieGroup as _, SL2, Stepper};
+use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
+
+use crate::common::measure::{four_halvings, order, relative, steps_in};
+use crate::common::structure::System;
+use crate::continuous::{Body, Phase};
+use crate::samples::{self, Start};
+
+/// Above what a thousand steps of the Runge–Kutta method leave of systems with rates of a few per second.
+pub(crate) const PLATEAU: f64 = 1e-9;
+const TIME: f64 = 1.0;
+const COARSEST: f64 = 1.0 / 25.0;
+
+/// The inertia of the ordinary kind, `∫ (|X|² I − X Xᵀ) dm`, from the nonstandard one.
+fn ordinary(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::identity() * nonstandard.trace() - nonstandard
+}
+
+fn rotation(g: &Matrix4<f64>) -> Matrix3<f64> {
+    g.fixed_view::<3, 3>(0, 0).into_owned()
+}
+
+/// The errors of place and momentum together over four halvings, where `shift` is what the momentum of the flow lacks
+/// of the one that converges.
+pub(crate) fn errors<L, const N: usize, const D: usize>(
+    system: &L,
+    body: &Body<N, D>,
+    (attitude, velocity): Start<L::Group, D>,
+    shift: impl Fn(&L::Advected, f64) -> SVector<f64, D>,
+) -> [(f64, f64); 5]
+where
+    L: System<N, D> + Clone,
+{
+    let momentum = body.inertia * velocity;
+    let exact: Phase<N, D> = body.solution::<L::Group>((attitude.matrix(), momentum), TIME, 1000);
+    four_halvings(COARSEST).map(|h| {
+        let stepper = Stepper::new(system.clone(), h).unwrap();
+        let w = stepper.start(attitude, velocity).unwrap().advected();
+        let mut state = stepper.start_with_momentum(attitude, momentum - shift(&w, h)).unwrap();
+        for _ in 0..steps_in(TIME, h) {
+            stepper.step(&mut state).unwrap();
+        }
+        let momentum = state.momentum() + shift(&state.advected(), h);
+        (h, relative(&state.attitude().matrix(), &exact.0).hypot(relative(&momentum, &exact.1)))
+    })
+}
+
+pub(crate) fn unshifted<A, const D: usize>(_: &A, _: f64) -> SVector<f64, D> {
+    SVector::zeros()
+}
+
+fn assert_second_order<L: System<N, D> + Clone, const N: usize, const D: usize>(
+    system: &L,
+    inertia: SMatrix<f64, D, D>,
+    start: Start<L::Group, D>,
+    potential: impl Fn(&SMatrix<f64, N, N>) -> f64,
+) {
+    let body = Body { inertia, potential: &potential };
+    let errors = errors(system, &body, start, unshifted);
+    let order = order(&errors, PLATEAU);
+    println!("order {order:.4}, errors {:.2e} to {:.2e}", errors[0].1, errors[4].1);
+    assert!((order - 2.0).abs() < 0.05, "order {order}, errors {errors:?}");
+}
+
+#[test]
+fn heavy_top() {
+    let top = samples::heavy_top();
+    let inertia = ordinary(&top.J_d.to_matrix());
+    assert_second_order(&top, inertia, samples::on_so3(), |r| top.m * top.g * top.up.dot(&(r * top.rho)));
+}
+
+#[test]
+fn full_top() {
+    let top = samples::full_top();
+    let inertia = ordinary(top.J_d.as_matrix());
+    assert_second_order(&top, inertia, samples::on_so3(), |r| top.m * top.g * top.up.dot(&(r * top.rho)));
+}
+
+#[test]
+fn free_body() {
+    let body = samples::free_body();
+    assert_second_order(&body, ordinary(body.J_d.as_matrix()), samples::on_so3(), |_| 0.0);
+}
+
+#[test]
+fn cayley_top() {
+    let top = samples::cayley_top();
+    assert_second_order(&top, *top.J.as_matrix(), samples::on_so3(), |r| top.weight * top.up.dot(&(r * top.rho)));
+}
+
+/// The kick before the step is the sum of two halves: from between them the scheme is of second order, and from
+/// where it stands of first.
+#[test]
+fn log_trace_top() {
+    let top = samples::log_trace_top();
+    let potential = |r: &Matrix3<f64>| top.weight * top.up.dot(&(r * top.rho));
+    let body = Body { inertia: Matrix3::identity() * top.I1, potential: &potential };
+    let half_kick = |w: &Vector3<f64>, h: f64| w.cross(&top.rho) * (0.5 * h * top.weight);
+    let shifted = order(&errors(&top, &body, samples::on_so3(), half_kick), PLATEAU);
+    let plain = order(&errors(&top, &body, samples::on_so3(), unshifted), PLATEAU);
+    println!("order {shifted:.4} between the kicks, {plain:.4} before them");
+    assert!((shifted - 2.0).abs() < 0.05, "{shifted}");
+    assert!((plain - 1.0).abs() < 0.05, "{plain}");
+}
+
+#[test]
+fn satellite() {
+    let body = samples::satellite();
+    let boom = body.tip * body.tip.transpose() * (2.0 * body.m);
+    let inertia = ordinary(&(body.J_d.as_matrix() + boom));
+    assert_second_order(&body, inertia, samples::on_so3(), |r| {
+        let inverse_distances = 1.0 / (body.centre - r * body.tip).norm() + 1.0 / (body.centre + r * body.tip).norm();
+        -body.GM * body.m * inverse_distances
+    });
+}
+
+/// Rotation and translation of a body with the first moment `s = ∫ X dm`: `½ Ω·𝕀Ω + Ω·(s × v) + ½ m v²`.
+#[test]
+fn orbiting_body() {
+    let body = samples::orbiting_body();
+    let first: Vector3<f64> = body.J.fixed_view::<3, 1>(0, 3).into_owned();
+    let mut inertia = SMatrix::<f64, 6, 6>::identity() * body.J[(3, 3)];
+    inertia.fixed_view_mut::<3, 3>(0, 0).copy_from(&ordinary(&rotation(&body.J)));
+    inertia.fixed_view_mut::<3, 3>(0, 3).copy_from(&first.cross_matrix());
+    inertia.fixed_view_mut::<3, 3>(3, 0).copy_from(&-first.cross_matrix());
+    assert_second_order(&body, inertia, samples::in_orbit(), |g| {
+        let distance = |p: Vector4<f64>| (g * p - body.centre.0).norm();
+        -body.GM * (body.m1 / distance(body.p1) + body.m2 / distance(body.p2))
+    });
+}
+
+#[test]
+fn spring() {
+    let body = samples::spring();
+    assert_second_order(&body, ordinary(body.J_d.as_matrix()), samples::on_so3(), |r| {
+        0.5 * body.k * ((body.anchor - r * body.rho).norm() - body.length).powi(2)
+    });
+}
+
+#[test]
+fn magnet() {
+    let body = samples::magnet();
+    assert_second_order(&body, ordinary(body.J_d.as_matrix()), samples::on_so3(), |r| {
+        -body.field.dot(&(r * body.m)) - 0.5 * (body.gradient.0 * r * body.Q * r.transpose()).trace()
+    });
+}
+
+#[test]
+fn underwater_body() {
+    let body = samples::underwater_body();
+    let (inertia, potential) = kirchhoff(&body);
+    assert_second_order(&body, inertia, samples::on_se3(), potential);
+}
+
+/// The velocity of the centre `c` is `v + Ω × c = v − ĉ Ω`, and `½ Ω·𝕀Ω` and `½ v_c·M v_c` add.
+pub(crate) fn kirchhoff(
+    body: &crate::declarations::UnderwaterBody,
+) -> (SMatrix<f64, 6, 6>, impl Fn(&Matrix4<f64>) -> f64 + use<>) {
+    let centre: Vector3<f64> = body.origin.fixed_rows::<3>(0).into_owned();
+    let mut velocity_of_centre = SMatrix::<f64, 3, 6>::zeros();
+    velocity_of_centre.fixed_view_mut::<3, 3>(0, 0).copy_from(&-centre.cross_matrix());
+    velocity_of_centre.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());
+    let mut inertia = velocity_of_centre.transpose() * rotation(&body.M) * velocity_of_centre;
+    let mut turning = inertia.fixed_view_mut::<3, 3>(0, 0);
+    turning += ordinary(&rotation(&body.J));
+    let (lever, net): (Vector3<f64>, f64) = (body.weight.fixed_rows::<3>(0).into_owned(), body.weight[3]);
+    (inertia, move |g| (rotation(g) * lever).z + net * g[(2, 3)])
+}
+
+/// A planar body with the first moment `s`: the velocity of `X` is `v + ω (−X_2, X_1)`.
+#[test]
+fn tethered_plate() {
+    let body = samples::tethered_plate();
+    let (J, m) = (body.J, body.J[(2, 2)]);
+    let (first, second) = (J[(0, 2)], J[(1, 2)]);
+    let inertia = Matrix3::new(J[(0, 0)] + J[(1, 1)], -second, first, -second, m, 0.0, first, 0.0, m);
+    assert_second_order(&body, inertia, samples::on_se2(), |g| {
+        0.5 * body.k * ((g * body.p - body.anchor.0).norm() - body.length).powi(2)
+    });
+}
+
+#[test]
+fn elastic_flow() {
+    let system = samples::elastic_flow();
+    let hat = |k| SL2::hat(&Vector3::ith(k, 1.0));
+    let inertia = Matrix3::from_fn(|k, j| (hat(k) * system.M * hat(j).transpose()).trace());
+    assert_second_order(&system, inertia, samples::on_sl2(), |g| 0.5 * system.k * g.norm_squared());
+}

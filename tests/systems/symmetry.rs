@@ -1,0 +1,140 @@
+//! What every declared system conserves: the momenta along the symmetries of what is advected, the parameters' orbit,
+//! and, where the body has a symmetry too, the momentum along that.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use liestep::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Stepper};
+use nalgebra::{Matrix2, Matrix3, Matrix4, SVector, Vector3, Vector4};
+
+use crate::common::structure::System;
+use crate::common::structure::symmetry::{drift, symmetries};
+use crate::samples::{self, Start};
+
+const STEP: f64 = 0.02;
+const STEPS: u32 = 2000;
+
+/// Some thousands of roundings, which add up like a random walk.
+const ROUNDING: f64 = 1e-12;
+
+/// `count` is the dimension of the symmetry of the spatial parameters.
+fn assert_conserved<L: System<N, D> + Clone, const N: usize, const D: usize>(
+    system: &L,
+    (attitude, velocity): Start<L::Group, D>,
+    count: usize,
+) {
+    assert_eq!(symmetries(system).len(), count);
+    let stepper = Stepper::new(system.clone(), STEP).unwrap();
+    let (momentum, parameters) = drift(&stepper, stepper.start(attitude, velocity).unwrap(), STEPS);
+    println!("momentum {momentum:.1e}, parameters {parameters:.1e}");
+    assert!(momentum < ROUNDING, "momentum: {momentum:e}");
+    assert!(parameters < ROUNDING, "parameters: {parameters:e}");
+}
+
+/// The turns about one vector.
+#[test]
+fn heavy_tops() {
+    assert_conserved(&samples::heavy_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::full_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::log_trace_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::cayley_top(), samples::on_so3(), 1);
+}
+
+/// All turns.
+#[test]
+fn free_body() {
+    assert_conserved(&samples::free_body(), samples::on_so3(), 3);
+}
+
+/// The turns about the direction of the centre, and of the anchor.
+#[test]
+fn satellite_and_spring() {
+    assert_conserved(&samples::satellite(), samples::on_so3(), 1);
+    assert_conserved(&samples::spring(), samples::on_so3(), 1);
+}
+
+/// None in general, the turns about the field where its gradient has them too.
+#[test]
+fn magnet() {
+    let mut magnet = samples::magnet();
+    assert_conserved(&magnet, samples::on_so3(), 0);
+    magnet.field = Vector3::z();
+    magnet.gradient.0 = Matrix3::from_diagonal(&Vector3::new(0.8, 0.8, -1.6));
+    assert_conserved(&magnet, samples::on_so3(), 1);
+}
+
+/// The turns about the centre: the angular momentum of orbit and spin together.
+#[test]
+fn orbiting_body() {
+    assert_conserved(&samples::orbiting_body(), samples::in_orbit(), 3);
+}
+
+/// Horizontal translations and the turns about a vertical.
+#[test]
+fn underwater_body() {
+    assert_conserved(&samples::underwater_body(), samples::on_se3(), 3);
+}
+
+/// The turns about the anchor.
+#[test]
+fn tethered_plate() {
+    assert_conserved(&samples::tethered_plate(), samples::on_se2(), 1);
+}
+
+/// The rotations of space, which keep its metric.
+#[test]
+fn elastic_flow() {
+    assert_conserved(&samples::elastic_flow(), samples::on_sl2(), 1);
+}
+
+/// Where the body looks the same from all sides of an axis, the component of its momentum along that is constant.
+fn assert_component<L: System<N, D>, const N: usize, const D: usize>(
+    system: L,
+    (attitude, velocity): Start<L::Group, D>,
+    component: usize,
+) {
+    let stepper = Stepper::new(system, STEP).unwrap();
+    let mut state = stepper.start(attitude, velocity).unwrap();
+    let start: SVector<f64, D> = state.momentum();
+    let mut others = 0.0_f64;
+    for _ in 0..STEPS {
+        stepper.step(&mut state).unwrap();
+        let change = state.momentum() - start;
+        assert!(change[component].abs() < ROUNDING * start.norm(), "{:e}", change[component]);
+        others = others.max(change.norm());
+    }
+    assert!(others > 0.1 * start.norm(), "something has moved");
+}
+
+#[test]
+fn bodies_with_an_axis() {
+    let symmetric = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 0.5)).unwrap();
+    let mut top = samples::heavy_top();
+    (top.J_d, top.rho) = (DiagonalNonstandardInertia::new(Vector3::new(1.0, 1.0, 0.5)).unwrap(), Vector3::z() * 0.4);
+    assert_component(top, samples::on_so3(), 2);
+    let mut top = samples::cayley_top();
+    (top.J, top.rho) = (Inertia::from_principal_moments(Vector3::new(2.0, 2.0, 1.0)).unwrap(), Vector3::z() * 0.4);
+    assert_component(top, samples::on_so3(), 2);
+    let mut top = samples::log_trace_top();
+    top.rho = Vector3::z();
+    assert_component(top, samples::on_so3(), 2);
+    let mut satellite = samples::satellite();
+    (satellite.J_d, satellite.tip) = (symmetric, Vector3::z());
+    assert_component(satellite, samples::on_so3(), 2);
+    let mut body = samples::spring();
+    (body.J_d, body.rho) = (symmetric, Vector3::z());
+    assert_component(body, samples::on_so3(), 2);
+    let mut magnet = samples::magnet();
+    (magnet.J_d, magnet.m, magnet.Q) = (symmetric, Vector3::z(), Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -2.0)));
+    assert_component(magnet, samples::on_so3(), 2);
+    let mut body = samples::underwater_body();
+    (body.J, body.M) = (
+        Matrix4::from_diagonal(&Vector4::new(0.9, 0.9, 0.5, 0.0)),
+        Matrix4::from_diagonal(&Vector4::new(1.0, 1.0, 3.0, 0.0)),
+    );
+    (body.origin, body.weight) = (Vector4::new(0.0, 0.0, -0.2, 1.0), Vector4::new(0.0, 0.0, -1.5, 0.6));
+    assert_component(body, samples::on_se3(), 2);
+    let mut flow = samples::elastic_flow();
+    flow.M = Matrix2::identity();
+    assert_component(flow, samples::on_sl2(), 2);
+}

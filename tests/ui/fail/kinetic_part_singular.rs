@@ -1,0 +1,8 @@
+use liestep::{SE3, lagrangian};
+
+#[lagrangian(group = SE3, l_d = k * (4.0 - F.trace()) / h)]
+struct Body {
+    k: f64,
+}
+
+fn main() {}
