@@ -3,7 +3,7 @@
 //! Multiplied out, what cancels is found; with closed `let`s, nothing is written twice. Both are derived where there are
 //! `let`s, and counted.
 
-use crate::derive::{self, Derived, LimitError};
+use crate::derive::{self, Derived, ForceError, LimitError};
 use crate::lower::Lowered;
 use crate::scalar::{self, Kernel};
 
@@ -18,6 +18,7 @@ pub(crate) struct Chosen {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Refusal {
     Limit(LimitError),
+    Force(ForceError),
     /// A coefficient left the range of exact arithmetic.
     Overflow,
 }
@@ -53,7 +54,10 @@ fn size(lowered: &Lowered) -> usize {
 }
 
 fn derived(lowered: Lowered) -> Result<Chosen, Refusal> {
-    let derived = derive::derive(&lowered.declared).map_err(Refusal::Limit)?;
+    let derived = match lowered.displacements {
+        None => derive::derive(&lowered.declared).map_err(Refusal::Limit)?,
+        Some(displacements) => derive::force(&lowered.declared, displacements).map_err(Refusal::Force)?,
+    };
     if !derived.is_exact() {
         return Err(Refusal::Overflow);
     }

@@ -28,7 +28,7 @@ mod sixth_order_top;
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::{DiscreteLagrangian, Inertia, SO3, Stepper};
+use liestep::{DiscreteLagrangian, Inertia, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEPS: [f64; 2] = [0.01, 0.05];
@@ -44,7 +44,7 @@ type Batch = Box<dyn FnMut(u32) -> (f64, f64)>;
 
 fn batches<L>(lagrangian: L, h: f64) -> Batch
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + 'static,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + 'static,
 {
     let stepper = Stepper::new(lagrangian, h).expect("a usable step");
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));

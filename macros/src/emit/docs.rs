@@ -56,6 +56,21 @@ pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation>
     ]
 }
 
+/// The equations of a force.
+pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<Equation> {
+    let symbols = &derived.symbols;
+    let covector = |expression| covector_text(expression, derived.directions.first, symbols);
+    let equation = |method, left, right, source| Equation { method, left, right, source };
+    let (work, jacobian) = (text(&declared.l_d, symbols), text(&derived.jacobian, symbols));
+    vec![
+        equation("virtual_work", "f⁻·η + f⁺·η⁺", work, "as declared, with FᵀF = I used"),
+        equation("momentum", "−f⁻", covector(&derived.momentum), "the share in (2.7)"),
+        equation("momentum_jacobian", "−∂f⁻_k along exp(tE_j)F", jacobian, "exact, right-trivialised"),
+        equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
+        equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
+    ]
+}
+
 /// The documentation of one method, with the operations of its code.
 pub(super) fn of(equations: &[Equation], method: &str, graph: &Graph, outputs: &[NodeId]) -> String {
     let operations = count(graph, outputs, None);

@@ -8,19 +8,19 @@ pub mod stages;
 pub mod symmetry;
 
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
-use liestep::{Advected as _, DiscreteLagrangian, DiscreteLiePoisson, Increment};
+use liestep::{Advected as _, DiscreteLagrangian, DiscreteLiePoisson, Increment, Regular};
 use nalgebra::SVector;
 
 use numbers::Numbers;
 
 /// A Lagrangian over `f64` on a group of `N` × `N` matrices of dimension `D`.
 pub trait System<const N: usize, const D: usize>:
-    DiscreteLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>, Advected: Numbers>
+    DiscreteLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>, Advected: Numbers> + Regular
 {
 }
 
 impl<L, const N: usize, const D: usize> System<N, D> for L where
-    L: DiscreteLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>, Advected: Numbers>
+    L: DiscreteLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>, Advected: Numbers> + Regular
 {
 }
 
