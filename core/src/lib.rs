@@ -6,7 +6,7 @@
 //!
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
-//! direction: `scalar ← coordinates ← groups ← {retraction, advected} ← lagrangian ← newton ← flows ← stepper`.
+//! direction: `scalar ← entries ← coordinates ← groups ← {retraction, advected} ← lagrangian ← newton ← flows ← stepper`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
@@ -17,6 +17,7 @@ pub mod laws;
 
 mod advected;
 mod coordinates;
+mod entries;
 mod error;
 mod flows;
 mod functions;
@@ -34,6 +35,7 @@ pub mod __private;
 
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 pub use coordinates::Coordinates;
+pub use entries::Entries;
 pub use error::{SetupError, StepError};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use groups::{Generators, LieGroup, MatrixGroup, NotARotation, NotInGroup};

@@ -148,6 +148,11 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0
     }
 
+    #[inline(always)]
+    fn from_matrix_unchecked(matrix: Matrix3<T>) -> Self {
+        Self(matrix)
+    }
+
     #[inline]
     fn hat(v: &Vector3<T>) -> Matrix3<T> {
         let zero = T::zero();
@@ -192,8 +197,8 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     #[inline(always)]
-    fn advance(&self, increment: &Matrix3<T>) -> Self {
-        Self(self.0 + self.0 * increment)
+    fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
+        self.0 * increment
     }
 
     #[inline(always)]
