@@ -4,7 +4,7 @@ use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
-use crate::lagrangian::{DiscreteLagrangian, Group, Scalar, Vector};
+use crate::lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Vector};
 use crate::newton::{Problem, Root, orientation};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
@@ -34,6 +34,13 @@ pub struct Increment<L: DiscreteLagrangian> {
     pub advected: L::Advected,
     /// Newton iterations.
     pub iterations: u32,
+}
+
+/// A momentum equation and its solution.
+pub(crate) struct Solved<L: DiscreteLagrangian> {
+    /// `a = μ + kick_before(w)`.
+    pub(crate) a: Vector<L>,
+    pub(crate) root: Root<L>,
 }
 
 impl<L: DiscreteLagrangian> Increment<L> {
@@ -128,21 +135,39 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         if self.h == real(0.0) {
             return Ok(Self::stand_still(momentum, advected));
         }
-        let problem = self.problem(momentum, advected);
-        let Root { xi, increment, iterations } = match problem.solve_directly(guess) {
-            Some(root) => root,
-            None => self.solve_carefully(momentum, advected, guess)?,
-        };
+        let Solved { a, root: Root { xi, increment, iterations } } = self.solve(momentum, advected, guess)?;
         let next = advected.advect(&increment);
         let momentum = *momentum
-            + (Group::<L>::adjoint_transpose_increment(&increment, &problem.a)
-                + (problem.a - *momentum)
+            + (Group::<L>::adjoint_transpose_increment(&increment, &a)
+                + (a - *momentum)
                 + L::kick_after(&self.constants, &increment, &next));
         if momentum.is_finite() && next.is_finite() {
             Ok(Increment { coordinates: xi, increment, momentum, advected: next, iterations })
         } else {
             Err(StepError::NonFinite { what: "momentum after the step" })
         }
+    }
+
+    /// `F` of the step from `(μ, w)`.
+    #[inline(always)]
+    pub(crate) fn solve(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        guess: &Vector<L>,
+    ) -> Result<Solved<L>, StepError> {
+        let problem = self.problem(momentum, advected);
+        let root = match problem.solve_directly(guess) {
+            Some(root) => root,
+            None => self.solve_carefully(momentum, advected, guess)?,
+        };
+        Ok(Solved { a: problem.a, root })
+    }
+
+    /// Both kicks of a step from `w` to `next`.
+    #[inline(always)]
+    pub(crate) fn kicks(&self, w: &L::Advected, increment: &Matrix<L>, next: &L::Advected) -> Vector<L> {
+        L::kick_before(&self.constants, w) + L::kick_after(&self.constants, increment, next)
     }
 
     #[inline(always)]

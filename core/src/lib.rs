@@ -16,6 +16,7 @@ pub mod groups;
 pub mod laws;
 
 mod advected;
+mod compensated;
 mod coordinates;
 mod entries;
 mod error;
@@ -34,6 +35,7 @@ mod stepper;
 pub mod __private;
 
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+pub use compensated::{CompensatedState, CompensatedStepper};
 pub use coordinates::Coordinates;
 pub use entries::Entries;
 pub use error::{SetupError, StepError};

@@ -8,7 +8,6 @@ use crate::groups::LieGroup;
 use crate::lagrangian::{
     DiscreteLagrangian, Group, Scalar, Vector, energy, momentum_of_velocity, velocity_of_momentum,
 };
-use crate::retraction::Retraction as _;
 use crate::scalar::{real, reported};
 use crate::state::State;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
@@ -129,20 +128,7 @@ impl<L: DiscreteLagrangian> Stepper<L> {
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
-        // Increments change by O(h²) from step to step, and their changes by O(h³): for (3.13) at common steps this
-        // guess saves one iteration of three.
-        state.guess = step.coordinates + (step.coordinates - state.coordinates);
-        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Before the first step
-        // there was no increment but an estimate. A selection without the branch would lie on the way to the next
-        // iteration, and cost a tenth of a step.
-        let far = !L::Retraction::is_near_identity(&(step.coordinates * real(1.5)));
-        if state.steps == 0 {
-            state.guess = step.coordinates;
-        } else if far.any() {
-            state.guess = step.coordinates.select(far, state.guess);
-        }
-        state.coordinates = step.coordinates;
-        state.steps += 1;
+        state.proceed::<L::Retraction>(step.coordinates);
         Ok(StepReport { iterations: step.iterations })
     }
 
