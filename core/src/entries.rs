@@ -77,13 +77,3 @@ pub(crate) fn sum<T: Real, E: Entries<T>>(a: &E, b: &E) -> E {
 pub(crate) fn zero<T: Real, E: Entries<T>>() -> E {
     E::from_entries(&mut T::zero)
 }
-
-/// How many scalars there are.
-pub(crate) fn count<T: Real, E: Entries<T>>() -> usize {
-    let mut count = 0;
-    E::from_entries(&mut || {
-        count += 1;
-        T::zero()
-    });
-    count
-}

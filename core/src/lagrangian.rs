@@ -8,6 +8,7 @@ use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::retraction::Retraction;
 use crate::scalar::Real;
+use crate::scene::SceneVisitor;
 
 /// The scalar of a Lagrangian.
 pub type Scalar<L> = <L as DiscreteLagrangian>::Scalar;
@@ -73,6 +74,11 @@ pub trait DiscreteLagrangian {
     ///
     /// [`SetupError::Parameter`] naming the first field whose value can't be used.
     fn validate(&self) -> Result<(), SetupError>;
+
+    /// Shows the derivation and, field by field in the order of the declaration, every scalar of the parameters.
+    ///
+    /// Two scenes that show the same make the same steps.
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>);
 
     /// The spatial values `a_0` of the advected parameters.
     fn advected(&self) -> Self::Advected;

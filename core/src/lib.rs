@@ -16,6 +16,8 @@ pub mod groups;
 pub mod laws;
 
 mod advected;
+#[cfg(feature = "serde")]
+mod checkpoint;
 mod compensated;
 mod coordinates;
 mod entries;
@@ -27,6 +29,7 @@ mod lagrangian;
 mod newton;
 mod retraction;
 mod scalar;
+mod scene;
 mod state;
 mod stepper;
 
@@ -35,6 +38,8 @@ mod stepper;
 pub mod __private;
 
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+#[cfg(feature = "serde")]
+pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{CompensatedState, CompensatedStepper};
 pub use coordinates::Coordinates;
 pub use entries::Entries;
@@ -47,6 +52,7 @@ pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
 pub use liestep_macros::lagrangian;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
+pub use scene::SceneVisitor;
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
 

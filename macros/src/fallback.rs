@@ -40,6 +40,7 @@ pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStrea
             const DERIVATION: &'static #core::primitive::str = "";
             const SELF_ADJOINT: #core::primitive::bool = false;
             fn validate(&self) -> #core::result::Result<(), #root::SetupError> { loop {} }
+            fn describe(&self, _: &mut dyn #root::__private::SceneVisitor<#scalar>) { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
             #(#of_increment)*
             fn inertia(&self) -> #square { loop {} }

@@ -42,6 +42,7 @@ pub(crate) fn implementation(
     let documentation = format!("```text\n{derivation}```");
     let is_self_adjoint = findings.self_adjointness.is_found();
     let validate = emitter.validate();
+    let describe = emitter.describe();
     let advected = emitter.advected();
     let root = &header.root;
     let span = Span::mixed_site();
@@ -59,6 +60,7 @@ pub(crate) fn implementation(
             const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;
 
             #validate
+            #describe
             #advected
             #l_d
             #mathematics
@@ -163,6 +165,27 @@ impl Emitter<'_> {
             fn validate(&self) -> #root::__private::core::result::Result<(), #root::SetupError> {
                 #(#checks)*
                 #root::__private::core::result::Result::Ok(())
+            }
+        }
+    }
+
+    fn describe(&self) -> TokenStream {
+        let span = Span::mixed_site();
+        let root = &self.header.root;
+        let scalar = &self.header.scalar;
+        let fields = self.declaration.fields.iter().map(|field| {
+            let name = &field.name;
+            let text = syn::ext::IdentExt::unraw(name).to_string();
+            if field.kind == crate::ast::FieldKind::Scalar {
+                quote_spanned!(span=> #root::__private::SceneVisitor::parameter(visitor, #text, self.#name);)
+            } else {
+                quote_spanned!(span=> #root::__private::Parameter::describe(&self.#name, #text, visitor);)
+            }
+        });
+        quote_spanned! {span=>
+            fn describe(&self, visitor: &mut dyn #root::__private::SceneVisitor<#scalar>) {
+                #root::__private::SceneVisitor::term(visitor, Self::DERIVATION);
+                #(#fields)*
             }
         }
     }
