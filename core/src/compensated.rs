@@ -126,7 +126,7 @@ impl<L: DiscreteLagrangian> CompensatedStepper<L> {
         let flow = self.stepper.flow();
         if flow.step_size() == real(0.0) {
             now.proceed::<L::Retraction>(zero());
-            return Ok(StepReport { iterations: 0 });
+            return Ok(StepReport { iterations: 0, remedy: None });
         }
         let solved = flow.solve(&now.momentum, &now.advected, &now.guess)?;
         let increment = &solved.root.increment;
@@ -144,7 +144,7 @@ impl<L: DiscreteLagrangian> CompensatedStepper<L> {
         now.momentum = momentum.0;
         now.advected = advected.0;
         now.proceed::<L::Retraction>(solved.root.xi);
-        Ok(StepReport { iterations: solved.root.iterations })
+        Ok(StepReport { iterations: solved.root.iterations, remedy: None })
     }
 }
 

@@ -8,7 +8,8 @@ use crate::lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Vector};
 use crate::newton::{Problem, Root, orientation};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _};
+use crate::solvability::{Solvability, TurningLimits};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _};
 
 /// The discrete advected Lie–Poisson flow `(μ_i, w_i) ↦ (μ_{i+1}, w_{i+1})`, \[RDAE, (2.8), (2.9)\].
 ///
@@ -198,6 +199,11 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         guess: &Vector<L>,
     ) -> Result<Root<L>, StepError> {
+        let is_finite = momentum.is_finite() && advected.is_finite();
+        if is_finite && self.solvability(momentum, advected) == Solvability::Impossible {
+            let largest = reported(self.max_step(momentum, advected));
+            return Err(StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(largest) });
+        }
         self.problem(momentum, advected).solve(guess).map_err(|error| self.explain(error, momentum, advected))
     }
 
@@ -216,15 +222,50 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(reported(largest)) }
     }
 
+    /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
+    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, below `h|a| = J_min` and above `J_max`.
+    ///
+    /// A step asks only when its solve hasn't succeeded at once, so that the steps that do cost nothing more.
+    #[must_use]
+    pub fn solvability(&self, momentum: &Vector<L>, advected: &L::Advected) -> Solvability {
+        let decide = |limits: TurningLimits| limits.decide(self.size(self.h, &self.constants, momentum, advected));
+        self.turning_limits(advected).map_or(Solvability::Open, decide)
+    }
+
+    /// `|h a|`.
+    fn size(&self, h: Scalar<L>, constants: &L::Constants, momentum: &Vector<L>, advected: &L::Advected) -> f64 {
+        let turn = (*momentum + L::kick_before(constants, advected)) * h;
+        reported(turn.dot(&turn).simd_sqrt())
+    }
+
+    /// The bounds for this `w`, at this step and at half of it: a kinetic part that depends on `h` in another way isn't
+    /// the one that they are proved for.
+    fn turning_limits(&self, advected: &L::Advected) -> Option<TurningLimits> {
+        let at = |h: Scalar<L>| {
+            let constants = self.lagrangian.constants(h);
+            let kick = L::kick_before(&constants, advected);
+            let unknown = |f: &Matrix<L>| (self.lagrangian.legendre_minus(f, advected, h) + kick) * h;
+            let cancelled = (kick.dot(&kick) * h * h).simd_sqrt();
+            Group::<L>::turning_limits(&unknown, &self.lagrangian.inertia(), cancelled)
+        };
+        at(self.h * real(0.5)).and(at(self.h))
+    }
+
     /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
     ///
-    /// It is found by bisection between zero and `h`, so it costs some dozens of solves. For (3.13) and a physical
-    /// body `h |p + (h/2) τ| < J_min` surely has a solution and `> J_max` surely has none.
+    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds of
+    /// [`solvability`](Self::solvability) decide.
     #[must_use]
     pub fn max_step(&self, momentum: &Vector<L>, advected: &L::Advected) -> Scalar<L> {
+        let limits = self.turning_limits(advected);
         let solvable = |fraction: f64| {
             let h = self.h * real(fraction);
             let constants = self.lagrangian.constants(h);
+            match limits.map(|limits| limits.decide(self.size(h, &constants, momentum, advected))) {
+                Some(Solvability::Certain) => return true,
+                Some(Solvability::Impossible) => return false,
+                Some(Solvability::Open) | None => {}
+            }
             let a = *momentum + L::kick_before(&constants, advected);
             let lagrangian = &self.lagrangian;
             let problem =
@@ -239,7 +280,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         let mut low = 1.0;
         while !solvable(low) {
             low *= 0.5;
-            if low < 1e-30 {
+            if low < 1e-300 {
                 return real(0.0);
             }
         }
@@ -291,5 +332,6 @@ pub fn reconstruct<G: LieGroup>(g: &G, f: &G) -> G {
 /// Rounded towards zero, as a step a little larger than the largest wouldn't do.
 fn six_digits(step: f64) -> f64 {
     let unit = 10.0_f64.powf(5.0 - step.abs().log10().floor());
-    (step * unit).trunc() / unit
+    // Not for zero and what is next to it.
+    if unit.is_finite() { (step * unit).trunc() / unit } else { step }
 }

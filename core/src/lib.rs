@@ -27,9 +27,11 @@ mod functions;
 mod inertia;
 mod lagrangian;
 mod newton;
+mod remedy;
 mod retraction;
 mod scalar;
 mod scene;
+mod solvability;
 mod state;
 mod stepper;
 
@@ -50,9 +52,11 @@ pub use groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2};
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
 pub use liestep_macros::lagrangian;
+pub use remedy::{Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
 pub use scene::SceneVisitor;
+pub use solvability::{Solvability, TurningLimits};
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
 

@@ -8,7 +8,9 @@ use crate::groups::LieGroup;
 use crate::lagrangian::{
     DiscreteLagrangian, Group, Scalar, Vector, energy, momentum_of_velocity, velocity_of_momentum,
 };
+use crate::remedy::Remedy;
 use crate::scalar::{real, reported};
+use crate::solvability::Solvability;
 use crate::state::State;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
@@ -17,6 +19,8 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 pub struct StepReport {
     /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up.
     pub iterations: u32,
+    /// What was done in the place of this step; only by a [`RemediedStepper`](crate::RemediedStepper).
+    pub remedy: Option<Remedy>,
 }
 
 /// An integrator with a fixed step for a declared Lagrangian.
@@ -129,7 +133,7 @@ impl<L: DiscreteLagrangian> Stepper<L> {
         state.momentum = step.momentum;
         state.advected = step.advected;
         state.proceed::<L::Retraction>(step.coordinates);
-        Ok(StepReport { iterations: step.iterations })
+        Ok(StepReport { iterations: step.iterations, remedy: None })
     }
 
     /// The states after each step from here on; after an error, nothing more.
@@ -183,6 +187,12 @@ impl<L: DiscreteLagrangian> Stepper<L> {
     #[must_use]
     pub fn energy(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
         energy(self.lagrangian(), &state.momentum, &state.advected)
+    }
+
+    /// What is proved about the next step; see [`DiscreteLiePoisson::solvability`].
+    #[must_use]
+    pub fn solvability(&self, state: &State<Group<L>, L::Advected>) -> Solvability {
+        self.flow.solvability(&state.momentum, &state.advected)
     }
 
     /// The largest step from this state up to the stepper's own, s; see [`DiscreteLiePoisson::max_step`].

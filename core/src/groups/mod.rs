@@ -54,6 +54,7 @@ use core::fmt::Debug;
 use crate::coordinates::Coordinates;
 use crate::entries::{Entries, sum};
 use crate::scalar::Real;
+use crate::solvability::TurningLimits;
 
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
@@ -127,6 +128,17 @@ pub trait LieGroup: Copy + Debug + PartialEq {
 
     /// `Ad*_F μ − μ` for `F = I + D`.
     fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector;
+
+    /// Bounds that decide whether the momentum equation `U(F) = a` has a solution, where they are proved for this `U`.
+    ///
+    /// The kinetic part has the inertia `J`; `unknown` is `h U(F)`, with roundings of numbers of the size `cancelled`.
+    fn turning_limits(
+        _unknown: &dyn Fn(&Self::Matrix) -> Self::Vector,
+        _inertia: &<Self::Vector as Coordinates<Self::Scalar>>::Square,
+        _cancelled: Self::Scalar,
+    ) -> Option<TurningLimits> {
+        None
+    }
 
     /// How far the matrix is from satisfying the relation of the group; zero on it.
     fn defect(&self) -> Self::Scalar;

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, RealField, Rotation3, UnitQuaternion, Vector3};
 
 use super::LieGroup;
 use crate::scalar::{Real, gathered, real};
+use crate::solvability::{self, TurningLimits};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -204,6 +205,14 @@ impl<T: Real> LieGroup for SO3<T> {
     #[inline(always)]
     fn adjoint_transpose_increment(increment: &Matrix3<T>, momentum: &Vector3<T>) -> Vector3<T> {
         transpose_mul(increment, momentum)
+    }
+
+    fn turning_limits(
+        unknown: &dyn Fn(&Matrix3<T>) -> Vector3<T>,
+        inertia: &Matrix3<T>,
+        cancelled: T,
+    ) -> Option<TurningLimits> {
+        solvability::of_rotations(unknown, inertia, cancelled)
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
