@@ -189,7 +189,7 @@ fn check_equations(stepper: &Stepper<HeavyTop>, before: &State<SO3, Vector3<f64>
     }
     let f = before.attitude().inverse().compose(&after.attitude()).matrix();
     let (w, size) = (before.advected(), top.J_d.diagonal().amax() / h.abs());
-    let kick = (h * top.m * top.g).abs() * top.rho.norm() * w.norm();
+    let kick = 3.0 * (h * top.m * top.g).abs() * top.rho.amax() * w.amax();
     let scale = size + kick + before.momentum().norm() + after.momentum().norm();
     let minus = (top.legendre_minus(&f, &w, h) - before.momentum()).norm();
     let plus = (top.legendre_plus(&f, &w, h) - after.momentum()).norm();
