@@ -6,7 +6,7 @@ mod common;
 use common::random::Random;
 use common::reference::looping;
 use common::tops::{FreeBody, HeavyTop};
-use liestep::{Checkpoint, CheckpointError, DiscreteLagrangian, LieGroup as _, SO3, Scalar, Stepper, Stored};
+use liestep::{Checkpoint, CheckpointError, Effect, LieGroup as _, SO3, Scalar, Stepper, Stored};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
@@ -21,7 +21,7 @@ fn round_trips<T: Stored>(checkpoint: &Checkpoint<T>) -> [Checkpoint<T>; 3] {
 /// Saved after each of some random numbers of steps, the motion goes on with the same bits.
 fn assert_resumes<L>(stepper: &Stepper<L>, start: liestep::State<SO3<Scalar<L>>, L::Advected>, seed: u64)
 where
-    L: DiscreteLagrangian<Scalar: Stored, Group = SO3<Scalar<L>>>,
+    L: Effect<Scalar: Stored, Group = SO3<Scalar<L>>>,
 {
     let mut random = Random::new(seed);
     let mut state = start;

@@ -14,7 +14,7 @@ mod common;
 
 use common::reference::looping;
 use common::tops::{FreeBody, HeavyTop};
-use liestep::{CompensatedState, DiscreteLagrangian, LieGroup as _, SO3, State, Stepper};
+use liestep::{CompensatedState, Effect, LieGroup as _, SO3, State, Stepper};
 use nalgebra::Vector3;
 
 const STEPS: u32 = 1000;
@@ -39,10 +39,7 @@ impl Digest {
     }
 }
 
-fn of_steps<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(
-    stepper: &Stepper<L>,
-    start: State<SO3, L::Advected>,
-) -> u64 {
+fn of_steps<L: Effect<Scalar = f64, Group = SO3>>(stepper: &Stepper<L>, start: State<SO3, L::Advected>) -> u64 {
     let (mut state, mut digest) = (start, Digest::new());
     for _ in 0..STEPS {
         stepper.step(&mut state).unwrap();
@@ -58,7 +55,7 @@ fn p7_heavy_top() {
     let motion = looping();
     let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let start = stepper.start(motion.attitude, motion.velocity).unwrap();
-    assert_eq!(of_steps(&stepper, start), 0, "{:#x}", of_steps(&stepper, start));
+    assert_eq!(of_steps(&stepper, start), 0x3744_f144_dae0_96d7);
 
     let carrying = stepper.compensated();
     let (mut state, mut digest) = (CompensatedState::from(start), Digest::new());

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use common::random::Random;
 use common::tops::HeavyTop;
 use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian as _, InertiaError, LieGroup as _, NonstandardInertia, SO3,
-    SetupError, Solvability, State, StepError, Stepper,
+    DiagonalNonstandardInertia, DiscreteLagrangian as _, Effect as _, InertiaError, LieGroup as _, NonstandardInertia,
+    SO3, SetupError, Solvability, State, StepError, Stepper,
 };
 use nalgebra::{Matrix3, Vector3};
 

@@ -7,24 +7,19 @@
 mod cayley_top;
 
 mod common;
-#[path = "../examples/declarations/spring.rs"]
-#[allow(non_snake_case, unreachable_pub)]
-mod spring;
 
 use cayley_top::CayleyTop;
 use common::random::Random;
 use common::reference::{Motion, looping};
 use common::tops::{FreeBody, FullTop, HeavyTop, moments};
-use liestep::{
-    DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, NonstandardInertia, SO3, Solvability, StepError, Stepper,
-};
+use liestep::effects::{Gravity, RigidBody};
+use liestep::{DiscreteLiePoisson, LieGroup as _, NonstandardInertia, Regular, SO3, Solvability, StepError, Stepper};
 use nalgebra::Vector3;
-use spring::Spring;
 
 /// Steps and directions all around the two bounds: the sure ones have a solution under 90°, the impossible ones none.
 fn assert_bounds_hold<L>(lagrangian: &L, seed: u64)
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + core::fmt::Debug,
+    L: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + core::fmt::Debug,
 {
     let mut random = Random::new(seed);
     let inertia = lagrangian.inertia().symmetric_eigenvalues();
@@ -95,7 +90,7 @@ fn s1_bounds_of_free_bodies() {
     }
 }
 
-/// The bounds are those of (3.13): another kinetic part, or a potential that isn't one of the positions, has none.
+/// The bounds are those of (3.13); another kinetic part has none.
 #[test]
 fn s6_nothing_is_said_of_other_lagrangians() {
     let top = HeavyTop::asymmetric();
@@ -106,12 +101,12 @@ fn s6_nothing_is_said_of_other_lagrangians() {
     assert_eq!(flow.solvability(&Vector3::new(1e6, 0.0, 0.0), &Vector3::z()), Solvability::Open);
 }
 
-/// A potential of the positions only moves the right side, whatever it is.
+/// A scene is known by its body: potentials of the positions only move the right side.
 #[test]
-fn s1_bounds_with_a_spring() {
-    let (rho, anchor) = (Vector3::new(0.0, 0.5, 1.0), Vector3::new(1.0, 0.0, 2.0));
+fn s1_bounds_of_a_scene() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
-    let stepper = Stepper::new(Spring { J_d, k: 40.0, length: 0.5, rho, anchor }, 0.01).unwrap();
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.0, 0.5, 1.0), up: Vector3::z() };
+    let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.01).unwrap();
     let at = |spin: f64| stepper.solvability(&stepper.start(SO3::identity(), Vector3::z() * spin).unwrap());
     assert_eq!((at(1.0), at(1e3)), (Solvability::Certain, Solvability::Impossible));
 }

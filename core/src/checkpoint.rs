@@ -16,9 +16,9 @@ pub use error::CheckpointError;
 
 use crate::advected::Advected as _;
 use crate::compensated::{Carry, CompensatedState, CompensatedStepper};
+use crate::effect::{Effect, Group, Scalar};
 use crate::entries::Entries;
 use crate::groups::LieGroup;
-use crate::lagrangian::{DiscreteLagrangian, Group, Scalar};
 use crate::scalar::{Real, real, reported};
 use crate::state::State;
 use crate::stepper::Stepper;
@@ -105,7 +105,7 @@ impl<T: Stored> Checkpoint<T> {
     }
 }
 
-impl<L: DiscreteLagrangian<Scalar: Stored>> Stepper<L> {
+impl<L: Effect<Scalar: Stored>> Stepper<L> {
     /// The state for a file.
     #[must_use]
     pub fn checkpoint(&self, state: &State<Group<L>, L::Advected>) -> Checkpoint<Scalar<L>> {
@@ -127,7 +127,7 @@ impl<L: DiscreteLagrangian<Scalar: Stored>> Stepper<L> {
     }
 }
 
-impl<L: DiscreteLagrangian<Scalar: Stored>> CompensatedStepper<L> {
+impl<L: Effect<Scalar: Stored>> CompensatedStepper<L> {
     /// The state for a file, with what its sums carry.
     #[must_use]
     pub fn checkpoint(&self, state: &CompensatedState<Group<L>, L::Advected>) -> Checkpoint<Scalar<L>> {
@@ -150,15 +150,14 @@ impl<L: DiscreteLagrangian<Scalar: Stored>> CompensatedStepper<L> {
         if checkpoint.carry.is_empty() {
             return Err(CheckpointError::AnotherSummation { compensated: false });
         }
-        type Parts<L> =
-            ((<Group<L> as LieGroup>::Matrix, <Group<L> as LieGroup>::Vector), <L as DiscreteLagrangian>::Advected);
+        type Parts<L> = ((<Group<L> as LieGroup>::Matrix, <Group<L> as LieGroup>::Vector), <L as Effect>::Advected);
         let ((attitude, momentum), advected) = unlisted::<Scalar<L>, Parts<L>>("carry", &checkpoint.carry)?;
         intact(checkpoint)?;
         Ok(CompensatedState { state, carry: Carry { attitude, momentum, advected } })
     }
 }
 
-fn written<L: DiscreteLagrangian<Scalar: Stored>>(
+fn written<L: Effect<Scalar: Stored>>(
     stepper: &Stepper<L>,
     state: &State<Group<L>, L::Advected>,
     carry: Vec<Scalar<L>>,
@@ -182,7 +181,7 @@ fn written<L: DiscreteLagrangian<Scalar: Stored>>(
     checkpoint
 }
 
-fn read<L: DiscreteLagrangian<Scalar: Stored>>(
+fn read<L: Effect<Scalar: Stored>>(
     stepper: &Stepper<L>,
     checkpoint: &Checkpoint<Scalar<L>>,
 ) -> Result<State<Group<L>, L::Advected>, CheckpointError> {
@@ -215,7 +214,7 @@ fn read<L: DiscreteLagrangian<Scalar: Stored>>(
 }
 
 /// The checkpoint is of this scene, with these parameters and this step.
-fn belongs<L: DiscreteLagrangian<Scalar: Stored>>(
+fn belongs<L: Effect<Scalar: Stored>>(
     stepper: &Stepper<L>,
     checkpoint: &Checkpoint<Scalar<L>>,
 ) -> Result<(), CheckpointError> {

@@ -7,10 +7,10 @@
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
+use crate::effect::{Effect, Group, Vector};
 use crate::entries::{Entries, zero};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
-use crate::lagrangian::{DiscreteLagrangian, Group, Vector};
 use crate::scalar::{Real, real};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
@@ -41,7 +41,7 @@ use crate::stepper::{StepReport, Stepper};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct CompensatedStepper<L: DiscreteLagrangian> {
+pub struct CompensatedStepper<L: Effect> {
     stepper: Stepper<L>,
 }
 
@@ -74,7 +74,7 @@ impl<G: LieGroup, A: Advected<G>> From<State<G, A>> for CompensatedState<G, A> {
     }
 }
 
-impl<L: DiscreteLagrangian> Stepper<L> {
+impl<L: Effect> Stepper<L> {
     /// The same step with compensated summation.
     #[must_use]
     pub fn compensated(self) -> CompensatedStepper<L> {
@@ -82,7 +82,7 @@ impl<L: DiscreteLagrangian> Stepper<L> {
     }
 }
 
-impl<L: DiscreteLagrangian> CompensatedStepper<L> {
+impl<L: Effect> CompensatedStepper<L> {
     /// The stepper without compensation, for what can be read off a state.
     #[must_use]
     pub fn stepper(&self) -> &Stepper<L> {

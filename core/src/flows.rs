@@ -2,9 +2,11 @@
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
+use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
-use crate::lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Vector};
+use crate::kinetic::Regular;
+use crate::lagrangian::DiscreteLagrangian;
 use crate::newton::{Problem, Root, orientation};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
@@ -15,7 +17,7 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _};
 ///
 /// It is `𝔽l_d⁺ ∘ (𝔽l_d⁻)⁻¹`: Newton's iteration inverts the momentum equation (2.7).
 #[derive(Clone, Debug)]
-pub struct DiscreteLiePoisson<L: DiscreteLagrangian> {
+pub struct DiscreteLiePoisson<L: Effect> {
     lagrangian: L,
     h: Scalar<L>,
     constants: L::Constants,
@@ -26,7 +28,7 @@ pub struct DiscreteLiePoisson<L: DiscreteLagrangian> {
 
 /// One application of a flow.
 #[derive(Clone, Copy, Debug)]
-pub struct Increment<L: DiscreteLagrangian> {
+pub struct Increment<L: Effect> {
     /// The coordinates `ξ` of `F_i = τ(ξ)`: a guess for the next solve.
     pub coordinates: Vector<L>,
     /// `F_i − I`.
@@ -40,13 +42,13 @@ pub struct Increment<L: DiscreteLagrangian> {
 }
 
 /// A momentum equation and its solution.
-pub(crate) struct Solved<L: DiscreteLagrangian> {
+pub(crate) struct Solved<L: Effect> {
     /// `a = μ + kick_before(w)`.
     pub(crate) a: Vector<L>,
     pub(crate) root: Root<L>,
 }
 
-impl<L: DiscreteLagrangian> Increment<L> {
+impl<L: Effect> Increment<L> {
     /// `F_i`.
     #[must_use]
     pub fn element(&self) -> Group<L> {
@@ -54,7 +56,7 @@ impl<L: DiscreteLagrangian> Increment<L> {
     }
 }
 
-impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
+impl<L: Effect> DiscreteLiePoisson<L> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
     ///
     /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity.
@@ -62,7 +64,10 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
     /// # Errors
     ///
     /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part.
-    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError> {
+    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
+    where
+        L: Regular,
+    {
         lagrangian.validate()?;
         // 1/h and the constants made with it must be finite, unless there is no step at all.
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<L>>(1.0) / h)) {
@@ -134,10 +139,14 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         }
         let Solved { a, root: Root { xi, increment, iterations } } = self.solve(momentum, advected, guess)?;
         let next = advected.advect(&increment);
-        let momentum = *momentum
-            + (Group::<L>::adjoint_transpose_increment(&increment, &a)
-                + (a - *momentum)
-                + L::kick_after(&self.constants, &increment, &next));
+        let mut change = Group::<L>::adjoint_transpose_increment(&increment, &a);
+        if L::PARTS.kick_before {
+            change = change + (a - *momentum);
+        }
+        if L::PARTS.kick_after {
+            change = change + L::kick_after(&self.constants, &increment, &next);
+        }
+        let momentum = *momentum + change;
         if momentum.is_finite() && next.is_finite() {
             Ok(Increment { coordinates: xi, increment, momentum, advected: next, iterations })
         } else {
@@ -164,7 +173,12 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
     /// Both kicks of a step from `w` to `next`.
     #[inline(always)]
     pub(crate) fn kicks(&self, w: &L::Advected, increment: &Matrix<L>, next: &L::Advected) -> Vector<L> {
-        L::kick_before(&self.constants, w) + L::kick_after(&self.constants, increment, next)
+        match (L::PARTS.kick_before, L::PARTS.kick_after) {
+            (true, true) => L::kick_before(&self.constants, w) + L::kick_after(&self.constants, increment, next),
+            (true, false) => L::kick_before(&self.constants, w),
+            (false, true) => L::kick_after(&self.constants, increment, next),
+            (false, false) => Vector::<L>::zero(),
+        }
     }
 
     #[inline(always)]
@@ -172,7 +186,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         Problem {
             lagrangian: &self.lagrangian,
             constants: &self.constants,
-            a: *momentum + L::kick_before(&self.constants, w),
+            a: kicked::<L>(&self.constants, momentum, w),
             w,
             h: self.h,
             orientation: self.orientation,
@@ -230,7 +244,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
 
     /// `|h a|`.
     fn size(&self, h: Scalar<L>, constants: &L::Constants, momentum: &Vector<L>, advected: &L::Advected) -> f64 {
-        let turn = (*momentum + L::kick_before(constants, advected)) * h;
+        let turn = kicked::<L>(constants, momentum, advected) * h;
         reported(turn.dot(&turn).simd_sqrt())
     }
 
@@ -239,10 +253,13 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
     fn turning_limits(&self, advected: &L::Advected) -> Option<TurningLimits> {
         let at = |h: Scalar<L>| {
             let constants = self.lagrangian.constants(h);
-            let kick = L::kick_before(&constants, advected);
-            let unknown = |f: &Matrix<L>| (self.lagrangian.legendre_minus(f, advected, h) + kick) * h;
-            let cancelled = (kick.dot(&kick) * h * h).simd_sqrt();
-            Group::<L>::turning_limits(&unknown, &self.lagrangian.inertia(), cancelled)
+            let terms = L::step_terms(&constants, &Vector::<L>::zero(), advected);
+            let unknown = |f: &Group<L>| {
+                let xi = L::Retraction::local_coordinates(f)?;
+                let factor = (real::<Scalar<L>>(4.0) + xi.dot(&xi)).simd_powi(L::DENOMINATORS.cast_signed());
+                Some(L::newton_system(&constants, &terms, &xi).0 * (h / factor))
+            };
+            Group::<L>::turning_limits(&unknown, &self.lagrangian.inertia())
         };
         at(self.h * real(0.5)).and(at(self.h))
     }
@@ -262,7 +279,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
                 Some(Solvability::Impossible) => return false,
                 Some(Solvability::Open) | None => {}
             }
-            let a = *momentum + L::kick_before(&constants, advected);
+            let a = kicked::<L>(&constants, momentum, advected);
             let lagrangian = &self.lagrangian;
             let problem =
                 Problem { lagrangian, constants: &constants, a, w: advected, h, orientation: self.orientation };
@@ -289,6 +306,12 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
     }
 }
 
+/// `a = μ + kick_before(w)`.
+#[inline(always)]
+fn kicked<L: Effect>(constants: &L::Constants, momentum: &Vector<L>, w: &L::Advected) -> Vector<L> {
+    if L::PARTS.kick_before { *momentum + L::kick_before(constants, w) } else { *momentum }
+}
+
 /// The discrete advected Euler–Poincaré flow `(f_i, w_i) ↦ (f_{i+1}, w_{i+1})`, \[RDAE, (2.5)\].
 #[derive(Clone, Debug)]
 pub struct DiscreteEulerPoincare<L: DiscreteLagrangian> {
@@ -301,7 +324,10 @@ impl<L: DiscreteLagrangian> DiscreteEulerPoincare<L> {
     /// # Errors
     ///
     /// As [`DiscreteLiePoisson::new`].
-    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError> {
+    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
+    where
+        L: Regular,
+    {
         DiscreteLiePoisson::new(lagrangian, h).map(|flow| Self { flow })
     }
 
@@ -330,7 +356,7 @@ pub fn reconstruct<G: LieGroup>(g: &G, f: &G) -> G {
 const DETERMINANT_RATIO: f64 = 1e12;
 
 /// The determinant of the Newton system for a body at rest.
-fn determinant_at_rest<L: DiscreteLagrangian>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
+fn determinant_at_rest<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
     let zero = Vector::<L>::zero();
     let terms = L::step_terms(constants, &zero, &lagrangian.advected());
     let (_, jacobian) = L::newton_system(constants, &terms, &zero);

@@ -6,12 +6,14 @@
 //!
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
-//! direction: `scalar ← entries ← coordinates ← groups ← {retraction, advected} ← lagrangian ← newton ← flows ← stepper`.
+//! direction: `scalar ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ←
+//! stepper`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
 
 pub mod conventions;
+pub mod effects;
 pub mod groups;
 pub mod laws;
 
@@ -20,11 +22,14 @@ mod advected;
 mod checkpoint;
 mod compensated;
 mod coordinates;
+mod effect;
 mod entries;
 mod error;
 mod flows;
+mod force;
 mod functions;
 mod inertia;
+mod kinetic;
 mod lagrangian;
 mod newton;
 mod remedy;
@@ -34,6 +39,8 @@ mod scene;
 mod solvability;
 mod state;
 mod stepper;
+mod sum;
+mod symmetry;
 
 #[doc(hidden)]
 #[path = "private.rs"]
@@ -44,14 +51,18 @@ pub use advected::{Advected, ContravariantTensor, ContravariantVector, Covariant
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{CompensatedState, CompensatedStepper};
 pub use coordinates::Coordinates;
+pub use effect::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
+pub use effects::{Gravity, RigidBody};
 pub use entries::Entries;
 pub use error::{SetupError, StepError};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use force::Force;
 pub use groups::{Generators, LieGroup, MatrixGroup, NotARotation, NotInGroup};
 pub use groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2};
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
-pub use liestep_macros::lagrangian;
+pub use kinetic::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
+pub use lagrangian::DiscreteLagrangian;
+pub use liestep_macros::{force, lagrangian};
 pub use remedy::{Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
@@ -59,6 +70,8 @@ pub use scene::SceneVisitor;
 pub use solvability::{Solvability, TurningLimits};
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
+pub use sum::{SharedBy, Sum};
+pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

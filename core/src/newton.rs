@@ -10,8 +10,8 @@
 //! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given.
 
 use crate::coordinates::Coordinates;
+use crate::effect::{Effect, Matrix, Scalar, Vector};
 use crate::error::StepError;
-use crate::lagrangian::{DiscreteLagrangian, Matrix, Scalar, Vector};
 use crate::retraction::Retraction;
 use crate::scalar::{Mask, Real, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
@@ -23,7 +23,7 @@ const MAX_DAMPED_ITERATIONS: u32 = 60;
 
 /// A solution of the momentum equation.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Root<L: DiscreteLagrangian> {
+pub(crate) struct Root<L: Effect> {
     /// Coordinates of `F`.
     pub(crate) xi: Vector<L>,
     /// `F − I`.
@@ -33,14 +33,14 @@ pub(crate) struct Root<L: DiscreteLagrangian> {
 }
 
 /// Where the lanes of an iteration have come to.
-struct Lanes<L: DiscreteLagrangian> {
+struct Lanes<L: Effect> {
     xi: Vector<L>,
     /// Of the Jacobian at the iterate before `xi`.
     det: Scalar<L>,
     settled: Mask<Scalar<L>>,
 }
 
-impl<L: DiscreteLagrangian> Lanes<L> {
+impl<L: Effect> Lanes<L> {
     #[inline(always)]
     fn starting_at(xi: &Vector<L>) -> Self {
         Self { xi: *xi, det: real(0.0), settled: nowhere::<Scalar<L>>() }
@@ -65,7 +65,7 @@ impl<L: DiscreteLagrangian> Lanes<L> {
 }
 
 /// One momentum equation to be solved.
-pub(crate) struct Problem<'a, L: DiscreteLagrangian> {
+pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) lagrangian: &'a L,
     pub(crate) constants: &'a L::Constants,
     pub(crate) a: Vector<L>,
@@ -75,7 +75,7 @@ pub(crate) struct Problem<'a, L: DiscreteLagrangian> {
     pub(crate) orientation: Scalar<L>,
 }
 
-impl<L: DiscreteLagrangian> Problem<'_, L> {
+impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
     /// What it returns is what [`solve`](Self::solve) returns. A determinant above `largest` is doubtful: where the right
@@ -108,12 +108,12 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
         }
         let terms = L::step_terms(self.constants, &self.a, self.w);
         let (warm, iterations) = self.iterate(&terms, Lanes::starting_at(guess));
-        let accepted = self.accepted(&warm);
+        let accepted = self.accepted(&terms, &warm);
         if accepted.all() {
             return Ok(Self::root(&warm, iterations));
         }
         let (cold, iterations) = self.iterate(&terms, warm.keeping(accepted));
-        let accepted = self.accepted(&cold);
+        let accepted = self.accepted(&terms, &cold);
         if accepted.all() {
             return Ok(Self::root(&cold, MAX_ITERATIONS + iterations));
         }
@@ -169,8 +169,8 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
     }
 
     /// The lanes that have settled on the branch of the identity.
-    fn accepted(&self, lanes: &Lanes<L>) -> Mask<Scalar<L>> {
-        let candidates = lanes.settled & self.is_oriented(lanes.det) & self.is_solved(&lanes.xi);
+    fn accepted(&self, terms: &L::StepTerms, lanes: &Lanes<L>) -> Mask<Scalar<L>> {
+        let candidates = lanes.settled & self.is_oriented(lanes.det) & self.is_solved(terms, &lanes.xi);
         let near = L::Retraction::is_near_identity(&lanes.xi);
         if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.xi)) }
     }
@@ -187,16 +187,14 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
 
     /// Whether the momentum equation holds; a vanishing update alone doesn't say so.
     ///
-    /// The bound is far above rounding and far below the right side.
-    fn is_solved(&self, xi: &Vector<L>) -> Mask<Scalar<L>> {
-        use crate::groups::LieGroup as _;
-        let f = L::Retraction::retract(xi).matrix();
-        let kick = L::kick_before(self.constants, self.w);
-        let residual = self.lagrangian.legendre_minus(&f, self.w, self.h) + kick - self.a;
+    /// The bound is far above rounding, and far below the right side where rounding has swallowed the Jacobian.
+    fn is_solved(&self, terms: &L::StepTerms, xi: &Vector<L>) -> Mask<Scalar<L>> {
+        let (residual, _) = L::newton_system(self.constants, terms, xi);
+        let (unknown, jacobian) =
+            L::newton_system(self.constants, &L::step_terms(self.constants, &Vector::<L>::zero(), self.w), xi);
         let size = |v: &Vector<L>| v.dot(v).simd_sqrt();
-        let inertia = Vector::<L>::trace(&self.lagrangian.inertia()).simd_abs();
-        let scale = (size(&self.a) + size(&kick)) * self.h.simd_abs() + inertia;
-        (size(&residual) * self.h.simd_abs()).simd_le(scale * Scalar::<L>::simd_default_epsilon().simd_sqrt())
+        let scale = size(&unknown) + size(&(unknown - residual)) + Vector::<L>::trace(&jacobian).simd_abs();
+        size(&residual).simd_le(scale * Scalar::<L>::simd_default_epsilon().simd_sqrt())
     }
 
     fn root(lanes: &Lanes<L>, iterations: u32) -> Root<L> {
@@ -205,7 +203,7 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
 
     /// The root if all lanes have one, otherwise what the others have failed from.
     fn conclude(&self, terms: &L::StepTerms, lanes: &Lanes<L>, iterations: u32) -> Result<Root<L>, StepError> {
-        let accepted = self.accepted(lanes);
+        let accepted = self.accepted(terms, lanes);
         if accepted.all() {
             return Ok(Self::root(lanes, iterations));
         }
@@ -226,7 +224,7 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
 #[inline(always)]
-fn settled<L: DiscreteLagrangian>(update: &Vector<L>, xi: &Vector<L>) -> Mask<Scalar<L>> {
+fn settled<L: Effect>(update: &Vector<L>, xi: &Vector<L>) -> Mask<Scalar<L>> {
     let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 64.0);
     update.dot(update).simd_le(xi.dot(xi) * tolerance)
 }

@@ -3,8 +3,9 @@
 //! A [`Stepper`] refuses such a step and leaves the state alone. A policy makes another step in its place, and the
 //! report says so. Both policies here give up something; a motion that needs them often wants a smaller step.
 
+use crate::effect::{Effect, Group, Scalar, Vector};
 use crate::error::{SetupError, StepError};
-use crate::lagrangian::{DiscreteLagrangian, Group, Scalar, Vector};
+use crate::kinetic::Regular;
 use crate::scalar::real;
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
@@ -20,7 +21,7 @@ pub enum Remedy {
 }
 
 /// A policy for steps that have no solution.
-pub trait OnFailure<L: DiscreteLagrangian> {
+pub trait OnFailure<L: Effect> {
     /// Moves the state by the stepper's `h` in another way, or leaves it as it was and returns an error.
     ///
     /// # Errors
@@ -36,12 +37,12 @@ pub trait OnFailure<L: DiscreteLagrangian> {
 
 /// A [`Stepper`] with a policy, by [`Stepper::on_failure`].
 #[derive(Clone, Debug)]
-pub struct RemediedStepper<L: DiscreteLagrangian, P> {
+pub struct RemediedStepper<L: Effect, P> {
     stepper: Stepper<L>,
     policy: P,
 }
 
-impl<L: DiscreteLagrangian> Stepper<L> {
+impl<L: Effect> Stepper<L> {
     /// The same steps, and those of the policy where there is none.
     ///
     /// # Examples
@@ -70,7 +71,7 @@ impl<L: DiscreteLagrangian> Stepper<L> {
     }
 }
 
-impl<L: DiscreteLagrangian, P: OnFailure<L>> RemediedStepper<L, P> {
+impl<L: Effect, P: OnFailure<L>> RemediedStepper<L, P> {
     /// The stepper without the policy.
     #[must_use]
     pub fn stepper(&self) -> &Stepper<L> {
@@ -99,7 +100,7 @@ pub struct Substeps {
     pub at_most: u32,
 }
 
-impl<L: DiscreteLagrangian + Clone> OnFailure<L> for Substeps {
+impl<L: Regular + Clone> OnFailure<L> for Substeps {
     #[cold]
     fn remedy(
         &self,
@@ -124,7 +125,7 @@ impl<L: DiscreteLagrangian + Clone> OnFailure<L> for Substeps {
 }
 
 /// The state after `parts` steps of `h/parts`, counted as one, and all Newton iterations.
-fn substepped<L: DiscreteLagrangian + Clone>(
+fn substepped<L: Regular + Clone>(
     stepper: &Stepper<L>,
     state: &State<Group<L>, L::Advected>,
     parts: u32,
@@ -150,11 +151,11 @@ fn substepped<L: DiscreteLagrangian + Clone>(
 /// order, with an error about twice as large; but another map, so that changing over has the effect on the energy that
 /// [`Substeps`] have.
 #[derive(Clone, Debug)]
-pub struct Fallback<M: DiscreteLagrangian> {
+pub struct Fallback<M: Effect> {
     stepper: Stepper<M>,
 }
 
-impl<M: DiscreteLagrangian> Fallback<M> {
+impl<M: Effect> Fallback<M> {
     /// With the step of the stepper that it is for.
     ///
     /// # Errors
@@ -162,7 +163,8 @@ impl<M: DiscreteLagrangian> Fallback<M> {
     /// As [`Stepper::new`].
     pub fn new<L>(lagrangian: M, stepper: &Stepper<L>) -> Result<Self, SetupError>
     where
-        L: DiscreteLagrangian<Scalar = M::Scalar, Group = M::Group, Advected = M::Advected>,
+        M: Regular,
+        L: Effect<Scalar = M::Scalar, Group = M::Group, Advected = M::Advected>,
     {
         Stepper::new(lagrangian, stepper.step_size()).map(|stepper| Self { stepper })
     }
@@ -170,8 +172,8 @@ impl<M: DiscreteLagrangian> Fallback<M> {
 
 impl<L, M> OnFailure<L> for Fallback<M>
 where
-    M: DiscreteLagrangian,
-    L: DiscreteLagrangian<Scalar = M::Scalar, Group = M::Group, Advected = M::Advected>,
+    M: Effect,
+    L: Effect<Scalar = M::Scalar, Group = M::Group, Advected = M::Advected>,
 {
     #[cold]
     fn remedy(

@@ -14,6 +14,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::groups::SO3;
 use crate::scalar::Real;
 
 /// What is known of a step before it is solved.
@@ -60,13 +61,12 @@ const PROBES: [[f64; 4]; 4] =
 ///
 /// The unknown part is given by its values only, so it is recognised by them, whoever derived it.
 pub(crate) fn of_rotations<T: Real>(
-    unknown: &dyn Fn(&Matrix3<T>) -> Vector3<T>,
+    unknown: &dyn Fn(&SO3<T>) -> Option<Vector3<T>>,
     inertia: &Matrix3<T>,
-    cancelled: T,
 ) -> Option<TurningLimits> {
     let inertia = in_f64(inertia)?;
     let nonstandard = Matrix3::from_diagonal_element(0.5 * inertia.trace()) - inertia;
-    let scale = inertia.norm() + nalgebra::try_convert::<T, f64>(cancelled)?;
+    let scale = inertia.norm();
     let tolerance = nalgebra::try_convert::<T, f64>(T::simd_default_epsilon())? * 64.0 * scale;
     for [w, x, y, z] in PROBES {
         let quaternion = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
@@ -74,7 +74,7 @@ pub(crate) fn of_rotations<T: Real>(
         let product = f * nonstandard;
         let twice_vee = product - product.transpose();
         let expected = Vector3::new(twice_vee.m32, twice_vee.m13, twice_vee.m21);
-        let value = in_f64(&unknown(&f.map(crate::scalar::real)))?;
+        let value = in_f64(&unknown(&SO3::from_matrix_unchecked(f.map(crate::scalar::real)))?)?;
         // A NaN isn't the same either.
         if !((value - expected).norm() <= tolerance) {
             return None;

@@ -17,8 +17,12 @@ use std::{env, fs, io};
 const ROUNDS: u32 = 7;
 
 /// Name and source.
-const DECLARATIONS: [(&str, &str); 2] =
-    [("none", include_str!("compile_time/none.rs")), ("(3.13)", include_str!("compile_time/heavy_top.rs"))];
+const DECLARATIONS: [(&str, &str); 4] = [
+    ("none", include_str!("compile_time/none.rs")),
+    ("(3.13)", include_str!("compile_time/heavy_top.rs")),
+    ("L4", include_str!("compile_time/fourth_order_top.rs")),
+    ("L6", include_str!("compile_time/sixth_order_top.rs")),
+];
 
 /// The user's crate, in cargo's directory for the temporary files of tests and benchmarks.
 struct Crate {

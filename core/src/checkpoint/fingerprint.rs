@@ -6,7 +6,7 @@ use serde::de::{Error as _, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Stored;
-use crate::lagrangian::{DiscreteLagrangian, Scalar};
+use crate::effect::{Effect, Scalar};
 use crate::scene::SceneVisitor;
 
 /// A hash by FNV-1a, 64 bits, of Fowler, Noll and Vo: it tells what has changed by accident, not what was forged.
@@ -73,7 +73,7 @@ pub(super) struct Parameters<T> {
 }
 
 impl<T: Stored> Parameters<T> {
-    pub(super) fn of<L: DiscreteLagrangian<Scalar = T>>(lagrangian: &L) -> Self {
+    pub(super) fn of<L: Effect<Scalar = T>>(lagrangian: &L) -> Self {
         let mut parameters = Self { scene: Fingerprint::default(), values: Vec::new() };
         parameters.scene.number(size_of::<Scalar<L>>() as u64);
         lagrangian.describe(&mut parameters);

@@ -131,11 +131,10 @@ pub trait LieGroup: Copy + Debug + PartialEq {
 
     /// Bounds that decide whether the momentum equation `U(F) = a` has a solution, where they are proved for this `U`.
     ///
-    /// The kinetic part has the inertia `J`; `unknown` is `h U(F)`, with roundings of numbers of the size `cancelled`.
+    /// The kinetic part has the inertia `J`; `unknown` is `h U(F)`, where coordinates reach `F`.
     fn turning_limits(
-        _unknown: &dyn Fn(&Self::Matrix) -> Self::Vector,
+        _unknown: &dyn Fn(&Self) -> Option<Self::Vector>,
         _inertia: &<Self::Vector as Coordinates<Self::Scalar>>::Square,
-        _cancelled: Self::Scalar,
     ) -> Option<TurningLimits> {
         None
     }

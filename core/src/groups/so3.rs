@@ -207,12 +207,8 @@ impl<T: Real> LieGroup for SO3<T> {
         transpose_mul(increment, momentum)
     }
 
-    fn turning_limits(
-        unknown: &dyn Fn(&Matrix3<T>) -> Vector3<T>,
-        inertia: &Matrix3<T>,
-        cancelled: T,
-    ) -> Option<TurningLimits> {
-        solvability::of_rotations(unknown, inertia, cancelled)
+    fn turning_limits(unknown: &dyn Fn(&Self) -> Option<Vector3<T>>, inertia: &Matrix3<T>) -> Option<TurningLimits> {
+        solvability::of_rotations(unknown, inertia)
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
