@@ -16,7 +16,7 @@ pub use error::CheckpointError;
 
 use crate::advected::Advected as _;
 use crate::compensated::{Carry, CompensatedState, CompensatedStepper};
-use crate::effect::{Effect, Group, Scalar};
+use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
 use crate::entries::Entries;
 use crate::groups::LieGroup;
 use crate::scalar::{Real, real, reported};
@@ -50,7 +50,7 @@ impl Stored for f32 {
 /// # Format
 ///
 /// A map of names to numbers and lists of numbers, matrices row by row; units are those of the [`State`]. The lists have
-/// the length that the scene calls for. A text format must read floats to the last bit, as serde_json does with its
+/// the length that the scene calls for. A text format must read floats to the last bit, as `serde_json` does with its
 /// feature `float_roundtrip`; one that doesn't is found out by the digest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -72,6 +72,9 @@ pub struct Checkpoint<T> {
     digest: Fingerprint,
 }
 
+/// The carries of attitude and momentum, and of the advected parameters.
+type CarryParts<L> = ((Matrix<L>, Vector<L>), <L as Effect>::Advected);
+
 impl<T: Stored> Checkpoint<T> {
     /// The number of steps made.
     #[must_use]
@@ -87,7 +90,9 @@ impl<T: Stored> Checkpoint<T> {
         digest.number(self.steps);
         for (_, numbers) in self.lists() {
             digest.number(numbers.len() as u64);
-            numbers.iter().for_each(|number| digest.number(number.bits()));
+            for number in numbers {
+                digest.number(number.bits());
+            }
         }
         digest
     }
@@ -150,8 +155,7 @@ impl<L: Effect<Scalar: Stored>> CompensatedStepper<L> {
         if checkpoint.carry.is_empty() {
             return Err(CheckpointError::AnotherSummation { compensated: false });
         }
-        type Parts<L> = ((<Group<L> as LieGroup>::Matrix, <Group<L> as LieGroup>::Vector), <L as Effect>::Advected);
-        let ((attitude, momentum), advected) = unlisted::<Scalar<L>, Parts<L>>("carry", &checkpoint.carry)?;
+        let ((attitude, momentum), advected) = unlisted::<Scalar<L>, CarryParts<L>>("carry", &checkpoint.carry)?;
         intact(checkpoint)?;
         Ok(CompensatedState { state, carry: Carry { attitude, momentum, advected } })
     }
@@ -198,7 +202,8 @@ fn read<L: Effect<Scalar: Stored>>(
     // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
     let allowed = Scalar::<L>::simd_default_epsilon().simd_sqrt();
     let defect = attitude.defect();
-    if !(defect < allowed) {
+    let is_in_group = defect < allowed;
+    if !is_in_group {
         return Err(CheckpointError::NotInGroup { defect: reported(defect) });
     }
     let expected = stepper.lagrangian().advected().seen_from(&attitude);
@@ -207,7 +212,8 @@ fn read<L: Effect<Scalar: Stored>>(
         squared += (stored - expected) * (stored - expected);
         size += expected * expected;
     }
-    if !(squared <= size * allowed * allowed) {
+    let is_seen = squared <= size * allowed * allowed;
+    if !is_seen {
         return Err(CheckpointError::NotAdvected { distance: reported(squared.simd_sqrt()) });
     }
     Ok(state)

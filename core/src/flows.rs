@@ -238,12 +238,12 @@ impl<L: Effect> DiscreteLiePoisson<L> {
     /// A step asks only when its solve hasn't succeeded at once, so that the steps that do cost nothing more.
     #[must_use]
     pub fn solvability(&self, momentum: &Vector<L>, advected: &L::Advected) -> Solvability {
-        let decide = |limits: TurningLimits| limits.decide(self.size(self.h, &self.constants, momentum, advected));
+        let decide = |limits: TurningLimits| limits.decide(Self::size(self.h, &self.constants, momentum, advected));
         self.turning_limits(advected).map_or(Solvability::Open, decide)
     }
 
     /// `|h a|`.
-    fn size(&self, h: Scalar<L>, constants: &L::Constants, momentum: &Vector<L>, advected: &L::Advected) -> f64 {
+    fn size(h: Scalar<L>, constants: &L::Constants, momentum: &Vector<L>, advected: &L::Advected) -> f64 {
         let turn = kicked::<L>(constants, momentum, advected) * h;
         reported(turn.dot(&turn).simd_sqrt())
     }
@@ -274,7 +274,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         let solvable = |fraction: f64| {
             let h = self.h * real(fraction);
             let constants = self.lagrangian.constants(h);
-            match limits.map(|limits| limits.decide(self.size(h, &constants, momentum, advected))) {
+            match limits.map(|limits| limits.decide(Self::size(h, &constants, momentum, advected))) {
                 Some(Solvability::Certain) => return true,
                 Some(Solvability::Impossible) => return false,
                 Some(Solvability::Open) | None => {}

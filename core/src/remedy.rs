@@ -113,7 +113,7 @@ impl<L: Regular + Clone> OnFailure<L> for Substeps {
         }
         let mut parts = 2;
         while parts <= self.at_most {
-            if let Some((moved, iterations)) = substepped(stepper, state, parts) {
+            if let Some(Moved { state: moved, iterations }) = substepped(stepper, state, parts) {
                 *state = moved;
                 return Ok(StepReport { iterations, remedy: Some(Remedy::Substeps(parts)) });
             }
@@ -124,12 +124,18 @@ impl<L: Regular + Clone> OnFailure<L> for Substeps {
     }
 }
 
+/// Where substeps have led.
+struct Moved<L: Effect> {
+    state: State<Group<L>, L::Advected>,
+    iterations: u32,
+}
+
 /// The state after `parts` steps of `h/parts`, counted as one, and all Newton iterations.
 fn substepped<L: Regular + Clone>(
     stepper: &Stepper<L>,
     state: &State<Group<L>, L::Advected>,
     parts: u32,
-) -> Option<(State<Group<L>, L::Advected>, u32)> {
+) -> Option<Moved<L>> {
     let (whole, part) = (real::<Scalar<L>>(f64::from(parts)), real::<Scalar<L>>(1.0 / f64::from(parts)));
     let small = Stepper::new(stepper.lagrangian().clone(), stepper.step_size() / whole).ok()?;
     let scaled = |coordinates: Vector<L>, factor| coordinates * factor;
@@ -141,7 +147,8 @@ fn substepped<L: Regular + Clone>(
         iterations += small.step(&mut moved).ok()?.iterations;
     }
     let coordinates = scaled(moved.coordinates, whole);
-    Some((State { guess: coordinates, coordinates, steps: state.steps + 1, ..moved }, iterations))
+    let state = State { guess: coordinates, coordinates, steps: state.steps + 1, ..moved };
+    Some(Moved { state, iterations })
 }
 
 /// Takes the step of another Lagrangian with the same group and advected parameters.

@@ -75,8 +75,8 @@ pub(crate) fn of_rotations<T: Real>(
         let twice_vee = product - product.transpose();
         let expected = Vector3::new(twice_vee.m32, twice_vee.m13, twice_vee.m21);
         let value = in_f64(&unknown(&SO3::from_matrix_unchecked(f.map(crate::scalar::real)))?)?;
-        // A NaN isn't the same either.
-        if !((value - expected).norm() <= tolerance) {
+        let is_same = (value - expected).norm() <= tolerance;
+        if !is_same {
             return None;
         }
     }
