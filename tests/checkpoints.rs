@@ -37,8 +37,7 @@ where
             // The text of a float has all its digits and the sign of zero.
             assert_eq!(format!("{on:?}"), format!("{resumed:?}"));
         }
-        let more = (random.signed().abs() * 100.0).round();
-        for _ in 0..more as u32 {
+        for _ in 0..common::measure::steps_in(random.signed().abs(), 0.01) {
             stepper.step(&mut state).unwrap();
         }
     }

@@ -132,7 +132,7 @@ fn check_inertia_error(matrix: &Matrix3<f64>, error: InertiaError) -> &'static s
             "inertia: singular"
         }
         InertiaError::OutOfRange { .. } => {
-            assert!(finite(matrix.as_slice()) && (size > 1e76 || size < 1e-76), "{size:e}");
+            assert!(finite(matrix.as_slice()) && !(1e-76..=1e76).contains(&size), "{size:e}");
             "inertia: out of range"
         }
         other => panic!("{other:?}"),
@@ -166,9 +166,8 @@ fn check_setup_error(top: &HeavyTop, h: f64, error: &SetupError) -> &'static str
 fn check_start_error(attitude: &SO3, momentum: &Vector3<f64>, error: &SetupError) -> &'static str {
     match *error {
         SetupError::NotInGroup { defect } => {
-            assert!(
-                !(attitude.defect() < 2e-12) && (defect.to_bits() == attitude.defect().to_bits() || defect.is_nan())
-            );
+            let is_in_group = attitude.defect() < 2e-12;
+            assert!(!is_in_group && (defect.to_bits() == attitude.defect().to_bits() || defect.is_nan()));
             "start: not in the group"
         }
         SetupError::NonFinite { what: "momentum" } => {
@@ -211,7 +210,8 @@ fn check_step_error(
         StepError::BeyondSolvable { step, largest } => {
             let smallest = inertia.symmetric_eigenvalues().min();
             assert!(step.to_bits() == h.to_bits() && largest.abs() < h.abs() && largest * h >= 0.0);
-            assert!(!(turn.norm() < smallest * (1.0 - 1e-9)), "{:e} and {smallest:e}", turn.norm());
+            let is_small = turn.norm() < smallest * (1.0 - 1e-9);
+            assert!(!is_small, "{:e} and {smallest:e}", turn.norm());
             assert_ne!(stepper.solvability(state), Solvability::Certain);
             "step: beyond solvable"
         }
