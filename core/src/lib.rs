@@ -16,6 +16,8 @@ pub mod groups;
 pub mod laws;
 
 mod advected;
+mod bisection;
+mod composition;
 mod coordinates;
 mod error;
 mod flows;
@@ -33,6 +35,7 @@ mod stepper;
 pub mod __private;
 
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+pub use composition::{Composition, CompositionScheme};
 pub use coordinates::Coordinates;
 pub use error::{SetupError, StepError};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};

@@ -33,16 +33,6 @@ pub fn tensor<L: System<N, D>, const N: usize, const D: usize>(
     tensor
 }
 
-/// One step of the flow on `z`.
-fn image<L: System<N, D>, const N: usize, const D: usize>(
-    flow: &DiscreteLiePoisson<L>,
-    z: &DVector<f64>,
-) -> (SVector<f64, D>, L::Advected) {
-    let (momentum, w) = taken_apart::<L, N, D>(z);
-    let step = flow.step(&momentum, &w, &SVector::zeros()).unwrap_or_else(|error| panic!("{error}: {z}"));
-    (step.momentum, step.advected)
-}
-
 fn taken_apart<L: System<N, D>, const N: usize, const D: usize>(z: &DVector<f64>) -> (SVector<f64, D>, L::Advected) {
     (z.fixed_rows::<D>(0).into_owned(), L::Advected::from_numbers(z.iter().skip(D).copied()))
 }
@@ -51,9 +41,22 @@ fn joined<const D: usize>(momentum: &SVector<f64, D>, w: &impl Numbers) -> DVect
     DVector::from_iterator(D + w.numbers().len(), momentum.iter().copied().chain(w.numbers()))
 }
 
-/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))`.
+/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a step of the flow.
 pub fn defect<L: System<N, D>, const N: usize, const D: usize>(
     flow: &DiscreteLiePoisson<L>,
+    momentum: &SVector<f64, D>,
+    w: &L::Advected,
+) -> f64 {
+    let step = |momentum: &SVector<f64, D>, w: &L::Advected| {
+        let step = flow.step(momentum, w, &SVector::zeros()).unwrap_or_else(|error| panic!("{error}: {momentum}"));
+        (step.momentum, step.advected)
+    };
+    defect_of::<L, N, D>(step, momentum, w)
+}
+
+/// The same for any map of momentum and parameters.
+pub fn defect_of<L: System<N, D>, const N: usize, const D: usize>(
+    map: impl Fn(&SVector<f64, D>, &L::Advected) -> (SVector<f64, D>, L::Advected),
     momentum: &SVector<f64, D>,
     w: &L::Advected,
 ) -> f64 {
@@ -62,17 +65,18 @@ pub fn defect<L: System<N, D>, const N: usize, const D: usize>(
     for k in 0..z.len() {
         let direction = DVector::from_fn(z.len(), |i, _| f64::from(u8::from(i == k)));
         let column = derivative(|t| {
-            let (momentum, w) = image(flow, &(&z + &direction * t));
+            let (momentum, w) = taken_apart::<L, N, D>(&(&z + &direction * t));
+            let (momentum, w) = map(&momentum, &w);
             joined(&momentum, &w)
         });
         tangent.set_column(k, &column);
     }
-    let (after, w_after) = image(flow, &z);
+    let (after, w_after) = map(momentum, w);
     (&tangent * tensor::<L, N, D>(momentum, w) * tangent.transpose() - tensor::<L, N, D>(&after, &w_after)).amax()
 }
 
 /// The six-point differences of values near one leave 10⁻¹².
-const TOLERANCE: f64 = 1e-10;
+pub const TOLERANCE: f64 = 1e-10;
 
 /// The claim holds for any `w`, not only for those on the orbit of the declared one, and for large steps: at `h = 0.3`
 /// the largest turn by some 60°.

@@ -1,0 +1,135 @@
+//! The methods, ours and others', behind one way to run them.
+
+use liestep::{Composition, CompositionScheme, DiscreteLagrangian, SO3, Stepper};
+
+use crate::rivals::{Equations, dop853, rk4};
+use crate::scenes::{End, Kind, Scene};
+
+/// A run made ready, from its start to its end each time it is called; `None` where a step failed.
+pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
+
+/// A way to integrate.
+pub(crate) struct Method {
+    pub(crate) name: String,
+    pub(crate) ours: bool,
+    control: Control,
+    /// The run of a scene over a time with a step (or a tolerance): all that doesn't depend on the state is done here.
+    pub(crate) prepare: Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>,
+}
+
+/// What is varied.
+#[derive(Clone, Copy)]
+enum Control {
+    /// Steps of equal length, from this on, s.
+    Step(f64),
+    Tolerance,
+}
+
+impl Method {
+    fn new(
+        name: impl Into<String>,
+        ours: bool,
+        control: Control,
+        prepare: impl Fn(&Scene, f64, f64) -> Option<Prepared> + 'static,
+    ) -> Self {
+        Self { name: name.into(), ours, control, prepare: Box::new(prepare) }
+    }
+
+    /// Steps that divide the time, each shorter than the one before by the ratio; or tolerances.
+    pub(crate) fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
+        let (first, next, last) = match self.control {
+            Control::Step(longest) => (longest, 1.0 / ratio, 1e-5),
+            // An error of order 8 falls by the eighth power of the step.
+            Control::Tolerance => (1.0, ratio.powi(-8), 1e-15),
+        };
+        let whole = matches!(self.control, Control::Step(_));
+        core::iter::successors(Some(first), move |parameter| Some(parameter * next))
+            .take_while(move |parameter| *parameter > last)
+            .map(move |parameter| if whole { t / (t / parameter).ceil() } else { parameter })
+    }
+}
+
+/// The whole number of steps in a time.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the step divides the time
+fn count(t: f64, h: f64) -> u64 {
+    (t / h).round() as u64
+}
+
+/// All the methods that a scene allows.
+pub(crate) fn all(scene: &Scene) -> Vec<Method> {
+    let mut methods = Vec::new();
+    if scene.kind == Kind::Free {
+        methods.extend(declared(Scene::free_body));
+    } else {
+        methods.extend(declared(Scene::top));
+    }
+    methods.extend(rivals());
+    methods
+}
+
+/// The step of a declared Lagrangian of order 2, and its compositions.
+fn declared<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> Vec<Method>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone + 'static,
+{
+    let alone = Method::new("(3.13)", true, Control::Step(0.5), move |scene, t, h| {
+        let (stepper, steps) = (Stepper::new(lagrangian(scene), h).ok()?, count(t, h));
+        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+        Some(Box::new(move || {
+            let mut state = start;
+            for _ in 0..steps {
+                stepper.step(&mut state).ok()?;
+            }
+            Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
+        }))
+    });
+    let schemes = [
+        CompositionScheme::SUZUKI_4,
+        CompositionScheme::KAHAN_LI_6,
+        CompositionScheme::KAHAN_LI_8,
+        CompositionScheme::SOFRONIOU_SPALETTA_10,
+    ];
+    let composed = schemes.map(|scheme| {
+        Method::new(format!("(3.13), {}", scheme.name()), true, Control::Step(1.0), move |scene, t, h| {
+            let (composed, steps) = (Composition::new(lagrangian(scene), h, scheme).ok()?, count(t, h));
+            let start = composed.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+            Some(Box::new(move || {
+                let mut state = start;
+                for _ in 0..steps {
+                    composed.step(&mut state).ok()?;
+                }
+                Some((*state.attitude().as_matrix(), composed.velocity(&state)))
+            }))
+        })
+    });
+    core::iter::once(alone).chain(composed).collect()
+}
+
+fn rivals() -> [Method; 3] {
+    [
+        Method::new("RK4", false, Control::Step(0.5), |scene, t, h| {
+            let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
+            Some(Box::new(move || {
+                let mut y = start;
+                for _ in 0..steps {
+                    y = rk4::step(&equations, h, &y);
+                }
+                Some(equations.end(&y))
+            }))
+        }),
+        Method::new("DOP853, fixed step", false, Control::Step(1.0), |scene, t, h| {
+            let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
+            Some(Box::new(move || {
+                let mut y = start;
+                for _ in 0..steps {
+                    y = dop853::step(&equations, h, &y);
+                }
+                Some(equations.end(&y))
+            }))
+        }),
+        Method::new("DOP853", false, Control::Tolerance, |scene, t, tolerance| {
+            let (equations, start) = (Equations::of(scene), Equations::start(scene));
+            Some(Box::new(move || Some(equations.end(&dop853::integrate(&equations, t, tolerance, start)?))))
+        }),
+    ]
+}

@@ -1,0 +1,14 @@
+//! The declared Lagrangians.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+// Files that are shared with the tests and with the other examples.
+#![allow(dead_code, unreachable_pub)]
+
+#[path = "../declarations/free_body.rs"]
+mod free_body;
+#[path = "../declarations/heavy_top.rs"]
+mod heavy_top;
+
+pub(crate) use free_body::FreeBody;
+pub(crate) use heavy_top::HeavyTop;
