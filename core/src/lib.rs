@@ -27,6 +27,7 @@ mod lagrangian;
 mod newton;
 mod retraction;
 mod scalar;
+mod splitting;
 mod state;
 mod stepper;
 
@@ -46,6 +47,7 @@ pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
 pub use liestep_macros::lagrangian;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
+pub use splitting::{DeclaredDrift, Flow, KineticFlow, Splitting, SplittingScheme, SymmetricBody, SymmetricDrift, Turn};
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
 

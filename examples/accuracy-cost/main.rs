@@ -11,7 +11,7 @@
 //! an error, and how its time compares with that of the fastest rival. The rivals integrate unit quaternion and momentum.
 
 // What the other examples share, of which this one uses a part.
-#[allow(dead_code)]
+#[allow(dead_code, unused_imports)]
 #[path = "../common/mod.rs"]
 mod common;
 

@@ -1,9 +1,13 @@
 //! The methods, ours and others', behind one way to run them.
 
-use liestep::{Composition, CompositionScheme, DiscreteLagrangian, SO3, Stepper};
+use liestep::{
+    Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, SO3, Splitting, SplittingScheme, Stepper,
+    SymmetricBody,
+};
 
 use crate::rivals::{Equations, dop853, rk4};
 use crate::scenes::{End, Kind, Scene};
+use crate::systems::SixthOrderBody;
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
 pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
@@ -58,21 +62,31 @@ fn count(t: f64, h: f64) -> u64 {
 /// All the methods that a scene allows.
 pub(crate) fn all(scene: &Scene) -> Vec<Method> {
     let mut methods = Vec::new();
-    if scene.kind == Kind::Free {
-        methods.extend(declared(Scene::free_body));
-    } else {
-        methods.extend(declared(Scene::top));
+    match scene.kind {
+        Kind::Free => methods.extend(declared(Scene::free_body)),
+        Kind::Top | Kind::SymmetricTop => methods.extend(declared(Scene::top)),
+    }
+    match scene.kind {
+        Kind::SymmetricTop => {
+            methods.extend(splittings("exact", |scene| SymmetricBody::new(&scene.inertia()).ok()));
+        }
+        Kind::Top => methods.extend(splittings("K6", |scene| Some(SixthOrderBody { J: scene.inertia() }))),
+        Kind::Free => methods.extend(alone("K6", Control::Step(1.0), |scene| SixthOrderBody { J: scene.inertia() })),
     }
     methods.extend(rivals());
     methods
 }
 
-/// The step of a declared Lagrangian of order 2, and its compositions.
-fn declared<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> Vec<Method>
+/// The step of a declared Lagrangian.
+fn alone<L>(
+    name: &'static str,
+    control: Control,
+    lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
+) -> Option<Method>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone + 'static,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + 'static,
 {
-    let alone = Method::new("(3.13)", true, Control::Step(0.5), move |scene, t, h| {
+    Some(Method::new(name, true, control, move |scene, t, h| {
         let (stepper, steps) = (Stepper::new(lagrangian(scene), h).ok()?, count(t, h));
         let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
         Some(Box::new(move || {
@@ -82,7 +96,42 @@ where
             }
             Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
         }))
-    });
+    }))
+}
+
+/// Splittings with a kinetic flow.
+fn splittings<K>(name: &'static str, kinetic: impl Fn(&Scene) -> Option<K> + Copy + 'static) -> Vec<Method>
+where
+    K: KineticFlow<f64> + 'static,
+{
+    let schemes = [
+        SplittingScheme::STRANG,
+        SplittingScheme::NEAR_INTEGRABLE_4_2,
+        SplittingScheme::NEAR_INTEGRABLE_8_6_4,
+        SplittingScheme::NEAR_INTEGRABLE_10_6_4,
+        SplittingScheme::NYSTROM_6,
+        SplittingScheme::NYSTROM_11,
+        SplittingScheme::NYSTROM_14,
+    ];
+    let method = |scheme: SplittingScheme| {
+        Method::new(format!("{name}, {}", scheme.name()), true, Control::Step(5.0), move |scene, t, h| {
+            let (splitting, steps) = (Splitting::new(scene.top(), kinetic(scene)?, h, scheme).ok()?, count(t, h));
+            let start = splitting.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+            Some(Box::new(move || {
+                let mut state = start;
+                splitting.advance(&mut state, steps).ok()?;
+                Some((*state.attitude().as_matrix(), splitting.velocity(&state)))
+            }))
+        })
+    };
+    schemes.map(method).into()
+}
+
+/// The step of a declared Lagrangian of order 2, and its compositions.
+fn declared<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> Vec<Method>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone + 'static,
+{
     let schemes = [
         CompositionScheme::SUZUKI_4,
         CompositionScheme::KAHAN_LI_6,
@@ -102,7 +151,7 @@ where
             }))
         })
     });
-    core::iter::once(alone).chain(composed).collect()
+    alone("(3.13)", Control::Step(0.5), lagrangian).into_iter().chain(composed).collect()
 }
 
 fn rivals() -> [Method; 3] {

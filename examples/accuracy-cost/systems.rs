@@ -9,6 +9,9 @@
 mod free_body;
 #[path = "../declarations/heavy_top.rs"]
 mod heavy_top;
+#[path = "../declarations/sixth_order_body.rs"]
+mod sixth_order_body;
 
 pub(crate) use free_body::FreeBody;
 pub(crate) use heavy_top::HeavyTop;
+pub(crate) use sixth_order_body::SixthOrderBody;

@@ -11,7 +11,7 @@ pub(crate) const TOPS: [&str; 4] =
     ["thesis_looping_A_Jd221", "thesis_cuspidal_B_J221", "thesis_unidirectional_A_Jd221", "chaotic_asymmetric_top"];
 
 /// Above what some thousand stages lose to rounding in attitude and velocity.
-const PLATEAU: f64 = 1e-13;
+const PLATEAU: f64 = 2e-13;
 
 /// A motion at its end: attitude and body velocity.
 pub(crate) type End = (SO3, Vector3<f64>);

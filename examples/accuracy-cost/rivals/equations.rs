@@ -32,9 +32,10 @@ impl Equations {
 
     /// Attitude and body velocity.
     pub(crate) fn end(&self, &[a, b, c, d, p1, p2, p3]: &State) -> (Matrix3<f64>, Vector3<f64>) {
+        let [i1, i2, i3] = self.inverse_moments;
         // As it is: a rival that has lost the length of its quaternion shall show it.
         let attitude = UnitQuaternion::new_unchecked(Quaternion::new(a, b, c, d)).to_rotation_matrix().into_inner();
-        (attitude, Vector3::new(p1, p2, p3).component_mul(&self.inverse_moments.into()))
+        (attitude, Vector3::new(i1 * p1, i2 * p2, i3 * p3))
     }
 
     #[inline(always)]

@@ -4,4 +4,4 @@ pub(crate) mod dop853;
 mod equations;
 pub(crate) mod rk4;
 
-pub(crate) use equations::{Equations, State};
+pub(crate) use equations::Equations;
