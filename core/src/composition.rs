@@ -249,12 +249,7 @@ impl<T: crate::Real> Stage<T> {
         let ratio = (this + next) / (before + this);
         let ratio = if ratio.abs() <= FARTHEST_EXTRAPOLATION { ratio } else { 0.0 };
         let scale = next / this;
-        Self {
-            stepper,
-            scale: real(scale),
-            last: real(scale * (1.0 + ratio)),
-            earlier: real(-ratio * next / before),
-        }
+        Self { stepper, scale: real(scale), last: real(scale * (1.0 + ratio)), earlier: real(-ratio * next / before) }
     }
 
     #[inline(always)]

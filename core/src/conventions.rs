@@ -137,6 +137,7 @@
 //! | \[BM02\] | S. Blanes, P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, Journal of Computational and Applied Mathematics 142, 2002 |
 //! | \[McL95\] | R. I. McLachlan, *Composition methods in the presence of small parameters*, BIT 35, 1995 |
 //! | \[BCF13\] | S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, *New families of symplectic splitting methods for numerical integration in dynamical astronomy*, Applied Numerical Mathematics 68, 2013 |
+//! | \[HV06\] | E. Hairer, G. Vilmart, *Preprocessed discrete Moser–Veselov algorithm for the full dynamics of the rigid body*, Journal of Physics A 39, 2006 |
 //!
 //! The Lagrangian (3.13) gives the integrator of \[LML05\], with the same momentum; the discrete Legendre transforms and
 //! the order of accuracy they imply are those of \[MW01\]; the continuous theory of chapter 1 is in \[HSS09\].

@@ -25,6 +25,7 @@ mod functions;
 mod inertia;
 mod lagrangian;
 mod newton;
+mod preprocessed;
 mod retraction;
 mod scalar;
 mod splitting;
@@ -45,9 +46,12 @@ pub use groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2};
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
 pub use liestep_macros::lagrangian;
+pub use preprocessed::{PreprocessedBody, PreprocessedOrder};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
-pub use splitting::{DeclaredDrift, Flow, KineticFlow, Splitting, SplittingScheme, SymmetricBody, SymmetricDrift, Turn};
+pub use splitting::{
+    DeclaredDrift, Flow, KineticFlow, Splitting, SplittingScheme, SymmetricBody, SymmetricDrift, Turn,
+};
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
 

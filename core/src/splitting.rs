@@ -1,5 +1,6 @@
 //! Kinetic-potential splittings: the free body's motion and the potential's kicks by turns.
 
+mod angle;
 mod kick;
 mod kinetic;
 mod scheme;

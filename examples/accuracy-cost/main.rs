@@ -96,8 +96,7 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
     }
     bar.finish_and_clear();
-    let panels: Vec<_> =
-        results.iter().map(|(title, methods)| Panel { title: title.clone(), methods }).collect();
+    let panels: Vec<_> = results.iter().map(|(title, methods)| Panel { title: title.clone(), methods }).collect();
     output.write("accuracy-cost.svg", &figure(&panels)?)?;
     output.write("accuracy-cost.csv", &csv)?;
     print(&format!("{text}{output}"))?;

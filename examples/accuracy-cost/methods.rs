@@ -1,8 +1,8 @@
 //! The methods, ours and others', behind one way to run them.
 
 use liestep::{
-    Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, SO3, Splitting, SplittingScheme, Stepper,
-    SymmetricBody,
+    Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedBody, PreprocessedOrder, SO3,
+    Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
 use crate::rivals::{Equations, dop853, rk4};
@@ -71,18 +71,17 @@ pub(crate) fn all(scene: &Scene) -> Vec<Method> {
             methods.extend(splittings("exact", |scene| SymmetricBody::new(&scene.inertia()).ok()));
         }
         Kind::Top => methods.extend(splittings("K6", |scene| Some(SixthOrderBody { J: scene.inertia() }))),
-        Kind::Free => methods.extend(alone("K6", Control::Step(1.0), |scene| SixthOrderBody { J: scene.inertia() })),
+        Kind::Free => {
+            methods.extend(preprocessed());
+            methods.extend(alone("K6", Control::Step(1.0), |scene| SixthOrderBody { J: scene.inertia() }));
+        }
     }
     methods.extend(rivals());
     methods
 }
 
 /// The step of a declared Lagrangian.
-fn alone<L>(
-    name: &'static str,
-    control: Control,
-    lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
-) -> Option<Method>
+fn alone<L>(name: &'static str, control: Control, lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> Option<Method>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + 'static,
 {
@@ -97,6 +96,24 @@ where
             Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
         }))
     }))
+}
+
+/// The free body with modified moments of inertia.
+fn preprocessed() -> [Method; 4] {
+    use PreprocessedOrder::{Eight, Four, Six, Ten};
+    [("4", Four), ("6", Six), ("8", Eight), ("10", Ten)].map(|(name, order)| {
+        Method::new(format!("preprocessed, {name}"), true, Control::Step(2.0), move |scene, t, h| {
+            let (body, steps) = (PreprocessedBody::new(scene.nonstandard(), h, order).ok()?, count(t, h));
+            let start = body.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+            Some(Box::new(move || {
+                let mut state = start;
+                for _ in 0..steps {
+                    body.step(&mut state).ok()?;
+                }
+                Some((*state.attitude().as_matrix(), body.velocity(&state)))
+            }))
+        })
+    })
 }
 
 /// Splittings with a kinetic flow.

@@ -66,15 +66,9 @@ impl Scene {
         .collect()
     }
 
-    fn read(
-        name: &'static str,
-        short: &'static str,
-        kind: Kind,
-        data: &Value,
-    ) -> Result<Self, Box<dyn Error>> {
+    fn read(name: &'static str, short: &'static str, kind: Kind, data: &Value) -> Result<Self, Box<dyn Error>> {
         let apart = !data["initial"].is_null();
-        let weight =
-            if apart { number(&data["m"])? * number(&data["g"])? } else { number(&data["mg"])? };
+        let weight = if apart { number(&data["m"])? * number(&data["g"])? } else { number(&data["mg"])? };
         let end = |state: &Value| -> Result<End, Box<dyn Error>> {
             let attitude = if apart { &state["R"] } else { &state["R_row_major"] };
             Ok((matrix(attitude)?, vector(&state["Omega"])?))
@@ -103,6 +97,11 @@ impl Scene {
     /// The body with the kinetic term of (3.13) alone.
     pub(crate) fn free_body(&self) -> FreeBody {
         FreeBody { J_d: self.nonstandard.into() }
+    }
+
+    /// The nonstandard inertia.
+    pub(crate) fn nonstandard(&self) -> DiagonalNonstandardInertia {
+        self.nonstandard
     }
 
     /// The ordinary inertia.

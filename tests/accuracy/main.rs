@@ -15,3 +15,5 @@ mod declarations;
 mod composition;
 mod conditions;
 mod convergence;
+mod preprocessed;
+mod splitting;

@@ -25,9 +25,8 @@ where
     let half = lagrangian.constants(real(1.0));
     let kick = |w: &L::Advected| -> Vector3<T> { L::kick_before(&constants, w) };
     let mut defect = T::zero();
-    let [some, other] = [Vector3::new(0.7, -0.4, 1.1), Vector3::new(-0.3, 0.9, 0.5)].map(|xi| {
-        lagrangian.advected().seen_from(&CayleyRetraction::retract(&xi.map(real::<T>)))
-    });
+    let [some, other] = [Vector3::new(0.7, -0.4, 1.1), Vector3::new(-0.3, 0.9, 0.5)]
+        .map(|xi| lagrangian.advected().seen_from(&CayleyRetraction::retract(&xi.map(real::<T>))));
     for xi in [Vector3::new(0.2, -0.1, 0.3), Vector3::new(-0.5, 0.4, 0.1)] {
         let element: SO3<T> = CayleyRetraction::retract(&xi.map(real::<T>));
         let (f, increment) = (element.matrix(), element.increment());

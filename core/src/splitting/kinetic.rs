@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
+use super::angle::rotation_coefficients;
 use crate::coordinates::Coordinates as _;
 use crate::error::{SetupError, StepError};
 use crate::flows::DiscreteLiePoisson;
-use crate::functions::stumpff;
 use crate::groups::SO3;
 use crate::inertia::Inertia;
 use crate::lagrangian::DiscreteLagrangian;
@@ -69,7 +69,10 @@ impl<T: Real> SymmetricBody<T> {
         let expected = Matrix3::from_diagonal(&Vector3::new(j.m11, j.m11, j.m33));
         let allowed = j.m11 * T::simd_default_epsilon() * real(4.0);
         if !(j - expected).iter().all(|entry| entry.simd_abs().simd_le(allowed).all()) {
-            return Err(SetupError::Parameter { field: "inertia", cause: "is not symmetric about the third body axis" });
+            return Err(SetupError::Parameter {
+                field: "inertia",
+                cause: "is not symmetric about the third body axis",
+            });
         }
         Ok(Self { transverse: j.m11, axial: j.m33 })
     }
@@ -125,28 +128,6 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         );
         Ok(Turn { increment, change, iterations: 0 })
     }
-}
-
-/// `sin θ/θ` and `(1 − cos θ)/θ²` as functions of `θ²`.
-#[inline(always)]
-fn rotation_coefficients<T: Real>(squared: T) -> (T, T) {
-    if squared.simd_le(real(0.5)).all() {
-        return (stumpff::<T, 1>(squared), stumpff::<T, 2>(squared));
-    }
-    large_angle(squared)
-}
-
-/// By the half angle, which doesn't cancel. A lane that is near zero keeps its series.
-#[inline(never)]
-fn large_angle<T: Real>(squared: T) -> (T, T) {
-    let near = squared.simd_le(real(0.5));
-    let angle = squared.simd_sqrt();
-    let (sine, cosine) = (angle * real(0.5)).simd_sin_cos();
-    let twice = (sine + sine) / angle;
-    (
-        stumpff::<T, 1>(squared).select(near, twice * cosine),
-        stumpff::<T, 2>(squared).select(near, twice * sine / angle),
-    )
 }
 
 /// The flow of a declared Lagrangian without potential: any of its structure, to its order.
