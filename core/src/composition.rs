@@ -101,6 +101,7 @@ impl<L: DiscreteLagrangian + Clone> Composition<L> {
     /// # Errors
     ///
     /// As [`DiscreteLiePoisson::new`](crate::DiscreteLiePoisson::new), for a substep.
+    #[allow(clippy::needless_pass_by_value)] // as `Stepper::new`, which keeps it
     pub fn new(lagrangian: L, h: Scalar<L>, scheme: CompositionScheme) -> Result<Self, SetupError> {
         const {
             assert!(L::SELF_ADJOINT, "a composition needs a Lagrangian with l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");

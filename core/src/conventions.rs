@@ -135,7 +135,7 @@
 //! | \[KL97\] | W. Kahan, R.-C. Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations*, Mathematics of Computation 66, 1997 |
 //! | \[SS05\] | M. Sofroniou, G. Spaletta, *Derivation of symmetric composition constants for symmetric integrators*, Optimization Methods and Software 20, 2005 |
 //! | \[BM02\] | S. Blanes, P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, Journal of Computational and Applied Mathematics 142, 2002 |
-//! | \[McL95\] | R. I. McLachlan, *Composition methods in the presence of small parameters*, BIT 35, 1995 |
+//! | \[ML95\] | R. I. McLachlan, *Composition methods in the presence of small parameters*, BIT 35, 1995 |
 //! | \[BCF13\] | S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, *New families of symplectic splitting methods for numerical integration in dynamical astronomy*, Applied Numerical Mathematics 68, 2013 |
 //! | \[HV06\] | E. Hairer, G. Vilmart, *Preprocessed discrete Moser–Veselov algorithm for the full dynamics of the rigid body*, Journal of Physics A 39, 2006 |
 //!

@@ -6,7 +6,8 @@
 //!
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
-//! direction: `scalar ← coordinates ← groups ← {retraction, advected} ← lagrangian ← newton ← flows ← stepper`.
+//! direction: `scalar ← coordinates ← groups ← {retraction, advected} ← lagrangian ← newton ← flows ← stepper`, and on it
+//! `{composition, preprocessed ← splitting}`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
@@ -50,7 +51,8 @@ pub use preprocessed::{PreprocessedBody, PreprocessedOrder};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
 pub use splitting::{
-    DeclaredDrift, Flow, KineticFlow, Splitting, SplittingScheme, SymmetricBody, SymmetricDrift, Turn,
+    DeclaredDrift, Flow, KineticFlow, PreprocessedDrift, PreprocessedFlow, Splitting, SplittingScheme, SymmetricBody,
+    SymmetricDrift, Turn,
 };
 pub use state::State;
 pub use stepper::{StepReport, Stepper};

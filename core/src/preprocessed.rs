@@ -1,6 +1,9 @@
 //! The free asymmetric body to high order in one solve.
 
 mod coefficients;
+mod modified;
+
+pub(crate) use modified::{FreeBody, ModifiedBody};
 
 use nalgebra::{SimdBool as _, Vector3};
 
@@ -9,13 +12,10 @@ use crate::coordinates::Coordinates;
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
 use crate::inertia::DiagonalNonstandardInertia;
-use crate::lagrangian::DiscreteLagrangian;
-use crate::newton::{Problem, Root, orientation};
 use crate::retraction::{CayleyRetraction, Retraction};
 use crate::scalar::{Real, real, reported};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
-use coefficients::{TERMS, series, sum};
 
 /// The order of a [`PreprocessedBody`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,7 +32,7 @@ pub enum PreprocessedOrder {
 
 impl PreprocessedOrder {
     /// The degree in `h² H` and `h² C` that the series are taken to.
-    fn degree(self) -> usize {
+    pub(crate) fn degree(self) -> usize {
         match self {
             Self::Four => 1,
             Self::Six => 2,
@@ -40,14 +40,6 @@ impl PreprocessedOrder {
             Self::Ten => 4,
         }
     }
-}
-
-/// The kinetic term of (3.13), with the moments that the state asks for.
-#[liestep_macros::lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-#[allow(non_snake_case)] // the letters of the field
-#[derive(Clone, Copy, Debug)]
-struct FreeBody<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
 }
 
 /// An integrator for the free rigid body: (3.13) with moments of inertia that make up for its error.
@@ -86,11 +78,8 @@ struct FreeBody<T: Real> {
 #[derive(Clone, Debug)]
 pub struct PreprocessedBody<T: Real = f64> {
     stepper: Stepper<FreeBody<T>>,
-    inverse_moments: Vector3<T>,
+    modified: ModifiedBody<T>,
     h: T,
-    degree: usize,
-    s: [T; TERMS],
-    d: [T; TERMS],
 }
 
 impl<T: Real> PreprocessedBody<T> {
@@ -101,11 +90,7 @@ impl<T: Real> PreprocessedBody<T> {
     /// As [`DiscreteLiePoisson::new`](crate::DiscreteLiePoisson::new).
     pub fn new(inertia: DiagonalNonstandardInertia<T>, h: T, order: PreprocessedOrder) -> Result<Self, SetupError> {
         let stepper = Stepper::new(FreeBody { J_d: inertia }, h)?;
-        let d = inertia.diagonal();
-        let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
-        let inverse_moments = moments.map(|moment| T::one() / moment);
-        let (s, d) = series(&moments);
-        Ok(Self { stepper, inverse_moments, h, degree: order.degree(), s, d })
+        Ok(Self { stepper, modified: ModifiedBody::new(&inertia, order.degree()), h })
     }
 
     /// One step. On an error the state is unchanged.
@@ -119,7 +104,7 @@ impl<T: Real> PreprocessedBody<T> {
             state.steps += 1;
             return Ok(StepReport { iterations: 0 });
         }
-        let root = match self.solve(self.h, &state.momentum, &state.guess) {
+        let root = match self.modified.solve(self.h, &state.momentum, &state.guess) {
             Ok(root) => root,
             Err(error) => return Err(self.explain(error, state)),
         };
@@ -136,40 +121,12 @@ impl<T: Real> PreprocessedBody<T> {
         Ok(StepReport { iterations: root.iterations })
     }
 
-    #[inline(always)]
-    fn solve(&self, h: T, y: &Vector3<T>, guess: &Vector3<T>) -> Result<Root<FreeBody<T>>, StepError> {
-        let (yy, half_squared) = (y.component_mul(y), h * h * real(0.5));
-        let energy = yy.dot(&self.inverse_moments) * half_squared;
-        let casimir = (yy.x + yy.y + yy.z) * half_squared;
-        let s = T::one() + sum(&self.s, self.degree, casimir, energy);
-        let d = sum(&self.d, self.degree, casimir, energy);
-        let inverse = self.inverse_moments.map(|inverse| inverse * s + d);
-        if !inverse.iter().all(|inverse| inverse.simd_gt(T::zero()).all()) {
-            return Err(StepError::Singular);
-        }
-        let moments = inverse.map(|inverse| T::one() / inverse);
-        let lagrangian = FreeBody { J_d: DiagonalNonstandardInertia::of_moments_unchecked(&moments) };
-        let constants = lagrangian.constants(h);
-        let problem = Problem {
-            lagrangian: &lagrangian,
-            constants: &constants,
-            a: *y,
-            w: &(),
-            h,
-            orientation: orientation(h, 3),
-        };
-        match problem.solve_directly(guess) {
-            Some(root) => Ok(root),
-            None => problem.solve(guess),
-        }
-    }
-
     /// The largest step from this state up to the body's own, s, to six digits.
     #[must_use]
     pub fn max_step(&self, state: &State<SO3<T>, ()>) -> T {
         let solvable = |fraction: f64| {
             let h = self.h * real(fraction);
-            self.solve(h, &state.momentum, &(state.guess * real::<T>(fraction))).is_ok()
+            self.modified.solve(h, &state.momentum, &(state.guess * real::<T>(fraction))).is_ok()
         };
         largest_fraction(solvable).map_or(T::zero(), |fraction| self.h * real(fraction))
     }
@@ -217,7 +174,7 @@ impl<T: Real> PreprocessedBody<T> {
     /// The body velocity, rad/s.
     #[must_use]
     pub fn velocity(&self, state: &State<SO3<T>, ()>) -> Vector3<T> {
-        state.momentum.component_mul(&self.inverse_moments)
+        state.momentum.component_mul(&self.modified.inverse_moments)
     }
 
     /// The energy `½ Ω·JΩ`, J, constant to rounding.

@@ -3,9 +3,11 @@
 mod angle;
 mod kick;
 mod kinetic;
+mod preprocessed;
 mod scheme;
 
 pub use kinetic::{DeclaredDrift, KineticFlow, SymmetricBody, SymmetricDrift, Turn};
+pub use preprocessed::{PreprocessedDrift, PreprocessedFlow};
 pub use scheme::{Flow, SplittingScheme};
 
 use crate::advected::Advected;
@@ -66,7 +68,7 @@ use nalgebra::{SimdBool as _, Vector3};
 ///
 /// # Source
 ///
-/// \[BM02\], \[McL95\], \[BCF13\]; see [`conventions`](crate::conventions).
+/// \[BM02\], \[ML95\], \[BCF13\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug)]
 pub struct Splitting<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, K: KineticFlow<T>, T: Real = f64> {
     scheme: SplittingScheme,
@@ -106,8 +108,8 @@ where
     pub fn new(lagrangian: L, kinetic: K, h: T, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let stepper = Stepper::new(lagrangian, h)?;
         let inertia = stepper.lagrangian().inertia();
-        let differences = (inertia - kinetic.inertia()).map(|entry| entry.simd_abs());
-        let difference = differences.fold(T::zero(), |largest, entry| largest.simd_max(entry));
+        let differences = (inertia - kinetic.inertia()).map(nalgebra::SimdComplexField::simd_abs);
+        let difference = differences.fold(T::zero(), nalgebra::SimdPartialOrd::simd_max);
         if !difference.simd_le(inertia.trace() * T::simd_default_epsilon() * real(64.0)).all() {
             return Err(SetupError::AnotherInertia { difference: reported(difference) });
         }

@@ -2,7 +2,8 @@
 
 use plotters::prelude::*;
 
-use crate::common::plot::{Area, BLUE, Drawn, GREEN, ORANGE, PURPLE, heading, legend, px, render};
+use crate::common::plot::{Area, BLUE, Drawn, GREEN, ORANGE, heading, legend, px, render};
+use crate::methods::Family;
 use crate::report::Measured;
 
 /// The runs of one scene over one time.
@@ -11,8 +12,11 @@ pub(crate) struct Panel<'a> {
     pub(crate) methods: &'a [Measured],
 }
 
-const OURS: [RGBColor; 3] = [BLUE, GREEN, PURPLE];
-const OTHERS: [RGBColor; 2] = [ORANGE, RGBColor(110, 110, 110)];
+const FAMILIES: [(Family, &str, RGBColor); 3] = [
+    (Family::Rival, "explicit Runge–Kutta", ORANGE),
+    (Family::NearlyPoisson, "Poisson to the order", GREEN),
+    (Family::Poisson, "Poisson", BLUE),
+];
 
 /// The lower envelope of each family is what a user can have; all that make it up are drawn thin behind it.
 pub(crate) fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
@@ -21,7 +25,7 @@ pub(crate) fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
     let height = 70 + 300 * u32::try_from(rows)?;
     render((1000, height), |area| {
         heading(area, "What accuracy costs in time", "error of attitude and rate against time of one processor")?;
-        legend(area, (16, 60), &[("structure-preserving", OURS[0]), ("explicit Runge–Kutta", OTHERS[0])])?;
+        legend(area, (16, 60), &FAMILIES.map(|(_, name, colour)| (name, colour)))?;
         let (_, below) = area.split_vertically(px(76));
         for (panel, place) in panels.iter().zip(below.split_evenly((rows, COLUMNS))) {
             panel.draw(&place)?;
@@ -53,14 +57,14 @@ impl Panel<'_> {
             .x_label_formatter(&|x| format!("{x:.0}"))
             .y_label_formatter(&|y| format!("{y:.0e}"))
             .draw()?;
-        for method in self.methods {
-            let colour = if method.ours { OURS[0] } else { OTHERS[0] };
-            let line = method.runs.iter().map(|run| (run.cost * 1e6, run.error));
-            chart.draw_series(LineSeries::new(line, colour.mix(0.35).stroke_width(px(1))))?;
+        for (family, _, colour) in FAMILIES {
+            for method in self.methods.iter().filter(|method| method.family == family) {
+                let line = method.runs.iter().map(|run| (run.cost * 1e6, run.error));
+                chart.draw_series(LineSeries::new(line, colour.mix(0.3).stroke_width(px(1))))?;
+            }
         }
-        for ours in [false, true] {
-            let colour = if ours { OURS[0] } else { OTHERS[0] };
-            let line = envelope(self.methods.iter().filter(|method| method.ours == ours));
+        for (family, _, colour) in FAMILIES {
+            let line = envelope(self.methods.iter().filter(|method| method.family == family));
             chart.draw_series(LineSeries::new(line, colour.stroke_width(px(2))))?;
         }
         Ok(())

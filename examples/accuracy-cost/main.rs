@@ -24,6 +24,7 @@ mod scenes;
 mod systems;
 
 use std::error::Error;
+use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -90,7 +91,8 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
                 bar.inc(1);
             }
             let title = format!("{}, t = {t} s", scene.name);
-            text.push_str(&format!("{title}\n\n{}\n\n{}\n\n", report::costs(&measured), report::best(&measured)));
+            // Writing to a string can't fail.
+            let _ = write!(text, "{title}\n\n{}\n\n{}\n\n", report::costs(&measured), report::best(&measured));
             csv.push_str(&report::csv(scene.short, t, &measured));
             results.push((title, measured));
         }

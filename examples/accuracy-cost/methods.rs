@@ -1,13 +1,12 @@
 //! The methods, ours and others', behind one way to run them.
 
 use liestep::{
-    Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedBody, PreprocessedOrder, SO3,
-    Splitting, SplittingScheme, Stepper, SymmetricBody,
+    Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedBody, PreprocessedFlow,
+    PreprocessedOrder, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
 use crate::rivals::{Equations, dop853, rk4};
 use crate::scenes::{End, Kind, Scene};
-use crate::systems::SixthOrderBody;
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
 pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
@@ -15,10 +14,21 @@ pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
 /// A way to integrate.
 pub(crate) struct Method {
     pub(crate) name: String,
-    pub(crate) ours: bool,
+    pub(crate) family: Family,
     control: Control,
     /// The run of a scene over a time with a step (or a tolerance): all that doesn't depend on the state is done here.
     pub(crate) prepare: Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>,
+}
+
+/// What a method keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Family {
+    /// The Poisson structure and the momentum maps.
+    Poisson,
+    /// The momentum maps, and the Poisson structure to the order of the method.
+    NearlyPoisson,
+    /// Nothing: an explicit Runge–Kutta method.
+    Rival,
 }
 
 /// What is varied.
@@ -32,11 +42,11 @@ enum Control {
 impl Method {
     fn new(
         name: impl Into<String>,
-        ours: bool,
+        family: Family,
         control: Control,
         prepare: impl Fn(&Scene, f64, f64) -> Option<Prepared> + 'static,
     ) -> Self {
-        Self { name: name.into(), ours, control, prepare: Box::new(prepare) }
+        Self { name: name.into(), family, control, prepare: Box::new(prepare) }
     }
 
     /// Steps that divide the time, each shorter than the one before by the ratio; or tolerances.
@@ -59,50 +69,47 @@ fn count(t: f64, h: f64) -> u64 {
     (t / h).round() as u64
 }
 
+/// The compositions of a method of order 2.
+const OF_ORDER_2: [CompositionScheme; 4] = [
+    CompositionScheme::SUZUKI_4,
+    CompositionScheme::KAHAN_LI_6,
+    CompositionScheme::KAHAN_LI_8,
+    CompositionScheme::SOFRONIOU_SPALETTA_10,
+];
+
 /// All the methods that a scene allows.
 pub(crate) fn all(scene: &Scene) -> Vec<Method> {
     let mut methods = Vec::new();
-    match scene.kind {
-        Kind::Free => methods.extend(declared(Scene::free_body)),
-        Kind::Top | Kind::SymmetricTop => methods.extend(declared(Scene::top)),
+    if scene.kind == Kind::Free {
+        methods.extend(declared("(3.13)", Scene::free_body, OF_ORDER_2));
+        methods.extend(declared("K4", Scene::fourth_order_body, [CompositionScheme::SUZUKI_6]));
+        methods.extend(declared("K6", Scene::sixth_order_body, [CompositionScheme::SUZUKI_8]));
+    } else {
+        methods.extend(declared("(3.13)", Scene::top, OF_ORDER_2));
+        methods.extend(declared("L4", Scene::fourth_order_top, [CompositionScheme::SUZUKI_6]));
+        methods.extend(declared("L6", Scene::sixth_order_top, [CompositionScheme::SUZUKI_8]));
     }
     match scene.kind {
+        Kind::Free => methods.extend(preprocessed()),
         Kind::SymmetricTop => {
-            methods.extend(splittings("exact", |scene| SymmetricBody::new(&scene.inertia()).ok()));
+            methods.extend(splittings("exact", Family::Poisson, |scene| SymmetricBody::new(&scene.inertia()).ok()));
         }
-        Kind::Top => methods.extend(splittings("K6", |scene| Some(SixthOrderBody { J: scene.inertia() }))),
-        Kind::Free => {
-            methods.extend(preprocessed());
-            methods.extend(alone("K6", Control::Step(1.0), |scene| SixthOrderBody { J: scene.inertia() }));
+        Kind::Top => {
+            methods.extend(splittings("preprocessed", Family::NearlyPoisson, |scene| {
+                Some(PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten))
+            }));
+            methods.extend(splittings("K6", Family::Poisson, |scene| Some(scene.sixth_order_body())));
         }
     }
     methods.extend(rivals());
     methods
 }
 
-/// The step of a declared Lagrangian.
-fn alone<L>(name: &'static str, control: Control, lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> Option<Method>
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + 'static,
-{
-    Some(Method::new(name, true, control, move |scene, t, h| {
-        let (stepper, steps) = (Stepper::new(lagrangian(scene), h).ok()?, count(t, h));
-        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
-        Some(Box::new(move || {
-            let mut state = start;
-            for _ in 0..steps {
-                stepper.step(&mut state).ok()?;
-            }
-            Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
-        }))
-    }))
-}
-
 /// The free body with modified moments of inertia.
 fn preprocessed() -> [Method; 4] {
     use PreprocessedOrder::{Eight, Four, Six, Ten};
     [("4", Four), ("6", Six), ("8", Eight), ("10", Ten)].map(|(name, order)| {
-        Method::new(format!("preprocessed, {name}"), true, Control::Step(2.0), move |scene, t, h| {
+        Method::new(format!("preprocessed, {name}"), Family::Poisson, Control::Step(2.0), move |scene, t, h| {
             let (body, steps) = (PreprocessedBody::new(scene.nonstandard(), h, order).ok()?, count(t, h));
             let start = body.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
             Some(Box::new(move || {
@@ -117,7 +124,11 @@ fn preprocessed() -> [Method; 4] {
 }
 
 /// Splittings with a kinetic flow.
-fn splittings<K>(name: &'static str, kinetic: impl Fn(&Scene) -> Option<K> + Copy + 'static) -> Vec<Method>
+fn splittings<K>(
+    name: &'static str,
+    family: Family,
+    kinetic: impl Fn(&Scene) -> Option<K> + Copy + 'static,
+) -> Vec<Method>
 where
     K: KineticFlow<f64> + 'static,
 {
@@ -129,9 +140,11 @@ where
         SplittingScheme::NYSTROM_6,
         SplittingScheme::NYSTROM_11,
         SplittingScheme::NYSTROM_14,
+        SplittingScheme::KAHAN_LI_8,
+        SplittingScheme::SOFRONIOU_SPALETTA_10,
     ];
     let method = |scheme: SplittingScheme| {
-        Method::new(format!("{name}, {}", scheme.name()), true, Control::Step(5.0), move |scene, t, h| {
+        Method::new(format!("{name}, {}", scheme.name()), family, Control::Step(5.0), move |scene, t, h| {
             let (splitting, steps) = (Splitting::new(scene.top(), kinetic(scene)?, h, scheme).ok()?, count(t, h));
             let start = splitting.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
             Some(Box::new(move || {
@@ -144,19 +157,29 @@ where
     schemes.map(method).into()
 }
 
-/// The step of a declared Lagrangian of order 2, and its compositions.
-fn declared<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> Vec<Method>
+/// The step of a declared Lagrangian, and its compositions.
+fn declared<L, const N: usize>(
+    name: &'static str,
+    lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
+    schemes: [CompositionScheme; N],
+) -> Vec<Method>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone + 'static,
 {
-    let schemes = [
-        CompositionScheme::SUZUKI_4,
-        CompositionScheme::KAHAN_LI_6,
-        CompositionScheme::KAHAN_LI_8,
-        CompositionScheme::SOFRONIOU_SPALETTA_10,
-    ];
+    let alone = Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
+        let (stepper, steps) = (Stepper::new(lagrangian(scene), h).ok()?, count(t, h));
+        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+        Some(Box::new(move || {
+            let mut state = start;
+            for _ in 0..steps {
+                stepper.step(&mut state).ok()?;
+            }
+            Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
+        }))
+    });
     let composed = schemes.map(|scheme| {
-        Method::new(format!("(3.13), {}", scheme.name()), true, Control::Step(1.0), move |scene, t, h| {
+        let name = format!("{name}, {}", scheme.name());
+        Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
             let (composed, steps) = (Composition::new(lagrangian(scene), h, scheme).ok()?, count(t, h));
             let start = composed.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
             Some(Box::new(move || {
@@ -168,12 +191,12 @@ where
             }))
         })
     });
-    alone("(3.13)", Control::Step(0.5), lagrangian).into_iter().chain(composed).collect()
+    core::iter::once(alone).chain(composed).collect()
 }
 
 fn rivals() -> [Method; 3] {
     [
-        Method::new("RK4", false, Control::Step(0.5), |scene, t, h| {
+        Method::new("RK4", Family::Rival, Control::Step(0.5), |scene, t, h| {
             let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
             Some(Box::new(move || {
                 let mut y = start;
@@ -183,7 +206,7 @@ fn rivals() -> [Method; 3] {
                 Some(equations.end(&y))
             }))
         }),
-        Method::new("DOP853, fixed step", false, Control::Step(1.0), |scene, t, h| {
+        Method::new("DOP853, fixed step", Family::Rival, Control::Step(1.0), |scene, t, h| {
             let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
             Some(Box::new(move || {
                 let mut y = start;
@@ -193,7 +216,7 @@ fn rivals() -> [Method; 3] {
                 Some(equations.end(&y))
             }))
         }),
-        Method::new("DOP853", false, Control::Tolerance, |scene, t, tolerance| {
+        Method::new("DOP853", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
             let (equations, start) = (Equations::of(scene), Equations::start(scene));
             Some(Box::new(move || Some(equations.end(&dop853::integrate(&equations, t, tolerance, start)?))))
         }),

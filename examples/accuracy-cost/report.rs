@@ -1,8 +1,10 @@
 //! Tables of what an accuracy costs.
 
+use std::fmt::Write as _;
+
 use crate::common::table::aligned;
 use crate::measure::{Run, cost_of};
-use crate::methods::Method;
+use crate::methods::{Family, Method};
 
 /// The errors asked for.
 pub(crate) const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
@@ -10,13 +12,13 @@ pub(crate) const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 /// A method and what was measured of it.
 pub(crate) struct Measured {
     pub(crate) name: String,
-    pub(crate) ours: bool,
+    pub(crate) family: Family,
     pub(crate) runs: Vec<Run>,
 }
 
 impl Measured {
     pub(crate) fn new(method: &Method, runs: Vec<Run>) -> Self {
-        Self { name: method.name.clone(), ours: method.ours, runs }
+        Self { name: method.name.clone(), family: method.family, runs }
     }
 
     fn cost(&self, error: f64) -> Option<f64> {
@@ -24,9 +26,9 @@ impl Measured {
     }
 }
 
-/// The cheapest of some methods for an error, and its cost, s.
-fn cheapest(methods: &[Measured], ours: bool, error: f64) -> Option<(&str, f64)> {
-    let costs = methods.iter().filter(|method| method.ours == ours);
+/// The cheapest of a family for an error, and its cost, s.
+fn cheapest(methods: &[Measured], family: Family, error: f64) -> Option<(&str, f64)> {
+    let costs = methods.iter().filter(|method| method.family == family);
     costs.filter_map(|method| Some((method.name.as_str(), method.cost(error)?))).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
@@ -47,11 +49,19 @@ pub(crate) fn costs(methods: &[Measured]) -> String {
     aligned(&rows)
 }
 
-/// The cheapest structure-preserving method for each error, beside the cheapest rival.
+/// The cheapest of our methods for each error, beside the cheapest rival.
 pub(crate) fn best(methods: &[Measured]) -> String {
-    let mut rows = vec![["error", "ours", "µs", "best rival", "µs", "ratio"].map(str::to_owned).to_vec()];
+    let mut tables = vec![best_of(methods, Family::Poisson, "Poisson")];
+    if methods.iter().any(|method| method.family == Family::NearlyPoisson) {
+        tables.push(best_of(methods, Family::NearlyPoisson, "nearly Poisson"));
+    }
+    tables.join("\n\n")
+}
+
+fn best_of(methods: &[Measured], family: Family, what: &str) -> String {
+    let mut rows = vec![["error", what, "µs", "best rival", "µs", "ratio"].map(str::to_owned).to_vec()];
     for error in ERRORS {
-        let (ours, rival) = (cheapest(methods, true, error), cheapest(methods, false, error));
+        let (ours, rival) = (cheapest(methods, family, error), cheapest(methods, Family::Rival, error));
         let cell = |found: Option<(&str, f64)>| {
             found.map_or_else(|| ["–".to_owned(), "–".to_owned()], |(name, cost)| [name.to_owned(), microseconds(cost)])
         };
@@ -69,7 +79,8 @@ pub(crate) fn csv(scene: &str, t: f64, methods: &[Measured]) -> String {
     for method in methods {
         for Run { parameter, error, cost } in &method.runs {
             let name = method.name.replace(',', " +");
-            text.push_str(&format!("{scene},{t},{name},{parameter:e},{error:e},{cost:e}\n"));
+            // Writing to a string can't fail.
+            let _ = writeln!(text, "{scene},{t},{name},{parameter:e},{error:e},{cost:e}");
         }
     }
     text

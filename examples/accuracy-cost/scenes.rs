@@ -8,7 +8,7 @@ use liestep::{DiagonalNonstandardInertia, Inertia};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
-use crate::systems::{FreeBody, HeavyTop};
+use crate::systems::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, SixthOrderBody, SixthOrderTop};
 
 /// A body, its start, and where it is later.
 pub(crate) struct Scene {
@@ -97,6 +97,26 @@ impl Scene {
     /// The body with the kinetic term of (3.13) alone.
     pub(crate) fn free_body(&self) -> FreeBody {
         FreeBody { J_d: self.nonstandard.into() }
+    }
+
+    /// The top by the Lagrangian of order 4.
+    pub(crate) fn fourth_order_top(&self) -> FourthOrderTop {
+        FourthOrderTop { J: self.inertia(), weight: self.weight, rho: self.rho, up: Vector3::z() }
+    }
+
+    /// The top by the Lagrangian of order 6.
+    pub(crate) fn sixth_order_top(&self) -> SixthOrderTop {
+        SixthOrderTop { J: self.inertia(), weight: self.weight, rho: self.rho, up: Vector3::z() }
+    }
+
+    /// The body by the Lagrangian of order 4.
+    pub(crate) fn fourth_order_body(&self) -> FourthOrderBody {
+        FourthOrderBody { J: self.inertia() }
+    }
+
+    /// The body by the Lagrangian of order 6.
+    pub(crate) fn sixth_order_body(&self) -> SixthOrderBody {
+        SixthOrderBody { J: self.inertia() }
     }
 
     /// The nonstandard inertia.

@@ -105,6 +105,10 @@ impl CompositionScheme {
         Self { name, base, order, half }
     }
 
+    pub(crate) const fn half(&self) -> &'static [f64] {
+        self.half
+    }
+
     /// What it is called in tables.
     #[must_use]
     pub fn name(&self) -> &'static str {

@@ -3,6 +3,8 @@
 // The digits are those of the papers, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
+use crate::composition::CompositionScheme;
+
 /// What a splitting begins and, being symmetric, ends with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
@@ -38,7 +40,7 @@ impl SplittingScheme {
     /// Order 2: half a kick, the kinetic flow, half a kick. With the kinetic term of (3.13) that is (3.13).
     pub const STRANG: Self = Self::new("Strang", 2, Flow::Kick, &[0.5, 1.0]);
 
-    /// Order 4 in six stages. \[BM02\], SRKN6b
+    /// Order 4 in six stages. \[BM02\], `SRKN6b`
     pub const NYSTROM_6: Self = Self::new(
         "Nyström 6-4",
         4,
@@ -54,7 +56,7 @@ impl SplittingScheme {
         ],
     );
 
-    /// Order 6 in eleven stages. \[BM02\], SRKN11b
+    /// Order 6 in eleven stages. \[BM02\], `SRKN11b`
     pub const NYSTROM_11: Self = Self::new(
         "Nyström 11-6",
         6,
@@ -75,7 +77,7 @@ impl SplittingScheme {
         ],
     );
 
-    /// Order 6 in fourteen stages. \[BM02\], SRKN14a
+    /// Order 6 in fourteen stages. \[BM02\], `SRKN14a`
     pub const NYSTROM_14: Self = Self::new(
         "Nyström 14-6",
         6,
@@ -99,7 +101,19 @@ impl SplittingScheme {
         ],
     );
 
-    /// `(4, 2)` in two stages, for a small potential. \[McL95\]
+    /// Order 8 in seventeen stages: Strang's splitting composed. \[KL97\]
+    pub const KAHAN_LI_8: Self =
+        Self::new("Kahan-Li 8", 8, Flow::Kick, &composed_strang::<18>(CompositionScheme::KAHAN_LI_8.half()));
+
+    /// Order 10 in thirty-five stages: Strang's splitting composed. \[SS05\]
+    pub const SOFRONIOU_SPALETTA_10: Self = Self::new(
+        "Sofroniou-Spaletta 10",
+        10,
+        Flow::Kick,
+        &composed_strang::<36>(CompositionScheme::SOFRONIOU_SPALETTA_10.half()),
+    );
+
+    /// `(4, 2)` in two stages, for a small potential. \[ML95\]
     pub const NEAR_INTEGRABLE_4_2: Self = Self::new(
         "near-integrable (4, 2)",
         2,
@@ -188,4 +202,17 @@ impl SplittingScheme {
     fn in_a_step_of_many(&self, flow: Flow) -> usize {
         self.shares().filter(|share| share.0 == flow).count() - usize::from(self.first == flow)
     }
+}
+
+/// The shares of half a kick, the kinetic flow and half a kick for each `γ`, neighbouring kicks joined: `N` of them from
+/// the first to the middle one, twice as many as there are `γ`.
+const fn composed_strang<const N: usize>(gammas: &[f64]) -> [f64; N] {
+    let (mut shares, mut stage, mut before) = ([0.0; N], 0, 0.0);
+    while 2 * stage < N {
+        shares[2 * stage] = 0.5 * (before + gammas[stage]);
+        shares[2 * stage + 1] = gammas[stage];
+        before = gammas[stage];
+        stage += 1;
+    }
+    shares
 }
