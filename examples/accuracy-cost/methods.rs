@@ -11,13 +11,16 @@ use crate::scenes::{End, Kind, Scene};
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
 pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
 
+/// Makes the run of a scene over a time with a step (or a tolerance) ready: all that doesn't depend on the state is done
+/// here.
+type Prepare = Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>;
+
 /// A way to integrate.
 pub(crate) struct Method {
     pub(crate) name: String,
     pub(crate) family: Family,
     control: Control,
-    /// The run of a scene over a time with a step (or a tolerance): all that doesn't depend on the state is done here.
-    pub(crate) prepare: Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>,
+    pub(crate) prepare: Prepare,
 }
 
 /// What a method keeps.

@@ -43,7 +43,9 @@ fn exponential(exponent: &[(u32, f64)], length: u32, kept: Kept<'_>) -> Series {
     let mut sum = power.clone();
     for n in 1..=length {
         power = product(&power, &exponent, kept);
-        power.values_mut().for_each(|coefficient| *coefficient /= f64::from(n));
+        for coefficient in power.values_mut() {
+            *coefficient /= f64::from(n);
+        }
         for (word, coefficient) in &power {
             *sum.entry(word.clone()).or_insert(0.0) += coefficient;
         }
