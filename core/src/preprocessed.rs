@@ -44,7 +44,7 @@ impl PreprocessedOrder {
 
 /// An integrator for the free rigid body: (3.13) with moments of inertia that make up for its error.
 ///
-/// The discrete free body of (3.13) goes through the points of the exact motion at other times and of another body: with
+/// To all orders in the step, the discrete free body of (3.13) goes through the points of the exact motion at other times and of another body: with
 ///
 /// ```text
 /// 1/Ĩ_j = s/I_j + d        s = 1 + h² s_3 + h⁴ s_5 + …        d = h² d_3 + h⁴ d_5 + …
@@ -64,7 +64,7 @@ impl PreprocessedOrder {
 /// let inertia = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
 /// let body = PreprocessedBody::new(inertia, 0.1, PreprocessedOrder::Ten)?;
 /// let mut state = body.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
-/// let energy = body.energy(&state);
+/// let energy: f64 = body.energy(&state);
 /// for _ in 0..1000 {
 ///     body.step(&mut state)?;
 /// }
