@@ -8,10 +8,8 @@
 //! The same text stands in the documentation of the constant `DERIVATION` and, equation by equation, of each generated
 //! method.
 
-#[path = "common/free_body/lagrangian.rs"]
-mod free_body;
-#[path = "common/heavy_top/lagrangian.rs"]
-mod heavy_top;
+#[path = "declarations/mod.rs"]
+mod declarations;
 
 use std::io::{self, Write as _};
 
@@ -41,9 +39,23 @@ const fn shown<L: DiscreteLagrangian>(name: &'static str, about: &'static str) -
 }
 
 /// All of them; a new one is one line.
-const LAGRANGIANS: [Shown; 2] = [
-    shown::<heavy_top::HeavyTop>("heavy-top", "the heavy top (3.13): μ is (3.17), (L_F)* δl_d/δF is (3.18)"),
-    shown::<free_body::FreeBody>("free-rigid-body", "its kinetic part alone"),
+const LAGRANGIANS: [Shown; 16] = [
+    shown::<declarations::HeavyTop>("heavy-top", "(3.13) in principal axes: μ is (3.17), (L_F)* δl_d/δF is (3.18)"),
+    shown::<declarations::FullTop>("full-top", "(3.13) with a full inertia tensor"),
+    shown::<declarations::FreeBody>("free-body", "the kinetic part of (3.13) alone"),
+    shown::<declarations::CayleyTop>("cayley-top", "a kinetic term that is solvable for every h"),
+    shown::<declarations::LogTop>("log-top", "the geodesic kinetic term"),
+    shown::<declarations::LogTraceTop>("log-trace-top", "Bobenko and Suris' top, which has an energy integral"),
+    shown::<declarations::FourthOrderTop>("fourth-order-top", "order 4 in one solve"),
+    shown::<declarations::SixthOrderTop>("sixth-order-top", "order 6 in one solve"),
+    shown::<declarations::FourthOrderBody>("fourth-order-body", "a free body, order 4 in one solve"),
+    shown::<declarations::Satellite>("satellite", "attitude in the gravity of a near centre"),
+    shown::<declarations::OrbitingBody>("orbiting-body", "orbit and attitude on SE(3)"),
+    shown::<declarations::Spring>("spring", "a body tied to a fixed point"),
+    shown::<declarations::Magnet>("magnet", "a magnet in a field with a gradient"),
+    shown::<declarations::UnderwaterBody>("underwater-body", "Kirchhoff's body on SE(3) with added mass"),
+    shown::<declarations::TetheredPlate>("tethered-plate", "a plate on a spring, SE(2)"),
+    shown::<declarations::ElasticFlow>("elastic-flow", "an affine flow of an elastic drop, SL(2, R)"),
 ];
 
 fn main() -> io::Result<()> {

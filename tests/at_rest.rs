@@ -4,11 +4,11 @@
 mod common;
 
 use common::tops::{FreeBody, HeavyTop};
-use liestep::{DiscreteLagrangian, LieGroup as _, SO3, Stepper};
+use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Starts at rest and finds the same attitude, momentum and advected parameters after each of many steps.
-fn assert_stays<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(lagrangian: L, attitude: impl Into<SO3>) {
+fn assert_stays<L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular>(lagrangian: L, attitude: impl Into<SO3>) {
     let stepper = Stepper::new(lagrangian, 0.01).unwrap();
     let mut state = stepper.start(attitude, Vector3::zeros()).unwrap();
     let before = state;

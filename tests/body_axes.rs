@@ -8,13 +8,13 @@ use common::measure::relative;
 use common::random::Random;
 use common::reference::looping;
 use common::tops::{FullTop, HeavyTop};
-use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, SO3, Stepper};
+use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 /// One second; the looping top's spin turns it twelve times around.
 fn moved<L>(lagrangian: L, attitude: SO3, velocity: Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>)
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3>,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
 {
     let stepper = Stepper::new(lagrangian, 0.01).unwrap();
     let mut state = stepper.start(attitude, velocity).unwrap();

@@ -1,6 +1,8 @@
 //! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
 
-use liestep::{CayleyRetraction, DiscreteLagrangian, NonstandardInertia, SO3, SetupError, Stepper};
+use liestep::{
+    CayleyRetraction, DiscreteLagrangian, Effect, NonstandardInertia, SO3, SetupError, Stepper, WithKinetic,
+};
 use nalgebra::{Matrix3, Vector3};
 
 #[derive(Clone, Debug)]
@@ -26,24 +28,7 @@ impl HandWrittenTop {
 }
 
 impl DiscreteLagrangian for HandWrittenTop {
-    type Scalar = f64;
-    type Group = SO3;
-    type Retraction = CayleyRetraction;
-    type Advected = Vector3<f64>;
-    /// `J/h`, `(h/2) m g ρ`.
-    type Constants = (Matrix3<f64>, Vector3<f64>);
-    type StepTerms = Vector3<f64>;
-
-    const DERIVATION: &'static str = "the heavy top (3.13), by hand";
     const SELF_ADJOINT: bool = true;
-
-    fn validate(&self) -> Result<(), SetupError> {
-        Ok(())
-    }
-
-    fn advected(&self) -> Vector3<f64> {
-        Vector3::z()
-    }
 
     fn l_d(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
         let d = f - Matrix3::identity();
@@ -63,15 +48,37 @@ impl DiscreteLagrangian for HandWrittenTop {
         w.cross(&(self.rho + f * self.rho)) * (0.5 * h * self.weight)
     }
 
-    fn momentum_jacobian(&self, f: &Matrix3<f64>, _: &Vector3<f64>, h: f64) -> Matrix3<f64> {
-        let p = f * self.inertia.as_matrix() / h;
-        Matrix3::from_diagonal_element(p.trace()) - p
-    }
-
     fn discrete_energy(&self, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
         let d = f - Matrix3::identity();
         (d * self.inertia.as_matrix() * d.transpose()).trace() / (2.0 * h * h)
             + 0.5 * self.weight * w.dot(&(self.rho + f * self.rho))
+    }
+}
+
+impl Effect for HandWrittenTop {
+    type Scalar = f64;
+    type Group = SO3;
+    type Retraction = CayleyRetraction;
+    type Kinetic = WithKinetic;
+    type Advected = Vector3<f64>;
+    /// `J/h`, `(h/2) m g ρ`.
+    type Constants = (Matrix3<f64>, Vector3<f64>);
+    type StepTerms = Vector3<f64>;
+
+    const DENOMINATORS: u32 = 1;
+    const DERIVATION: &'static str = "the heavy top (3.13), by hand";
+
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
+
+    fn advected(&self) -> Vector3<f64> {
+        Vector3::z()
+    }
+
+    fn momentum_jacobian(&self, f: &Matrix3<f64>, _: &Vector3<f64>, h: f64) -> Matrix3<f64> {
+        let p = f * self.inertia.as_matrix() / h;
+        Matrix3::from_diagonal_element(p.trace()) - p
     }
 
     fn inertia(&self) -> Matrix3<f64> {
@@ -103,7 +110,7 @@ impl DiscreteLagrangian for HandWrittenTop {
         let jy = j * y;
         let residual = (jy + y.cross(&jy)) * 2.0 - a * (1.0 + y.norm_squared());
         let jacobian = j + hat(&y) * j - hat(&jy) - a * y.transpose();
-        (residual, jacobian)
+        (residual * 4.0, jacobian * 4.0)
     }
 
     fn kick_after((_, lever): &Self::Constants, _: &Matrix3<f64>, next: &Vector3<f64>) -> Vector3<f64> {

@@ -8,7 +8,8 @@ mod common;
 
 use common::random::Random;
 use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, NonstandardInertia, Real, Retraction as _, SO3, lagrangian,
+    DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, Inertia, NonstandardInertia, Real, Retraction as _,
+    SO3, lagrangian,
 };
 use nalgebra::{Matrix3, RealField, Vector3, convert};
 use num_dual::{Dual64, HyperDual64};

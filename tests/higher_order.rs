@@ -9,7 +9,7 @@ mod common;
 
 use common::measure::{four_halvings, order, relative, steps_in};
 use common::reference::Motion;
-use liestep::{DiscreteLagrangian, Inertia, LieGroup as _, SO3, Stepper};
+use liestep::{Inertia, LieGroup as _, Regular, SO3, Stepper};
 
 #[path = "../examples/declarations/fourth_order_body.rs"]
 mod fourth_order_body;
@@ -34,7 +34,7 @@ fn inertia(motion: &Motion) -> Inertia {
 }
 
 /// Errors of attitude and body velocity together, relative to the sizes of both.
-fn error<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(lagrangian: L, motion: &Motion, t: f64, h: f64) -> f64 {
+fn error<L: Regular<Scalar = f64, Group = SO3>>(lagrangian: L, motion: &Motion, t: f64, h: f64) -> f64 {
     let stepper = Stepper::new(lagrangian, h).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
     for _ in 0..steps_in(t, h) {
@@ -44,7 +44,7 @@ fn error<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(lagrangian: L, motion
     relative(&state.attitude().matrix(), &attitude).hypot(relative(&stepper.velocity(&state), &velocity))
 }
 
-fn assert_order<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(
+fn assert_order<L: Regular<Scalar = f64, Group = SO3>>(
     name: &str,
     expected: f64,
     (t, coarsest): (f64, f64),

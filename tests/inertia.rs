@@ -6,7 +6,7 @@ use common::measure::relative;
 use common::random::Random;
 use common::tops::{FreeBody, HeavyTop};
 use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian as _, Inertia, InertiaError, NonstandardInertia, SetupError, Stepper,
+    DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError, NonstandardInertia, SetupError, Stepper,
 };
 use nalgebra::{Matrix3, Vector3};
 

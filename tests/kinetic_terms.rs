@@ -51,7 +51,7 @@ fn golden_entries_of_the_sixth_order_top_are_reproduced() {
 
 fn golden<L>(name: &str, top: impl Fn(Inertia, f64, Vector3<f64>, Vector3<f64>) -> L)
 where
-    L: liestep::DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    L: liestep::Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
 {
     let data = read("golden_steps");
     let steps = data["steps"].as_array().unwrap();

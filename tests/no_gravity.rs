@@ -5,11 +5,11 @@ mod common;
 use common::measure::relative;
 use common::reference::looping;
 use common::tops::{FreeBody, FullTop, HeavyTop};
-use liestep::{DiscreteLagrangian, LieGroup as _, SO3, Stepper};
+use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 /// Attitude and momentum after a thousand steps, about twenty turns, and how far `R p` has gone.
-fn moved<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(lagrangian: L) -> (Matrix3<f64>, Vector3<f64>) {
+fn moved<L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular>(lagrangian: L) -> (Matrix3<f64>, Vector3<f64>) {
     let motion = looping();
     let stepper = Stepper::new(lagrangian, 0.01).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();

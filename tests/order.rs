@@ -6,7 +6,7 @@ mod common;
 use common::measure::{four_halvings, order, relative, steps_in};
 use common::reference::Motion;
 use common::tops::FreeBody;
-use liestep::{DiscreteLagrangian, LieGroup as _, SO3, Stepper};
+use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 
 /// Well above what 10⁵ steps lose to rounding in attitude and velocity.
 const PLATEAU: f64 = 1e-11;
@@ -14,7 +14,7 @@ const PLATEAU: f64 = 1e-11;
 /// Errors of attitude and body velocity together, relative to the sizes of both.
 fn error<L>(lagrangian: L, motion: &Motion, t: f64, h: f64) -> f64
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3>,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
 {
     let stepper = Stepper::new(lagrangian, h).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();

@@ -10,8 +10,8 @@ use common::random::Random;
 use common::structure::{System, momenta, stages};
 use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use liestep::{
-    Coordinates, DiscreteLagrangian, DiscreteLiePoisson, Generators, Heisenberg, LieGroup, MatrixGroup, R2, SE2, SE3,
-    SL2, SO2, SU2, Stepper, lagrangian,
+    Coordinates, DiscreteLiePoisson, Generators, Heisenberg, LieGroup, MatrixGroup, R2, Regular, SE2, SE3, SL2, SO2,
+    SU2, Stepper, lagrangian,
 };
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
 
@@ -183,7 +183,7 @@ fn column<const N: usize>(r: &mut Random) -> SVector<f64, N> {
 /// How far 100 steps and as many back end from the start; on the way the energy stays near.
 fn there_and_back<L, const N: usize, const D: usize>(forth: L, back: L) -> f64
 where
-    L: DiscreteLagrangian<Scalar = f64, Advected = SVector<f64, N>>,
+    L: Regular<Scalar = f64, Advected = SVector<f64, N>>,
     L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
     SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
 {

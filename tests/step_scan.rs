@@ -7,7 +7,7 @@ mod common;
 use common::random::Random;
 use common::reference::{Motion, looping};
 use common::tops::{FullTop, HeavyTop, moments};
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, SO3, StepError, Stepper};
+use liestep::{DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, StepError, Stepper};
 use nalgebra::Vector3;
 
 /// The largest solvable step of a symmetric top by the closed criterion: with `κ = h a_3/(2 J_3)`,
@@ -34,7 +34,7 @@ fn fold_of_symmetric_top(motion: &Motion) -> f64 {
 
 fn first_step<L>(lagrangian: &L, motion: &Motion, h: f64) -> Result<(u32, f64), StepError>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
 {
     let stepper = Stepper::new(lagrangian.clone(), h).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
@@ -92,7 +92,7 @@ fn s1_random_momenta_step_up_to_the_fold() {
 
 fn scan_random_momentum<L>(top: &L, direction: &Vector3<f64>, w: &Vector3<f64>)
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone,
 {
     let momentum = direction * 30.0;
     let fold = DiscreteLiePoisson::new(top.clone(), 1.0).unwrap().max_step(&momentum, w);

@@ -7,7 +7,7 @@ use common::measure::relative;
 use common::reference::looping;
 use common::tops::{FreeBody, FullTop, HeavyTop};
 use liestep::{
-    DiscreteEulerPoincare, DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, SO3, Stepper, reconstruct,
+    DiscreteEulerPoincare, DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, Stepper, reconstruct,
 };
 use nalgebra::Vector3;
 
@@ -21,7 +21,7 @@ fn rounding_after(steps: u32) -> f64 {
 
 fn assert_flows_agree<L>(lagrangian: &L, h: f64)
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
 {
     let motion = looping();
     let stepper = Stepper::new(lagrangian.clone(), h).unwrap();

@@ -5,7 +5,7 @@
 mod common;
 
 use common::tops::{FreeBody, HeavyTop};
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Retraction, SO3, StepError};
+use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Effect as _, Regular, Retraction, SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.1;
@@ -18,7 +18,7 @@ fn guess<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(_: &L, axis: &Vector3
 /// Spins about each principal axis so fast that a step turns the body by 30°.
 fn assert_trap_is_seen<L>(lagrangian: &L, w: &L::Advected)
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
 {
     let flow = DiscreteLiePoisson::new(lagrangian.clone(), STEP).unwrap();
     for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {

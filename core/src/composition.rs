@@ -5,9 +5,11 @@ mod scheme;
 pub use scheme::CompositionScheme;
 
 use crate::bisection::{largest_fraction, six_digits};
+use crate::effect::{Group, Scalar, Vector};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup as _;
-use crate::lagrangian::{DiscreteLagrangian, Group, Scalar, Vector};
+use crate::kinetic::Regular;
+use crate::lagrangian::DiscreteLagrangian;
 use crate::retraction::Retraction as _;
 use crate::scalar::{real, reported};
 use crate::state::State;
@@ -95,7 +97,7 @@ struct Stage<T> {
     earlier: T,
 }
 
-impl<L: DiscreteLagrangian + Clone> Composition<L> {
+impl<L: DiscreteLagrangian + Regular + Clone> Composition<L> {
     /// Checks the parameters and folds the constants for all the substeps of the step `h`, in seconds.
     ///
     /// # Errors

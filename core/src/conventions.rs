@@ -105,6 +105,7 @@
 //! | notation | identifier |
 //! |---|---|
 //! | `l_d(F, w)` | [`DiscreteLagrangian`], [`l_d`](crate::DiscreteLagrangian::l_d) |
+//! | `l_d¹ + l_d²` | [`Sum`](crate::Sum); a term, whether or not a Lagrangian, is an [`Effect`](crate::Effect) |
 //! | `(R_F)* δl_d/δF`, `(L_F)* δl_d/δF` | [`right_momentum`], [`left_momentum`] |
 //! | `δl_d/δw ⋄ w` | [`diamond`](crate::DiscreteLagrangian::diamond) |
 //! | `𝔽l_d⁻`, `𝔽l_d⁺` | [`legendre_minus`], [`legendre_plus`] |
@@ -116,7 +117,7 @@
 //! | `F_{l_d}`, `F_{h_d}` (flows) | [`DiscreteEulerPoincare`], [`DiscreteLiePoisson`] |
 //! | `g_{i+1} = g_i f_i` | [`reconstruct`](crate::reconstruct) |
 //! | `w_{i+1} = f_i⁻¹ w_i` | [`advect`](crate::Advected::advect) |
-//! | `a_0`; the thesis' `w_0` of chapter 2 | [`advected`](crate::DiscreteLagrangian::advected) |
+//! | `a_0`; the thesis' `w_0` of chapter 2 | [`advected`](crate::Effect::advected) |
 //! | `J_d`, `J` | [`NonstandardInertia`], [`Inertia`](crate::Inertia) |
 //! | `μ_i`, `Π_i` | [`momentum`](crate::State::momentum) |
 //! | `R Π`, `e₃·R Π` | [`spatial_momentum`](crate::State::spatial_momentum), [`momentum_along`](crate::State::momentum_along) |

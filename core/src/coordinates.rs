@@ -12,13 +12,21 @@ pub trait Coordinates<T: Real>:
     Copy + Debug + PartialEq + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<T, Output = Self>
 {
     /// A linear map from components to components.
-    type Square: Copy + Debug + PartialEq + Mul<Self, Output = Self>;
+    type Square: Copy
+        + Debug
+        + PartialEq
+        + Add<Output = Self::Square>
+        + Mul<T, Output = Self::Square>
+        + Mul<Self, Output = Self>;
 
     /// All components zero.
     fn zero() -> Self;
 
     /// The pairing `Σ a_k b_k`.
     fn dot(&self, other: &Self) -> T;
+
+    /// `a bᵀ`: the map `x ↦ a (b·x)`.
+    fn outer(&self, other: &Self) -> Self::Square;
 
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
@@ -53,6 +61,11 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     #[inline(always)]
     fn dot(&self, other: &Self) -> T {
         sum::<T, D>(|k| self[k] * other[k])
+    }
+
+    #[inline(always)]
+    fn outer(&self, other: &Self) -> SMatrix<T, D, D> {
+        SMatrix::from_fn(|row, column| self[row] * other[column])
     }
 
     #[inline(always)]

@@ -3,9 +3,11 @@
 use crate::advected::Advected;
 use crate::bisection::{largest_fraction, six_digits};
 use crate::coordinates::Coordinates as _;
+use crate::effect::{Effect, Group, Scalar, Vector};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
-use crate::lagrangian::{DiscreteLagrangian, Group, Scalar, Vector};
+use crate::kinetic::Regular;
+use crate::lagrangian::DiscreteLagrangian;
 use crate::newton::{Problem, Root, orientation};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
@@ -15,7 +17,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _};
 ///
 /// It is `𝔽l_d⁺ ∘ (𝔽l_d⁻)⁻¹`: Newton's iteration inverts the momentum equation (2.7).
 #[derive(Clone, Debug)]
-pub struct DiscreteLiePoisson<L: DiscreteLagrangian> {
+pub struct DiscreteLiePoisson<L: Effect> {
     lagrangian: L,
     h: Scalar<L>,
     constants: L::Constants,
@@ -24,7 +26,7 @@ pub struct DiscreteLiePoisson<L: DiscreteLagrangian> {
 
 /// One application of a flow.
 #[derive(Clone, Copy, Debug)]
-pub struct Increment<L: DiscreteLagrangian> {
+pub struct Increment<L: Effect> {
     /// The coordinates `ξ` of `F_i = τ(ξ)`: a guess for the next solve.
     pub coordinates: Vector<L>,
     /// `F_i − I`.
@@ -37,7 +39,7 @@ pub struct Increment<L: DiscreteLagrangian> {
     pub iterations: u32,
 }
 
-impl<L: DiscreteLagrangian> Increment<L> {
+impl<L: Effect> Increment<L> {
     /// `F_i`.
     #[must_use]
     pub fn element(&self) -> Group<L> {
@@ -45,7 +47,7 @@ impl<L: DiscreteLagrangian> Increment<L> {
     }
 }
 
-impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
+impl<L: Effect> DiscreteLiePoisson<L> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
     ///
     /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity.
@@ -53,7 +55,10 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
     /// # Errors
     ///
     /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part.
-    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError> {
+    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
+    where
+        L: Regular,
+    {
         lagrangian.validate()?;
         // 1/h and the constants made with it must be finite, unless there is no step at all.
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<L>>(1.0) / h)) {
@@ -135,10 +140,14 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
             None => self.solve_carefully(momentum, advected, guess)?,
         };
         let next = advected.advect(&increment);
-        let momentum = *momentum
-            + (Group::<L>::adjoint_transpose_increment(&increment, &problem.a)
-                + (problem.a - *momentum)
-                + L::kick_after(&self.constants, &increment, &next));
+        let mut change = Group::<L>::adjoint_transpose_increment(&increment, &problem.a);
+        if L::PARTS.kick_before {
+            change = change + (problem.a - *momentum);
+        }
+        if L::PARTS.kick_after {
+            change = change + L::kick_after(&self.constants, &increment, &next);
+        }
+        let momentum = *momentum + change;
         if momentum.is_finite() && next.is_finite() {
             Ok(Increment { coordinates: xi, increment, momentum, advected: next, iterations })
         } else {
@@ -151,7 +160,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         Problem {
             lagrangian: &self.lagrangian,
             constants: &self.constants,
-            a: *momentum + L::kick_before(&self.constants, w),
+            a: kicked::<L>(&self.constants, momentum, w),
             w,
             h: self.h,
             orientation: self.orientation,
@@ -201,7 +210,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         let solvable = |fraction: f64| {
             let h = self.h * real(fraction);
             let constants = self.lagrangian.constants(h);
-            let a = *momentum + L::kick_before(&constants, advected);
+            let a = kicked::<L>(&constants, momentum, advected);
             let lagrangian = &self.lagrangian;
             let problem =
                 Problem { lagrangian, constants: &constants, a, w: advected, h, orientation: self.orientation };
@@ -210,6 +219,12 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))
     }
+}
+
+/// `a = μ + kick_before(w)`.
+#[inline(always)]
+fn kicked<L: Effect>(constants: &L::Constants, momentum: &Vector<L>, w: &L::Advected) -> Vector<L> {
+    if L::PARTS.kick_before { *momentum + L::kick_before(constants, w) } else { *momentum }
 }
 
 /// The discrete advected Euler–Poincaré flow `(f_i, w_i) ↦ (f_{i+1}, w_{i+1})`, \[RDAE, (2.5)\].
@@ -224,7 +239,10 @@ impl<L: DiscreteLagrangian> DiscreteEulerPoincare<L> {
     /// # Errors
     ///
     /// As [`DiscreteLiePoisson::new`].
-    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError> {
+    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
+    where
+        L: Regular,
+    {
         DiscreteLiePoisson::new(lagrangian, h).map(|flow| Self { flow })
     }
 

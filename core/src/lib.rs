@@ -6,13 +6,14 @@
 //!
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
-//! direction: `scalar ← coordinates ← groups ← {retraction, advected} ← lagrangian ← newton ← flows ← stepper`, and on it
-//! `{composition, preprocessed ← splitting}`.
+//! direction: `scalar ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ← stepper`,
+//! and on it `{composition, preprocessed ← splitting}`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
 
 pub mod conventions;
+pub mod effects;
 pub mod groups;
 pub mod laws;
 
@@ -20,10 +21,13 @@ mod advected;
 mod bisection;
 mod composition;
 mod coordinates;
+mod effect;
 mod error;
 mod flows;
+mod force;
 mod functions;
 mod inertia;
+mod kinetic;
 mod lagrangian;
 mod newton;
 mod preprocessed;
@@ -32,6 +36,8 @@ mod scalar;
 mod splitting;
 mod state;
 mod stepper;
+mod sum;
+mod symmetry;
 
 #[doc(hidden)]
 #[path = "private.rs"]
@@ -40,13 +46,17 @@ pub mod __private;
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 pub use composition::{Composition, CompositionScheme};
 pub use coordinates::Coordinates;
+pub use effect::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
+pub use effects::{Gravity, RigidBody};
 pub use error::{SetupError, StepError};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use force::Force;
 pub use groups::{Generators, LieGroup, MatrixGroup, NotARotation, NotInGroup};
 pub use groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2};
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use lagrangian::{DiscreteLagrangian, Group, Matrix, Scalar, Square, Vector};
-pub use liestep_macros::lagrangian;
+pub use kinetic::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
+pub use lagrangian::DiscreteLagrangian;
+pub use liestep_macros::{force, lagrangian};
 pub use preprocessed::{PreprocessedBody, PreprocessedOrder};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
@@ -56,6 +66,8 @@ pub use splitting::{
 };
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
+pub use sum::{SharedBy, Sum};
+pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

@@ -10,8 +10,8 @@
 //! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given.
 
 use crate::coordinates::Coordinates;
+use crate::effect::{Effect, Matrix, Scalar, Vector};
 use crate::error::StepError;
-use crate::lagrangian::{DiscreteLagrangian, Matrix, Scalar, Vector};
 use crate::retraction::Retraction;
 use crate::scalar::{Mask, Real, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
@@ -23,7 +23,7 @@ const MAX_DAMPED_ITERATIONS: u32 = 60;
 
 /// A solution of the momentum equation.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Root<L: DiscreteLagrangian> {
+pub(crate) struct Root<L: Effect> {
     /// Coordinates of `F`.
     pub(crate) xi: Vector<L>,
     /// `F − I`.
@@ -33,14 +33,14 @@ pub(crate) struct Root<L: DiscreteLagrangian> {
 }
 
 /// Where the lanes of an iteration have come to.
-struct Lanes<L: DiscreteLagrangian> {
+struct Lanes<L: Effect> {
     xi: Vector<L>,
     /// Of the Jacobian at the iterate before `xi`.
     det: Scalar<L>,
     settled: Mask<Scalar<L>>,
 }
 
-impl<L: DiscreteLagrangian> Lanes<L> {
+impl<L: Effect> Lanes<L> {
     #[inline(always)]
     fn starting_at(xi: &Vector<L>) -> Self {
         Self { xi: *xi, det: real(0.0), settled: nowhere::<Scalar<L>>() }
@@ -65,7 +65,7 @@ impl<L: DiscreteLagrangian> Lanes<L> {
 }
 
 /// One momentum equation to be solved.
-pub(crate) struct Problem<'a, L: DiscreteLagrangian> {
+pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) lagrangian: &'a L,
     pub(crate) constants: &'a L::Constants,
     pub(crate) a: Vector<L>,
@@ -75,7 +75,7 @@ pub(crate) struct Problem<'a, L: DiscreteLagrangian> {
     pub(crate) orientation: Scalar<L>,
 }
 
-impl<L: DiscreteLagrangian> Problem<'_, L> {
+impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
     /// What it returns is what [`solve`](Self::solve) returns. Nothing here is lent to a function that isn't inlined,
@@ -210,7 +210,7 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
 #[inline(always)]
-fn settled<L: DiscreteLagrangian>(update: &Vector<L>, xi: &Vector<L>) -> Mask<Scalar<L>> {
+fn settled<L: Effect>(update: &Vector<L>, xi: &Vector<L>) -> Mask<Scalar<L>> {
     let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 64.0);
     update.dot(update).simd_le(xi.dot(xi) * tolerance)
 }

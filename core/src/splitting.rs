@@ -12,9 +12,11 @@ pub use scheme::{Flow, SplittingScheme};
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates;
+use crate::effect::{energy, velocity_of_momentum};
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
-use crate::lagrangian::{DiscreteLagrangian, energy, velocity_of_momentum};
+use crate::kinetic::Regular;
+use crate::lagrangian::DiscreteLagrangian;
 use crate::scalar::{Real, real, reported};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
@@ -95,7 +97,7 @@ enum Share<D, T> {
 impl<T, L, K> Splitting<L, K, T>
 where
     T: Real,
-    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Regular,
     K: KineticFlow<T>,
 {
     /// Checks that the Lagrangian can be split and that the flow is that of its body, and folds the constants of all the

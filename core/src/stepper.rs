@@ -1,16 +1,17 @@
 //! The stepper: a flow on momenta with reconstruction.
 
-use crate::advected::Advected as _;
+use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
+use crate::effect::{Effect, Group, Scalar, Vector, energy, momentum_of_velocity, velocity_of_momentum};
 use crate::error::{SetupError, StepError};
 use crate::flows::DiscreteLiePoisson;
-use crate::groups::LieGroup;
-use crate::lagrangian::{
-    DiscreteLagrangian, Group, Scalar, Vector, energy, momentum_of_velocity, velocity_of_momentum,
-};
+use crate::groups::{LieGroup, SO3};
+use crate::kinetic::Regular;
+use crate::lagrangian::DiscreteLagrangian;
 use crate::retraction::Retraction as _;
 use crate::scalar::{real, reported};
 use crate::state::State;
+use crate::symmetry::{AxiallyInvariant, LeftInvariant};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// What a step did.
@@ -55,17 +56,20 @@ pub struct StepReport {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Stepper<L: DiscreteLagrangian> {
+pub struct Stepper<L: Effect> {
     flow: DiscreteLiePoisson<L>,
 }
 
-impl<L: DiscreteLagrangian> Stepper<L> {
+impl<L: Effect> Stepper<L> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
     ///
     /// # Errors
     ///
     /// As [`DiscreteLiePoisson::new`].
-    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError> {
+    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
+    where
+        L: Regular,
+    {
         DiscreteLiePoisson::new(lagrangian, h).map(|flow| Self { flow })
     }
 
@@ -108,13 +112,48 @@ impl<L: DiscreteLagrangian> Stepper<L> {
         if !defect.simd_le(allowed).all() {
             return Err(SetupError::NotInGroup { defect: reported(defect) });
         }
-        let advected = self.lagrangian().advected().seen_from(&attitude);
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
+        Ok(self.at(attitude, momentum))
+    }
+
+    /// The state of another scene on the same group, to go on in this one: its attitude and momentum are kept to the
+    /// bit, and time counts from here.
+    ///
+    /// What both scenes conserve goes on being conserved, as the discrete momentum belongs to a time, not to a step.
+    ///
+    /// # Examples
+    ///
+    /// A top is let go: it falls freely from here on.
+    ///
+    /// ```
+    /// use liestep::effects::{Gravity, RigidBody};
+    /// use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))? };
+    /// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::x() };
+    /// let (held, free) = (Stepper::new(body + gravity, 0.01)?, Stepper::new(body, 0.01)?);
+    /// let mut state = held.start(SO3::identity(), Vector3::new(0.0, 0.0, 10.0))?;
+    /// held.step(&mut state)?;
+    /// let mut released = free.adopt(&state);
+    /// assert_eq!(released.momentum(), state.momentum());
+    /// free.step(&mut released)?;
+    /// assert!((free.spatial_momentum(&released) - state.spatial_momentum()).norm() < 1e-13);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn adopt<A: Advected<Group<L>>>(&self, state: &State<Group<L>, A>) -> State<Group<L>, L::Advected> {
+        self.at(state.attitude, state.momentum)
+    }
+
+    /// The motion that begins with this attitude and momentum.
+    fn at(&self, attitude: Group<L>, momentum: Vector<L>) -> State<Group<L>, L::Advected> {
+        let advected = self.lagrangian().advected().seen_from(&attitude);
         // Every retraction has the identity as its derivative at zero, so this is near the first increment.
         let coordinates = velocity_of_momentum(self.lagrangian(), &momentum, &advected) * self.step_size();
-        Ok(State::new(attitude, momentum, advected, coordinates))
+        State::new(attitude, momentum, advected, coordinates)
     }
 
     /// One step. On an error the state is unchanged.
@@ -192,11 +231,42 @@ impl<L: DiscreteLagrangian> Stepper<L> {
         velocity_of_momentum(self.lagrangian(), &state.momentum, &state.advected)
     }
 
-    /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. It oscillates about its initial value, at the order
-    /// of the scheme, and doesn't drift.
+    /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. Where the scene is a [`DiscreteLagrangian`] it oscillates
+    /// about its initial value, at the order of the scheme, and doesn't drift.
     #[must_use]
     pub fn energy(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
         energy(self.lagrangian(), &state.momentum, &state.advected)
+    }
+
+    /// The stepper of `−h`, which undoes the steps of this one; exactly, where `l_d` is self-adjoint.
+    ///
+    /// # Errors
+    ///
+    /// As [`DiscreteLiePoisson::new`].
+    pub fn inverse(&self) -> Result<Self, SetupError>
+    where
+        L: DiscreteLagrangian + Regular + Clone,
+    {
+        Self::new(self.lagrangian().clone(), -self.step_size())
+    }
+
+    /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected.
+    #[must_use]
+    pub fn spatial_momentum(&self, state: &State<Group<L>, L::Advected>) -> Vector<L>
+    where
+        L: LeftInvariant,
+    {
+        state.spatial_momentum()
+    }
+
+    /// The momentum along the advected vector, `Π·w` (`e₃·R Π` for the vertical), in a scene that conserves it: one
+    /// vector is advected, (3.20).
+    #[must_use]
+    pub fn momentum_along_advected(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L>
+    where
+        L: AxiallyInvariant<Group = SO3<Scalar<L>>>,
+    {
+        state.momentum().dot(&L::axis(&state.advected))
     }
 
     /// The largest step from this state up to the stepper's own, s; see [`DiscreteLiePoisson::max_step`].

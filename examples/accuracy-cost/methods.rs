@@ -2,7 +2,7 @@
 
 use liestep::{
     Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedBody, PreprocessedFlow,
-    PreprocessedOrder, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
+    PreprocessedOrder, Regular, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
 use crate::rivals::{Equations, dop853, rk4};
@@ -167,7 +167,7 @@ fn declared<L, const N: usize>(
     schemes: [CompositionScheme; N],
 ) -> Vec<Method>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone + 'static,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
 {
     let alone = Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
         let (stepper, steps) = (Stepper::new(lagrangian(scene), h).ok()?, count(t, h));

@@ -8,8 +8,36 @@ use syn::{Expr, Ident, ItemStruct, Path};
 use crate::group::Group;
 use crate::symbolic::{Function, Rational, Variance};
 
+/// What an attribute declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// `#[lagrangian(… l_d = …)]`.
+    Lagrangian,
+    /// `#[force(… work = …)]`.
+    Force,
+}
+
+impl Role {
+    /// The argument that holds the expression.
+    pub(crate) fn key(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "l_d",
+            Self::Force => "work",
+        }
+    }
+
+    /// The name of the attribute.
+    pub(crate) fn attribute(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "lagrangian",
+            Self::Force => "force",
+        }
+    }
+}
+
 /// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
 pub(crate) struct Declaration {
+    pub(crate) role: Role,
     pub(crate) item: ItemStruct,
     /// Where liestep is found.
     pub(crate) root: Path,
@@ -18,7 +46,7 @@ pub(crate) struct Declaration {
     /// What is known of it.
     pub(crate) structure: Group,
     pub(crate) advected: Vec<AdvectedParameter>,
-    /// `None` where a mistake elsewhere hides what it means.
+    /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.
     pub(crate) l_d: Option<Expr>,
     pub(crate) fields: Vec<Field>,
     /// The fields whose type has no meaning.
@@ -148,6 +176,10 @@ pub(crate) enum Name {
     Increment,
     /// `h`.
     Step,
+    /// `eta`, the displacement at the beginning of the step.
+    DisplacementBefore,
+    /// `eta_next`, the one at its end.
+    DisplacementAfter,
     /// An advected parameter, by its place in `advected(…)`.
     Advected(usize),
     /// A field, by its place in the struct.

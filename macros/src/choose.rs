@@ -3,7 +3,7 @@
 //! Multiplied out, what cancels is found; with closed `let`s, nothing is written twice. Both are derived where there are
 //! `let`s, and counted.
 
-use crate::derive::{self, Derived, LimitError};
+use crate::derive::{self, Derived, ForceError, LimitError};
 use crate::lower::Lowered;
 use crate::scalar::{self, Kernel};
 
@@ -18,6 +18,7 @@ pub(crate) struct Chosen {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Refusal {
     Limit(LimitError),
+    Force(ForceError),
     /// A coefficient left the range of exact arithmetic.
     Overflow,
 }
@@ -26,7 +27,14 @@ pub(crate) enum Refusal {
 pub(crate) fn cheapest(candidates: Vec<Lowered>) -> Result<Chosen, Refusal> {
     let mut chosen: Option<(usize, Chosen)> = None;
     let mut refusal = None;
-    for lowered in candidates {
+    let least = candidates.iter().map(size).min().unwrap_or(0);
+    // What is twice as long is surely not cheaper and takes long to derive, so it comes last, and only if it has to.
+    let (short, long): (Vec<Lowered>, Vec<Lowered>) =
+        candidates.into_iter().partition(|candidate| size(candidate) <= 2 * least);
+    for (lowered, is_long) in short.into_iter().map(|one| (one, false)).chain(long.into_iter().map(|one| (one, true))) {
+        if is_long && chosen.is_some() {
+            break;
+        }
         match derived(lowered) {
             Ok(candidate) => {
                 let cost = candidate.kernel.cost();
@@ -40,8 +48,16 @@ pub(crate) fn cheapest(candidates: Vec<Lowered>) -> Result<Chosen, Refusal> {
     chosen.map(|(_, chosen)| chosen).ok_or(refusal.unwrap_or(Refusal::Overflow))
 }
 
+fn size(lowered: &Lowered) -> usize {
+    let lets = lowered.declared.lets.iter().map(|one| one.value.size());
+    lowered.declared.l_d.size() + lets.sum::<usize>()
+}
+
 fn derived(lowered: Lowered) -> Result<Chosen, Refusal> {
-    let derived = derive::derive(&lowered.declared).map_err(Refusal::Limit)?;
+    let derived = match lowered.displacements {
+        None => derive::derive(&lowered.declared).map_err(Refusal::Limit)?,
+        Some(displacements) => derive::force(&lowered.declared, displacements).map_err(Refusal::Force)?,
+    };
     if !derived.is_exact() {
         return Err(Refusal::Overflow);
     }

@@ -1,52 +1,70 @@
 //! The flow of one expansion.
 
+use std::rc::Rc;
+
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use crate::ast::{Declaration, Role, Tree};
 use crate::choose::Chosen;
+use crate::derive::SelfAdjointness;
 use crate::emit::Findings;
 use crate::errors::Errors;
 use crate::{check, choose, emit, explain, fallback, hypotheses, lower, parse, verify};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
-pub(crate) fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
+pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
     let mut errors = Errors::default();
-    match implementation(&arguments, item, &mut errors) {
+    match implementation(role, &arguments, item, &mut errors) {
         Some(implementation) if errors.is_empty() => quote!(#item #implementation),
         _ => {
-            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(arguments, item));
+            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(role, arguments, item));
             quote!(#item #mistakes #stand_in)
         }
     }
 }
 
 /// Parse, check, lower, derive, choose, verify, emit.
-fn implementation(arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
+fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let item = parse::item(item, errors)?;
     parse::check_size(arguments, errors)?;
-    let declaration = parse::parse(arguments.clone(), item, errors);
+    let declaration = parse::parse(role, arguments.clone(), item, errors);
     let tree = check::check(&declaration, errors)?;
     if !errors.is_empty() {
         return None;
     }
     let candidates = lower::lower(&declaration, &tree, errors);
-    let Chosen { lowered, derived, kernel } =
+    let chosen =
         choose::cheapest(candidates?).map_err(|refusal| explain::explain(refusal, &declaration, &tree, errors)).ok()?;
-    let kinetic = verify::kinetic_part(&declaration, &lowered, &derived);
-    explain::kinetic_part(&kinetic, &declaration, errors)?;
-    match verify::verify(&declaration, &tree, &lowered, &derived, &kernel) {
-        Ok(self_adjointness) => {
-            let hypotheses = hypotheses::hypotheses(&declaration, &tree, &lowered);
+    let verified = match role {
+        Role::Lagrangian => verified(&declaration, &tree, &chosen, errors)?,
+        Role::Force => verify::force(&declaration, &tree, &chosen).map(|()| (SelfAdjointness::No, Vec::new())),
+    };
+    let Chosen { lowered, derived, kernel } = chosen;
+    match verified {
+        Ok((self_adjointness, hypotheses)) => {
             let findings = Findings { kernel, self_adjointness, hypotheses };
             Some(emit::implementation(&declaration, &lowered, &derived, &findings))
         }
         Err(term) => {
-            let message =
-                format!("the derived {term} disagrees with the declared Lagrangian: please report this declaration");
+            let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
             errors.push(tree.span, message);
             None
         }
     }
+}
+
+type Verified = Result<(SelfAdjointness, Vec<String>), &'static str>;
+
+/// What is found out about a Lagrangian; `None` after a mistake that has been reported.
+fn verified(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen, errors: &mut Errors) -> Option<Verified> {
+    let Chosen { lowered, derived, kernel } = chosen;
+    // What has no kinetic part at all is a term of a scene.
+    if derived.limit.has_kinetic {
+        explain::kinetic_part(&verify::kinetic_part(declaration, lowered, derived), declaration, errors)?;
+    }
+    let verified = verify::verify(declaration, tree, lowered, derived, kernel);
+    Some(verified.map(|self_adjointness| (self_adjointness, hypotheses::hypotheses(declaration, tree, lowered))))
 }
 
 #[cfg(test)]

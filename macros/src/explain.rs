@@ -9,15 +9,19 @@ use syn::ext::IdentExt as _;
 use crate::ast::{Declaration, Kind, Name, Tree};
 use crate::check;
 use crate::choose::Refusal;
-use crate::derive::LimitError;
+use crate::derive::{ForceError, LimitError};
 use crate::errors::Errors;
 use crate::verify::KineticPart;
 
 /// Reports a Lagrangian that discretises no continuous one.
 pub(crate) fn explain(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
-    let Refusal::Limit(error) = refusal else {
-        let message = "the coefficients leave the range of exact arithmetic: make the large numbers fields";
-        return errors.push(tree.span, message);
+    let error = match refusal {
+        Refusal::Limit(error) => error,
+        Refusal::Force(error) => return explain_force(error, declaration, errors),
+        Refusal::Overflow => {
+            let message = "the coefficients leave the range of exact arithmetic: make the large numbers fields";
+            return errors.push(tree.span, message);
+        }
     };
     let message = match error {
         LimitError::StepInsideFunction => {
@@ -31,14 +35,19 @@ pub(crate) fn explain(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tre
         LimitError::TooSingular(power) => {
             format!("a term with `F` goes like h^{power}: the kinetic part of a discrete Lagrangian goes like 1/h")
         }
-        LimitError::NoKineticTerm => {
-            "there is no kinetic part, so a momentum doesn't determine a velocity: divide the \
-                                      quadratic term in `F - I` by `h`"
-                .to_owned()
-        }
         LimitError::TooLarge => "the limit h → 0 has too many terms: the expression is too large".to_owned(),
         LimitError::NotALagrangian => {
             "as h → 0 this doesn't become h times a Lagrangian that is quadratic in the velocity".to_owned()
+        }
+    };
+    errors.push_over(declaration.l_d.as_ref().map(check::value), message);
+}
+
+/// Reports virtual work that isn't the work of a force.
+fn explain_force(error: ForceError, declaration: &Declaration, errors: &mut Errors) {
+    let message = match error {
+        ForceError::NotLinear => {
+            "virtual work is linear in the displacements: a force times `eta`, and a force times `eta_next`"
         }
     };
     errors.push_over(declaration.l_d.as_ref().map(check::value), message);

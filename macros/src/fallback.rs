@@ -4,27 +4,28 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote_spanned;
 use syn::{Item, ItemStruct};
 
+use crate::ast::Role;
 use crate::emit::Header;
 use crate::errors::Errors;
 use crate::parse;
 
 /// An implementation that type-checks wherever the real one would be used.
-pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStream {
+pub(crate) fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
     let Some(item) = as_struct(item) else { return TokenStream::new() };
     let span = Span::mixed_site();
     let mut silent = Errors::default();
-    let header = Header::new(&parse::parse(without_lagrangian(arguments), item, &mut silent));
+    let header = Header::new(&parse::parse(role, without_lagrangian(role, arguments), item, &mut silent));
     let root = &header.root;
     let none = quote_spanned!(span=> ());
-    let types = header.types(&none, &none);
+    let types = header.types(true, &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
-    let implementation = header.implementation();
+    let effect = header.implementation("Effect");
+    let addition = header.addition();
     let core = quote_spanned!(span=> #root::__private::core);
     let of_increment = [
         ("right_momentum", &vector),
         ("left_momentum", &vector),
         ("diamond", &vector),
-        ("momentum_jacobian", &square),
         ("discrete_energy", scalar),
         ("l_d", scalar),
     ];
@@ -32,16 +33,46 @@ pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStrea
         let name = syn::Ident::new(name, span);
         quote_spanned!(span=> fn #name(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #result { loop {} })
     });
+    let of_role = match role {
+        Role::Lagrangian => {
+            let (lagrangian, invariance) =
+                (header.implementation("DiscreteLagrangian"), header.implementation("LeftInvariant"));
+            quote_spanned! {span=>
+                #lagrangian {
+                    const SELF_ADJOINT: #core::primitive::bool = false;
+                    #(#of_increment)*
+                }
+
+                #[automatically_derived]
+                #invariance {}
+            }
+        }
+        Role::Force => {
+            let force = header.implementation("Force");
+            quote_spanned! {span=>
+                #force {
+                    fn virtual_work(
+                        &self, _: &#matrix, _: &Self::Advected, _: #scalar, _: &#vector, _: &#vector,
+                    ) -> #scalar {
+                        loop {}
+                    }
+                }
+            }
+        }
+    };
     quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic)]
-        #implementation {
+        #of_role
+
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #effect {
             #types
             const DERIVATION: &'static #core::primitive::str = "";
-            const SELF_ADJOINT: #core::primitive::bool = false;
             fn validate(&self) -> #core::result::Result<(), #root::SetupError> { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
-            #(#of_increment)*
+            fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
             fn inertia(&self) -> #square { loop {} }
             fn momentum_bias(&self, _: &Self::Advected) -> #vector { loop {} }
             fn potential(&self, _: &Self::Advected) -> #scalar { loop {} }
@@ -51,6 +82,8 @@ pub(crate) fn stand_in(arguments: TokenStream, item: &TokenStream) -> TokenStrea
             fn newton_system(_: &Self::Constants, _: &Self::StepTerms, _: &#vector) -> (#vector, #square) { loop {} }
             fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
         }
+
+        #addition
     }
 }
 
@@ -67,10 +100,10 @@ fn as_struct(item: &TokenStream) -> Option<ItemStruct> {
 }
 
 /// The other arguments: the Lagrangian may be too large to be parsed.
-fn without_lagrangian(arguments: TokenStream) -> TokenStream {
+fn without_lagrangian(role: Role, arguments: TokenStream) -> TokenStream {
     let mut is_lagrangian = false;
     let other = arguments.into_iter().filter(|token| {
-        is_lagrangian |= matches!(token, TokenTree::Ident(key) if key == "l_d");
+        is_lagrangian |= matches!(token, TokenTree::Ident(key) if key == role.key());
         let is_other = !is_lagrangian;
         is_lagrangian &= !matches!(token, TokenTree::Punct(comma) if comma.as_char() == ',');
         is_other

@@ -1,7 +1,7 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
 //! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower, hypotheses, verify, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+//! `lib → expand → {parse, check, lower, choose, hypotheses, verify, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
 
 mod ast;
 mod check;
@@ -20,7 +20,8 @@ mod scalar;
 mod symbolic;
 mod verify;
 
-/// Derives an integrator from a reduced discrete Lagrangian: `impl DiscreteLagrangian` for the annotated struct.
+/// Derives an integrator from a reduced discrete Lagrangian: `impl Effect`, `impl DiscreteLagrangian` and `impl Add` for
+/// the annotated struct.
 ///
 /// ```text
 /// #[lagrangian(
@@ -36,7 +37,10 @@ mod verify;
 /// In scope in the expression are `F` (the increment `g_i⁻¹ g_{i+1}`, a matrix), `I`, `h` (the step), the advected names
 /// and the fields. It is ordinary Rust over nalgebra, so it also becomes the method `l_d` as it stands: `+ - * /`, unary
 /// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
-/// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, `vee(A)`, indexing, and decimal literals.
+/// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and four functions: `vee(A)`, the vector of
+/// `½ (A − Aᵀ)`; `log(F)`, the rotation vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a
+/// field. A large Lagrangian is best written with `let`s: what isn't cheaper multiplied out is differentiated through
+/// them, by multipliers.
 ///
 /// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
 /// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct.
@@ -44,8 +48,32 @@ mod verify;
 /// covector, moved by `ρ(f)ᵀ`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and `MixedTensor` are the
 /// other kinds.
 ///
+/// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
+/// `body + potential`.
+///
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
 pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(arguments.into(), &item.into()).into()
+    expand::expand(ast::Role::Lagrangian, arguments.into(), &item.into()).into()
+}
+
+/// Derives the stages of a force from its virtual work in a step: `impl Effect` and `impl Add` for the annotated struct.
+///
+/// ```text
+/// #[force(
+///     group = SO3,                    the group that F belongs to; forces are on SO(3)
+///     advected(w = up, …),            as for a Lagrangian
+///     work = …,                       the virtual work f⁻·eta + f⁺·eta_next, linear in the displacements
+///     crate = path,                   where liestep is found, if not at `::liestep`
+/// )]
+/// struct Name { … }                   the parameters
+/// ```
+///
+/// In scope are also `eta` and `eta_next`, the virtual displacements of the body at the beginning and at the end of the
+/// step, each in the body's axes then (rad): the discrete Lagrange–d'Alembert principle. A torque `τ(F, w)` that acts
+/// half at either end is `0.5 * h * tau.dot(&(eta + eta_next))`. What `eta` is multiplied with enters the momentum
+/// equation, and its derivative the Newton Jacobian.
+#[proc_macro_attribute]
+pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand::expand(ast::Role::Force, arguments.into(), &item.into()).into()
 }

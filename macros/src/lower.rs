@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use syn::ext::IdentExt as _;
 
-use crate::ast::{Declaration, FieldKind, Kind, Name, Shape, Tree};
-use crate::derive::{Declared, Let};
+use crate::ast::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
+use crate::derive::{Declared, Displacements, Let};
 use crate::errors::Errors;
 use crate::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
 
@@ -24,6 +24,8 @@ const MANY_DIGITS: u128 = 10_000;
 pub(crate) struct Lowered {
     pub(crate) declared: Declared,
     pub(crate) names: BTreeMap<Name, SymbolId>,
+    /// Those of a force's virtual work.
+    pub(crate) displacements: Option<Displacements>,
 }
 
 /// Lowers the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has been reported.
@@ -67,13 +69,25 @@ pub(crate) fn lower_without(
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }
+    let displacements = (declaration.role == Role::Force).then(|| {
+        let mut displacement = |name: &str, place| {
+            let id = symbols.add(name, (declaration.structure.dimension(), 1), Structure::General, Stage::Step);
+            names.insert(place, id);
+            id
+        };
+        let before = displacement("η", Name::DisplacementBefore);
+        Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
+    });
     let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
     let lowered = |(symbols, l_d, lets): (Symbols, Expression, Vec<Let>)| {
         let (group, advected, names) = (declaration.structure.clone(), advected.clone(), names.clone());
-        Lowered { declared: Declared { group, symbols, lets, l_d, increment, step, advected }, names }
+        let declared = Declared { group, symbols, lets, l_d, increment, step, advected };
+        Lowered { declared, names, displacements }
     };
     let multiplied_out = attempt(None);
-    let closed = if multiplied_out.is_err() || has_let(tree) { Some(attempt(Some(Vec::new()))) } else { None };
+    // The work of a force is always multiplied out: it is linear in the displacements, and short.
+    let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
+    let closed = if may_close { Some(attempt(Some(Vec::new()))) } else { None };
     let all = [Some(multiplied_out), closed].into_iter().flatten();
     let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
     if found.is_empty() {

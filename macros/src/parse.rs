@@ -12,7 +12,7 @@ use syn::{
     parenthesized,
 };
 
-use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Scalar};
+use crate::ast::{AdvectedParameter, Declaration, Field, FieldKind, Role, Scalar};
 use crate::errors::{Errors, suggestion};
 use crate::symbolic::Variance;
 
@@ -34,14 +34,12 @@ struct Arguments {
     generators: Option<ExprArray>,
 }
 
-const KEYS: [&str; 5] = ["group", "advected", "l_d", "generators", "crate"];
-
 fn default_root() -> Path {
     syn::parse_quote!(::liestep)
 }
 
 /// The declaration as far as it can be read.
-pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
+pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
     // In braces that span the last token, so that what ends too early is reported there.
     let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
     let mut braces = Group::new(Delimiter::Brace, arguments);
@@ -49,7 +47,7 @@ pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Error
     let parser = |input: ParseStream| {
         let content;
         braced!(content in input);
-        Ok(arguments_from(&content, errors))
+        Ok(arguments_from(role, &content, errors))
     };
     let arguments = parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
         errors.extend(error);
@@ -60,13 +58,18 @@ pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Error
     let root = arguments.root.unwrap_or_else(default_root);
     let (group, structure) = group::group(arguments.group, arguments.generators.as_ref(), &root, is_readable, errors);
     if arguments.l_d.is_none() && is_readable {
-        errors.push(Span::call_site(), "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`");
+        let message = match role {
+            Role::Lagrangian => "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`",
+            Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
+        };
+        errors.push(Span::call_site(), message);
     }
     let (fields, unreadable) = fields(&item, errors);
     let scalar = scalar(&item, errors);
     let advected = advected(&arguments.advected, &fields, &unreadable, structure.size, errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     Declaration {
+        role,
         root,
         group,
         structure,
@@ -80,10 +83,10 @@ pub(crate) fn parse(arguments: TokenStream, item: ItemStruct, errors: &mut Error
 }
 
 /// Reads `key = value` pairs; after a syntax error it goes on behind the next comma.
-fn arguments_from(input: ParseStream, errors: &mut Errors) -> Arguments {
+fn arguments_from(role: Role, input: ParseStream, errors: &mut Errors) -> Arguments {
     let mut arguments = Arguments::default();
     while !input.is_empty() {
-        if let Err(error) = argument(input, &mut arguments, errors) {
+        if let Err(error) = argument(role, input, &mut arguments, errors) {
             errors.extend(error);
             while !input.is_empty() && !input.peek(Token![,]) {
                 let _ = input.parse::<TokenTree>();
@@ -94,7 +97,7 @@ fn arguments_from(input: ParseStream, errors: &mut Errors) -> Arguments {
     arguments
 }
 
-fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
+fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
     let key = input.call(Ident::parse_any)?;
     let mut once = |taken: bool| {
         if taken {
@@ -112,7 +115,7 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             input.parse::<Token![=]>()?;
             arguments.root = Some(input.parse()?);
         }
-        "l_d" => {
+        expression if expression == role.key() => {
             once(arguments.l_d.is_some());
             input.parse::<Token![=]>()?;
             arguments.l_d = Some(input.parse()?);
@@ -137,11 +140,13 @@ fn argument(input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) 
             arguments.advected.extend(pairs?);
         }
         other => {
-            let near = suggestion(other, KEYS);
-            let list = if near.is_empty() { format!("\nknown: {}", KEYS.join(", ")) } else { String::new() };
+            let known = ["group", "advected", role.key(), "generators", "crate"];
+            let near = suggestion(other, known);
+            let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
+            let attribute = role.attribute();
             return Err(syn::Error::new(
                 key.span(),
-                format!("`{other}` isn't an argument of `lagrangian`{near}{list}"),
+                format!("`{other}` isn't an argument of `{attribute}`{near}{list}"),
             ));
         }
     }

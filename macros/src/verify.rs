@@ -11,6 +11,8 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
+mod force;
+
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -21,6 +23,7 @@ use crate::lower::Lowered;
 use crate::scalar::{Graph, Input, Kernel, NodeId};
 use crate::symbolic::{SymbolId, Variance};
 
+pub(crate) use force::force;
 pub(crate) use inertia::{KineticPart, kinetic_part};
 use step::Step;
 use terms::Terms;

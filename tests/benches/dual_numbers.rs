@@ -23,7 +23,8 @@ use core::hint::black_box;
 use std::time::Instant;
 
 use liestep::{
-    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, Real, Retraction, SO3, lagrangian,
+    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _, Real, Retraction, SO3,
+    lagrangian,
 };
 use nalgebra::{Matrix3, RealField, RowVector3, Vector3, convert};
 use num_dual::{Derivative, DualNum, HyperDual64, HyperDualSVec64};
@@ -218,6 +219,33 @@ fn heavy_top<T: Real + RealField>() -> HeavyTop<T> {
     HeavyTop { J_d: inertia, m: T::one(), g: convert(9.81), rho: Vector3::z(), up: Vector3::z() }
 }
 
+/// Of the fourth order, as in `examples/declarations/fourth_order_top.rs`; a generic scalar stands to the right of vectors.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let xi = log(F);
+        let x = vee(F) * (2.0 / (1.0 + F.trace()).sqrt());
+        let next = F.transpose() * w;
+        let f = (J * x).cross(&x) / h.powi(2) + (w + next).cross(&rho) * (0.5 * weight);
+        xi.dot(&(J * xi)) / (2.0 * h) - 0.5 * h * weight * (w + next).dot(&rho)
+            + (h / 12.0) * weight * (next - w).cross(&x).dot(&rho)
+            - (h.powi(3) / 24.0) * f.dot(&(inverse(J) * f))
+    },
+)]
+#[allow(non_snake_case)] // the letters of the field
+struct FourthOrderTop<T: Real> {
+    J: Inertia<T>,
+    weight: T,
+    rho: Vector3<T>,
+    up: Vector3<T>,
+}
+
+fn fourth_order_top<T: Real + RealField>() -> FourthOrderTop<T> {
+    let inertia = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0).map(convert)).expect("a body");
+    FourthOrderTop { J: inertia, weight: convert(9.81), rho: Vector3::z(), up: Vector3::z() }
+}
+
 /// (3.13) with `tr((F − I) J_d (F − I)ᵀ) = Σ_ij (F − I)_ij² (J_d)_jj`.
 fn by_entries<D: DualNum<Primitive = f64> + Copy>(top: &HeavyTop<f64>, f: &Matrix3<D>, w: &Vector3<D>) -> D {
     let HeavyTop { J_d: inertia, m, g, rho, .. } = top;
@@ -257,4 +285,5 @@ fn main() {
         &|f: &Matrix3<Vectors>, w: &Vector3<_>| by_entries(black_box(&top), f, w),
         &|f: &Matrix3<HyperDual64>, w: &Vector3<_>| by_entries(black_box(&top), f, w),
     );
+    compare_declared!("L4", fourth_order_top);
 }

@@ -13,7 +13,7 @@ where
 {
     momenta::assert_momenta(system, 42);
     stages::assert_stages(system, 43);
-    stages::assert_step(system, 48);
+    stages::assert_step(system, &[1e-3, 0.1, 0.3], 48);
 }
 
 every_system!(p2);

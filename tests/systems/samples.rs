@@ -9,8 +9,8 @@ use liestep::{
 use nalgebra::{Matrix2, Matrix3, Matrix4, SVector, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6};
 
 use crate::declarations::{
-    CayleyTop, ElasticFlow, FreeBody, FullTop, HeavyTop, LogTraceTop, Magnet, OrbitingBody, Satellite, Spring,
-    TetheredPlate, UnderwaterBody,
+    CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
+    OrbitingBody, Satellite, SixthOrderTop, Spring, TetheredPlate, UnderwaterBody,
 };
 
 /// Where a motion starts.
@@ -28,8 +28,8 @@ macro_rules! every_system {
     };
     ($check:ident) => {
         every_system! {
-            $check: heavy_top full_top free_body log_trace_top cayley_top satellite orbiting_body spring magnet
-            underwater_body tethered_plate elastic_flow
+            $check: heavy_top full_top free_body log_trace_top cayley_top log_top fourth_order_top sixth_order_top
+            fourth_order_body satellite orbiting_body spring magnet underwater_body tethered_plate elastic_flow
         }
     };
 }
@@ -92,6 +92,25 @@ pub fn log_trace_top() -> LogTraceTop {
 pub fn cayley_top() -> CayleyTop {
     let J = Inertia::from_principal_moments(MOMENTS).unwrap();
     CayleyTop { J, weight: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
+}
+
+pub fn log_top() -> LogTop {
+    let CayleyTop { J, weight, rho, up } = cayley_top();
+    LogTop { J, weight, rho, up }
+}
+
+pub fn fourth_order_top() -> FourthOrderTop {
+    let CayleyTop { J, weight, rho, up } = cayley_top();
+    FourthOrderTop { J, weight, rho, up }
+}
+
+pub fn sixth_order_top() -> SixthOrderTop {
+    let CayleyTop { J, weight, rho, up } = cayley_top();
+    SixthOrderTop { J, weight, rho, up }
+}
+
+pub fn fourth_order_body() -> FourthOrderBody {
+    FourthOrderBody { J: cayley_top().J }
 }
 
 /// So near to the centre that the potential is far from its expansion.

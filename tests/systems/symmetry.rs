@@ -4,7 +4,7 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Stepper};
+use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Inertia, NonstandardInertia, Stepper};
 use nalgebra::{Matrix2, Matrix3, Matrix4, SVector, Vector3, Vector4};
 
 use crate::common::structure::System;
@@ -20,12 +20,12 @@ const ROUNDING: f64 = 1e-12;
 /// `count` is the dimension of the symmetry of the spatial parameters.
 fn assert_conserved<L: System<N, D> + Clone, const N: usize, const D: usize>(
     system: &L,
-    (attitude, velocity): Start<L::Group, D>,
+    start: Start<L::Group, D>,
     count: usize,
 ) {
     assert_eq!(symmetries(system).len(), count);
-    let stepper = Stepper::new(system.clone(), STEP).unwrap();
-    let (momentum, parameters) = drift(&stepper, stepper.start(attitude, velocity).unwrap(), STEPS);
+    let flow = DiscreteLiePoisson::new(system.clone(), STEP).unwrap();
+    let (momentum, parameters) = drift(&flow, start, STEPS);
     println!("momentum {momentum:.1e}, parameters {parameters:.1e}");
     assert!(momentum < ROUNDING, "momentum: {momentum:e}");
     assert!(parameters < ROUNDING, "parameters: {parameters:e}");
@@ -38,12 +38,16 @@ fn heavy_tops() {
     assert_conserved(&samples::full_top(), samples::on_so3(), 1);
     assert_conserved(&samples::log_trace_top(), samples::on_so3(), 1);
     assert_conserved(&samples::cayley_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::log_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::fourth_order_top(), samples::on_so3(), 1);
+    assert_conserved(&samples::sixth_order_top(), samples::on_so3(), 1);
 }
 
 /// All turns.
 #[test]
 fn free_body() {
     assert_conserved(&samples::free_body(), samples::on_so3(), 3);
+    assert_conserved(&samples::fourth_order_body(), samples::on_so3(), 3);
 }
 
 /// The turns about the direction of the centre, and of the anchor.

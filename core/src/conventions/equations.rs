@@ -28,7 +28,7 @@
 //! |---|---|---|---|
 //! | (2.1) | `δl_d/δw ⋄ w` | `lagrangian.rs` | [`DiscreteLagrangian::diamond`] |
 //! | (2.2) | continuous advected equations | | not in the code |
-//! | (2.3) | continuous Lagrangian of a top | `lagrangian.rs` | [`inertia`] and [`potential`] of the continuous limit |
+//! | (2.3) | continuous Lagrangian of a top | `effect.rs` | [`inertia`] and [`potential`] of the continuous limit |
 //! | (2.4), first line | `w_{i+1} = f_i⁻¹ w_i` | `advected.rs` | [`Advected::advect`] |
 //! | (2.4), second line; (2.5) | discrete advected Euler–Poincaré flow | `flows.rs` | [`DiscreteEulerPoincare::step`] |
 //! | (2.6) | `𝔽l_d⁻`, `𝔽l_d⁺` | `lagrangian.rs` | [`legendre_minus`], [`legendre_plus`] |
@@ -83,12 +83,12 @@
 //! [`Stepper::start`]: crate::Stepper::start
 //! [`Stepper::step`]: crate::Stepper::step
 //! [`Stepper::velocity`]: crate::Stepper::velocity
-//! [`inertia`]: crate::DiscreteLagrangian::inertia
+//! [`inertia`]: crate::Effect::inertia
 //! [`invert_legendre_minus`]: crate::DiscreteLiePoisson::invert_legendre_minus
 //! [`legendre_minus`]: crate::DiscreteLagrangian::legendre_minus
 //! [`legendre_plus`]: crate::DiscreteLagrangian::legendre_plus
 //! [`lie_bracket_transpose`]: crate::LieGroup::lie_bracket_transpose
-//! [`newton_system`]: crate::DiscreteLagrangian::newton_system
-//! [`potential`]: crate::DiscreteLagrangian::potential
+//! [`newton_system`]: crate::Effect::newton_system
+//! [`potential`]: crate::Effect::potential
 //! [`reconstruct`]: crate::reconstruct
 //! [`right_momentum`]: crate::DiscreteLagrangian::right_momentum

@@ -28,6 +28,18 @@
 //! oscillates with an amplitude of order `h⁴`. A wrong sign or factor in any momentum term spoils that, so it makes a
 //! sharp test.
 //!
+//! # As types
+//!
+//! What a scene conserves follows from its terms, so it is said in traits; asking a scene for what it hasn't got doesn't
+//! compile, and the message names the term in the way.
+//!
+//! | scene | trait | what it gives |
+//! |---|---|---|
+//! | has a kinetic part | [`Regular`](crate::Regular) | it can be stepped |
+//! | only Lagrangians, no force | [`DiscreteLagrangian`](crate::DiscreteLagrangian) | bounded energy, Poisson structure, [`Stepper::inverse`](crate::Stepper::inverse) |
+//! | and nothing advected | [`LeftInvariant`](crate::LeftInvariant) | [`Stepper::spatial_momentum`](crate::Stepper::spatial_momentum) |
+//! | or one vector advected, on SO(3) | [`AxiallyInvariant`](crate::AxiallyInvariant) | [`Stepper::momentum_along_advected`](crate::Stepper::momentum_along_advected) |
+//!
 //! # Solvability
 //!
 //! For (3.13) the momentum equation is `(F J_d − J_d Fᵀ)^∨ = h a` with `a = p + (h/2) τ(w)`. For the inertia of a body

@@ -3,10 +3,10 @@
 use nalgebra::{SimdBool as _, Vector3};
 
 use super::coefficients::{TERMS, series, sum};
+use crate::effect::Effect as _;
 use crate::error::StepError;
 use crate::groups::SO3;
 use crate::inertia::DiagonalNonstandardInertia;
-use crate::lagrangian::DiscreteLagrangian;
 use crate::newton::{Problem, Root, orientation};
 use crate::scalar::{Real, real};
 

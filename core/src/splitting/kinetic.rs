@@ -4,10 +4,12 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use super::angle::rotation_coefficients;
 use crate::coordinates::Coordinates as _;
+use crate::effect::Effect;
 use crate::error::{SetupError, StepError};
 use crate::flows::DiscreteLiePoisson;
 use crate::groups::SO3;
 use crate::inertia::Inertia;
+use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
 use crate::scalar::{Real, real, reported};
 
@@ -133,16 +135,16 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
 /// The flow of a declared Lagrangian without potential: any of its structure, to its order.
 impl<T: Real, L> KineticFlow<T> for L
 where
-    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = ()> + Clone,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = ()> + Regular + Clone,
 {
     type Drift = DeclaredDrift<L>;
 
     fn inertia(&self) -> Matrix3<T> {
-        DiscreteLagrangian::inertia(self)
+        Effect::inertia(self)
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
-        let inertia = DiscreteLagrangian::inertia(self);
+        let inertia = Effect::inertia(self);
         let column = |k: usize| Vector3::solve(&inertia, &Matrix3::identity().column(k).into_owned()).0;
         let inverse = Matrix3::from_columns(&[column(0), column(1), column(2)]);
         Ok(DeclaredDrift { flow: DiscreteLiePoisson::new(self.clone(), h)?, inverse })
@@ -161,7 +163,7 @@ where
 
 /// A declared flow, and the inverse inertia that its guesses are made with.
 #[derive(Clone, Debug)]
-pub struct DeclaredDrift<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, T: Real = crate::lagrangian::Scalar<L>> {
+pub struct DeclaredDrift<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, T: Real = crate::effect::Scalar<L>> {
     flow: DiscreteLiePoisson<L>,
     inverse: Matrix3<T>,
 }

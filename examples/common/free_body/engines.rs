@@ -3,7 +3,7 @@
 //! All work on `J Ω' = JΩ × Ω` in the body frame. The quaternion turns by the exact rotation through `hΩ` and is
 //! normalised, so that what differs between them is the gyroscopic term alone.
 
-use liestep::DiscreteLagrangian as _;
+use liestep::Effect as _;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::lagrangian::FreeBody;

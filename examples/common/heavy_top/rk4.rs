@@ -4,7 +4,7 @@
 
 use std::ops::{Add, Mul};
 
-use liestep::DiscreteLagrangian as _;
+use liestep::Effect as _;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use super::lagrangian::HeavyTop;

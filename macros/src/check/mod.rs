@@ -13,7 +13,7 @@ use syn::ext::IdentExt as _;
 use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
-use crate::ast::{Declaration, Kind, Name, Shape, Tree};
+use crate::ast::{Declaration, Kind, Name, Role, Shape, Tree};
 use crate::errors::{Errors, suggestion};
 use crate::symbolic::Rational;
 
@@ -257,6 +257,8 @@ impl Checker<'_> {
             "I" => return Some(Tree::new(span, square, Kind::Identity)),
             "F" => (square, Name::Increment),
             "h" => (Shape::Scalar, Name::Step),
+            "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
+            "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
             _ => {
                 if let Some(index) = advected(self.declaration) {
                     (self.declaration.advected_kind(index).shape(), Name::Advected(index))
@@ -282,11 +284,20 @@ impl Checker<'_> {
         Some(Tree::new(span, shape, Kind::Name(found)))
     }
 
+    fn is_force(&self) -> bool {
+        self.declaration.role == Role::Force
+    }
+
+    fn displacement(&self) -> Shape {
+        Shape::Matrix(self.declaration.structure.dimension(), 1)
+    }
+
     fn unknown_name(&mut self, name: &str, span: Span) {
         let fields = self.declaration.fields.iter().map(|field| field.name.unraw().to_string());
         let advected = self.declaration.advected.iter().map(|w| w.name.unraw().to_string());
         let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
-        let builtin = ["F", "I", "h"].map(str::to_owned);
+        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
+        let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
         let known: Vec<String> = fields.chain(advected).chain(bound).chain(builtin).collect();
         let near = suggestion(name, known.iter().map(String::as_str));
         let advice = if near.is_empty() && name == "w" {

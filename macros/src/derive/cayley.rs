@@ -13,6 +13,8 @@ use crate::symbolic::{Expression, Rational, Variations, degree, variation};
 pub(crate) struct Cleared {
     pub(crate) residual: Expression,
     pub(crate) jacobian: Expression,
+    /// `n`.
+    pub(crate) power: u32,
 }
 
 /// Beyond this many terms the retracted form is surely cheaper, and expanding would take long.
@@ -42,12 +44,13 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     let target = context.product(&direction, &target_hat).trace(context.symbols).scaled(Rational::new(-1, 2));
     let difference = in_coordinates.minus(target);
     let lowest = difference.terms().map(|(monomial, _)| monomial.exponent(directions.denominator)).min()?;
-    let residual = context.product(&d.power(lowest.min(0).saturating_neg(), context.symbols), &difference);
+    let power = lowest.min(0).saturating_neg();
+    let residual = context.product(&d.power(power, context.symbols), &difference);
     let delta = context.symbol(directions.coordinate_direction);
     let delta_d = context.product(&xi.transpose(context.symbols), &delta).scaled(Rational::integer(2));
     let variations = Variations::from([(directions.coordinates, delta), (directions.denominator, delta_d)]);
     let jacobian = variation(&residual, &variations, context.symbols);
-    Some(Cleared { residual, jacobian })
+    Some(Cleared { residual, jacobian, power: power.unsigned_abs() })
 }
 
 /// Each `F` becomes the four terms of `(8/D − 1) I + (2 ξξᵀ + 4 ξ̂)/D`.

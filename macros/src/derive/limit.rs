@@ -13,6 +13,8 @@ use crate::symbolic::{Expression, Rational, SymbolId, Variations, degree, variat
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
 pub(crate) struct Limit {
+    /// Whether there is a term in `1/h` that depends on `F`; a potential has none, and can't move by itself.
+    pub(crate) has_kinetic: bool,
     /// The first derivative of `K` at the identity (linear in `E_k`): zero for all values of the parameters if there is
     /// a limit.
     pub(crate) slope: Expression,
@@ -28,8 +30,6 @@ pub(crate) enum LimitError {
     StepInsideFunction,
     /// A power of `h` below −1.
     TooSingular(i32),
-    /// No term in `1/h` depends on `F`.
-    NoKineticTerm,
     /// The limit isn't `½ ξ·Jξ + s·ξ − V`.
     NotALagrangian,
     /// The limit has too many terms.
@@ -49,9 +49,6 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
         return Err(LimitError::TooSingular(power));
     }
     let kinetic = of_order(momentum, h, -1);
-    if kinetic.is_zero() {
-        return Err(LimitError::NoKineticTerm);
-    }
     let step = context.symbol(h);
     let second = momentum_equation::jacobian(context, &kinetic, &[]);
     let inertia = context.product(&at_identity(context, &second), &step);
@@ -59,7 +56,8 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     let inverse_step = step.power(-1, context.symbols);
     let potential = context.product(&at_identity(context, &of_order(l_d, h, 1)), &inverse_step);
     let slope = at_identity(context, &kinetic);
-    Ok(Limit { slope, inertia, bias, potential: potential.scaled(-Rational::ONE) })
+    let potential = potential.scaled(-Rational::ONE);
+    Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential })
 }
 
 /// As a series in `h` along `F = exp(hξ̂)`, where `let`s hide the powers of `h`.
@@ -92,9 +90,6 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     if !curvature.is_zero() {
         return Err(LimitError::NotALagrangian);
     }
-    if kinetic.is_zero() {
-        return Err(LimitError::NoKineticTerm);
-    }
     let along = |expression: &Expression, direction| {
         let variations = Variations::from([(velocity, context.symbol(direction))]);
         variation(expression, &variations, context.symbols)
@@ -102,7 +97,7 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     let (first, second) = (context.directions.first, context.directions.second);
     let inertia = along(&along(&kinetic, first), second);
     let (slope, bias) = (along(&slope, first), along(&linear, first));
-    Ok(Limit { slope, inertia, bias, potential: rest.scaled(-Rational::ONE) })
+    Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential: rest.scaled(-Rational::ONE) })
 }
 
 fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {

@@ -5,6 +5,7 @@ mod cayley;
 mod closed;
 mod diamond;
 mod energy;
+mod force;
 mod limit;
 mod momentum_equation;
 mod momentum_maps;
@@ -19,6 +20,7 @@ use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance}
 
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
+pub(crate) use force::{Displacements, ForceError, force};
 pub(crate) use limit::{Limit, LimitError};
 pub(crate) use self_adjoint::SelfAdjointness;
 

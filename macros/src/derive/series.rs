@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use super::{Context, LimitError};
 use crate::symbolic::{Atom, Expression, Factor, Function, Rational, SymbolId, Variations, substitute, variation};
 
-/// What is of this order or higher isn't looked at: `l_d` is wanted to the first.
-const CUTOFF: i32 = 4;
+/// What is of this order or higher isn't looked at: `l_d` is wanted to the first, and may divide by `h`.
+const CUTOFF: i32 = 3;
 /// A limit that a person would write down has a tenth of it.
-const MOST_FACTORS: usize = 2_000;
+const MOST_FACTORS: usize = 4_000;
 
 /// `Σ c_i hⁱ + O(hᵉ)`.
 #[derive(Clone, Debug)]

@@ -23,8 +23,10 @@ pub(super) fn lets(derived: &Derived) -> String {
     if derived.closed.is_empty() {
         return String::new();
     }
-    let values = derived.closed.iter().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
-    let pairings = derived.closed.iter().rev().map(|one| {
+    // A number with many digits is its own name.
+    let named = || derived.closed.iter().filter(|one| name(one.symbol).parse::<f64>().is_err());
+    let values = named().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
+    let pairings = named().rev().map(|one| {
         let (multiplier, direction) = (name(one.multiplier), name(one.direction));
         format!("\n    ⟨{multiplier}, {direction}⟩ = {}", text(&one.pairing, symbols))
     });
@@ -49,6 +51,21 @@ pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation>
         equation("inertia", "η·Jξ for η̂ = E_k, ξ̂ = E_j", scalar(&derived.limit.inertia), "continuous limit"),
         equation("momentum_bias", "s", covector(&derived.limit.bias), "continuous limit"),
         equation("potential", "V", scalar(&derived.limit.potential), "continuous limit"),
+        equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
+        equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
+    ]
+}
+
+/// The equations of a force.
+pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<Equation> {
+    let symbols = &derived.symbols;
+    let covector = |expression| covector_text(expression, derived.directions.first, symbols);
+    let equation = |method, left, right, source| Equation { method, left, right, source };
+    let (work, jacobian) = (text(&declared.l_d, symbols), text(&derived.jacobian, symbols));
+    vec![
+        equation("virtual_work", "f⁻·η + f⁺·η⁺", work, "as declared, with FᵀF = I used"),
+        equation("momentum", "−f⁻", covector(&derived.momentum), "the share in (2.7)"),
+        equation("momentum_jacobian", "−∂f⁻_k along exp(tE_j)F", jacobian, "exact, right-trivialised"),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
         equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
     ]

@@ -82,20 +82,63 @@ impl Header {
         quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SMatrix<#scalar, #rows, #rows>)
     }
 
-    /// `impl … DiscreteLagrangian for …`.
-    pub(crate) fn implementation(&self) -> TokenStream {
+    /// `impl … liestep::Trait for …`.
+    pub(crate) fn implementation(&self, name: &str) -> TokenStream {
+        let (root, implemented) = (&self.root, Ident::new(name, Span::mixed_site()));
+        self.implementation_of(None, &quote_spanned!(Span::mixed_site()=> #root::#implemented))
+    }
+
+    /// `impl … Add<Other> for …`: the sum with any effect of the same group.
+    pub(crate) fn addition(&self) -> TokenStream {
+        let (span, root, group, scalar) = (Span::mixed_site(), &self.root, &self.group, &self.scalar);
+        let core = quote_spanned!(span=> #root::__private::core);
+        // A name that no type of the user's has.
+        let other = Ident::new("LiestepOtherEffect", span);
+        let bounds = [
+            syn::parse_quote_spanned!(span=> #other: #root::Effect),
+            syn::parse_quote_spanned! {span=>
+                <#other as #root::Effect>::Group: #root::SharedBy<#group<#scalar>, Self, #other>
+            },
+        ];
+        let added = quote_spanned!(span=> #core::ops::Add<#other>);
+        let implementation = self.implementation_of(Some((&other, bounds)), &added);
+        quote_spanned! {span=>
+            #[automatically_derived]
+            #[allow(clippy::all, clippy::pedantic, clippy::nursery)]
+            #implementation {
+                type Output = #root::Sum<Self, #other>;
+
+                fn add(self, other: #other) -> #root::Sum<Self, #other> {
+                    #root::Sum::new(self, other)
+                }
+            }
+        }
+    }
+
+    /// `impl … trait for …`, with one more type parameter if there is one.
+    fn implementation_of(
+        &self,
+        more: Option<(&Ident, [syn::WherePredicate; 2])>,
+        implemented: &TokenStream,
+    ) -> TokenStream {
         let (root, name) = (&self.root, &self.name);
         let mut generics = self.generics.clone();
         if let Some(parameter) = &self.parameter {
             generics.make_where_clause().predicates.push(syn::parse_quote!(#parameter: #root::Real));
         }
+        if let Some((parameter, bounds)) = more {
+            generics.params.push(syn::parse_quote!(#parameter));
+            generics.make_where_clause().predicates.extend(bounds);
+        }
         let (before, _, _) = generics.split_for_impl();
         let (_, arguments, _) = self.generics.split_for_impl();
         let (_, _, conditions) = generics.split_for_impl();
-        quote_spanned!(Span::mixed_site()=> impl #before #root::DiscreteLagrangian for #name #arguments #conditions)
+        quote_spanned!(Span::mixed_site()=> impl #before #implemented for #name #arguments #conditions)
     }
 
-    pub(crate) fn types(&self, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
+    /// The associated types of an effect.
+    pub(crate) fn types(&self, has_kinetic: bool, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
+        let kinetic = Ident::new(if has_kinetic { "WithKinetic" } else { "WithoutKinetic" }, Span::mixed_site());
         let (root, group, scalar) = (&self.root, &self.group, &self.scalar);
         let values: Vec<TokenStream> = self.advected.iter().map(|kind| self.advected_type(*kind)).collect();
         let advected = match values.as_slice() {
@@ -106,6 +149,7 @@ impl Header {
             type Scalar = #scalar;
             type Group = #group<#scalar>;
             type Retraction = #root::CayleyRetraction;
+            type Kinetic = #root::#kinetic;
             type Advected = #advected;
             type Constants = #constants;
             type StepTerms = #step_terms;

@@ -17,7 +17,8 @@ impl Emitter<'_> {
             Some(Name::Increment) => entry(&quote_spanned!(span=> f), input),
             Some(Name::Advected(index)) => entry(&self.part(&quote_spanned!(span=> w), index), input),
             Some(Name::Field(index)) => self.field_entry(index, input),
-            None => self.derived_input(input),
+            // Displacements are replaced by directions before.
+            Some(Name::DisplacementBefore | Name::DisplacementAfter) | None => self.derived_input(input),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Tokens: one `impl DiscreteLagrangian`. Makes no mathematical decision.
+//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`. Makes no mathematical decision.
 
 mod code;
 mod docs;
@@ -10,7 +10,7 @@ mod verbatim;
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
-use crate::ast::Declaration;
+use crate::ast::{Declaration, Role};
 use crate::derive::{Derived, SelfAdjointness};
 use crate::lower::Lowered;
 use crate::scalar::{Given, Graph, Kernel, Scalariser, components, square, with_lets};
@@ -34,37 +34,72 @@ pub(crate) fn implementation(
     findings: &Findings,
 ) -> TokenStream {
     let (header, kernel) = (Header::new(declaration), &findings.kernel);
-    let emitter = Emitter { declaration, lowered, derived, header: &header };
-    let (mathematics, texts) = emitter.mathematics();
+    let mut graph = Graph::default();
+    let given = with_lets(&mut graph, derived, Given::new());
+    let emitter = Emitter { declaration, lowered, derived, header: &header, lets: (graph, given) };
+    let (mathematics, effect, texts) = emitter.mathematics();
     let stages = stages::stages(&emitter, kernel, &texts);
-    let l_d = verbatim::l_d(declaration, &header);
+    let declared = verbatim::declared(declaration, &header);
     let derivation = docs::derivation(declaration, derived, &texts, findings);
     let documentation = format!("```text\n{derivation}```");
-    let is_self_adjoint = findings.self_adjointness.is_found();
     let validate = emitter.validate();
     let advected = emitter.advected();
     let root = &header.root;
     let span = Span::mixed_site();
-    let types = header.types(&stages.constants_type, &stages.step_terms_type);
-    let implementation = header.implementation();
+    let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
+    let parts = stages::parts(&emitter, kernel);
+    let (name, mathematics) = match declaration.role {
+        Role::Lagrangian => ("DiscreteLagrangian", mathematics),
+        Role::Force => ("Force", TokenStream::new()),
+    };
+    let (of_role, term) = (header.implementation(name), header.implementation("Effect"));
+    let invariance = invariance(declaration, &header);
+    let addition = header.addition();
     let body = &stages.methods;
+    let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
+        let is_self_adjoint = findings.self_adjointness.is_found();
+        quote_spanned!(span=> const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;)
+    });
     quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
-        #implementation {
+        #of_role {
+            #self_adjoint
+            #declared
+            #mathematics
+        }
+
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
+        #term {
             #types
+            #parts
 
             #[doc = #documentation]
             const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
-            const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;
 
             #validate
             #advected
-            #l_d
-            #mathematics
+            #effect
             #body
         }
+
+        #invariance
+        #addition
     }
+}
+
+/// What advects nothing is invariant under the whole group.
+fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
+    let implementation = header.implementation("LeftInvariant");
+    let is_invariant = declaration.role == Role::Lagrangian && declaration.advected.is_empty();
+    is_invariant.then(|| {
+        quote_spanned! {Span::mixed_site()=>
+            #[automatically_derived]
+            #[allow(clippy::all, clippy::pedantic, clippy::nursery)]
+            #implementation {}
+        }
+    })
 }
 
 /// The arguments of a method.
@@ -81,34 +116,33 @@ struct Emitter<'a> {
     lowered: &'a Lowered,
     derived: &'a Derived,
     header: &'a Header,
+    /// The closed `let`s, which the methods share.
+    lets: (Graph, Given),
 }
 
 impl Emitter<'_> {
-    /// The derived terms that don't know stages.
-    fn mathematics(&self) -> (TokenStream, Vec<docs::Equation>) {
+    /// The derived terms that don't know stages: those of a Lagrangian, those of any effect, and their equations.
+    fn mathematics(&self) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
-        let mut methods = TokenStream::new();
-        let equations = docs::equations(d, &self.lowered.declared);
-        let covectors = [
-            ("right_momentum", &d.right_momentum),
-            ("left_momentum", &d.left_momentum),
-            ("diamond", &d.diamond),
-            ("legendre_minus", &d.momentum),
-        ];
-        for (name, covector) in covectors {
-            methods.extend(self.method(name, Takes::Increment, Form::Vector, covector, &equations));
-        }
-        let others = [
-            ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
+        let equations = match self.declaration.role {
+            Role::Lagrangian => docs::equations(d, &self.lowered.declared),
+            Role::Force => docs::equations_of_force(d, &self.lowered.declared),
+        };
+        let method = |(name, takes, form, expression)| self.method(name, takes, form, expression, &equations);
+        let of_lagrangian = [
+            ("right_momentum", Takes::Increment, Form::Vector, &d.right_momentum),
+            ("left_momentum", Takes::Increment, Form::Vector, &d.left_momentum),
+            ("diamond", Takes::Increment, Form::Vector, &d.diamond),
+            ("legendre_minus", Takes::Increment, Form::Vector, &d.momentum),
             ("discrete_energy", Takes::Increment, Form::Scalar, &d.energy),
+        ];
+        let of_effect = [
+            ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
             ("inertia", Takes::Nothing, Form::Square, &d.limit.inertia),
             ("momentum_bias", Takes::Advected, Form::Vector, &d.limit.bias),
             ("potential", Takes::Advected, Form::Scalar, &d.limit.potential),
         ];
-        for (name, takes, form, expression) in others {
-            methods.extend(self.method(name, takes, form, expression, &equations));
-        }
-        (methods, equations)
+        (of_lagrangian.map(method).into_iter().collect(), of_effect.map(method).into_iter().collect(), equations)
     }
 
     /// One derived term as a method, with its equation as documentation.
@@ -121,8 +155,7 @@ impl Emitter<'_> {
         equations: &[docs::Equation],
     ) -> TokenStream {
         let (span, d, root) = (Span::mixed_site(), self.derived, &self.header.root);
-        let mut graph = Graph::default();
-        let none = with_lets(&mut graph, d, Given::new());
+        let (mut graph, none) = self.lets.clone();
         let (outputs, result) = match form {
             Form::Scalar => {
                 let mut scalariser = Scalariser { graph: &mut graph, symbols: &d.symbols, given: none };
@@ -135,7 +168,7 @@ impl Emitter<'_> {
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
-        let w = quote_spanned!(span=> w: &<Self as #root::DiscreteLagrangian>::Advected);
+        let w = quote_spanned!(span=> w: &<Self as #root::Effect>::Advected);
         let arguments = match takes {
             Takes::Nothing => TokenStream::new(),
             Takes::Advected => w,

@@ -120,6 +120,19 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
 }
 
+/// Which parts of a step aren't zero, and the factor of the Newton system.
+pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
+    let (span, root, derived) = (Span::mixed_site(), &emitter.header.root, emitter.derived);
+    let [unknown, before, after] =
+        [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero());
+    let denominators = Literal::u32_unsuffixed(kernel.denominators);
+    let u32 = quote_spanned!(span=> #root::__private::core::primitive::u32);
+    quote_spanned! {span=>
+        const PARTS: #root::Parts = #root::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
+        const DENOMINATORS: #u32 = #denominators;
+    }
+}
+
 /// The compiler's check that the generators that were derived with are those of the group that is run with.
 fn same_generators(emitter: &Emitter) -> TokenStream {
     let (span, root, group) = (Span::mixed_site(), &emitter.header.root, &emitter.derived.group);

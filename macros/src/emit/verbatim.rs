@@ -1,4 +1,4 @@
-//! The declared expression as the method `l_d`, as it stands.
+//! The declared expression as the method `l_d` or `virtual_work`, as it stands.
 //!
 //! Its names are bound to the values that the macro gave them, so that rustc checks the types that the macro assumed.
 //! Their spans keep the place but resolve where the bindings do, whatever `macro_rules!` they came through. In a struct
@@ -11,9 +11,10 @@ use syn::visit_mut::{self, VisitMut};
 use syn::{Expr, Ident};
 
 use super::Header;
-use crate::ast::{Declaration, FieldKind};
+use crate::ast::{Declaration, FieldKind, Role};
 
-pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
+/// The Lagrangian's `l_d`, or a force's `virtual_work`.
+pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
     let (root, scalar, square) = (&header.root, &header.scalar, header.matrix());
     let Some(mut expression) = declaration.l_d.clone() else { return TokenStream::new() };
@@ -31,6 +32,8 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     bind("I", quote_spanned!(span=> <#square>::identity()));
     let three = quote_spanned!(span=> #root::__private::nalgebra::Matrix3<#scalar>);
     bind("vee", quote_spanned!(span=> |matrix: #three| <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix)));
+    bind("eta", quote_spanned!(span=> *eta));
+    bind("eta_next", quote_spanned!(span=> *eta_next));
     bind("log", quote_spanned!(span=> #root::__private::rotation_log::<#scalar>));
     bind("exp", quote_spanned!(span=> #root::__private::rotation_exp::<#scalar>));
     for (index, parameter) in declaration.advected.iter().enumerate() {
@@ -58,9 +61,26 @@ pub(super) fn l_d(declaration: &Declaration, header: &Header) -> TokenStream {
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
     let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
     let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));
+    let vector = header.vector();
+    let signature = match declaration.role {
+        Role::Lagrangian => quote_spanned! {span=>
+            /// The Lagrangian as declared.
+            fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar
+        },
+        Role::Force => quote_spanned! {span=>
+            /// The virtual work as declared.
+            fn virtual_work(
+                &self,
+                f: &#square,
+                w: &Self::Advected,
+                h: #scalar,
+                eta: &#vector,
+                eta_next: &#vector,
+            ) -> #scalar
+        },
+    };
     quote_spanned! {span=>
-        /// The Lagrangian as declared.
-        fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar {
+        #signature {
             #traits
             #hidden
             // In one pattern, so that no name hides a value that a later one needs.

@@ -9,7 +9,7 @@ mod time;
 
 use proc_macro2::TokenStream;
 
-use super::expand;
+use crate::ast::Role;
 use crate::derive::Derived;
 use crate::errors::Errors;
 use crate::{check, choose, lower, parse};
@@ -27,6 +27,10 @@ fn tokens(text: &str) -> TokenStream {
     text.parse().expect("tokens")
 }
 
+fn expand(arguments: TokenStream, item: &TokenStream) -> TokenStream {
+    super::expand(Role::Lagrangian, arguments, item)
+}
+
 fn expanded(arguments: &str, item: &str) -> TokenStream {
     expand(tokens(arguments), &tokens(item))
 }
@@ -35,7 +39,7 @@ fn expanded(arguments: &str, item: &str) -> TokenStream {
 pub(crate) fn derived(arguments: &str, item: &str) -> Derived {
     let mut errors = Errors::default();
     let item = syn::parse_str(item).expect("a struct");
-    let declaration = parse::parse(tokens(arguments), item, &mut errors);
+    let declaration = parse::parse(Role::Lagrangian, tokens(arguments), item, &mut errors);
     let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
     let candidates = lower::lower(&declaration, &tree, &mut errors).expect("small");
     assert!(errors.is_empty(), "{}", errors.to_compile_errors());

@@ -264,10 +264,37 @@ impl Graph {
         let mut total = self.zero();
         for stage in [Stage::Construction, Stage::Step, Stage::Iteration] {
             let here: Vec<_> = signed.iter().filter(|(id, _)| self.stage(*id) == stage).copied().collect();
-            let sum = self.sum_of_one_stage(&here);
+            let factor = if stage == Stage::Construction { self.common_factor(&here) } else { None };
+            let sum = match factor {
+                // a c + b c = (a + b) c, so that a constant has one form, wherever it comes from.
+                Some(factor) => {
+                    let rest: Vec<_> = here.iter().map(|&(id, sign)| (self.without_factor(id, factor), sign)).collect();
+                    let sum = self.sum_of_one_stage(&rest);
+                    self.multiply(sum, factor)
+                }
+                None => self.sum_of_one_stage(&here),
+            };
             total = self.add(total, sum);
         }
         total
+    }
+
+    /// What all terms are multiplied by, if there are at least two.
+    fn common_factor(&self, terms: &[(NodeId, bool)]) -> Option<NodeId> {
+        let (&(first, _), others) = terms.split_first()?;
+        let Node::Multiply(a, b) = self.node(first) else { return None };
+        let is_factor = |factor: NodeId| {
+            others.iter().all(|&(id, _)| matches!(self.node(id), Node::Multiply(a, b) if a == factor || b == factor))
+        };
+        [b, a].into_iter().find(|&factor| !others.is_empty() && is_factor(factor))
+    }
+
+    fn without_factor(&self, product: NodeId, factor: NodeId) -> NodeId {
+        match self.node(product) {
+            Node::Multiply(a, b) if b == factor => a,
+            Node::Multiply(a, b) if a == factor => b,
+            _ => product,
+        }
     }
 
     fn sum_of_one_stage(&mut self, terms: &[(NodeId, bool)]) -> NodeId {

@@ -16,6 +16,8 @@ use crate::symbolic::{Expression, Rational, Stage};
 pub(crate) struct Candidate {
     pub(crate) name: &'static str,
     pub(crate) operations: Operations,
+    /// The power of `4 + |ξ|²` that the system is multiplied by.
+    denominators: u32,
 }
 
 /// The outputs of the stages, in one graph.
@@ -29,6 +31,8 @@ pub(crate) struct Kernel {
     /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
     /// Cayley coordinates.
     pub(crate) in_increment: bool,
+    /// The power of `4 + |ξ|²` that the Newton system is multiplied by.
+    pub(crate) denominators: u32,
     /// The first is the one that was taken.
     pub(crate) candidates: Vec<Candidate>,
 }
@@ -64,11 +68,15 @@ fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
 /// A Jacobian, linear in `E_k` and `E_j`, row by row.
 pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
+    let varies = derived
+        .closed
+        .iter()
+        .any(|one| bilinear.contains(one.tangent.0) || bilinear.contains(one.multiplier_tangent.0));
     let columns: Vec<Vec<NodeId>> = (0..dimension)
         .map(|j| {
             let mut given = given.clone();
             given.insert(derived.directions.second, generator(graph, &derived.group, j));
-            let given = with_tangents(graph, derived, given);
+            let given = if varies { with_tangents(graph, derived, given) } else { given };
             components(graph, derived, &given, bilinear)
         })
         .collect();
@@ -91,28 +99,28 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
         components(&mut graph, derived, &given, &derived.kick_after)
     };
     let mut found: Vec<(Candidate, Vec<NodeId>)> = Vec::new();
-    let mut add = |graph: &Graph, name, outputs: Vec<NodeId>| {
+    let mut add = |graph: &Graph, name, denominators, outputs: Vec<NodeId>| {
         let operations = count(graph, &outputs, Some(Stage::Iteration));
-        found.push((Candidate { name, operations }, outputs));
+        found.push((Candidate { name, operations, denominators }, outputs));
     };
     let in_increment = !derived.group.is_so3;
     if in_increment {
         let outputs = system(&mut graph, derived, &increment);
-        add(&graph, "in F", outputs);
+        add(&graph, "in F", 0, outputs);
     } else {
         let (retracted, opaque) = retracted(&mut graph, derived);
-        add(&graph, "F rebuilt from ξ", retracted.clone());
+        add(&graph, "F rebuilt from ξ", 0, retracted.clone());
         if derived.closed.is_empty()
             && let Some(outputs) = expanded(&mut graph, &retracted, &opaque)
         {
-            add(&graph, "F rebuilt from ξ, multiplied out", outputs);
+            add(&graph, "F rebuilt from ξ, multiplied out", 0, outputs);
         }
     }
     if let Some(cleared) = &derived.cleared {
         let (nested, denominator) = cleared_system(&mut graph, derived, cleared);
-        add(&graph, "Cayley, denominators cleared", nested.clone());
+        add(&graph, "Cayley, denominators cleared", cleared.power, nested.clone());
         if let Some(outputs) = expanded(&mut graph, &nested, &BTreeSet::from([denominator])) {
-            add(&graph, "Cayley, denominators cleared, multiplied out", outputs);
+            add(&graph, "Cayley, denominators cleared, multiplied out", cleared.power, outputs);
         }
     }
     found.sort_by_key(|(candidate, _)| candidate.operations.cost());
@@ -124,6 +132,7 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
         jacobian: jacobian.to_vec(),
         kick_after,
         in_increment,
+        denominators: found.first().map_or(0, |(candidate, _)| candidate.denominators),
         candidates: found.into_iter().map(|(candidate, _)| candidate).collect(),
         graph,
     }

@@ -50,7 +50,7 @@ impl Sample<'_> {
             let is_vector = match name {
                 Name::Field(_) => true,
                 Name::Advected(_) => self.advected.contains(&(*name, Variance::Vector)),
-                Name::Increment | Name::Step => false,
+                Name::Increment | Name::Step | Name::DisplacementBefore | Name::DisplacementAfter => false,
             };
             if is_vector && (value.rows, value.columns) == (group.size, 1) {
                 value.entries.pop();

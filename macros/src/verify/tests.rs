@@ -25,7 +25,8 @@ impl Declared {
     fn new(arguments: &str, item: &str) -> Self {
         let mut errors = Errors::default();
         let item = syn::parse_str(item).expect("a struct");
-        let declaration = parse::parse(arguments.parse().expect("tokens"), item, &mut errors);
+        let declaration =
+            parse::parse(crate::ast::Role::Lagrangian, arguments.parse().expect("tokens"), item, &mut errors);
         let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
         let candidates = lower(&declaration, &tree, &mut errors).expect("small");
         let Chosen { lowered, derived, .. } = cheapest(candidates).unwrap_or_else(|_| panic!("nothing to derive"));

@@ -8,7 +8,7 @@ use liestep::{DiscreteLiePoisson, LieGroup as _};
 use nalgebra::SVector;
 
 use super::numbers::Numbers as _;
-use super::{System, seen_at_random};
+use super::{System, seen_at_random, step};
 
 /// How far a step of `h` and one of `−h` end from where they started, at random states, relative to these.
 pub fn error_of_return<L: System<N, D> + Clone, const N: usize, const D: usize>(
@@ -25,8 +25,8 @@ pub fn error_of_return<L: System<N, D> + Clone, const N: usize, const D: usize>(
         let velocity: SVector<f64, D> = random.sample();
         let f = along::<L::Group, N, D>(&velocity, h).matrix();
         let momentum = lagrangian.legendre_minus(&f, &w, h);
-        let there = forth.step(&momentum, &w, &SVector::zeros()).unwrap();
-        let returned = back.step(&there.momentum, &there.advected, &SVector::zeros()).unwrap();
+        let there = step(&forth, &momentum, &w);
+        let returned = step(&back, &there.momentum, &there.advected);
         // Rounding is that of the parts of `μ`, which are of the order of `J/h` times the increment.
         let size = lagrangian.inertia().norm() * velocity.norm() + momentum.norm();
         let (numbers, before) = (returned.advected.numbers(), w.numbers());

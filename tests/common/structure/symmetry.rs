@@ -5,11 +5,11 @@
 //! exact for every `l_d` (Noether). On SO(3) with one vector that is `μ·w`; where nothing is advected it is all of the
 //! spatial momentum.
 
-use liestep::{Advected as _, LieGroup as _, State, Stepper};
+use liestep::{Advected as _, DiscreteLiePoisson, LieGroup as _};
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;
-use super::{System, turn};
+use super::{System, step, turn};
 use crate::common::measure::derivative;
 
 /// What the six-point differences leave of numbers near one.
@@ -36,23 +36,27 @@ pub fn symmetries<L: System<N, D>, const N: usize, const D: usize>(lagrangian: &
 ///
 /// Both are relative to the sizes that rounding is relative to.
 pub fn drift<L: System<N, D>, const N: usize, const D: usize>(
-    stepper: &Stepper<L>,
-    mut state: State<L::Group, L::Advected>,
+    flow: &DiscreteLiePoisson<L>,
+    (mut attitude, velocity): (L::Group, SVector<f64, D>),
     steps: u32,
 ) -> (f64, f64) {
-    let symmetries = symmetries::<L, N, D>(stepper.lagrangian());
-    let spatial = state.spatial_momentum();
-    let (mut momentum, mut parameters) = (0.0_f64, 0.0_f64);
+    let lagrangian = flow.lagrangian();
+    let symmetries = symmetries::<L, N, D>(lagrangian);
+    let mut w = lagrangian.advected().seen_from(&attitude);
+    let mut momentum = lagrangian.inertia() * velocity + lagrangian.momentum_bias(&w);
+    let in_space = |attitude: &L::Group, momentum: &SVector<f64, D>| attitude.inverse().adjoint_transpose(momentum);
+    let start = in_space(&attitude, &momentum);
+    let (mut change, mut missed) = (0.0_f64, 0.0_f64);
     for _ in 0..steps {
-        stepper.step(&mut state).unwrap();
-        let inverse = state.attitude().inverse().matrix();
-        let size = state.momentum().norm() * state.attitude().matrix().norm() * inverse.norm();
+        let after = step(flow, &momentum, &w);
+        (momentum, w) = (after.momentum, after.advected);
+        attitude = attitude.advance(&after.increment);
+        let size = momentum.norm() * attitude.matrix().norm() * attitude.inverse().matrix().norm();
         for symmetry in &symmetries {
-            momentum = momentum.max((state.spatial_momentum() - spatial).dot(symmetry).abs() / size);
+            change = change.max((in_space(&attitude, &momentum) - start).dot(symmetry).abs() / size);
         }
-        let seen = stepper.lagrangian().advected().seen_from(&state.attitude());
-        let (seen, carried) = (DVector::from_vec(seen.numbers()), DVector::from_vec(state.advected().numbers()));
-        parameters = parameters.max((&carried - &seen).norm() / (1.0 + seen.norm()));
+        let seen = DVector::from_vec(lagrangian.advected().seen_from(&attitude).numbers());
+        missed = missed.max((DVector::from_vec(w.numbers()) - &seen).norm() / (1.0 + seen.norm()));
     }
-    (momentum, parameters)
+    (change, missed)
 }

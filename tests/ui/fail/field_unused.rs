@@ -1,4 +1,4 @@
-use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{Effect, NonstandardInertia, SO3, Stepper, lagrangian};
 
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 struct Top {

@@ -1,4 +1,4 @@
-use liestep::{DiscreteLagrangian, NonstandardInertia, Stepper, lagrangian};
+use liestep::{Effect, NonstandardInertia, Stepper, lagrangian};
 
 #[lagrangian(group = SO4, l_d = (F * J_d).trace() / h)]
 struct Top {

@@ -1,4 +1,4 @@
-use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{Effect, NonstandardInertia, SO3, Stepper, lagrangian};
 
 #[lagrangian(group = SO3, l_d = h * (F * J_d).trace())]
 struct Top {

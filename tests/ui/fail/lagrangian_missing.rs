@@ -1,4 +1,4 @@
-use liestep::{DiscreteLagrangian, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{Effect, NonstandardInertia, SO3, Stepper, lagrangian};
 
 #[lagrangian(group = SO3)]
 struct Top {

@@ -1,6 +1,6 @@
 //! Declarations inside `macro_rules!`, with parts from either side.
 
-use liestep::{DiscreteLagrangian as _, LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{Effect as _, LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 /// The name, the types and the whole Lagrangian come from the call.

@@ -1,6 +1,6 @@
 //! A private struct in a module, and one inside a function, with private fields and without advected parameters.
 
-use liestep::{DiscreteLagrangian as _, LieGroup as _, SO3, Stepper, lagrangian};
+use liestep::{Effect as _, LieGroup as _, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 mod inner {

@@ -1,6 +1,6 @@
 //! Keywords as names of fields, of the advected parameter and of a `let`.
 
-use liestep::{DiscreteLagrangian as _, LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{Effect as _, LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 #[lagrangian(

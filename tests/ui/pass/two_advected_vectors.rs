@@ -1,6 +1,6 @@
 //! Gravity and a magnetic field.
 
-use liestep::{DiscreteLagrangian as _, LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{Effect as _, LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 #[lagrangian(

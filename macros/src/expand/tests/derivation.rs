@@ -64,7 +64,7 @@ fn of_the_heavy_top() {
             rejected: F rebuilt from ξ, 151 operations, 3 sign flips an iteration
             rejected: F rebuilt from ξ, multiplied out, 275 operations, 3 sign flips an iteration
         operations
-            construction: 36 operations
+            construction: 33 operations
             step, before the solve: 21 operations
             Newton iteration: 111 operations
             step, after the solve: 9 operations

@@ -4,8 +4,7 @@ use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
 
-use super::{HEAVY_TOP, is_refused, tokens, top};
-use crate::expand::expand;
+use super::{HEAVY_TOP, expand, is_refused, tokens, top};
 
 /// Far more than any accepted declaration needs without optimisation.
 const PATIENCE: Duration = Duration::from_secs(5);

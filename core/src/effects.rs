@@ -1,0 +1,39 @@
+//! A library of effects on a rigid body, to be added up to scenes: `RigidBody { … } + Gravity { … }`.
+//!
+//! Each is a declaration like a user's own, and adds with those. A scene needs a body; what isn't in the sum isn't
+//! simulated. Attitudes are those of the body's axes in space, vectors "in space" are advected: the body sees them turn.
+//!
+//! | effect | energy |
+//! |---|---|
+//! | [`RigidBody`], [`PrincipalBody`] | kinetic, `½ Ω·JΩ` |
+//! | [`Gravity`] | `m g R ρ·up` |
+//! | [`GravityGradient`] | `3 GM/(2 r³) n·Jn` |
+//! | [`Dipole`] | `−m·B` |
+//! | [`Spring`] | `½ k (|R r − a| − l)²` |
+//! | [`Rotor`] | none of its own: it shifts the momentum, `JΩ + s` |
+//!
+//! | force | torque |
+//! |---|---|
+//! | [`Drag`] | `−c Ω` |
+//! | [`Torque`] | constant in the body |
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+mod dipole;
+mod drag;
+mod gravity;
+mod gravity_gradient;
+mod rigid_body;
+mod rotor;
+mod spring;
+mod torque;
+
+pub use dipole::Dipole;
+pub use drag::Drag;
+pub use gravity::Gravity;
+pub use gravity_gradient::GravityGradient;
+pub use rigid_body::{PrincipalBody, RigidBody};
+pub use rotor::Rotor;
+pub use spring::Spring;
+pub use torque::Torque;

@@ -1,0 +1,29 @@
+//! The torque of a field of gravity that isn't uniform over the body.
+
+use nalgebra::Vector3;
+
+use crate::{Inertia, SO3, lagrangian};
+
+/// The second-order term of the potential of a body about its centre of mass in the field of a far point mass,
+/// `3 GM/(2 r³) n·Jn` with the direction `n` of that mass; it turns the axis of the least moment into that direction.
+///
+/// The direction is fixed in space: a satellite on an orbit sees its planet turn, which is another effect.
+#[lagrangian(
+    group = SO3,
+    advected(n = direction),
+    l_d = {
+        let after = F.transpose() * n;
+        -0.75 * h * GM / r.powi(3) * (n.dot(&(J * n)) + after.dot(&(J * after)))
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GravityGradient<T = f64> {
+    /// The gravitational parameter of the far mass, m³/s².
+    pub GM: T,
+    /// Its distance, m.
+    pub r: T,
+    /// Inertia of the body about its centre of mass, kg m².
+    pub J: Inertia<T>,
+    /// Its direction, in space; of length one.
+    pub direction: Vector3<T>,
+}

@@ -1,0 +1,16 @@
+//! A rotor inside the body.
+
+use nalgebra::Vector3;
+
+use crate::{SO3, lagrangian};
+
+/// A balanced rotor on an axis fixed in the body, with a constant momentum about it: the Lagrangian `s·Ω`.
+///
+/// The body's inertia holds the rotor's, but for its moment about the axis. The momentum of the state is the whole
+/// system's, `JΩ + s`.
+#[lagrangian(group = SO3, l_d = spin.dot(&vee(F)))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotor<T = f64> {
+    /// The rotor's momentum about its axis, body frame, kg m²/s.
+    pub spin: Vector3<T>,
+}

@@ -1,0 +1,25 @@
+//! A spring to a point fixed in space.
+
+use nalgebra::Vector3;
+
+use crate::{SO3, lagrangian};
+
+/// A linear spring from a point of the body to a point of space, both from the fixed point that the body turns about.
+///
+/// The force has no direction where the two points meet, so they mustn't.
+#[lagrangian(
+    group = SO3,
+    advected(a = anchor),
+    l_d = -0.25 * h * k * (((at - a).norm() - length).powi(2) + ((F * at - a).norm() - length).powi(2)),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spring<T = f64> {
+    /// Stiffness, N/m.
+    pub k: T,
+    /// Length at rest, m.
+    pub length: T,
+    /// The end on the body, body frame, m.
+    pub at: Vector3<T>,
+    /// The other end, in space, m.
+    pub anchor: Vector3<T>,
+}

@@ -1,0 +1,13 @@
+//! A torque that is constant in the body.
+
+use nalgebra::Vector3;
+
+use crate::{SO3, force};
+
+/// A torque from within the body, as of a thruster that is fixed to it.
+#[force(group = SO3, work = 0.5 * h * torque.dot(&(eta + eta_next)))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torque<T = f64> {
+    /// Torque, body frame, N m.
+    pub torque: Vector3<T>,
+}

@@ -1,0 +1,144 @@
+//! A family of Lagrangians on each group with vectors, and one with tensors.
+
+// The letters of the field; all of it is seen by this crate alone.
+#![allow(non_snake_case, unreachable_pub)]
+
+use liestep::laws::samples::Random;
+use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use liestep::{Generators, Heisenberg, MatrixGroup, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2, lagrangian};
+use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, Vector2, Vector3, Vector4};
+
+/// A group of one's own, the affine maps `x ↦ a x + b` of the line, `a > 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AffineGenerators;
+
+impl Generators<2, 2> for AffineGenerators {
+    const GENERATORS: [[[f64; 2]; 2]; 2] = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
+
+    fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+        m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
+    }
+}
+
+type Affine<T> = MatrixGroup<AffineGenerators, T, 2, 2>;
+
+/// Four coefficients, of which about a third are zero: which terms there are is random too.
+fn coefficients(random: &mut Random) -> Vector4<f64> {
+    Vector4::from_fn(|_, _| if random.signed() < -0.3 { 0.0 } else { random.signed() })
+}
+
+/// Symmetric, with eigenvalues from one to a few.
+fn metric<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
+    let root: SMatrix<f64, N, N> = random.sample();
+    SMatrix::identity() + root * root.transpose()
+}
+
+macro_rules! family {
+    ($group:ident, $n:literal, $vector:ident, $matrix:ident, [$($own:tt)*]) => {
+        #[lagrangian(
+            group = $group,
+            $($own)*
+            advected(w = covector, v = vector),
+            l_d = {
+                let d = F - I;
+                let kinetic = (d * J * d.transpose()).trace() / (2.0 * h);
+                let gauge = 0.3 * a[0] * (A * d).trace() + 0.3 * a[1] * w.dot(&(d * r)) + 0.3 * a[2] * w.dot(&(d * v));
+                let forms = b[0] * w.dot(&(A * w)) + b[1] * w.dot(&(F * r)).powi(2) + b[2] * v.dot(&(A * v));
+                let products = a[3] * (A * F).trace() * w.dot(&r) + b[3] * w.dot(&(F * v));
+                let smooth = c[0] * (w.dot(&(F * r)) + w.dot(&r)).sin() + c[1] * (1.0 + v.dot(&r).powi(2)).sqrt();
+                kinetic + gauge - 0.5 * h * (forms + products + smooth)
+            },
+        )]
+        #[derive(Clone, Debug)]
+        pub struct Vectors {
+            pub J: $matrix<f64>,
+            pub A: $matrix<f64>,
+            pub r: $vector<f64>,
+            pub a: Vector4<f64>,
+            pub b: Vector4<f64>,
+            pub c: Vector4<f64>,
+            pub covector: $vector<f64>,
+            pub vector: ContravariantVector<f64, $n>,
+        }
+
+        impl Vectors {
+            pub fn random(random: &mut Random) -> Self {
+                Self {
+                    J: metric(random),
+                    A: random.sample(),
+                    r: random.sample(),
+                    a: coefficients(random),
+                    b: coefficients(random),
+                    c: coefficients(random),
+                    covector: random.sample(),
+                    vector: random.sample(),
+                }
+            }
+        }
+
+        #[lagrangian(
+            group = $group,
+            $($own)*
+            advected(S = tensor, B = form, M = map),
+            l_d = {
+                let d = F - I;
+                let kinetic = (d * J * d.transpose()).trace() / (2.0 * h);
+                let gauge = 0.3 * a[0] * (A * d).trace() + 0.3 * a[1] * (M * d).trace();
+                let words = b[0] * (A * F * S).trace() + b[1] * (S * B * F).trace() + b[2] * (M * F * A).trace();
+                let products = a[2] * (M * F).trace() * (S * B).trace() + a[3] * r.dot(&(B * (F * r)));
+                let smooth = c[0] * (S * F).trace().cos() + c[1] * (0.3 * r.dot(&(B * r))).exp();
+                kinetic + gauge - 0.5 * h * (words + products + smooth)
+            },
+        )]
+        #[derive(Clone, Debug)]
+        pub struct Tensors {
+            pub J: $matrix<f64>,
+            pub A: $matrix<f64>,
+            pub r: $vector<f64>,
+            pub a: Vector4<f64>,
+            pub b: Vector4<f64>,
+            pub c: Vector4<f64>,
+            pub tensor: ContravariantTensor<f64, $n>,
+            pub form: CovariantTensor<f64, $n>,
+            pub map: MixedTensor<f64, $n>,
+        }
+
+        impl Tensors {
+            pub fn random(random: &mut Random) -> Self {
+                Self {
+                    J: metric(random),
+                    A: random.sample(),
+                    r: random.sample(),
+                    a: coefficients(random),
+                    b: coefficients(random),
+                    c: coefficients(random),
+                    tensor: random.sample(),
+                    form: random.sample(),
+                    map: random.sample(),
+                }
+            }
+        }
+    };
+}
+
+macro_rules! on {
+    ($module:ident: $group:ident, $n:literal, $vector:ident, $matrix:ident $(, $($own:tt)*)?) => {
+        pub mod $module {
+            use super::*;
+
+            family!($group, $n, $vector, $matrix, [$($($own)*)?]);
+        }
+    };
+}
+
+on!(so2: SO2, 2, Vector2, Matrix2);
+on!(se2: SE2, 3, Vector3, Matrix3);
+on!(so3: SO3, 3, Vector3, Matrix3);
+on!(se3: SE3, 4, Vector4, Matrix4);
+on!(su2: SU2, 4, Vector4, Matrix4);
+on!(sl2: SL2, 2, Vector2, Matrix2);
+on!(heisenberg: Heisenberg, 3, Vector3, Matrix3);
+on!(r1: R1, 2, Vector2, Matrix2);
+on!(r2: R2, 3, Vector3, Matrix3);
+on!(r3: R3, 4, Vector4, Matrix4);
+on!(affine: Affine, 2, Vector2, Matrix2, generators = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]],);

@@ -1,0 +1,68 @@
+//! P1 to P3 for random Lagrangians on every group, with every kind of advected parameter.
+//!
+//! A Lagrangian is known when this is compiled, its terms are not: each is multiplied by a random coefficient, which is
+//! zero for about a third of them.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod family;
+
+use common::structure::{System, momenta, poisson, stages, symmetry};
+use liestep::laws::samples::{Random, along};
+use liestep::{Coordinates, DiscreteLiePoisson};
+use nalgebra::{SMatrix, SVector};
+use proptest::prelude::*;
+
+/// Some dozens of roundings of what grows on a group that isn't compact.
+const ROUNDING: f64 = 1e-12;
+
+/// Small, as nothing says how large a step a random Lagrangian admits.
+const STEPS: [f64; 2] = [0.001, 0.02];
+
+/// All claims about one Lagrangian.
+fn assert_structure<L, const N: usize, const D: usize>(lagrangian: &L, seed: u64)
+where
+    L: System<N, D> + Clone,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    momenta::assert_momenta(lagrangian, seed);
+    stages::assert_stages(lagrangian, seed);
+    stages::assert_step(lagrangian, &STEPS, seed);
+    let (_, defect) = poisson::worst(lagrangian, &STEPS, seed);
+    assert!(defect < 1e-11, "Poisson: {defect:e}");
+
+    let mut random = Random::new(seed);
+    let flow = DiscreteLiePoisson::new(lagrangian.clone(), 0.02).unwrap();
+    let attitude = along::<L::Group, N, D>(&random.sample(), 1.0);
+    let (momentum, parameters) = symmetry::drift(&flow, (attitude, random.sample()), 30);
+    println!("drift {momentum:.1e} {parameters:.1e}");
+    assert!(momentum < ROUNDING, "momentum along a symmetry: {momentum:e}");
+    assert!(parameters < ROUNDING, "parameters: {parameters:e}");
+}
+
+macro_rules! on_every_group {
+    ($($group:ident)+) => {$(
+        mod $group {
+            use super::*;
+
+            proptest! {
+                #![proptest_config(ProptestConfig {
+                    cases: 8, failure_persistence: None, max_shrink_iters: 0, ..ProptestConfig::default()
+                })]
+
+                #[test]
+                fn vectors(seed: u64) {
+                    assert_structure(&family::$group::Vectors::random(&mut Random::new(seed)), seed);
+                }
+
+                #[test]
+                fn tensors(seed: u64) {
+                    assert_structure(&family::$group::Tensors::random(&mut Random::new(seed)), seed);
+                }
+            }
+        }
+    )+};
+}
+
+on_every_group!(so2 se2 so3 se3 su2 sl2 heisenberg r1 r2 r3 affine);

@@ -1,0 +1,8 @@
+use liestep::effects::{Drag, RigidBody};
+use liestep::{Stepper, Sum};
+
+fn claim(damped: &Stepper<Sum<RigidBody, Drag>>) {
+    let _ = damped.inverse();
+}
+
+fn main() {}

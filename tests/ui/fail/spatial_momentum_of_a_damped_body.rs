@@ -1,0 +1,9 @@
+use liestep::effects::{Drag, RigidBody};
+use liestep::{SO3, State, Stepper, Sum};
+use nalgebra::Vector3;
+
+fn claim(stepper: &Stepper<Sum<RigidBody, Drag>>, state: &State<SO3, ((), ())>) -> Vector3<f64> {
+    stepper.spatial_momentum(state)
+}
+
+fn main() {}
