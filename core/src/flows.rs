@@ -5,7 +5,7 @@ use crate::coordinates::Coordinates as _;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::lagrangian::{DiscreteLagrangian, Group, Scalar, Vector};
-use crate::newton::{Problem, Root, orientation};
+use crate::newton::{Problem, Root, orientation, trusted_radius};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _};
@@ -19,6 +19,7 @@ pub struct DiscreteLiePoisson<L: DiscreteLagrangian> {
     h: Scalar<L>,
     constants: L::Constants,
     orientation: Scalar<L>,
+    trusted: Scalar<L>,
 }
 
 /// One application of a flow.
@@ -64,11 +65,17 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
         }
         let constants = lagrangian.constants(h);
         let orientation = orientation(h, <Group<L> as LieGroup>::DIMENSION);
-        let flow = Self { lagrangian, h, constants, orientation };
-        if flow.h == real(0.0) || flow.is_in_range() {
+        let mut flow = Self { lagrangian, h, constants, orientation, trusted: real(0.0) };
+        if flow.h == real(0.0) {
             return Ok(flow);
         }
-        Err(SetupError::InvalidStep { step: reported(h) })
+        if !flow.is_in_range() {
+            return Err(SetupError::InvalidStep { step: reported(h) });
+        }
+        if L::JACOBIAN_IS_DEAR {
+            flow.trusted = trusted_radius(&flow.lagrangian, &flow.constants, h);
+        }
+        Ok(flow)
     }
 
     /// Whether the Newton system at rest can be solved in this scalar: with an extreme `h` its determinant can't.
@@ -154,6 +161,7 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
             w,
             h: self.h,
             orientation: self.orientation,
+            trusted: self.trusted,
         }
     }
 
@@ -202,8 +210,8 @@ impl<L: DiscreteLagrangian> DiscreteLiePoisson<L> {
             let constants = self.lagrangian.constants(h);
             let a = *momentum + L::kick_before(&constants, advected);
             let lagrangian = &self.lagrangian;
-            let problem =
-                Problem { lagrangian, constants: &constants, a, w: advected, h, orientation: self.orientation };
+            let (orientation, trusted) = (self.orientation, self.trusted);
+            let problem = Problem { lagrangian, constants: &constants, a, w: advected, h, orientation, trusted };
             let terms = L::step_terms(&constants, &a, advected);
             problem.attempt(&terms, &Vector::<L>::zero()).is_ok()
         };

@@ -67,6 +67,13 @@ pub trait DiscreteLagrangian {
     /// the trait by hand states it.
     const SELF_ADJOINT: bool;
 
+    /// Whether the Jacobian of [`newton_system`](Self::newton_system) costs more than several residuals.
+    ///
+    /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
+    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`]. The macro decides it by counting
+    /// operations.
+    const JACOBIAN_IS_DEAR: bool = false;
+
     /// Checks the parameters.
     ///
     /// # Errors
@@ -130,6 +137,13 @@ pub trait DiscreteLagrangian {
         terms: &Self::StepTerms,
         xi: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
+
+    /// The residual of [`newton_system`](Self::newton_system) alone. Where the [Jacobian is
+    /// dear](Self::JACOBIAN_IS_DEAR) it is `U(τ(ξ), w) − a` itself, with the factor one.
+    #[inline(always)]
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &Vector<Self>) -> Vector<Self> {
+        Self::newton_system(constants, terms, xi).0
+    }
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, written in the new `w⁺`; `increment` is `F − I`.
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;

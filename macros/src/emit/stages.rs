@@ -46,6 +46,18 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let (lets, values) = emitter.statements(graph, &system, &from_terms);
     let (residual, jacobian) = values.split_at(kernel.residual.len());
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
+    let residual_alone = kernel.jacobian_is_dear().then(|| {
+        let value = value(&kernel.residual, &from_terms);
+        let documentation =
+            super::docs::stage(graph, &kernel.residual, Stage::Iteration, "an iteration without the Jacobian");
+        quote_spanned! {span=>
+            const JACOBIAN_IS_DEAR: #root::__private::core::primitive::bool = true;
+
+            #[doc = #documentation]
+            #[inline(always)]
+            fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &#vector) -> #vector { #value }
+        }
+    });
     let retraction = quote_spanned!(span=> <Self::Retraction as #root::Retraction<Self::Group>>);
     // Off SO(3) the system is written in F, and the retraction's tangent brings its Jacobian to the coordinates.
     let (increment, jacobian) = if kernel.in_increment {
@@ -109,6 +121,8 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
             #lets
             (#residual, #jacobian)
         }
+
+        #residual_alone
 
         #[doc = #after]
         #[inline(always)]

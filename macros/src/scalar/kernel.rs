@@ -16,6 +16,8 @@ use crate::symbolic::{Expression, Rational, Stage};
 pub(crate) struct Candidate {
     pub(crate) name: &'static str,
     pub(crate) operations: Operations,
+    /// Whether the residual is `U − a` itself, not a multiple of it.
+    pub(crate) is_unscaled: bool,
 }
 
 /// The outputs of the stages, in one graph.
@@ -33,7 +35,20 @@ pub(crate) struct Kernel {
     pub(crate) candidates: Vec<Candidate>,
 }
 
+/// What the Jacobian of the free body costs beside a residual, [`Operations::cost`], with the solves for the updates.
+const FREE_BODY: usize = 1_000;
+
 impl Kernel {
+    /// Whether the Jacobian costs so much more than the residual that a solve does better with the free body's.
+    ///
+    /// At common steps it takes three to five residuals then, instead of two or three systems.
+    pub(crate) fn jacobian_is_dear(&self) -> bool {
+        let Some(taken) = self.candidates.first() else { return false };
+        let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
+        let jacobian = taken.operations.cost().saturating_sub(residual);
+        !self.in_increment && taken.is_unscaled && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
+    }
+
     /// What a step of two Newton iterations costs.
     pub(crate) fn cost(&self) -> usize {
         let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());
@@ -95,28 +110,28 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
         components(&mut graph, derived, &given, &derived.kick_after)
     };
     let mut found: Vec<(Candidate, Vec<NodeId>)> = Vec::new();
-    let mut add = |graph: &Graph, name, outputs: Vec<NodeId>| {
+    let mut add = |graph: &Graph, name, is_unscaled, outputs: Vec<NodeId>| {
         let operations = count(graph, &outputs, Some(Stage::Iteration));
-        found.push((Candidate { name, operations }, outputs));
+        found.push((Candidate { name, operations, is_unscaled }, outputs));
     };
     let in_increment = !derived.group.is_so3;
     if in_increment {
         let outputs = system(&mut graph, derived, &increment);
-        add(&graph, "in F", outputs);
+        add(&graph, "in F", true, outputs);
     } else {
         let (retracted, opaque) = retracted(&mut graph, derived);
-        add(&graph, "F rebuilt from ξ", retracted.clone());
+        add(&graph, "F rebuilt from ξ", true, retracted.clone());
         if derived.closed.is_empty()
             && let Some(outputs) = expanded(&mut graph, &retracted, &opaque)
         {
-            add(&graph, "F rebuilt from ξ, multiplied out", outputs);
+            add(&graph, "F rebuilt from ξ, multiplied out", true, outputs);
         }
     }
     if let Some(cleared) = &derived.cleared {
         let (nested, denominator) = cleared_system(&mut graph, derived, cleared);
-        add(&graph, "Cayley, denominators cleared", nested.clone());
+        add(&graph, "Cayley, denominators cleared", false, nested.clone());
         if let Some(outputs) = expanded(&mut graph, &nested, &BTreeSet::from([denominator])) {
-            add(&graph, "Cayley, denominators cleared, multiplied out", outputs);
+            add(&graph, "Cayley, denominators cleared, multiplied out", false, outputs);
         }
     }
     found.sort_by_key(|(candidate, _)| candidate.operations.cost());
