@@ -33,7 +33,7 @@ pub struct Increment<L: DiscreteLagrangian> {
     pub momentum: Vector<L>,
     /// `w_{i+1}`.
     pub advected: L::Advected,
-    /// Newton iterations.
+    /// Newton iterations, counted as in [`StepReport`](crate::StepReport).
     pub iterations: u32,
 }
 

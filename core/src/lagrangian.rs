@@ -70,8 +70,8 @@ pub trait DiscreteLagrangian {
     /// Whether the Jacobian of [`newton_system`](Self::newton_system) costs more than several residuals.
     ///
     /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
-    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`]. The macro decides it by counting
-    /// operations.
+    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which the system must have the
+    /// factor one. The macro decides it by counting operations.
     const JACOBIAN_IS_DEAR: bool = false;
 
     /// Checks the parameters.
@@ -131,15 +131,15 @@ pub trait DiscreteLagrangian {
     /// What one solve needs of `a = μ + kick_before(w)` and `w`.
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms;
 
-    /// A positive multiple of `U(τ(ξ), w) − a`, and its derivative with respect to `ξ`.
+    /// A positive multiple of `U(τ(ξ), w) − a`, and its derivative with respect to `ξ`. Where the [Jacobian is
+    /// dear](Self::JACOBIAN_IS_DEAR) it is `U − a` itself.
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
         xi: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
 
-    /// The residual of [`newton_system`](Self::newton_system) alone. Where the [Jacobian is
-    /// dear](Self::JACOBIAN_IS_DEAR) it is `U(τ(ξ), w) − a` itself, with the factor one.
+    /// The residual of [`newton_system`](Self::newton_system) alone.
     #[inline(always)]
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &Vector<Self>) -> Vector<Self> {
         Self::newton_system(constants, terms, xi).0

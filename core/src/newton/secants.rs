@@ -39,8 +39,8 @@ use crate::retraction::Retraction as _;
 use crate::scalar::{Mask, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue};
 
-/// A contraction by a quarter needs more, but then Newton's iteration is cheaper.
-const MAX_UPDATES: usize = 10;
+/// Contraction by a quarter may need more, but then Newton's iteration is cheaper.
+const MAX_UPDATES: usize = 8;
 /// Updates must shrink at least by this.
 const CONTRACTION: f64 = 0.25;
 /// What may be missing at the end, in roundings of `ξ`.
@@ -137,7 +137,8 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
         let model = L::Retraction::free_momentum_tangent(&self.lagrangian.inertia(), guess);
         let mut lanes = Lanes::<L>::starting_at(guess);
         let mut updates = Updates::<L>::none();
-        let mut doubtful = nowhere::<Scalar<L>>();
+        let in_ball = |xi: &Vector<L>| xi.dot(xi).simd_lt(self.trusted * self.trusted);
+        let mut doubtful = !in_ball(guess);
         let mut iterations = 0;
         while updates.count < MAX_UPDATES && !(lanes.settled | doubtful).all() {
             let residual = L::newton_residual(self.constants, terms, &lanes.xi);
@@ -150,8 +151,7 @@ impl<L: DiscreteLagrangian> Problem<'_, L> {
             doubtful = doubtful | (verdict.doubtful & !resting);
             iterations += 1;
         }
-        let in_ball = lanes.xi.dot(&lanes.xi).simd_le(self.trusted * self.trusted);
-        lanes.settled = lanes.settled & !doubtful & in_ball;
+        lanes.settled = lanes.settled & !doubtful & in_ball(&lanes.xi);
         lanes.det = self.orientation;
         (lanes, iterations)
     }
