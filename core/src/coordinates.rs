@@ -23,6 +23,13 @@ pub trait Coordinates<T: Real>:
     /// All components zero.
     fn zero() -> Self;
 
+    /// Component `k` one, the others zero.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no component `k`.
+    fn axis(k: usize) -> Self;
+
     /// The pairing `Σ a_k b_k`.
     fn dot(&self, other: &Self) -> T;
 
@@ -57,6 +64,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     #[inline(always)]
     fn zero() -> Self {
         Self::zeros()
+    }
+
+    fn axis(k: usize) -> Self {
+        let mut axis = Self::zeros();
+        axis[k] = T::one();
+        axis
     }
 
     #[inline(always)]

@@ -101,6 +101,13 @@ pub trait Effect {
     /// The power of the Cayley denominator in the factor of [`newton_system`](Self::newton_system).
     const DENOMINATORS: u32 = 0;
 
+    /// Whether the Jacobian of [`newton_system`](Self::newton_system) costs more than several residuals.
+    ///
+    /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
+    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which the system must have the
+    /// factor one. The macro decides it by counting operations.
+    const JACOBIAN_IS_DEAR: bool = false;
+
     /// What was declared and everything derived from it, as text.
     const DERIVATION: &'static str;
 
@@ -148,6 +155,12 @@ pub trait Effect {
         terms: &Self::StepTerms,
         xi: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
+
+    /// The residual of [`newton_system`](Self::newton_system) alone.
+    #[inline(always)]
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &Vector<Self>) -> Vector<Self> {
+        Self::newton_system(constants, terms, xi).0
+    }
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, written in the new `w⁺`; `increment` is `F − I`.
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;

@@ -8,7 +8,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
-use crate::newton::{Problem, Root, orientation};
+use crate::newton::{Problem, Root, orientation, trusted_radius};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
 use crate::solvability::{Solvability, TurningLimits};
@@ -25,6 +25,7 @@ pub struct DiscreteLiePoisson<L: Effect> {
     orientation: Scalar<L>,
     /// Of the Newton Jacobian, far beyond those of steps that have a solution.
     largest_determinant: Scalar<L>,
+    trusted: Scalar<L>,
 }
 
 /// One application of a flow.
@@ -38,7 +39,7 @@ pub struct Increment<L: Effect> {
     pub momentum: Vector<L>,
     /// `w_{i+1}`.
     pub advected: L::Advected,
-    /// Newton iterations.
+    /// Newton iterations, counted as in [`StepReport`](crate::StepReport).
     pub iterations: u32,
 }
 
@@ -87,7 +88,9 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
         let largest_determinant = at_rest.simd_abs() * real(DETERMINANT_RATIO);
-        Ok(Self { lagrangian, h, constants, orientation, largest_determinant })
+        let is_dear = L::JACOBIAN_IS_DEAR && h != real(0.0);
+        let trusted = if is_dear { trusted_radius(&lagrangian, &constants, h) } else { real(0.0) };
+        Ok(Self { lagrangian, h, constants, orientation, largest_determinant, trusted })
     }
 
     /// The declared Lagrangian.
@@ -191,6 +194,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             w,
             h: self.h,
             orientation: self.orientation,
+            trusted: self.trusted,
         }
     }
 
@@ -282,8 +286,8 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             }
             let a = kicked::<L>(&constants, momentum, advected);
             let lagrangian = &self.lagrangian;
-            let problem =
-                Problem { lagrangian, constants: &constants, a, w: advected, h, orientation: self.orientation };
+            let (orientation, trusted) = (self.orientation, self.trusted);
+            let problem = Problem { lagrangian, constants: &constants, a, w: advected, h, orientation, trusted };
             let terms = L::step_terms(&constants, &a, advected);
             problem.attempt(&terms, &Vector::<L>::zero()).is_ok()
         };

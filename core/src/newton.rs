@@ -9,6 +9,11 @@
 //! SIMD lanes iterate together until all have settled. One that has settled earlier stays as it is, so that no lane's
 //! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given.
 
+mod branch;
+mod secants;
+
+pub(crate) use branch::trusted_radius;
+
 use crate::coordinates::Coordinates;
 use crate::effect::{Effect, Matrix, Scalar, Vector};
 use crate::error::StepError;
@@ -28,7 +33,7 @@ pub(crate) struct Root<L: Effect> {
     pub(crate) xi: Vector<L>,
     /// `F − I`.
     pub(crate) increment: Matrix<L>,
-    /// Newton iterations, those of abandoned attempts included.
+    /// Iterations, those of abandoned attempts included.
     pub(crate) iterations: u32,
 }
 
@@ -56,9 +61,9 @@ impl<L: Effect> Lanes<L> {
         self.settled = self.settled | settled;
     }
 
-    /// The lanes of the mask as they are, the others at the identity.
-    fn keeping(mut self, accepted: Mask<Scalar<L>>) -> Self {
-        self.xi = self.xi.select(accepted, Vector::<L>::zero());
+    /// The lanes of the mask as they are, the others at another start.
+    fn keeping(mut self, accepted: Mask<Scalar<L>>, start: &Vector<L>) -> Self {
+        self.xi = self.xi.select(accepted, *start);
         self.settled = accepted;
         self
     }
@@ -73,6 +78,8 @@ pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) h: Scalar<L>,
     /// The sign of the Jacobian's determinant at the identity.
     pub(crate) orientation: Scalar<L>,
+    /// [`trusted_radius`], or zero.
+    pub(crate) trusted: Scalar<L>,
 }
 
 impl<L: Effect> Problem<'_, L> {
@@ -84,6 +91,10 @@ impl<L: Effect> Problem<'_, L> {
     #[inline(always)]
     pub(crate) fn solve_directly(&self, guess: &Vector<L>, largest: Scalar<L>) -> Option<Root<L>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
+        if Self::goes_by_secants() {
+            let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
+            return lanes.settled.all().then(|| Self::root(&lanes, iterations));
+        }
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 0..MAX_ITERATIONS {
             let (update, det) = self.update(&terms, &lanes.xi);
@@ -107,21 +118,34 @@ impl<L: Effect> Problem<'_, L> {
             return Err(StepError::NonFinite { what: "momentum" });
         }
         let terms = L::step_terms(self.constants, &self.a, self.w);
-        let (warm, iterations) = self.iterate(&terms, Lanes::starting_at(guess));
+        let (start, spent) = self.start(&terms, guess);
+        let (warm, iterations) = self.iterate(&terms, start);
         let accepted = self.accepted(&terms, &warm);
         if accepted.all() {
-            return Ok(Self::root(&warm, iterations));
+            return Ok(Self::root(&warm, spent + iterations));
         }
-        let (cold, iterations) = self.iterate(&terms, warm.keeping(accepted));
+        let (identity, spent) = (Vector::<L>::zero(), spent + MAX_ITERATIONS);
+        let (cold, iterations) = self.iterate(&terms, warm.keeping(accepted, &identity));
         let accepted = self.accepted(&terms, &cold);
         if accepted.all() {
-            return Ok(Self::root(&cold, MAX_ITERATIONS + iterations));
+            return Ok(Self::root(&cold, spent + iterations));
         }
-        let (damped, iterations) = self.iterate_damped(&terms, cold.keeping(accepted));
+        let (damped, iterations) = self.iterate_damped(&terms, cold.keeping(accepted, &identity));
         self.conclude(&terms, &damped, iterations).map(|mut root| {
-            root.iterations += MAX_ITERATIONS;
+            root.iterations += spent;
             root
         })
+    }
+
+    /// All lanes at the guess but those that [`solve_directly`](Self::solve_directly) has solved without the Jacobian,
+    /// which alone wouldn't be here.
+    fn start(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<L>, u32) {
+        if !Self::goes_by_secants() {
+            return (Lanes::starting_at(guess), 0);
+        }
+        let (lanes, iterations) = self.iterate_by_secants(terms, guess);
+        let settled = lanes.settled;
+        (lanes.keeping(settled, guess), iterations)
     }
 
     /// Newton's iteration from one guess, refused where it settles on another branch.

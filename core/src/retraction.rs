@@ -4,6 +4,7 @@
 //! of a Newton solve is such a coordinate vector, and `F` is rebuilt from it in every step: composing small
 //! corrections onto the previous `F` would let its rounding errors pile up.
 
+mod free_body;
 mod matrix_group;
 
 use nalgebra::{Matrix3, RealField, Vector3};
@@ -27,6 +28,20 @@ pub trait Retraction<G: LieGroup> {
 
     /// The right-trivialised tangent `T` at `ξ`: `dF F⁻¹ = (T dξ)^`.
     fn tangent(xi: &G::Vector) -> <G::Vector as crate::Coordinates<G::Scalar>>::Square;
+
+    /// `h ∂p/∂ξ` for the momentum `p` that a free motion with the kinetic energy `½ η·Jη` needs to reach `τ(ξ)` within
+    /// `h`, with the given `J`.
+    ///
+    /// An approximation will do: a solver takes it for the Jacobian of a momentum equation where the exact one is dear,
+    /// see [`DiscreteLagrangian::JACOBIAN_IS_DEAR`](crate::DiscreteLagrangian::JACOBIAN_IS_DEAR), and corrects it as it
+    /// goes. This default is its value at the identity, `J`.
+    #[must_use]
+    fn free_momentum_tangent(
+        inertia: &<G::Vector as crate::Coordinates<G::Scalar>>::Square,
+        _xi: &G::Vector,
+    ) -> <G::Vector as crate::Coordinates<G::Scalar>>::Square {
+        *inertia
+    }
 
     /// Whether `ξ` lies so near to the identity that a solution there is the one that continues the identity.
     ///
@@ -69,6 +84,12 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         let four = real::<T>(4.0);
         let scale = four / (four + xi.norm_squared());
         (Matrix3::identity() + SO3::hat(xi) * real::<T>(0.5)) * scale
+    }
+
+    /// To the relative order of `|ξ|⁴`.
+    #[inline(always)]
+    fn free_momentum_tangent(inertia: &Matrix3<T>, xi: &Vector3<T>) -> Matrix3<T> {
+        free_body::momentum_tangent(inertia, xi)
     }
 
     #[inline(always)]

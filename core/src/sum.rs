@@ -91,6 +91,12 @@ where
         (true, _) => A::DENOMINATORS,
         (false, _) => B::DENOMINATORS,
     };
+    // The one unknown part's own kernel is run; two are added with their Jacobians.
+    const JACOBIAN_IS_DEAR: bool = match (A::PARTS.unknown, B::PARTS.unknown) {
+        (true, true) => false,
+        (true, false) => A::JACOBIAN_IS_DEAR,
+        (false, _) => B::JACOBIAN_IS_DEAR,
+    };
     const DERIVATION: &'static str = "the sum of two effects: their momentum maps, diamonds, unknown parts, kicks, \
                                       Jacobians and energies, each added; see DERIVATION of either\n";
 
@@ -161,6 +167,15 @@ where
             }
             (true, false) => A::newton_system(&constants.0, &terms.0, xi),
             (false, _) => B::newton_system(&constants.1, &terms.1, xi),
+        }
+    }
+
+    #[inline(always)]
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &Vector<Self>) -> Vector<Self> {
+        match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) => Self::newton_system(constants, terms, xi).0,
+            (true, false) => A::newton_residual(&constants.0, &terms.0, xi),
+            (false, _) => B::newton_residual(&constants.1, &terms.1, xi),
         }
     }
 

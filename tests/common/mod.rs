@@ -7,5 +7,6 @@ pub mod continuous;
 pub mod measure;
 pub mod random;
 pub mod reference;
+pub mod solvers;
 pub mod structure;
 pub mod tops;

@@ -53,7 +53,15 @@ impl<T: Real> ModifiedBody<T> {
         let lagrangian = FreeBody { J_d: DiagonalNonstandardInertia::of_moments_unchecked(&moments) };
         let constants = lagrangian.constants(h);
         let orientation = orientation(h, 3);
-        let problem = Problem { lagrangian: &lagrangian, constants: &constants, a: *y, w: &(), h, orientation };
+        let problem = Problem {
+            lagrangian: &lagrangian,
+            constants: &constants,
+            a: *y,
+            w: &(),
+            h,
+            orientation,
+            trusted: real(0.0),
+        };
         // With a momentum so large that the determinant is doubtful, the moments above aren't positive.
         match problem.solve_directly(guess, real(f64::MAX)) {
             Some(root) => Ok(root),

@@ -105,8 +105,14 @@ pub(super) fn derivation(
     // With a = μ + k₀.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
     before_the_solve.arithmetic += kernel.residual.len();
+    let alone = if kernel.jacobian_is_dear() {
+        let residual = count(&kernel.graph, &kernel.residual, Some(Stage::Iteration));
+        format!("; the residual alone, with which a solve begins: {residual}")
+    } else {
+        String::new()
+    };
     let operations = format!(
-        "construction: {}\n    step, before the solve: {}\n    Newton iteration: {}\n    step, after the solve: {}",
+        "construction: {}\n    step, before the solve: {}\n    Newton iteration: {}{alone}\n    step, after the solve: {}",
         count(&kernel.graph, &[before.as_slice(), &kernel.kick_after].concat(), Some(Stage::Construction)),
         before_the_solve,
         count(&kernel.graph, &before, Some(Stage::Iteration)),

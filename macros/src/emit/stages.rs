@@ -46,6 +46,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let (lets, values) = emitter.statements(graph, &system, &from_terms);
     let (residual, jacobian) = values.split_at(kernel.residual.len());
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
+    let residual_alone = kernel.jacobian_is_dear().then(|| residual_alone(emitter, kernel, &from_terms));
     let retraction = quote_spanned!(span=> <Self::Retraction as #root::Retraction<Self::Group>>);
     // Off SO(3) the system is written in F, and the retraction's tangent brings its Jacobian to the coordinates.
     let (increment, jacobian) = if kernel.in_increment {
@@ -110,6 +111,8 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
             (#residual, #jacobian)
         }
 
+        #residual_alone
+
         #[doc = #after]
         #[inline(always)]
         fn kick_after(constants: &Self::Constants, increment: &#matrix, next: &Self::Advected) -> #vector {
@@ -130,6 +133,25 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     quote_spanned! {span=>
         const PARTS: #root::Parts = #root::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
+    }
+}
+
+/// The residual for itself, where the solve can do without the Jacobian.
+fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::Given) -> TokenStream {
+    let (span, root, vector) = (Span::mixed_site(), &emitter.header.root, emitter.header.vector());
+    let (lets, values) = emitter.statements(&kernel.graph, &kernel.residual, from_terms);
+    let value = emitter.assembled(Form::Vector, &values);
+    let when = "an iteration without the Jacobian";
+    let documentation = super::docs::stage(&kernel.graph, &kernel.residual, Stage::Iteration, when);
+    quote_spanned! {span=>
+        const JACOBIAN_IS_DEAR: #root::__private::core::primitive::bool = true;
+
+        #[doc = #documentation]
+        #[inline(always)]
+        fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &#vector) -> #vector {
+            #lets
+            #value
+        }
     }
 }
 

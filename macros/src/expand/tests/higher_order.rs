@@ -48,3 +48,13 @@ fn a_gradient_costs_less_than_three_values_of_the_sixth_order_top() {
     assert!(residual < 3 * value, "{residual} for the gradient, {value} for the value");
     assert!(iteration <= 13_000, "{iteration}");
 }
+
+#[test]
+fn the_jacobians_of_the_higher_orders_are_dear() {
+    let geodesic = "group = SO3, advected(w = up), l_d = {
+        let xi = log(F);
+        xi.dot(&(J * xi)) / (2.0 * h) - 0.5 * h * weight * w.dot(&(rho + F * rho))
+    }";
+    let is_dear = |arguments| kernel(&derived(arguments, TOP)).jacobian_is_dear();
+    assert_eq!([geodesic, FOURTH, SIXTH].map(is_dear), [false, true, true]);
+}

@@ -1,0 +1,175 @@
+//! A Lagrangian whose momentum equation is solved in the other way: with the Jacobian, or without.
+
+use core::cell::Cell;
+use core::fmt::Debug;
+
+use liestep::{
+    DiscreteLagrangian, LieGroup as _, Matrix, Real, Retraction as _, SO3, Scalar, SetupError, Square, Vector,
+};
+use nalgebra::{Matrix3, Vector3};
+
+/// The terms that don't depend on how the equation is solved.
+macro_rules! terms_of {
+    ($inner:ty) => {
+        type Scalar = Scalar<$inner>;
+        type Group = <$inner as DiscreteLagrangian>::Group;
+        type Retraction = <$inner as DiscreteLagrangian>::Retraction;
+        type Advected = <$inner as DiscreteLagrangian>::Advected;
+
+        const DERIVATION: &'static str = <$inner>::DERIVATION;
+        const SELF_ADJOINT: bool = <$inner>::SELF_ADJOINT;
+
+        fn validate(&self) -> Result<(), SetupError> {
+            self.0.validate()
+        }
+
+        fn advected(&self) -> Self::Advected {
+            self.0.advected()
+        }
+
+        fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
+            self.0.l_d(f, w, h)
+        }
+
+        fn right_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+            self.0.right_momentum(f, w, h)
+        }
+
+        fn left_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+            self.0.left_momentum(f, w, h)
+        }
+
+        fn diamond(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+            self.0.diamond(f, w, h)
+        }
+
+        fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
+            self.0.momentum_jacobian(f, w, h)
+        }
+
+        fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
+            self.0.discrete_energy(f, w, h)
+        }
+
+        fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
+            self.0.momentum_bias(w)
+        }
+
+        fn potential(&self, w: &Self::Advected) -> Self::Scalar {
+            self.0.potential(w)
+        }
+    };
+}
+
+/// Newton's iteration, whatever the Jacobian costs.
+#[derive(Clone, Debug)]
+pub struct WithJacobian<L>(pub L);
+
+impl<L: DiscreteLagrangian> DiscreteLagrangian for WithJacobian<L> {
+    type Constants = L::Constants;
+    type StepTerms = L::StepTerms;
+
+    terms_of!(L);
+
+    fn inertia(&self) -> Square<Self> {
+        self.0.inertia()
+    }
+
+    fn constants(&self, h: Self::Scalar) -> Self::Constants {
+        self.0.constants(h)
+    }
+
+    fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
+        L::kick_before(constants, w)
+    }
+
+    fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
+        L::step_terms(constants, a, w)
+    }
+
+    fn newton_system(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        xi: &Vector<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        L::newton_system(constants, terms, xi)
+    }
+
+    fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
+        L::kick_after(constants, increment, next)
+    }
+}
+
+std::thread_local! {
+    static SYSTEMS: Cell<u32> = const { Cell::new(0) };
+}
+
+/// Whether `run` evaluates a Jacobian of a [`WithoutJacobian`].
+pub fn needs_jacobian<T>(run: impl FnOnce() -> T) -> (T, bool) {
+    let before = SYSTEMS.get();
+    let outcome = run();
+    (outcome, SYSTEMS.get() > before)
+}
+
+/// As if the Jacobian were dear. The second field is the inertia that the limit is said to have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WithoutJacobian<L, T: Real>(pub L, pub Matrix3<T>);
+
+impl<T: Real, L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy> WithoutJacobian<L, T> {
+    pub fn new(lagrangian: L) -> Self {
+        Self(lagrangian, lagrangian.inertia())
+    }
+}
+
+impl<T, L> DiscreteLagrangian for WithoutJacobian<L, T>
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy + Debug + PartialEq,
+{
+    type Constants = (L::Constants, L, T);
+    type StepTerms = (Vector3<T>, L::Advected);
+
+    terms_of!(L);
+
+    const JACOBIAN_IS_DEAR: bool = true;
+
+    fn inertia(&self) -> Matrix3<T> {
+        self.1
+    }
+
+    fn constants(&self, h: T) -> Self::Constants {
+        (self.0.constants(h), self.0, h)
+    }
+
+    fn kick_before((constants, ..): &Self::Constants, w: &Self::Advected) -> Vector3<T> {
+        L::kick_before(constants, w)
+    }
+
+    fn step_terms(_: &Self::Constants, a: &Vector3<T>, w: &Self::Advected) -> Self::StepTerms {
+        (*a, *w)
+    }
+
+    fn newton_system(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        xi: &Vector3<T>,
+    ) -> (Vector3<T>, Matrix3<T>) {
+        SYSTEMS.set(SYSTEMS.get() + 1);
+        let f = L::Retraction::retract(xi).matrix();
+        let jacobian = constants.1.momentum_jacobian(&f, &terms.1, constants.2) * L::Retraction::tangent(xi);
+        (Self::newton_residual(constants, terms, xi), jacobian)
+    }
+
+    fn newton_residual(
+        (constants, lagrangian, h): &Self::Constants,
+        (a, w): &Self::StepTerms,
+        xi: &Vector3<T>,
+    ) -> Vector3<T> {
+        let f = L::Retraction::retract(xi).matrix();
+        lagrangian.legendre_minus(&f, w, *h) + L::kick_before(constants, w) - *a
+    }
+
+    fn kick_after((constants, ..): &Self::Constants, increment: &Matrix3<T>, next: &Self::Advected) -> Vector3<T> {
+        L::kick_after(constants, increment, next)
+    }
+}
