@@ -15,6 +15,7 @@
 //! | force | torque |
 //! |---|---|
 //! | [`Drag`] | `−c Ω` |
+//! | [`MagneticDamping`] | `−k (B × Ω) × B` |
 //! | [`Torque`] | constant in the body |
 
 // The letters of the field.
@@ -24,6 +25,7 @@ mod dipole;
 mod drag;
 mod gravity;
 mod gravity_gradient;
+mod magnetic_damping;
 mod rigid_body;
 mod rotor;
 mod spring;
@@ -33,6 +35,7 @@ pub use dipole::Dipole;
 pub use drag::Drag;
 pub use gravity::Gravity;
 pub use gravity_gradient::GravityGradient;
+pub use magnetic_damping::MagneticDamping;
 pub use rigid_body::{PrincipalBody, RigidBody};
 pub use rotor::Rotor;
 pub use spring::Spring;
