@@ -7,7 +7,7 @@ mod common;
 
 use common::measure::{derivative, relative};
 use common::random::Random;
-use liestep::effects::{Drag, Gravity, RigidBody, Torque};
+use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Torque};
 use liestep::{Advected as _, Force, LieGroup as _, NonstandardInertia, Retraction as _, SO3, Stepper, force};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -80,6 +80,7 @@ fn stages_follow_from_the_virtual_work() {
     for _ in 0..10 {
         check(&Drag { c: 1.0 + r.signed() }, &mut r);
         check(&Torque { torque: r.vector() }, &mut r);
+        check(&MagneticDamping { k: 1.0 + r.signed(), field: r.vector() }, &mut r);
         let push = Push { k: r.signed(), c: r.signed(), A: r.matrix(), rho: r.vector(), up: r.direction() };
         check(&push, &mut r);
     }

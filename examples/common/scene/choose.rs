@@ -52,8 +52,6 @@ macro_rules! at_most {
 /// No more effects: whichever would be next, the scene is complete.
 mod none {
     pub(super) use super::simulate;
-    pub(super) use super::simulate as gravity_gradient;
-    pub(super) use super::simulate as dipole;
     pub(super) use super::simulate as spring;
     pub(super) use super::simulate as rotor;
     pub(super) use super::simulate as drag;
@@ -61,6 +59,6 @@ mod none {
     pub(super) use super::simulate as torque;
 }
 
-at_most!(one, then none: gravity_gradient dipole spring rotor drag magnetic_damping torque simulate);
+at_most!(one, then none: dipole spring rotor drag magnetic_damping torque simulate);
 at_most!(two, then one: gravity_gradient dipole spring rotor drag magnetic_damping torque simulate);
 at_most!(three, then two: gravity gravity_gradient dipole spring rotor drag magnetic_damping torque simulate);

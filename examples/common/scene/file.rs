@@ -108,10 +108,4 @@ impl SceneFile {
         spans.sort_by_key(|span| span.start);
         spans.into_iter().nth(MOST_EFFECTS)
     }
-
-    /// The same scene for no longer than this.
-    pub(crate) fn shortened(mut self, steps: u32) -> Self {
-        self.run.steps = self.run.steps.min(steps);
-        self
-    }
 }
