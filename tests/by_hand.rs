@@ -1,7 +1,8 @@
 //! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
 
 use liestep::{
-    CayleyRetraction, DiscreteLagrangian, Effect, NonstandardInertia, SO3, SetupError, Stepper, WithKinetic,
+    CayleyRetraction, DiscreteLagrangian, Effect, NonstandardInertia, SO3, SceneVisitor, SetupError, Stepper,
+    WithKinetic,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -70,6 +71,13 @@ impl Effect for HandWrittenTop {
 
     fn validate(&self) -> Result<(), SetupError> {
         Ok(())
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term(Self::DERIVATION);
+        self.inertia.as_matrix().iter().for_each(|&entry| visitor.parameter("inertia", entry));
+        visitor.parameter("weight", self.weight);
+        self.rho.iter().for_each(|&entry| visitor.parameter("rho", entry));
     }
 
     fn advected(&self) -> Vector3<f64> {

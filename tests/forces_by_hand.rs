@@ -4,7 +4,9 @@
 #![allow(non_snake_case)]
 
 use liestep::effects::RigidBody;
-use liestep::{CayleyRetraction, Effect, NonstandardInertia, Parts, SO3, SetupError, Stepper, Sum, WithoutKinetic};
+use liestep::{
+    CayleyRetraction, Effect, NonstandardInertia, Parts, SO3, SceneVisitor, SetupError, Stepper, Sum, WithoutKinetic,
+};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// The torque `−c Ω`, by the discrete Lagrange–d'Alembert principle with `f⁻ = f⁺ = −(c/2) ((F − Fᵀ)/2)^∨`.
@@ -34,6 +36,11 @@ impl Effect for Drag {
 
     fn validate(&self) -> Result<(), SetupError> {
         if self.c.is_finite() { Ok(()) } else { Err(SetupError::Parameter { field: "c", cause: "is not finite" }) }
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term(Self::DERIVATION);
+        visitor.parameter("c", self.c);
     }
 
     fn advected(&self) {}

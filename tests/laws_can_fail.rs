@@ -1,7 +1,7 @@
 //! Each law refuses a group, a retraction or a parameter that breaks it: the controls of `group_laws.rs`.
 
-use liestep::laws::{advected, group, retraction, samples::Entries};
-use liestep::{Advected, CayleyRetraction, ExponentialRetraction, LieGroup, Retraction, SE2};
+use liestep::laws::{advected, group, retraction};
+use liestep::{Advected, CayleyRetraction, Entries, ExponentialRetraction, LieGroup, Retraction, SE2};
 use nalgebra::{Matrix3, Vector3};
 use std::panic::catch_unwind;
 
@@ -51,6 +51,10 @@ impl<const WHAT: usize> LieGroup for Broken<WHAT> {
         self.0.matrix()
     }
 
+    fn from_matrix_unchecked(matrix: Matrix3<f64>) -> Self {
+        Self(SE2::from_matrix_unchecked(matrix))
+    }
+
     fn hat(components: &Vector3<f64>) -> Matrix3<f64> {
         SE2::hat(&turned::<WHAT>(*components, HAT))
     }
@@ -84,9 +88,8 @@ impl<const WHAT: usize> LieGroup for Broken<WHAT> {
         self.0.increment()
     }
 
-    fn advance(&self, increment: &Matrix3<f64>) -> Self {
-        let on_the_left = SE2::from_matrix_unchecked(self.matrix() + increment * self.matrix());
-        Self(if WHAT == ADVANCE { on_the_left } else { self.0.advance(increment) })
+    fn change(&self, increment: &Matrix3<f64>) -> Matrix3<f64> {
+        if WHAT == ADVANCE { increment * self.matrix() } else { self.0.change(increment) }
     }
 
     fn adjoint_transpose_increment(increment: &Matrix3<f64>, momentum: &Vector3<f64>) -> Vector3<f64> {
@@ -208,8 +211,8 @@ impl Advected<SE2> for Backwards {
         Self(attitude.matrix() * self.0)
     }
 
-    fn advect(&self, increment: &Matrix3<f64>) -> Self {
-        Self(self.0 + increment * self.0)
+    fn change(&self, increment: &Matrix3<f64>) -> Self {
+        Self(increment * self.0)
     }
 
     fn is_finite(&self) -> bool {
@@ -217,13 +220,17 @@ impl Advected<SE2> for Backwards {
     }
 }
 
-impl Entries for Backwards {
-    fn from_entries(next: impl FnMut() -> f64) -> Self {
+impl Entries<f64> for Backwards {
+    fn from_entries(next: &mut impl FnMut() -> f64) -> Self {
         Self(Entries::from_entries(next))
     }
 
-    fn entries(&self) -> Vec<f64> {
-        self.0.entries()
+    fn each(&self, visit: &mut impl FnMut(f64)) {
+        self.0.each(visit);
+    }
+
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(f64, f64) -> f64) -> Self {
+        Self(self.0.zip(&other.0, combine))
     }
 }
 

@@ -1,9 +1,8 @@
 //! How to declare a group, and a kind of parameter it carries: the affine maps `x ↦ a x + b` of the line, `a > 0`.
 
 use liestep::groups::matrix;
-use liestep::laws::samples::Entries;
 use liestep::{
-    Advected, CayleyRetraction, ExponentialRetraction, Generators, LieGroup as _, MatrixGroup, NotInGroup,
+    Advected, CayleyRetraction, Entries, ExponentialRetraction, Generators, LieGroup as _, MatrixGroup, NotInGroup,
     Retraction as _,
 };
 use nalgebra::{Matrix2, RealField, SMatrix, Vector2};
@@ -53,8 +52,8 @@ impl Advected<Affine> for Density {
         Self(self.0 * attitude.matrix().m11)
     }
 
-    fn advect(&self, increment: &Matrix2<f64>) -> Self {
-        Self(self.0 + self.0 * increment.m11)
+    fn change(&self, increment: &Matrix2<f64>) -> Self {
+        Self(self.0 * increment.m11)
     }
 
     fn is_finite(&self) -> bool {
@@ -62,14 +61,17 @@ impl Advected<Affine> for Density {
     }
 }
 
-/// For the laws only.
-impl Entries for Density {
-    fn from_entries(mut next: impl FnMut() -> f64) -> Self {
+impl Entries<f64> for Density {
+    fn from_entries(next: &mut impl FnMut() -> f64) -> Self {
         Self(next())
     }
 
-    fn entries(&self) -> Vec<f64> {
-        vec![self.0]
+    fn each(&self, visit: &mut impl FnMut(f64)) {
+        visit(self.0);
+    }
+
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(f64, f64) -> f64) -> Self {
+        Self(combine(self.0, other.0))
     }
 }
 

@@ -23,18 +23,26 @@ pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, Mix
 use nalgebra::{SMatrix, SVector};
 
 use crate::coordinates::Coordinates;
+use crate::entries::{Entries, sum};
 use crate::groups::LieGroup;
 use crate::scalar::Real;
 
 /// The advected parameters of a Lagrangian: `()` for none, a vector for one, a tuple for several.
-pub trait Advected<G: LieGroup>: Copy + Debug + PartialEq {
+pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
     /// `g⁻¹ · a_0`: the spatial value as the body with attitude `g` sees it.
     #[must_use]
     fn seen_from(&self, attitude: &G) -> Self;
 
-    /// `f⁻¹ · w` for `f = I + D`, \[RDAE, (2.4)\].
+    /// `f⁻¹ · w − w` for `f = I + D`, formed without subtracting `w`.
     #[must_use]
-    fn advect(&self, increment: &G::Matrix) -> Self;
+    fn change(&self, increment: &G::Matrix) -> Self;
+
+    /// `f⁻¹ · w` for `f = I + D`, \[RDAE, (2.4)\].
+    #[inline(always)]
+    #[must_use]
+    fn advect(&self, increment: &G::Matrix) -> Self {
+        sum(self, &self.change(increment))
+    }
 
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
@@ -43,7 +51,7 @@ pub trait Advected<G: LieGroup>: Copy + Debug + PartialEq {
 impl<G: LieGroup> Advected<G> for () {
     fn seen_from(&self, _: &G) -> Self {}
 
-    fn advect(&self, _: &G::Matrix) -> Self {}
+    fn change(&self, _: &G::Matrix) -> Self {}
 
     fn is_finite(&self) -> bool {
         true
@@ -61,10 +69,10 @@ where
         transpose_mul(&attitude.matrix(), self)
     }
 
-    /// `w + Dᵀ w`.
+    /// `Dᵀ w`.
     #[inline(always)]
-    fn advect(&self, increment: &SMatrix<T, N, N>) -> Self {
-        self + transpose_mul(increment, self)
+    fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
+        transpose_mul(increment, self)
     }
 
     #[inline(always)]
@@ -88,8 +96,8 @@ macro_rules! tuple {
             }
 
             #[inline(always)]
-            fn advect(&self, increment: &G::Matrix) -> Self {
-                ($(self.$index.advect(increment),)+)
+            fn change(&self, increment: &G::Matrix) -> Self {
+                ($(self.$index.change(increment),)+)
             }
 
             #[inline(always)]

@@ -5,11 +5,12 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use nalgebra::{SMatrix, SVector, SimdBool as _};
 
+use crate::entries::Entries;
 use crate::scalar::{Mask, Real};
 
 /// Components with respect to the declared basis `E_k` of a Lie algebra, or, for a covector, `μ_k = ⟨μ, E_k⟩`.
 pub trait Coordinates<T: Real>:
-    Copy + Debug + PartialEq + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<T, Output = Self>
+    Entries<T> + Debug + PartialEq + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<T, Output = Self>
 {
     /// A linear map from components to components.
     type Square: Copy

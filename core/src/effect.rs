@@ -9,6 +9,7 @@ use crate::groups::LieGroup;
 use crate::kinetic::KineticPart;
 use crate::retraction::Retraction;
 use crate::scalar::Real;
+use crate::scene::SceneVisitor;
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Effect>::Scalar;
@@ -109,6 +110,11 @@ pub trait Effect {
     ///
     /// [`SetupError::Parameter`] naming the first field whose value can't be used.
     fn validate(&self) -> Result<(), SetupError>;
+
+    /// Shows the derivations and, field by field in the order of the declaration, every scalar of the parameters.
+    ///
+    /// Two scenes that show the same make the same steps.
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>);
 
     /// The spatial values `a_0` of the advected parameters.
     fn advected(&self) -> Self::Advected;

@@ -2,7 +2,7 @@
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
-use crate::effect::{Effect, Group, Scalar, Vector};
+use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
@@ -10,7 +10,8 @@ use crate::lagrangian::DiscreteLagrangian;
 use crate::newton::{Problem, Root, orientation};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _};
+use crate::solvability::{Solvability, TurningLimits};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _};
 
 /// The discrete advected Lie–Poisson flow `(μ_i, w_i) ↦ (μ_{i+1}, w_{i+1})`, \[RDAE, (2.8), (2.9)\].
 ///
@@ -21,6 +22,8 @@ pub struct DiscreteLiePoisson<L: Effect> {
     h: Scalar<L>,
     constants: L::Constants,
     orientation: Scalar<L>,
+    /// Of the Newton Jacobian, far beyond those of steps that have a solution.
+    largest_determinant: Scalar<L>,
 }
 
 /// One application of a flow.
@@ -36,6 +39,13 @@ pub struct Increment<L: Effect> {
     pub advected: L::Advected,
     /// Newton iterations.
     pub iterations: u32,
+}
+
+/// A momentum equation and its solution.
+pub(crate) struct Solved<L: Effect> {
+    /// `a = μ + kick_before(w)`.
+    pub(crate) a: Vector<L>,
+    pub(crate) root: Root<L>,
 }
 
 impl<L: Effect> Increment<L> {
@@ -69,20 +79,14 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         }
         let constants = lagrangian.constants(h);
         let orientation = orientation(h, <Group<L> as LieGroup>::DIMENSION);
-        let flow = Self { lagrangian, h, constants, orientation };
-        if flow.h == real(0.0) || flow.is_in_range() {
-            return Ok(flow);
+        let at_rest = determinant_at_rest(&lagrangian, &constants);
+        // With an extreme `h` the Newton system can't be solved in this scalar.
+        let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
+        if h != real(0.0) && !is_in_range {
+            return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        Err(SetupError::InvalidStep { step: reported(h) })
-    }
-
-    /// Whether the Newton system at rest can be solved in this scalar: with an extreme `h` its determinant can't.
-    fn is_in_range(&self) -> bool {
-        let zero = Vector::<L>::zero();
-        let terms = L::step_terms(&self.constants, &zero, &self.lagrangian.advected());
-        let (_, jacobian) = L::newton_system(&self.constants, &terms, &zero);
-        let (_, determinant) = Vector::<L>::solve(&jacobian, &zero);
-        is_finite(determinant) && !determinant.simd_eq(real(0.0)).any()
+        let largest_determinant = at_rest.simd_abs() * real(DETERMINANT_RATIO);
+        Ok(Self { lagrangian, h, constants, orientation, largest_determinant })
     }
 
     /// The declared Lagrangian.
@@ -133,15 +137,11 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         if self.h == real(0.0) {
             return Ok(Self::stand_still(momentum, advected));
         }
-        let problem = self.problem(momentum, advected);
-        let Root { xi, increment, iterations } = match problem.solve_directly(guess) {
-            Some(root) => root,
-            None => self.solve_carefully(momentum, advected, guess)?,
-        };
+        let Solved { a, root: Root { xi, increment, iterations } } = self.solve(momentum, advected, guess)?;
         let next = advected.advect(&increment);
-        let mut change = Group::<L>::adjoint_transpose_increment(&increment, &problem.a);
+        let mut change = Group::<L>::adjoint_transpose_increment(&increment, &a);
         if L::PARTS.kick_before {
-            change = change + (problem.a - *momentum);
+            change = change + (a - *momentum);
         }
         if L::PARTS.kick_after {
             change = change + L::kick_after(&self.constants, &increment, &next);
@@ -151,6 +151,33 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             Ok(Increment { coordinates: xi, increment, momentum, advected: next, iterations })
         } else {
             Err(StepError::NonFinite { what: "momentum after the step" })
+        }
+    }
+
+    /// `F` of the step from `(μ, w)`.
+    #[inline(always)]
+    pub(crate) fn solve(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        guess: &Vector<L>,
+    ) -> Result<Solved<L>, StepError> {
+        let problem = self.problem(momentum, advected);
+        let root = match problem.solve_directly(guess, self.largest_determinant) {
+            Some(root) => root,
+            None => self.solve_carefully(momentum, advected, guess)?,
+        };
+        Ok(Solved { a: problem.a, root })
+    }
+
+    /// Both kicks of a step from `w` to `next`.
+    #[inline(always)]
+    pub(crate) fn kicks(&self, w: &L::Advected, increment: &Matrix<L>, next: &L::Advected) -> Vector<L> {
+        match (L::PARTS.kick_before, L::PARTS.kick_after) {
+            (true, true) => L::kick_before(&self.constants, w) + L::kick_after(&self.constants, increment, next),
+            (true, false) => L::kick_before(&self.constants, w),
+            (false, true) => L::kick_after(&self.constants, increment, next),
+            (false, false) => Vector::<L>::zero(),
         }
     }
 
@@ -182,6 +209,11 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         guess: &Vector<L>,
     ) -> Result<Root<L>, StepError> {
+        let is_finite = momentum.is_finite() && advected.is_finite();
+        if is_finite && self.solvability(momentum, advected) == Solvability::Impossible {
+            let largest = reported(self.max_step(momentum, advected));
+            return Err(StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(largest) });
+        }
         self.problem(momentum, advected).solve(guess).map_err(|error| self.explain(error, momentum, advected))
     }
 
@@ -200,15 +232,53 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(reported(largest)) }
     }
 
+    /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
+    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, below `h|a| = J_min` and above `J_max`.
+    ///
+    /// A step asks only when its solve hasn't succeeded at once, so that the steps that do cost nothing more.
+    #[must_use]
+    pub fn solvability(&self, momentum: &Vector<L>, advected: &L::Advected) -> Solvability {
+        let decide = |limits: TurningLimits| limits.decide(Self::size(self.h, &self.constants, momentum, advected));
+        self.turning_limits(advected).map_or(Solvability::Open, decide)
+    }
+
+    /// `|h a|`.
+    fn size(h: Scalar<L>, constants: &L::Constants, momentum: &Vector<L>, advected: &L::Advected) -> f64 {
+        let turn = kicked::<L>(constants, momentum, advected) * h;
+        reported(turn.dot(&turn).simd_sqrt())
+    }
+
+    /// The bounds for this `w`, at this step and at half of it: a kinetic part that depends on `h` in another way isn't
+    /// the one that they are proved for.
+    fn turning_limits(&self, advected: &L::Advected) -> Option<TurningLimits> {
+        let at = |h: Scalar<L>| {
+            let constants = self.lagrangian.constants(h);
+            let terms = L::step_terms(&constants, &Vector::<L>::zero(), advected);
+            let unknown = |f: &Group<L>| {
+                let xi = L::Retraction::local_coordinates(f)?;
+                let factor = (real::<Scalar<L>>(4.0) + xi.dot(&xi)).simd_powi(L::DENOMINATORS.cast_signed());
+                Some(L::newton_system(&constants, &terms, &xi).0 * (h / factor))
+            };
+            Group::<L>::turning_limits(&unknown, &self.lagrangian.inertia())
+        };
+        at(self.h * real(0.5)).and(at(self.h))
+    }
+
     /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
     ///
-    /// It is found by bisection between zero and `h`, so it costs some dozens of solves. For (3.13) and a physical
-    /// body `h |p + (h/2) τ| < J_min` surely has a solution and `> J_max` surely has none.
+    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds of
+    /// [`solvability`](Self::solvability) decide.
     #[must_use]
     pub fn max_step(&self, momentum: &Vector<L>, advected: &L::Advected) -> Scalar<L> {
+        let limits = self.turning_limits(advected);
         let solvable = |fraction: f64| {
             let h = self.h * real(fraction);
             let constants = self.lagrangian.constants(h);
+            match limits.map(|limits| limits.decide(Self::size(h, &constants, momentum, advected))) {
+                Some(Solvability::Certain) => return true,
+                Some(Solvability::Impossible) => return false,
+                Some(Solvability::Open) | None => {}
+            }
             let a = kicked::<L>(&constants, momentum, advected);
             let lagrangian = &self.lagrangian;
             let problem =
@@ -223,7 +293,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         let mut low = 1.0;
         while !solvable(low) {
             low *= 0.5;
-            if low < 1e-30 {
+            if low < 1e-300 {
                 return real(0.0);
             }
         }
@@ -281,8 +351,21 @@ pub fn reconstruct<G: LieGroup>(g: &G, f: &G) -> G {
     g.advance(&f.increment())
 }
 
+/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. While that is `10¹²` times larger
+/// its rounding doesn't reach the former, and the determinant is then about as many times larger.
+const DETERMINANT_RATIO: f64 = 1e12;
+
+/// The determinant of the Newton system for a body at rest.
+fn determinant_at_rest<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
+    let zero = Vector::<L>::zero();
+    let terms = L::step_terms(constants, &zero, &lagrangian.advected());
+    let (_, jacobian) = L::newton_system(constants, &terms, &zero);
+    Vector::<L>::solve(&jacobian, &zero).1
+}
+
 /// Rounded towards zero, as a step a little larger than the largest wouldn't do.
 fn six_digits(step: f64) -> f64 {
     let unit = 10.0_f64.powf(5.0 - step.abs().log10().floor());
-    (step * unit).trunc() / unit
+    // Not for zero and what is next to it.
+    if unit.is_finite() { (step * unit).trunc() / unit } else { step }
 }

@@ -80,7 +80,7 @@ macro_rules! retraction_laws {
 /// | `kinds_act` | the laws of an action, below |
 /// | `pairings_are_invariant` | `⟨w, v⟩` and the values of tensors don't change when all move |
 ///
-/// With a type of parameters as well, which must implement [`Entries`](crate::laws::samples::Entries), they are the
+/// With a type of parameters as well, which must implement [`Entries`](crate::Entries), they are the
 /// laws of an action for that type: `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`.
 ///
 /// Invoke it in a test module of its own.

@@ -6,7 +6,8 @@
 //!
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
-//! direction: `scalar ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ← stepper`.
+//! direction: `scalar ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ←
+//! stepper`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
@@ -17,8 +18,13 @@ pub mod groups;
 pub mod laws;
 
 mod advected;
+#[cfg(feature = "serde")]
+mod checkpoint;
+mod compensated;
+mod control;
 mod coordinates;
 mod effect;
+mod entries;
 mod error;
 mod flows;
 mod force;
@@ -27,8 +33,11 @@ mod inertia;
 mod kinetic;
 mod lagrangian;
 mod newton;
+mod remedy;
 mod retraction;
 mod scalar;
+mod scene;
+mod solvability;
 mod state;
 mod stepper;
 mod sum;
@@ -39,9 +48,13 @@ mod symmetry;
 pub mod __private;
 
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+#[cfg(feature = "serde")]
+pub use checkpoint::{Checkpoint, CheckpointError, Stored};
+pub use compensated::{CompensatedState, CompensatedStepper};
 pub use coordinates::Coordinates;
 pub use effect::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
 pub use effects::{Gravity, RigidBody};
+pub use entries::Entries;
 pub use error::{SetupError, StepError};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use force::Force;
@@ -51,8 +64,11 @@ pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, Nonstandard
 pub use kinetic::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
 pub use lagrangian::DiscreteLagrangian;
 pub use liestep_macros::{force, lagrangian};
+pub use remedy::{Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
+pub use scene::SceneVisitor;
+pub use solvability::{Solvability, TurningLimits};
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
 pub use sum::{SharedBy, Sum};

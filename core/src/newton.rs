@@ -78,10 +78,11 @@ pub(crate) struct Problem<'a, L: Effect> {
 impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
-    /// What it returns is what [`solve`](Self::solve) returns. Nothing here is lent to a function that isn't inlined,
+    /// What it returns is what [`solve`](Self::solve) returns. A determinant above `largest` is doubtful: where the right
+    /// side is so large that the Jacobian is lost in its rounding, an update may vanish far from any solution. Nothing here is lent to a function that isn't inlined,
     /// so that all of it can stay in registers; that is a sixth of the time of a step.
     #[inline(always)]
-    pub(crate) fn solve_directly(&self, guess: &Vector<L>) -> Option<Root<L>> {
+    pub(crate) fn solve_directly(&self, guess: &Vector<L>, largest: Scalar<L>) -> Option<Root<L>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 0..MAX_ITERATIONS {
@@ -89,7 +90,8 @@ impl<L: Effect> Problem<'_, L> {
             lanes.advance(&update, det, &update);
             if lanes.settled.all() {
                 let xi = lanes.xi;
-                if !self.is_oriented(lanes.det).all() || !L::Retraction::is_near_identity(&xi).all() {
+                let usual = self.is_oriented(lanes.det) & (lanes.det * self.orientation).simd_lt(largest);
+                if !usual.all() || !L::Retraction::is_near_identity(&xi).all() {
                     return None;
                 }
                 let increment = L::Retraction::increment(&xi);
@@ -106,12 +108,12 @@ impl<L: Effect> Problem<'_, L> {
         }
         let terms = L::step_terms(self.constants, &self.a, self.w);
         let (warm, iterations) = self.iterate(&terms, Lanes::starting_at(guess));
-        let accepted = self.accepted(&warm);
+        let accepted = self.accepted(&terms, &warm);
         if accepted.all() {
             return Ok(Self::root(&warm, iterations));
         }
         let (cold, iterations) = self.iterate(&terms, warm.keeping(accepted));
-        let accepted = self.accepted(&cold);
+        let accepted = self.accepted(&terms, &cold);
         if accepted.all() {
             return Ok(Self::root(&cold, MAX_ITERATIONS + iterations));
         }
@@ -167,8 +169,8 @@ impl<L: Effect> Problem<'_, L> {
     }
 
     /// The lanes that have settled on the branch of the identity.
-    fn accepted(&self, lanes: &Lanes<L>) -> Mask<Scalar<L>> {
-        let candidates = lanes.settled & self.is_oriented(lanes.det);
+    fn accepted(&self, terms: &L::StepTerms, lanes: &Lanes<L>) -> Mask<Scalar<L>> {
+        let candidates = lanes.settled & self.is_oriented(lanes.det) & self.is_solved(terms, &lanes.xi);
         let near = L::Retraction::is_near_identity(&lanes.xi);
         if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.xi)) }
     }
@@ -183,13 +185,25 @@ impl<L: Effect> Problem<'_, L> {
         self.is_oriented(det) & trace.simd_gt(real(0.0))
     }
 
+    /// Whether the momentum equation holds; a vanishing update alone doesn't say so.
+    ///
+    /// The bound is far above rounding, and far below the right side where rounding has swallowed the Jacobian.
+    fn is_solved(&self, terms: &L::StepTerms, xi: &Vector<L>) -> Mask<Scalar<L>> {
+        let (residual, _) = L::newton_system(self.constants, terms, xi);
+        let (unknown, jacobian) =
+            L::newton_system(self.constants, &L::step_terms(self.constants, &Vector::<L>::zero(), self.w), xi);
+        let size = |v: &Vector<L>| v.dot(v).simd_sqrt();
+        let scale = size(&unknown) + size(&(unknown - residual)) + Vector::<L>::trace(&jacobian).simd_abs();
+        size(&residual).simd_le(scale * Scalar::<L>::simd_default_epsilon().simd_sqrt())
+    }
+
     fn root(lanes: &Lanes<L>, iterations: u32) -> Root<L> {
         Root { xi: lanes.xi, increment: L::Retraction::increment(&lanes.xi), iterations }
     }
 
     /// The root if all lanes have one, otherwise what the others have failed from.
     fn conclude(&self, terms: &L::StepTerms, lanes: &Lanes<L>, iterations: u32) -> Result<Root<L>, StepError> {
-        let accepted = self.accepted(lanes);
+        let accepted = self.accepted(terms, lanes);
         if accepted.all() {
             return Ok(Self::root(lanes, iterations));
         }

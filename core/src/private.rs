@@ -5,8 +5,10 @@ pub use nalgebra;
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 
+use crate::entries::Entries as _;
 pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::scalar::real;
+pub use crate::scene::SceneVisitor;
 use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};
 
@@ -14,12 +16,17 @@ use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, Nonsta
 pub trait Parameter {
     /// What the expression computes with.
     type Value;
+    /// What the value is made of.
+    type Scalar: Real;
 
     /// The value.
     fn value(&self) -> Self::Value;
 
     /// Whether all entries are finite.
     fn is_finite(&self) -> bool;
+
+    /// Shows every scalar.
+    fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<Self::Scalar>);
 
     /// The error for the first parameter that isn't finite.
     ///
@@ -43,10 +50,15 @@ pub fn validate_scalar<T: Real>(value: T, field: &'static str) -> Result<(), Set
 /// The value of a vector or a matrix is itself, that of an inertia its matrix.
 impl<T: Real, const R: usize, const C: usize> Parameter for SMatrix<T, R, C> {
     type Value = Self;
+    type Scalar = T;
 
     #[inline(always)]
     fn value(&self) -> Self {
         *self
+    }
+
+    fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
+        self.each(&mut |entry| visitor.parameter(field, entry));
     }
 
     fn is_finite(&self) -> bool {
@@ -58,10 +70,15 @@ macro_rules! inertia_parameter {
     ($type:ty, $get:expr) => {
         impl<T: Real> Parameter for $type {
             type Value = Matrix3<T>;
+            type Scalar = T;
 
             #[inline(always)]
             fn value(&self) -> Matrix3<T> {
                 $get(self)
+            }
+
+            fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
+                self.value().each(&mut |entry| visitor.parameter(field, entry));
             }
 
             fn is_finite(&self) -> bool {
@@ -79,10 +96,15 @@ macro_rules! advected_parameter {
     ($($name:ident $value:ident<$($argument:ident),+>),+) => {
         $(impl<T: Real, const N: usize> Parameter for $name<T, N> {
             type Value = $value<$($argument),+>;
+            type Scalar = T;
 
             #[inline(always)]
             fn value(&self) -> Self::Value {
                 self.0
+            }
+
+            fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
+                self.0.each(&mut |entry| visitor.parameter(field, entry));
             }
 
             fn is_finite(&self) -> bool {

@@ -8,8 +8,9 @@ use crate::flows::DiscreteLiePoisson;
 use crate::groups::{LieGroup, SO3};
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
-use crate::retraction::Retraction as _;
+use crate::remedy::Remedy;
 use crate::scalar::{real, reported};
+use crate::solvability::Solvability;
 use crate::state::State;
 use crate::symmetry::{AxiallyInvariant, LeftInvariant};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
@@ -19,6 +20,8 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 pub struct StepReport {
     /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up.
     pub iterations: u32,
+    /// What was done in the place of this step; only by a [`RemediedStepper`](crate::RemediedStepper).
+    pub remedy: Option<Remedy>,
 }
 
 /// An integrator with a fixed step for a declared Lagrangian.
@@ -168,21 +171,8 @@ impl<L: Effect> Stepper<L> {
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
-        // Increments change by O(h²) from step to step, and their changes by O(h³): for (3.13) at common steps this
-        // guess saves one iteration of three.
-        state.guess = step.coordinates + (step.coordinates - state.coordinates);
-        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Before the first step
-        // there was no increment but an estimate. A selection without the branch would lie on the way to the next
-        // iteration, and cost a tenth of a step.
-        let far = !L::Retraction::is_near_identity(&(step.coordinates * real(1.5)));
-        if state.steps == 0 {
-            state.guess = step.coordinates;
-        } else if far.any() {
-            state.guess = step.coordinates.select(far, state.guess);
-        }
-        state.coordinates = step.coordinates;
-        state.steps += 1;
-        Ok(StepReport { iterations: step.iterations })
+        state.proceed::<L::Retraction>(step.coordinates);
+        Ok(StepReport { iterations: step.iterations, remedy: None })
     }
 
     /// The states after each step from here on; after an error, nothing more.
@@ -236,6 +226,12 @@ impl<L: Effect> Stepper<L> {
     #[must_use]
     pub fn energy(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
         energy(self.lagrangian(), &state.momentum, &state.advected)
+    }
+
+    /// What is proved about the next step; see [`DiscreteLiePoisson::solvability`].
+    #[must_use]
+    pub fn solvability(&self, state: &State<Group<L>, L::Advected>) -> Solvability {
+        self.flow.solvability(&state.momentum, &state.advected)
     }
 
     /// The stepper of `−h`, which undoes the steps of this one; exactly, where `l_d` is self-adjoint.

@@ -9,6 +9,7 @@ use crate::groups::LieGroup;
 use crate::kinetic::KineticPart;
 use crate::lagrangian::DiscreteLagrangian;
 use crate::scalar::real;
+use crate::scene::SceneVisitor;
 
 /// The sum of two effects of one group; what `+` makes of them.
 ///
@@ -96,6 +97,11 @@ where
     fn validate(&self) -> Result<(), SetupError> {
         self.first.validate()?;
         self.second.validate()
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
+        self.first.describe(visitor);
+        self.second.describe(visitor);
     }
 
     fn advected(&self) -> Self::Advected {

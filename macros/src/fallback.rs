@@ -71,6 +71,7 @@ pub(crate) fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -
             #types
             const DERIVATION: &'static #core::primitive::str = "";
             fn validate(&self) -> #core::result::Result<(), #root::SetupError> { loop {} }
+            fn describe(&self, _: &mut dyn #root::__private::SceneVisitor<#scalar>) { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
             fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
             fn inertia(&self) -> #square { loop {} }

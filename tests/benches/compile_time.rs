@@ -4,10 +4,11 @@
 //! cargo bench --bench compile-time
 //! ```
 //!
-//! Each file in `compile_time/` is the `main.rs` of a crate that depends on liestep. A number in it is changed, then the
-//! crate is checked or built without optimisation, as `cargo check` and `cargo build` do for the user; the whole command
-//! is timed, cargo and linker included. The crate `none` declares nothing: what a declaration costs is the difference.
-//! The first run compiles the dependencies. A new declaration is a new file and its line in [`DECLARATIONS`].
+//! Each source is the `main.rs` of a crate that depends on liestep: a file in `compile_time/`, or a declaration of the
+//! examples with the `main` of `compile_time/top.rs`. A number in it is changed, then the crate is checked or built
+//! without optimisation, as `cargo check` and `cargo build` do for the user; the whole command is timed, cargo and linker
+//! included. The crate `none` declares nothing: what a declaration costs is the difference. The first run compiles the
+//! dependencies. A new declaration is its line in [`DECLARATIONS`].
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -20,8 +21,22 @@ const ROUNDS: u32 = 7;
 const DECLARATIONS: [(&str, &str); 4] = [
     ("none", include_str!("compile_time/none.rs")),
     ("(3.13)", include_str!("compile_time/heavy_top.rs")),
-    ("L4", include_str!("compile_time/fourth_order_top.rs")),
-    ("L6", include_str!("compile_time/sixth_order_top.rs")),
+    (
+        "L4",
+        concat!(
+            include_str!("../../examples/declarations/fourth_order_top.rs"),
+            "type Top = FourthOrderTop;\n",
+            include_str!("compile_time/top.rs")
+        ),
+    ),
+    (
+        "L6",
+        concat!(
+            include_str!("../../examples/declarations/sixth_order_top.rs"),
+            "type Top = SixthOrderTop;\n",
+            include_str!("compile_time/top.rs")
+        ),
+    ),
 ];
 
 /// The user's crate, in cargo's directory for the temporary files of tests and benchmarks.

@@ -21,7 +21,7 @@ mod runge_kutta;
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::{DiagonalNonstandardInertia, SO3, State, Stepper, lagrangian};
+use liestep::{CompensatedState, CompensatedStepper, DiagonalNonstandardInertia, SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.01;
@@ -50,6 +50,8 @@ struct HeavyTop {
 
 type Derived = Stepper<HeavyTop>;
 type DerivedState = State<SO3, Vector3<f64>>;
+type Compensated = CompensatedStepper<HeavyTop>;
+type CompensatedMotion = CompensatedState<SO3, Vector3<f64>>;
 
 fn derived() -> (Derived, DerivedState) {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(MOMENTS.into()).expect("a body");
@@ -85,6 +87,13 @@ fn runge_kutta(start: &DerivedState) -> (runge_kutta::Top, runge_kutta::State) {
 
 #[inline(never)]
 fn run_derived(stepper: &Derived, state: &mut DerivedState, steps: u32) {
+    for _ in 0..steps {
+        stepper.step(state).expect("a solvable step");
+    }
+}
+
+#[inline(never)]
+fn run_compensated(stepper: &Compensated, state: &mut CompensatedMotion, steps: u32) {
     for _ in 0..steps {
         stepper.step(state).expect("a solvable step");
     }
@@ -135,15 +144,17 @@ fn compare() {
     let (stepper, mut a) = derived();
     let (top, mut b) = written_by_hand(&a);
     let (rival, mut c) = runge_kutta(&a);
-    let mut times = [const { Vec::new() }; 3];
+    let (compensated, mut d) = (derived().0.compensated(), CompensatedMotion::from(a));
+    let mut times = [const { Vec::new() }; 4];
     for _ in 0..ROUNDS {
         times[0].push(nanoseconds(|| run_derived(black_box(&stepper), black_box(&mut a), BATCH)));
         times[1].push(nanoseconds(|| run_by_hand(black_box(&top), black_box(&mut b), BATCH)));
         times[2].push(nanoseconds(|| run_runge_kutta(black_box(&rival), black_box(&mut c), BATCH)));
+        times[3].push(nanoseconds(|| run_compensated(black_box(&compensated), black_box(&mut d), BATCH)));
     }
     let ratios = times[0].iter().zip(&times[1]).map(|(derived, by_hand)| derived / by_hand).collect();
     println!("{:<28}{:>8}{:>8}{:>8}", "", "10 %", "median", "90 %");
-    for (name, times) in ["derived", "by hand", "Runge-Kutta 4"].into_iter().zip(times) {
+    for (name, times) in ["derived", "by hand", "Runge-Kutta 4", "compensated"].into_iter().zip(times) {
         let [low, median, high] = quantiles(times);
         println!("{:<28}{low:>8.1}{median:>8.1}{high:>8.1}", format!("{name}, ns a step"));
     }
@@ -155,6 +166,10 @@ fn count(kernel: &str, steps: u32) {
     let (stepper, mut a) = derived();
     match kernel {
         "derived" => run_derived(black_box(&stepper), black_box(&mut a), steps),
+        "compensated" => {
+            let (compensated, mut d) = (stepper.compensated(), CompensatedMotion::from(a));
+            run_compensated(black_box(&compensated), black_box(&mut d), steps);
+        }
         "by-hand" => {
             let (top, mut b) = written_by_hand(&a);
             run_by_hand(black_box(&top), black_box(&mut b), steps);
@@ -163,7 +178,7 @@ fn count(kernel: &str, steps: u32) {
             let (rival, mut c) = runge_kutta(&a);
             run_runge_kutta(black_box(&rival), black_box(&mut c), steps);
         }
-        _ => panic!("the kernels are derived, by-hand and runge-kutta, not {kernel}"),
+        _ => panic!("the kernels are derived, compensated, by-hand and runge-kutta, not {kernel}"),
     }
 }
 

@@ -13,7 +13,9 @@
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, PrincipalBody, Rotor, Spring, Torque};
+use liestep::effects::{
+    Dipole, Drag, Gravity, GravityGradient, MagneticDamping, PrincipalBody, Rotor, Spring, Thrust, Torque,
+};
 use liestep::{DiagonalNonstandardInertia, Inertia, Regular, SO3, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -6,6 +6,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::Advected;
+use crate::entries::Entries;
 use crate::groups::LieGroup;
 use crate::scalar::{Real, is_finite};
 
@@ -36,7 +37,21 @@ where
 }
 
 macro_rules! kind {
-    ($type:ident, $seen:expr, $advect:expr) => {
+    ($type:ident, $seen:expr, $change:expr) => {
+        impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
+            fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+                Self(Entries::from_entries(next))
+            }
+
+            fn each(&self, visit: &mut impl FnMut(T)) {
+                self.0.each(visit);
+            }
+
+            fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+                Self(self.0.zip(&other.0, combine))
+            }
+        }
+
         impl<G, T: Real, const N: usize> Advected<G> for $type<T, N>
         where
             G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
@@ -45,8 +60,8 @@ macro_rules! kind {
                 Self($seen(&self.0, attitude))
             }
 
-            fn advect(&self, increment: &SMatrix<T, N, N>) -> Self {
-                Self($advect(&self.0, increment))
+            fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
+                Self($change(&self.0, increment))
             }
 
             fn is_finite(&self) -> bool {
@@ -56,8 +71,9 @@ macro_rules! kind {
     };
 }
 
-kind!(ContravariantVector, |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v, |v: &SVector<T, N>, d| v
-    + inverse_increment::<G, T, N>(d) * v);
+kind!(ContravariantVector, |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v, |v: &SVector<T, N>, d| {
+    inverse_increment::<G, T, N>(d) * v
+});
 
 kind!(
     ContravariantTensor,
@@ -68,7 +84,7 @@ kind!(
     |s: &SMatrix<T, N, N>, d| {
         let inverse = inverse_increment::<G, T, N>(d);
         let change = inverse * s;
-        s + (change + (s + change) * inverse.transpose())
+        change + (s + change) * inverse.transpose()
     }
 );
 
@@ -83,7 +99,7 @@ kind!(CovariantTensor, |s: &SMatrix<T, N, N>, g: &G| g.matrix().transpose() * s 
     N,
 >| {
     let change = d.transpose() * s;
-    s + (change + (s + change) * d)
+    change + (s + change) * d
 });
 
 kind!(
@@ -91,6 +107,6 @@ kind!(
     |s: &SMatrix<T, N, N>, g: &G| g.inverse().matrix() * s * g.matrix(),
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
         let change = inverse_increment::<G, T, N>(d) * s;
-        s + (change + (s + change) * d)
+        change + (s + change) * d
     }
 );

@@ -129,6 +129,11 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     }
 
     #[inline]
+    fn from_matrix_unchecked(matrix: SMatrix<T, N, N>) -> Self {
+        Self(matrix, PhantomData)
+    }
+
+    #[inline]
     fn hat(components: &SVector<T, D>) -> SMatrix<T, N, N> {
         let mut algebra = SMatrix::zeros();
         for (k, generator) in K::GENERATORS.iter().enumerate() {
@@ -190,8 +195,8 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     }
 
     #[inline]
-    fn advance(&self, increment: &SMatrix<T, N, N>) -> Self {
-        Self::from_matrix_unchecked(self.0 + self.0 * increment)
+    fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        self.0 * increment
     }
 
     /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.

@@ -52,7 +52,9 @@ pub use translations::{R1, R2, R3, TranslationGenerators};
 use core::fmt::Debug;
 
 use crate::coordinates::Coordinates;
+use crate::entries::{Entries, sum};
 use crate::scalar::Real;
+use crate::solvability::TurningLimits;
 
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
@@ -63,7 +65,7 @@ pub trait LieGroup: Copy + Debug + PartialEq {
     /// Components of algebra elements and of covectors.
     type Vector: Coordinates<Self::Scalar>;
     /// The ambient matrices.
-    type Matrix: Copy + Debug + PartialEq;
+    type Matrix: Entries<Self::Scalar> + Debug + PartialEq;
 
     /// The dimension of the group.
     const DIMENSION: usize;
@@ -81,6 +83,10 @@ pub trait LieGroup: Copy + Debug + PartialEq {
 
     /// The element as a matrix.
     fn matrix(&self) -> Self::Matrix;
+
+    /// Takes the matrix as it is; what depends on the relation of the group is then only as right as the matrix.
+    #[must_use]
+    fn from_matrix_unchecked(matrix: Self::Matrix) -> Self;
 
     /// `ξ̂ = Σ ξ_k E_k`.
     fn hat(components: &Self::Vector) -> Self::Matrix;
@@ -106,15 +112,32 @@ pub trait LieGroup: Copy + Debug + PartialEq {
     /// The increment `D = F − I`.
     fn increment(&self) -> Self::Matrix;
 
+    /// `g F − g = g D`.
+    #[must_use]
+    fn change(&self, increment: &Self::Matrix) -> Self::Matrix;
+
     /// The reconstruction `g ← g F = g + g D`, \[RDAE, (2.10)\].
     ///
     /// Adding `g D` loses less to rounding than multiplying by `F ≈ I`: the error of a product of size one becomes
     /// one of size `|D|`.
+    #[inline(always)]
     #[must_use]
-    fn advance(&self, increment: &Self::Matrix) -> Self;
+    fn advance(&self, increment: &Self::Matrix) -> Self {
+        Self::from_matrix_unchecked(sum(&self.matrix(), &self.change(increment)))
+    }
 
     /// `Ad*_F μ − μ` for `F = I + D`.
     fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector;
+
+    /// Bounds that decide whether the momentum equation `U(F) = a` has a solution, where they are proved for this `U`.
+    ///
+    /// The kinetic part has the inertia `J`; `unknown` is `h U(F)`, where coordinates reach `F`.
+    fn turning_limits(
+        _unknown: &dyn Fn(&Self) -> Option<Self::Vector>,
+        _inertia: &<Self::Vector as Coordinates<Self::Scalar>>::Square,
+    ) -> Option<TurningLimits> {
+        None
+    }
 
     /// How far the matrix is from satisfying the relation of the group; zero on it.
     fn defect(&self) -> Self::Scalar;

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, RealField, Rotation3, UnitQuaternion, Vector3};
 
 use super::LieGroup;
 use crate::scalar::{Real, gathered, real};
+use crate::solvability::{self, TurningLimits};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -148,6 +149,11 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0
     }
 
+    #[inline(always)]
+    fn from_matrix_unchecked(matrix: Matrix3<T>) -> Self {
+        Self(matrix)
+    }
+
     #[inline]
     fn hat(v: &Vector3<T>) -> Matrix3<T> {
         let zero = T::zero();
@@ -192,13 +198,17 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     #[inline(always)]
-    fn advance(&self, increment: &Matrix3<T>) -> Self {
-        Self(self.0 + self.0 * increment)
+    fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
+        self.0 * increment
     }
 
     #[inline(always)]
     fn adjoint_transpose_increment(increment: &Matrix3<T>, momentum: &Vector3<T>) -> Vector3<T> {
         transpose_mul(increment, momentum)
+    }
+
+    fn turning_limits(unknown: &dyn Fn(&Self) -> Option<Vector3<T>>, inertia: &Matrix3<T>) -> Option<TurningLimits> {
+        solvability::of_rotations(unknown, inertia)
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.

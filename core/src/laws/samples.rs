@@ -2,8 +2,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use crate::Entries;
 use crate::groups::{LieGroup, exponential};
-use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 
 /// A group of `N` × `N` matrices of dimension `D` over `f64`.
 pub trait MatrixLieGroup<const N: usize, const D: usize>:
@@ -15,41 +15,6 @@ impl<G, const N: usize, const D: usize> MatrixLieGroup<N, D> for G where
     G: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>
 {
 }
-
-/// A parameter that can be made of numbers and taken apart into them.
-pub trait Entries {
-    /// Made of the next numbers of a stream.
-    fn from_entries(next: impl FnMut() -> f64) -> Self;
-
-    /// The numbers, in the order that they were taken in.
-    fn entries(&self) -> Vec<f64>;
-}
-
-impl<const R: usize, const C: usize> Entries for SMatrix<f64, R, C> {
-    fn from_entries(mut next: impl FnMut() -> f64) -> Self {
-        Self::from_fn(|_, _| next())
-    }
-
-    fn entries(&self) -> Vec<f64> {
-        self.iter().copied().collect()
-    }
-}
-
-macro_rules! entries {
-    ($($type:ident)+) => {$(
-        impl<const N: usize> Entries for $type<f64, N> {
-            fn from_entries(next: impl FnMut() -> f64) -> Self {
-                Self(Entries::from_entries(next))
-            }
-
-            fn entries(&self) -> Vec<f64> {
-                self.0.entries()
-            }
-        }
-    )+};
-}
-
-entries!(ContravariantVector ContravariantTensor CovariantTensor MixedTensor);
 
 /// A stream of pseudo-random numbers, `SplitMix64` of Steele, Lea and Flood (2014).
 #[derive(Debug)]
@@ -73,8 +38,8 @@ impl Random {
     }
 
     /// Entries uniform in `[−1, 1)`.
-    pub fn sample<A: Entries>(&mut self) -> A {
-        A::from_entries(|| self.signed())
+    pub fn sample<A: Entries<f64>>(&mut self) -> A {
+        A::from_entries(&mut || self.signed())
     }
 
     /// Coordinates of the identity, next to it, and anywhere within reach.

@@ -43,6 +43,7 @@ pub(crate) fn implementation(
     let derivation = docs::derivation(declaration, derived, &texts, findings);
     let documentation = format!("```text\n{derivation}```");
     let validate = emitter.validate();
+    let describe = emitter.describe();
     let advected = emitter.advected();
     let root = &header.root;
     let span = Span::mixed_site();
@@ -79,6 +80,7 @@ pub(crate) fn implementation(
             const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
 
             #validate
+            #describe
             #advected
             #effect
             #body
@@ -196,6 +198,27 @@ impl Emitter<'_> {
             fn validate(&self) -> #root::__private::core::result::Result<(), #root::SetupError> {
                 #(#checks)*
                 #root::__private::core::result::Result::Ok(())
+            }
+        }
+    }
+
+    fn describe(&self) -> TokenStream {
+        let span = Span::mixed_site();
+        let root = &self.header.root;
+        let scalar = &self.header.scalar;
+        let fields = self.declaration.fields.iter().map(|field| {
+            let name = &field.name;
+            let text = syn::ext::IdentExt::unraw(name).to_string();
+            if field.kind == crate::ast::FieldKind::Scalar {
+                quote_spanned!(span=> #root::__private::SceneVisitor::parameter(visitor, #text, self.#name);)
+            } else {
+                quote_spanned!(span=> #root::__private::Parameter::describe(&self.#name, #text, visitor);)
+            }
+        });
+        quote_spanned! {span=>
+            fn describe(&self, visitor: &mut dyn #root::__private::SceneVisitor<#scalar>) {
+                #root::__private::SceneVisitor::term(visitor, Self::DERIVATION);
+                #(#fields)*
             }
         }
     }
