@@ -132,6 +132,13 @@
 //! | \[LML05\] | T. Lee, N. H. McClamroch, M. Leok, *A Lie group variational integrator for the attitude dynamics of a rigid body with applications to the 3D pendulum*, IEEE Conference on Control Applications, 2005 |
 //! | \[MW01\] | J. E. Marsden, M. West, *Discrete mechanics and variational integrators*, Acta Numerica 10, 2001 |
 //! | \[HSS09\] | D. D. Holm, T. Schmah, C. Stoica, *Geometric Mechanics and Symmetry*, Oxford University Press, 2009 |
+//! | \[Su90\] | M. Suzuki, *Fractal decomposition of exponential operators with applications to many-body theories and Monte Carlo simulations*, Physics Letters A 146, 1990 |
+//! | \[KL97\] | W. Kahan, R.-C. Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations*, Mathematics of Computation 66, 1997 |
+//! | \[SS05\] | M. Sofroniou, G. Spaletta, *Derivation of symmetric composition constants for symmetric integrators*, Optimization Methods and Software 20, 2005 |
+//! | \[BM02\] | S. Blanes, P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, Journal of Computational and Applied Mathematics 142, 2002 |
+//! | \[ML95\] | R. I. McLachlan, *Composition methods in the presence of small parameters*, BIT 35, 1995 |
+//! | \[BCF13\] | S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, *New families of symplectic splitting methods for numerical integration in dynamical astronomy*, Applied Numerical Mathematics 68, 2013 |
+//! | \[HV06\] | E. Hairer, G. Vilmart, *Preprocessed discrete Moser–Veselov algorithm for the full dynamics of the rigid body*, Journal of Physics A 39, 2006 |
 //!
 //! The Lagrangian (3.13) gives the integrator of \[LML05\], with the same momentum; the discrete Legendre transforms and
 //! the order of accuracy they imply are those of \[MW01\]; the continuous theory of chapter 1 is in \[HSS09\].

@@ -33,6 +33,16 @@ pub enum SetupError {
         /// How far the matrix is from the relation of the group.
         defect: f64,
     },
+    /// A splitting needs a Lagrangian `K(F) − (h/2) (V(w) + V(F⁻¹·w))`.
+    NotSeparable {
+        /// How much the rest depends on `w` when the half kicks are taken away, relative to its size.
+        defect: f64,
+    },
+    /// The kinetic flow of a splitting is that of another body than the Lagrangian's.
+    AnotherInertia {
+        /// The largest difference of two entries, kg m².
+        difference: f64,
+    },
 }
 
 impl fmt::Display for SetupError {
@@ -53,6 +63,14 @@ impl fmt::Display for SetupError {
             Self::NotInGroup { defect } => {
                 write!(f, "the initial attitude is not in the group (defect {defect:e}); normalise it first")
             }
+            Self::NotSeparable { defect } => write!(
+                f,
+                "the Lagrangian is not K(F) − (h/2) (V(w) + V(F⁻¹·w)) (defect {defect:e}), so it can't be split; compose it instead"
+            ),
+            Self::AnotherInertia { difference } => write!(
+                f,
+                "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}"
+            ),
         }
     }
 }

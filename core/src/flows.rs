@@ -1,6 +1,7 @@
 //! The two flows of the thesis: on increments, (2.5), and on momenta, (2.8).
 
 use crate::advected::Advected;
+use crate::bisection::{largest_fraction, six_digits};
 use crate::coordinates::Coordinates as _;
 use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
 use crate::error::{SetupError, StepError};
@@ -286,23 +287,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             let terms = L::step_terms(&constants, &a, advected);
             problem.attempt(&terms, &Vector::<L>::zero()).is_ok()
         };
-        if solvable(1.0) {
-            return self.h;
-        }
-        // Halving down to a solvable fraction first keeps the digits where only a tiny one is.
-        let mut low = 1.0;
-        while !solvable(low) {
-            low *= 0.5;
-            if low < 1e-300 {
-                return real(0.0);
-            }
-        }
-        let mut high = 2.0 * low;
-        while high - low > 1e-6 * high {
-            let middle = 0.5 * (low + high);
-            if solvable(middle) { low = middle } else { high = middle }
-        }
-        self.h * real(low)
+        largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))
     }
 }
 
@@ -361,11 +346,4 @@ fn determinant_at_rest<L: Effect>(lagrangian: &L, constants: &L::Constants) -> S
     let terms = L::step_terms(constants, &zero, &lagrangian.advected());
     let (_, jacobian) = L::newton_system(constants, &terms, &zero);
     Vector::<L>::solve(&jacobian, &zero).1
-}
-
-/// Rounded towards zero, as a step a little larger than the largest wouldn't do.
-fn six_digits(step: f64) -> f64 {
-    let unit = 10.0_f64.powf(5.0 - step.abs().log10().floor());
-    // Not for zero and what is next to it.
-    if unit.is_finite() { (step * unit).trunc() / unit } else { step }
 }

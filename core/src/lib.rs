@@ -7,7 +7,7 @@
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
 //! direction: `scalar ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ←
-//! stepper`.
+//! stepper`, and on it `{composition, preprocessed ← splitting}`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
@@ -18,9 +18,11 @@ pub mod groups;
 pub mod laws;
 
 mod advected;
+mod bisection;
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod compensated;
+mod composition;
 mod control;
 mod coordinates;
 mod effect;
@@ -33,11 +35,13 @@ mod inertia;
 mod kinetic;
 mod lagrangian;
 mod newton;
+mod preprocessed;
 mod remedy;
 mod retraction;
 mod scalar;
 mod scene;
 mod solvability;
+mod splitting;
 mod state;
 mod stepper;
 mod sum;
@@ -51,6 +55,7 @@ pub use advected::{Advected, ContravariantTensor, ContravariantVector, Covariant
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{CompensatedState, CompensatedStepper};
+pub use composition::{Composition, CompositionScheme};
 pub use coordinates::Coordinates;
 pub use effect::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
 pub use effects::{Gravity, RigidBody};
@@ -64,11 +69,16 @@ pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, Nonstandard
 pub use kinetic::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
 pub use lagrangian::DiscreteLagrangian;
 pub use liestep_macros::{force, lagrangian};
+pub use preprocessed::{PreprocessedBody, PreprocessedOrder};
 pub use remedy::{Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use scalar::{Mask, Real};
 pub use scene::SceneVisitor;
 pub use solvability::{Solvability, TurningLimits};
+pub use splitting::{
+    DeclaredDrift, Flow, KineticFlow, PreprocessedDrift, PreprocessedFlow, Splitting, SplittingScheme, SymmetricBody,
+    SymmetricDrift, Turn,
+};
 pub use state::State;
 pub use stepper::{StepReport, Stepper};
 pub use sum::{SharedBy, Sum};

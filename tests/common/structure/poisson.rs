@@ -33,16 +33,6 @@ pub fn tensor<L: System<N, D>, const N: usize, const D: usize>(
     tensor
 }
 
-/// One step of the flow on `z`.
-fn image<L: System<N, D>, const N: usize, const D: usize>(
-    flow: &DiscreteLiePoisson<L>,
-    z: &DVector<f64>,
-) -> (SVector<f64, D>, L::Advected) {
-    let (momentum, w) = taken_apart::<L, N, D>(z);
-    let step = step(flow, &momentum, &w);
-    (step.momentum, step.advected)
-}
-
 fn taken_apart<L: System<N, D>, const N: usize, const D: usize>(z: &DVector<f64>) -> (SVector<f64, D>, L::Advected) {
     (z.fixed_rows::<D>(0).into_owned(), L::Advected::from_numbers(z.iter().skip(D).copied()))
 }
@@ -51,10 +41,23 @@ fn joined<const D: usize>(momentum: &SVector<f64, D>, w: &impl Numbers) -> DVect
     DVector::from_iterator(D + w.numbers().len(), momentum.iter().copied().chain(w.numbers()))
 }
 
-/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))`, and that of `Φ(z)` times those of `B(z)` and `DΦ`, or one if that is less:
-/// the differences are off by rounding of `Φ`.
+/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a step of the flow, and its scale; see [`defect_of`].
 pub fn defect<L: System<N, D>, const N: usize, const D: usize>(
     flow: &DiscreteLiePoisson<L>,
+    momentum: &SVector<f64, D>,
+    w: &L::Advected,
+) -> (f64, f64) {
+    let map = |momentum: &SVector<f64, D>, w: &L::Advected| {
+        let step = step(flow, momentum, w);
+        (step.momentum, step.advected)
+    };
+    defect_of::<L, N, D>(map, momentum, w)
+}
+
+/// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))` for a map of momentum and parameters, and that of `Φ(z)` times those of
+/// `B(z)` and `DΦ`, or one if that is less: the differences are off by rounding of `Φ`.
+pub fn defect_of<L: System<N, D>, const N: usize, const D: usize>(
+    map: impl Fn(&SVector<f64, D>, &L::Advected) -> (SVector<f64, D>, L::Advected),
     momentum: &SVector<f64, D>,
     w: &L::Advected,
 ) -> (f64, f64) {
@@ -63,12 +66,13 @@ pub fn defect<L: System<N, D>, const N: usize, const D: usize>(
     for k in 0..z.len() {
         let direction = DVector::from_fn(z.len(), |i, _| f64::from(u8::from(i == k)));
         let column = derivative(|t| {
-            let (momentum, w) = image(flow, &(&z + &direction * t));
+            let (momentum, w) = taken_apart::<L, N, D>(&(&z + &direction * t));
+            let (momentum, w) = map(&momentum, &w);
             joined(&momentum, &w)
         });
         tangent.set_column(k, &column);
     }
-    let (after, w_after) = image(flow, &z);
+    let (after, w_after) = map(momentum, w);
     let (before, expected) = (tensor::<L, N, D>(momentum, w), tensor::<L, N, D>(&after, &w_after));
     let scale = joined(&after, &w_after).amax() * before.amax() * tangent.amax();
     ((&tangent * before * tangent.transpose() - expected).amax(), scale.max(1.0))
@@ -100,11 +104,14 @@ pub fn worst<L: System<N, D> + Clone, const N: usize, const D: usize>(
 }
 
 /// For systems whose numbers are near one: the six-point differences then leave 10⁻¹².
+pub const TOLERANCE: f64 = 1e-10;
+
+/// For such systems.
 pub fn assert_poisson<L: System<N, D> + Clone, const N: usize, const D: usize>(
     lagrangian: &L,
     steps: &[f64],
     seed: u64,
 ) {
     let (defect, _) = worst(lagrangian, steps, seed);
-    assert!(defect < 1e-10, "{defect:e}");
+    assert!(defect < TOLERANCE, "{defect:e}");
 }

@@ -1,0 +1,169 @@
+//! Flows of the kinetic energy `½ p·J⁻¹p` on SO(3): the free body.
+
+use nalgebra::{Matrix3, SimdBool as _, Vector3};
+
+use super::angle::rotation_coefficients;
+use crate::coordinates::Coordinates as _;
+use crate::effect::Effect;
+use crate::error::{SetupError, StepError};
+use crate::flows::DiscreteLiePoisson;
+use crate::groups::SO3;
+use crate::inertia::Inertia;
+use crate::kinetic::Regular;
+use crate::lagrangian::DiscreteLagrangian;
+use crate::scalar::{Real, real, reported};
+
+/// A flow, or a structure-preserving approximation of it, of the free body's motion.
+pub trait KineticFlow<T: Real> {
+    /// The flow over one share of the step, its constants folded.
+    type Drift;
+
+    /// The inertia `J` of the body, kg m².
+    fn inertia(&self) -> Matrix3<T>;
+
+    /// The flow over the time `h`, s.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] for a body or a time that can't be used.
+    fn drift(&self, h: T) -> Result<Self::Drift, SetupError>;
+
+    /// Moves the body.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where an equation has no solution.
+    fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError>;
+}
+
+/// What a body did.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<T> {
+    /// `F − I`.
+    pub increment: Matrix3<T>,
+    /// `Fᵀ p − p`.
+    pub change: Vector3<T>,
+    /// Newton iterations; none for a closed form.
+    pub iterations: u32,
+}
+
+/// The free motion of a symmetric body, `J = diag(J_1, J_1, J_3)`, in closed form.
+///
+/// ```text
+/// F = exp(h p/J_1) exp(−h (1/J_1 − 1/J_3) p_3 E_3)        p⁺ = Fᵀ p
+/// ```
+///
+/// It is exact, there is nothing to solve, and `p_3` isn't even computed anew.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SymmetricBody<T = f64> {
+    transverse: T,
+    axial: T,
+}
+
+impl<T: Real> SymmetricBody<T> {
+    /// The body with this inertia about the pivot.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] where that isn't symmetric about the third body axis.
+    pub fn new(inertia: &Inertia<T>) -> Result<Self, SetupError> {
+        let j = inertia.as_matrix();
+        let expected = Matrix3::from_diagonal(&Vector3::new(j.m11, j.m11, j.m33));
+        let allowed = j.m11 * T::simd_default_epsilon() * real(4.0);
+        if !(j - expected).iter().all(|entry| entry.simd_abs().simd_le(allowed).all()) {
+            return Err(SetupError::Parameter {
+                field: "inertia",
+                cause: "is not symmetric about the third body axis",
+            });
+        }
+        Ok(Self { transverse: j.m11, axial: j.m33 })
+    }
+}
+
+/// `h/J_1` and `h (1/J_1 − 1/J_3)`.
+#[derive(Clone, Copy, Debug)]
+pub struct SymmetricDrift<T> {
+    about_momentum: T,
+    about_axis: T,
+}
+
+impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
+    type Drift = SymmetricDrift<T>;
+
+    fn inertia(&self) -> Matrix3<T> {
+        Matrix3::from_diagonal(&Vector3::new(self.transverse, self.transverse, self.axial))
+    }
+
+    fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
+        let (about_momentum, difference) = (h / self.transverse, (self.axial - self.transverse) / self.axial);
+        let about_axis = about_momentum * difference;
+        if !crate::scalar::is_finite(about_momentum + about_axis) {
+            return Err(SetupError::InvalidStep { step: reported(h) });
+        }
+        Ok(SymmetricDrift { about_momentum, about_axis })
+    }
+
+    #[inline(always)]
+    fn advance(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
+        let angle = drift.about_axis * p.z;
+        let (sinc, versine) = rotation_coefficients(angle * angle);
+        // sin θ and cos θ − 1, without cancellation.
+        let (s, v) = (angle * sinc, -(angle * angle * versine));
+        let change = Vector3::new(v * p.x - s * p.y, v * p.y + s * p.x, T::zero());
+
+        // A = exp(h p/J_1) − I, by Rodrigues' formula.
+        let (x, y, z) = (p.x * drift.about_momentum, p.y * drift.about_momentum, p.z * drift.about_momentum);
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (first, second) = rotation_coefficients(xx + yy + zz);
+        let (ax, ay, az) = (first * x, first * y, first * z);
+        let (xy, xz, yz) = (second * x * y, second * x * z, second * y * z);
+        let (xx, yy, zz) = (second * xx, second * yy, second * zz);
+        let (a1, a2) = ((-(yy + zz), xy + az, xz - ay), (xy - az, -(xx + zz), yz + ax));
+        // D = A + B + A B, where B turns by −θ about the third axis: B_11 = B_22 = v, B_12 = −B_21 = s.
+        let turned_1 = (a1.0 * v - a2.0 * s, a1.1 * v - a2.1 * s, a1.2 * v - a2.2 * s);
+        let turned_2 = (a1.0 * s + a2.0 * v, a1.1 * s + a2.1 * v, a1.2 * s + a2.2 * v);
+        #[rustfmt::skip]
+        let increment = Matrix3::new(
+            a1.0 + (v + turned_1.0), a2.0 + (s + turned_2.0), xz + ay,
+            a1.1 + (turned_1.1 - s), a2.1 + (v + turned_2.1), yz - ax,
+            a1.2 + turned_1.2,       a2.2 + turned_2.2,       -(xx + yy),
+        );
+        Ok(Turn { increment, change, iterations: 0 })
+    }
+}
+
+/// The flow of a declared Lagrangian without potential: any of its structure, to its order.
+impl<T: Real, L> KineticFlow<T> for L
+where
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = ()> + Regular + Clone,
+{
+    type Drift = DeclaredDrift<L>;
+
+    fn inertia(&self) -> Matrix3<T> {
+        Effect::inertia(self)
+    }
+
+    fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
+        let inertia = Effect::inertia(self);
+        let column = |k: usize| Vector3::solve(&inertia, &Matrix3::identity().column(k).into_owned()).0;
+        let inverse = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+        Ok(DeclaredDrift { flow: DiscreteLiePoisson::new(self.clone(), h)?, inverse })
+    }
+
+    #[inline(always)]
+    fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
+        // Half an explicit step ahead is the velocity in the middle, to second order that of the whole.
+        let h = drift.flow.step_size();
+        let velocity = drift.inverse * momentum;
+        let guess = (velocity + drift.inverse * momentum.cross(&velocity) * (h * real(0.5))) * h;
+        let step = drift.flow.step(momentum, &(), &guess)?;
+        Ok(Turn { increment: step.increment, change: step.momentum - momentum, iterations: step.iterations })
+    }
+}
+
+/// A declared flow, and the inverse inertia that its guesses are made with.
+#[derive(Clone, Debug)]
+pub struct DeclaredDrift<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, T: Real = crate::effect::Scalar<L>> {
+    flow: DiscreteLiePoisson<L>,
+    inverse: Matrix3<T>,
+}

@@ -1,0 +1,85 @@
+//! Error against time, a panel for each scene.
+
+use plotters::prelude::*;
+
+use crate::common::plot::{Area, BLUE, Drawn, GREEN, ORANGE, heading, legend, px, render};
+use crate::methods::Family;
+use crate::report::Measured;
+
+/// The runs of one scene over one time.
+pub(crate) struct Panel<'a> {
+    pub(crate) title: String,
+    pub(crate) methods: &'a [Measured],
+}
+
+const FAMILIES: [(Family, &str, RGBColor); 3] = [
+    (Family::Rival, "explicit Runge–Kutta", ORANGE),
+    (Family::NearlyPoisson, "Poisson to the order", GREEN),
+    (Family::Poisson, "Poisson", BLUE),
+];
+
+/// The lower envelope of each family is what a user can have; all that make it up are drawn thin behind it.
+pub(crate) fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
+    const COLUMNS: usize = 2;
+    let rows = panels.len().div_ceil(COLUMNS);
+    let height = 70 + 300 * u32::try_from(rows)?;
+    render((1000, height), |area| {
+        heading(area, "What accuracy costs in time", "error of attitude and rate against time of one processor")?;
+        legend(area, (16, 60), &FAMILIES.map(|(_, name, colour)| (name, colour)))?;
+        let (_, below) = area.split_vertically(px(76));
+        for (panel, place) in panels.iter().zip(below.split_evenly((rows, COLUMNS))) {
+            panel.draw(&place)?;
+        }
+        Ok(())
+    })
+}
+
+impl Panel<'_> {
+    fn draw(&self, area: &Area<'_>) -> Drawn {
+        let points = || self.methods.iter().flat_map(|method| &method.runs).map(|run| (run.cost * 1e6, run.error));
+        let (least, most) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), (x, _)| (low.min(x), high.max(x)));
+        if !least.is_finite() {
+            return Ok(());
+        }
+        let mut chart = ChartBuilder::on(area)
+            .caption(&self.title, ("sans-serif", px(13)))
+            .margin(px(8))
+            .x_label_area_size(px(34))
+            .y_label_area_size(px(56))
+            .build_cartesian_2d((0.8 * least..1.2 * most).log_scale(), (1e-14..1.0).log_scale())?;
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(RGBColor(226, 226, 226).stroke_width(px(1)))
+            .x_desc("µs")
+            .y_desc("error")
+            .label_style(("sans-serif", px(11)))
+            .x_label_formatter(&|x| format!("{x:.0}"))
+            .y_label_formatter(&|y| format!("{y:.0e}"))
+            .draw()?;
+        for (family, _, colour) in FAMILIES {
+            for method in self.methods.iter().filter(|method| method.family == family) {
+                let line = method.runs.iter().map(|run| (run.cost * 1e6, run.error));
+                chart.draw_series(LineSeries::new(line, colour.mix(0.3).stroke_width(px(1))))?;
+            }
+        }
+        for (family, _, colour) in FAMILIES {
+            let line = envelope(self.methods.iter().filter(|method| method.family == family));
+            chart.draw_series(LineSeries::new(line, colour.stroke_width(px(2))))?;
+        }
+        Ok(())
+    }
+}
+
+/// The runs that no other run of the family beats in both respects, by cost.
+fn envelope<'a>(methods: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> {
+    let mut runs: Vec<_> = methods.flat_map(|method| &method.runs).map(|run| (run.cost * 1e6, run.error)).collect();
+    runs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best = f64::INFINITY;
+    runs.retain(|(_, error)| {
+        let keep = *error < best;
+        best = best.min(*error);
+        keep
+    });
+    runs
+}

@@ -1,0 +1,114 @@
+//! What accuracy costs in time: structure-preserving methods beside explicit Runge–Kutta methods on five scenes.
+//!
+//! ```text
+//! cargo run --release --example accuracy-cost
+//! cargo run --release --example accuracy-cost -- --quick --out costs
+//! ```
+//!
+//! Each method integrates each scene for 10 s and for 100 s with shorter and shorter steps. The error is that of the
+//! attitude and the body velocity at the end, against references to 25 digits and more; the cost is the time of one
+//! processor for the run, constants folded and nothing printed. The tables say which of our methods is the cheapest for
+//! an error, and how its time compares with that of the fastest rival. The rivals integrate unit quaternion and momentum.
+
+// What the other examples share, of which this one uses a part.
+#[allow(dead_code, unused_imports)]
+#[path = "../common/mod.rs"]
+mod common;
+
+mod figure;
+mod measure;
+mod methods;
+mod report;
+mod rivals;
+mod scenes;
+mod systems;
+
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use common::output::{Output, print};
+use figure::{Panel, figure};
+use measure::{Effort, ladder};
+use report::Measured;
+use scenes::Scene;
+
+/// Measures what each accuracy costs in time, with our methods and with others'.
+#[derive(Parser)]
+#[command(name = "accuracy-cost")]
+struct Arguments {
+    /// Fewer and shorter runs: all is done within a minute.
+    #[arg(long)]
+    quick: bool,
+    /// Only this scene: looping, cuspidal, third, chaotic or free.
+    #[arg(long)]
+    scene: Option<String>,
+    /// The folder for the figure and the runs.
+    #[arg(long, value_name = "DIR", default_value = "out/accuracy-cost")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match compare(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let effort = |t: f64| {
+        if arguments.quick {
+            Effort { longest: 2e-4 * t, repeated: Duration::from_millis(2), ratio: 1.6 }
+        } else {
+            Effort { longest: 4e-3 * t, repeated: Duration::from_millis(15), ratio: 1.25 }
+        }
+    };
+    let mut output = Output::new(arguments.out.clone())?;
+    let mut scenes = Scene::all()?;
+    if let Some(wanted) = &arguments.scene {
+        scenes.retain(|scene| scene.short == wanted);
+        if scenes.is_empty() {
+            return Err(format!("no scene is called {wanted}; see --help").into());
+        }
+    }
+    let (mut text, mut csv, mut results) = (String::new(), report::CSV_HEADING.to_owned(), Vec::new());
+    let count: usize = scenes.iter().map(|scene| 2 * methods::all(scene).len()).sum();
+    let bar = progress(count.try_into()?);
+    for scene in &scenes {
+        for t in [10.0, 100.0] {
+            let mut measured = Vec::new();
+            for method in methods::all(scene) {
+                bar.set_message(format!("{}, {}", scene.name, method.name));
+                measured.push(Measured::new(&method, ladder(&method, scene, t, effort(t))));
+                bar.inc(1);
+            }
+            let title = format!("{}, t = {t} s", scene.name);
+            // Writing to a string can't fail.
+            let _ = write!(text, "{title}\n\n{}\n\n{}\n\n", report::costs(&measured), report::best(&measured));
+            csv.push_str(&report::csv(scene.short, t, &measured));
+            results.push((title, measured));
+        }
+    }
+    bar.finish_and_clear();
+    let panels: Vec<_> = results.iter().map(|(title, methods)| Panel { title: title.clone(), methods }).collect();
+    output.write("accuracy-cost.svg", &figure(&panels)?)?;
+    output.write("accuracy-cost.csv", &csv)?;
+    print(&format!("{text}{output}"))?;
+    Ok(())
+}
+
+fn progress(length: u64) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    match ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left  {msg}") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,227 @@
+//! The methods, ours and others', behind one way to run them.
+
+use liestep::{
+    Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedBody, PreprocessedFlow,
+    PreprocessedOrder, Regular, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
+};
+
+use crate::rivals::{Equations, dop853, rk4};
+use crate::scenes::{End, Kind, Scene};
+
+/// A run made ready, from its start to its end each time it is called; `None` where a step failed.
+pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
+
+/// Makes the run of a scene over a time with a step (or a tolerance) ready: all that doesn't depend on the state is done
+/// here.
+type Prepare = Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>;
+
+/// A way to integrate.
+pub(crate) struct Method {
+    pub(crate) name: String,
+    pub(crate) family: Family,
+    control: Control,
+    pub(crate) prepare: Prepare,
+}
+
+/// What a method keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Family {
+    /// The Poisson structure and the momentum maps.
+    Poisson,
+    /// The momentum maps, and the Poisson structure to the order of the method.
+    NearlyPoisson,
+    /// Nothing: an explicit Runge–Kutta method.
+    Rival,
+}
+
+/// What is varied.
+#[derive(Clone, Copy)]
+enum Control {
+    /// Steps of equal length, from this on, s.
+    Step(f64),
+    Tolerance,
+}
+
+impl Method {
+    fn new(
+        name: impl Into<String>,
+        family: Family,
+        control: Control,
+        prepare: impl Fn(&Scene, f64, f64) -> Option<Prepared> + 'static,
+    ) -> Self {
+        Self { name: name.into(), family, control, prepare: Box::new(prepare) }
+    }
+
+    /// Steps that divide the time, each shorter than the one before by the ratio; or tolerances.
+    pub(crate) fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
+        let (first, next, last) = match self.control {
+            Control::Step(longest) => (longest, 1.0 / ratio, 1e-5),
+            // An error of order 8 falls by the eighth power of the step.
+            Control::Tolerance => (1.0, ratio.powi(-8), 1e-15),
+        };
+        let whole = matches!(self.control, Control::Step(_));
+        core::iter::successors(Some(first), move |parameter| Some(parameter * next))
+            .take_while(move |parameter| *parameter > last)
+            .map(move |parameter| if whole { t / (t / parameter).ceil() } else { parameter })
+    }
+}
+
+/// The whole number of steps in a time.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the step divides the time
+fn count(t: f64, h: f64) -> u64 {
+    (t / h).round() as u64
+}
+
+/// The compositions of a method of order 2.
+const OF_ORDER_2: [CompositionScheme; 4] = [
+    CompositionScheme::SUZUKI_4,
+    CompositionScheme::KAHAN_LI_6,
+    CompositionScheme::KAHAN_LI_8,
+    CompositionScheme::SOFRONIOU_SPALETTA_10,
+];
+
+/// All the methods that a scene allows.
+pub(crate) fn all(scene: &Scene) -> Vec<Method> {
+    let mut methods = Vec::new();
+    if scene.kind == Kind::Free {
+        methods.extend(declared("(3.13)", Scene::free_body, OF_ORDER_2));
+        methods.extend(declared("K4", Scene::fourth_order_body, [CompositionScheme::SUZUKI_6]));
+        methods.extend(declared("K6", Scene::sixth_order_body, [CompositionScheme::SUZUKI_8]));
+    } else {
+        methods.extend(declared("(3.13)", Scene::top, OF_ORDER_2));
+        methods.extend(declared("L4", Scene::fourth_order_top, [CompositionScheme::SUZUKI_6]));
+        methods.extend(declared("L6", Scene::sixth_order_top, [CompositionScheme::SUZUKI_8]));
+    }
+    match scene.kind {
+        Kind::Free => methods.extend(preprocessed()),
+        Kind::SymmetricTop => {
+            methods.extend(splittings("exact", Family::Poisson, |scene| SymmetricBody::new(&scene.inertia()).ok()));
+        }
+        Kind::Top => {
+            methods.extend(splittings("preprocessed", Family::NearlyPoisson, |scene| {
+                Some(PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten))
+            }));
+            methods.extend(splittings("K6", Family::Poisson, |scene| Some(scene.sixth_order_body())));
+        }
+    }
+    methods.extend(rivals());
+    methods
+}
+
+/// The free body with modified moments of inertia.
+fn preprocessed() -> [Method; 4] {
+    use PreprocessedOrder::{Eight, Four, Six, Ten};
+    [("4", Four), ("6", Six), ("8", Eight), ("10", Ten)].map(|(name, order)| {
+        Method::new(format!("preprocessed, {name}"), Family::Poisson, Control::Step(2.0), move |scene, t, h| {
+            let (body, steps) = (PreprocessedBody::new(scene.nonstandard(), h, order).ok()?, count(t, h));
+            let start = body.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+            Some(Box::new(move || {
+                let mut state = start;
+                for _ in 0..steps {
+                    body.step(&mut state).ok()?;
+                }
+                Some((*state.attitude().as_matrix(), body.velocity(&state)))
+            }))
+        })
+    })
+}
+
+/// Splittings with a kinetic flow.
+fn splittings<K>(
+    name: &'static str,
+    family: Family,
+    kinetic: impl Fn(&Scene) -> Option<K> + Copy + 'static,
+) -> Vec<Method>
+where
+    K: KineticFlow<f64> + 'static,
+{
+    let schemes = [
+        SplittingScheme::STRANG,
+        SplittingScheme::NEAR_INTEGRABLE_4_2,
+        SplittingScheme::NEAR_INTEGRABLE_8_6_4,
+        SplittingScheme::NEAR_INTEGRABLE_10_6_4,
+        SplittingScheme::NYSTROM_6,
+        SplittingScheme::NYSTROM_11,
+        SplittingScheme::NYSTROM_14,
+        SplittingScheme::KAHAN_LI_8,
+        SplittingScheme::SOFRONIOU_SPALETTA_10,
+    ];
+    let method = |scheme: SplittingScheme| {
+        Method::new(format!("{name}, {}", scheme.name()), family, Control::Step(5.0), move |scene, t, h| {
+            let (splitting, steps) = (Splitting::new(scene.top(), kinetic(scene)?, h, scheme).ok()?, count(t, h));
+            let start = splitting.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+            Some(Box::new(move || {
+                let mut state = start;
+                splitting.advance(&mut state, steps).ok()?;
+                Some((*state.attitude().as_matrix(), splitting.velocity(&state)))
+            }))
+        })
+    };
+    schemes.map(method).into()
+}
+
+/// The step of a declared Lagrangian, and its compositions.
+fn declared<L, const N: usize>(
+    name: &'static str,
+    lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
+    schemes: [CompositionScheme; N],
+) -> Vec<Method>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
+{
+    let alone = Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
+        let (stepper, steps) = (Stepper::new(lagrangian(scene), h).ok()?, count(t, h));
+        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+        Some(Box::new(move || {
+            let mut state = start;
+            for _ in 0..steps {
+                stepper.step(&mut state).ok()?;
+            }
+            Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
+        }))
+    });
+    let composed = schemes.map(|scheme| {
+        let name = format!("{name}, {}", scheme.name());
+        Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
+            let (composed, steps) = (Composition::new(lagrangian(scene), h, scheme).ok()?, count(t, h));
+            let start = composed.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+            Some(Box::new(move || {
+                let mut state = start;
+                for _ in 0..steps {
+                    composed.step(&mut state).ok()?;
+                }
+                Some((*state.attitude().as_matrix(), composed.velocity(&state)))
+            }))
+        })
+    });
+    core::iter::once(alone).chain(composed).collect()
+}
+
+fn rivals() -> [Method; 3] {
+    [
+        Method::new("RK4", Family::Rival, Control::Step(0.5), |scene, t, h| {
+            let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
+            Some(Box::new(move || {
+                let mut y = start;
+                for _ in 0..steps {
+                    y = rk4::step(&equations, h, &y);
+                }
+                Some(equations.end(&y))
+            }))
+        }),
+        Method::new("DOP853, fixed step", Family::Rival, Control::Step(1.0), |scene, t, h| {
+            let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
+            Some(Box::new(move || {
+                let mut y = start;
+                for _ in 0..steps {
+                    y = dop853::step(&equations, h, &y);
+                }
+                Some(equations.end(&y))
+            }))
+        }),
+        Method::new("DOP853", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
+            let (equations, start) = (Equations::of(scene), Equations::start(scene));
+            Some(Box::new(move || Some(equations.end(&dop853::integrate(&equations, t, tolerance, start)?))))
+        }),
+    ]
+}

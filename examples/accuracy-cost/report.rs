@@ -1,0 +1,90 @@
+//! Tables of what an accuracy costs.
+
+use std::fmt::Write as _;
+
+use crate::common::table::aligned;
+use crate::measure::{Run, cost_of};
+use crate::methods::{Family, Method};
+
+/// The errors asked for.
+pub(crate) const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
+
+/// A method and what was measured of it.
+pub(crate) struct Measured {
+    pub(crate) name: String,
+    pub(crate) family: Family,
+    pub(crate) runs: Vec<Run>,
+}
+
+impl Measured {
+    pub(crate) fn new(method: &Method, runs: Vec<Run>) -> Self {
+        Self { name: method.name.clone(), family: method.family, runs }
+    }
+
+    fn cost(&self, error: f64) -> Option<f64> {
+        cost_of(&self.runs, error)
+    }
+}
+
+/// The cheapest of a family for an error, and its cost, s.
+fn cheapest(methods: &[Measured], family: Family, error: f64) -> Option<(&str, f64)> {
+    let costs = methods.iter().filter(|method| method.family == family);
+    costs.filter_map(|method| Some((method.name.as_str(), method.cost(error)?))).min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Microseconds, to two digits.
+fn microseconds(cost: f64) -> String {
+    let value = cost * 1e6;
+    if value < 9.95 { format!("{value:.1}") } else { format!("{value:.0}") }
+}
+
+/// Microseconds to each error, a method a row.
+pub(crate) fn costs(methods: &[Measured]) -> String {
+    let heading = core::iter::once("µs to an error of".to_owned()).chain(ERRORS.map(|error| format!("{error:.0e}")));
+    let mut rows = vec![heading.collect::<Vec<_>>()];
+    for method in methods {
+        let costs = ERRORS.map(|error| method.cost(error).map_or_else(|| "–".to_owned(), microseconds));
+        rows.push(core::iter::once(method.name.clone()).chain(costs).collect());
+    }
+    aligned(&rows)
+}
+
+/// The cheapest of our methods for each error, beside the cheapest rival.
+pub(crate) fn best(methods: &[Measured]) -> String {
+    let mut tables = vec![best_of(methods, Family::Poisson, "Poisson")];
+    if methods.iter().any(|method| method.family == Family::NearlyPoisson) {
+        tables.push(best_of(methods, Family::NearlyPoisson, "nearly Poisson"));
+    }
+    tables.join("\n\n")
+}
+
+fn best_of(methods: &[Measured], family: Family, what: &str) -> String {
+    let mut rows = vec![["error", what, "µs", "best rival", "µs", "ratio"].map(str::to_owned).to_vec()];
+    for error in ERRORS {
+        let (ours, rival) = (cheapest(methods, family, error), cheapest(methods, Family::Rival, error));
+        let cell = |found: Option<(&str, f64)>| {
+            found.map_or_else(|| ["–".to_owned(), "–".to_owned()], |(name, cost)| [name.to_owned(), microseconds(cost)])
+        };
+        let ratio = ours.zip(rival).map_or_else(|| "–".to_owned(), |(ours, rival)| format!("{:.2}", ours.1 / rival.1));
+        let [name, cost] = cell(ours);
+        let [rival, rival_cost] = cell(rival);
+        rows.push(vec![format!("{error:.0e}"), name, cost, rival, rival_cost, ratio]);
+    }
+    aligned(&rows)
+}
+
+/// All runs, a line each.
+pub(crate) fn csv(scene: &str, t: f64, methods: &[Measured]) -> String {
+    let mut text = String::new();
+    for method in methods {
+        for Run { parameter, error, cost } in &method.runs {
+            let name = method.name.replace(',', " +");
+            // Writing to a string can't fail.
+            let _ = writeln!(text, "{scene},{t},{name},{parameter:e},{error:e},{cost:e}");
+        }
+    }
+    text
+}
+
+/// The first line of the file.
+pub(crate) const CSV_HEADING: &str = "scene,t_s,method,step_s_or_tolerance,error,cost_s\n";
