@@ -7,7 +7,7 @@ mod common;
 
 use common::measure::{derivative, relative};
 use common::random::Random;
-use liestep::effects::{Drag, Gravity, RigidBody, Torque};
+use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Thrust, Torque};
 use liestep::{Advected as _, Force, LieGroup as _, NonstandardInertia, Retraction as _, SO3, Stepper, force};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -80,6 +80,8 @@ fn stages_follow_from_the_virtual_work() {
     for _ in 0..10 {
         check(&Drag { c: 1.0 + r.signed() }, &mut r);
         check(&Torque { torque: r.vector() }, &mut r);
+        check(&Thrust { at: r.vector(), thrust: r.vector() }, &mut r);
+        check(&MagneticDamping { k: 1.0 + r.signed(), field: r.vector() }, &mut r);
         let push = Push { k: r.signed(), c: r.signed(), A: r.matrix(), rho: r.vector(), up: r.direction() };
         check(&push, &mut r);
     }
@@ -114,6 +116,44 @@ fn drag_takes_energy() {
             energy = after;
         }
     }
+}
+
+/// Damping leaves the momentum along the field alone, and ends in a turn about the major axis, which is then along the
+/// field: the least energy for that momentum.
+#[test]
+fn damping_ends_on_the_major_axis() {
+    let field = Vector3::new(0.0, 0.6, 0.8);
+    let stepper = Stepper::new(body() + MagneticDamping { k: 0.2, field }, 0.05).unwrap();
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
+    // Nearly about the minor axis.
+    let mut state = stepper.start(attitude, Vector3::new(2.0, 0.1, 0.1)).unwrap();
+    let along = state.momentum_along(&field);
+    let mut energy = stepper.energy(&state);
+    for _ in 0..20_000 {
+        stepper.step(&mut state).unwrap();
+        let after = stepper.energy(&state);
+        assert!(after <= energy * (1.0 + 1e-14), "{after} after {energy}");
+        energy = after;
+        assert!((state.momentum_along(&field) - along).abs() < 1e-12);
+    }
+    let velocity = stepper.velocity(&state);
+    assert!(along.abs() > 0.5 && velocity.xy().norm() < 1e-4 * velocity.z.abs(), "{velocity}");
+    assert!((energy - along * along / (2.0 * 4.5)).abs() < 1e-6 * energy);
+}
+
+/// Drag in proportion to the body velocity is the same in every direction, but the major axis loses the least of its
+/// turn by it: what is left turns about that one.
+#[test]
+fn drag_leaves_a_turn_about_the_major_axis() {
+    let stepper = Stepper::new(body() + Drag { c: 0.05 }, 0.05).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::new(2.0, 0.1, 0.1)).unwrap();
+    let minor = |state: &_| stepper.velocity(state).x.abs() / stepper.velocity(state).norm();
+    assert!(minor(&state) > 0.99);
+    for _ in 0..20_000 {
+        stepper.step(&mut state).unwrap();
+    }
+    let velocity = stepper.velocity(&state);
+    assert!(velocity.xy().norm() < 1e-2 * velocity.z.abs(), "{velocity}");
 }
 
 /// A heavy body with drag, a torque and the rest, against a fine step: second order.

@@ -15,7 +15,11 @@
 //! | force | torque |
 //! |---|---|
 //! | [`Drag`] | `−c Ω` |
+//! | [`MagneticDamping`] | `−k (B × Ω) × B` |
+//! | [`Thrust`] | of a force that is constant in the body, at a point of it |
 //! | [`Torque`] | constant in the body |
+//!
+//! A torque that is given anew each step isn't an effect but data of the step: [`Stepper::step_with`](crate::Stepper::step_with).
 
 // The letters of the field.
 #![allow(non_snake_case)]
@@ -24,16 +28,20 @@ mod dipole;
 mod drag;
 mod gravity;
 mod gravity_gradient;
+mod magnetic_damping;
 mod rigid_body;
 mod rotor;
 mod spring;
+mod thrust;
 mod torque;
 
 pub use dipole::Dipole;
 pub use drag::Drag;
 pub use gravity::Gravity;
 pub use gravity_gradient::GravityGradient;
+pub use magnetic_damping::MagneticDamping;
 pub use rigid_body::{PrincipalBody, RigidBody};
 pub use rotor::Rotor;
 pub use spring::Spring;
+pub use thrust::Thrust;
 pub use torque::Torque;

@@ -23,6 +23,7 @@ mod bisection;
 mod checkpoint;
 mod compensated;
 mod composition;
+mod control;
 mod coordinates;
 mod effect;
 mod entries;

@@ -2,12 +2,30 @@
 
 use super::{HEAVY_TOP, expanded, top};
 
+/// The body of the library's effects.
+const BODY: &str = "group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)";
+const BODY_PARAMETERS: &str = "struct RigidBody { J_d: NonstandardInertia }";
+
 #[test]
 fn fifty_expansions_are_one() {
     let item = top("NonstandardInertia");
     let first = expanded(HEAVY_TOP, &item).to_string();
     for _ in 0..50 {
         assert_eq!(expanded(HEAVY_TOP, &item).to_string(), first);
+    }
+}
+
+/// What isn't in a scene costs nothing: a body's expansion is the same byte for byte, whatever else has been declared.
+#[test]
+fn other_declarations_change_nothing() {
+    let alone = expanded(BODY, BODY_PARAMETERS).to_string();
+    assert!(!alone.contains("compile_error"), "{alone}");
+    for _ in 0..3 {
+        for kind in ["NonstandardInertia", "DiagonalNonstandardInertia"] {
+            let other = expanded(HEAVY_TOP, &top(kind)).to_string();
+            assert!(other != alone);
+            assert_eq!(expanded(BODY, BODY_PARAMETERS).to_string(), alone);
+        }
     }
 }
 

@@ -1,0 +1,64 @@
+//! The choice of a scene's type, once a run.
+
+use liestep::{CayleyRetraction, Effect, SO3, Sum, WithKinetic};
+
+use super::effects::Table;
+use super::file::SceneFile;
+use super::run::{Sample, Stopped, simulate};
+
+type Outcome = Result<Vec<Sample>, Stopped>;
+
+/// A body with some effects on it.
+pub(super) trait Scene:
+    Effect<Scalar = f64, Group = SO3, Retraction = CayleyRetraction, Kinetic = WithKinetic>
+{
+}
+
+impl<S: Effect<Scalar = f64, Group = SO3, Retraction = CayleyRetraction, Kinetic = WithKinetic>> Scene for S {}
+
+/// How many effects a scene can have beside its body. All subsets of all eight would be 256 types and minutes of compiling;
+/// these are 93.
+pub(super) const MOST_EFFECTS: usize = 3;
+
+/// Simulates the sum of the body and those effects that the file has.
+pub(crate) fn run(file: &SceneFile) -> Outcome {
+    three::gravity(file.body(), file)
+}
+
+/// A function for each effect, which adds it or not and goes on to the next: together they have a type for every
+/// subset, and each run takes one path to its own. With an effect added, `$fewer` can still be.
+macro_rules! at_most {
+    ($number:ident, then $fewer:ident: $first:ident $($rest:ident)+) => {
+        mod $number {
+            use super::{Scene, SceneFile, Outcome, Sum, Table, $fewer};
+            pub(super) use super::simulate;
+
+            at_most!(function $fewer: $first $($rest)+);
+        }
+    };
+    (function $fewer:ident: $effect:ident $next:ident $($rest:ident)*) => {
+        pub(super) fn $effect<S: Scene>(scene: S, file: &SceneFile) -> Outcome {
+            match &file.$effect {
+                Some(table) => $fewer::$next(Sum::new(scene, Table::effect(table.get_ref(), &file.body())), file),
+                None => $next(scene, file),
+            }
+        }
+
+        at_most!(function $fewer: $next $($rest)*);
+    };
+    (function $fewer:ident: $last:ident) => {};
+}
+
+/// No more effects: whichever would be next, the scene is complete.
+mod none {
+    pub(super) use super::simulate;
+    pub(super) use super::simulate as spring;
+    pub(super) use super::simulate as rotor;
+    pub(super) use super::simulate as drag;
+    pub(super) use super::simulate as magnetic_damping;
+    pub(super) use super::simulate as torque;
+}
+
+at_most!(one, then none: dipole spring rotor drag magnetic_damping torque simulate);
+at_most!(two, then one: gravity_gradient dipole spring rotor drag magnetic_damping torque simulate);
+at_most!(three, then two: gravity gravity_gradient dipole spring rotor drag magnetic_damping torque simulate);

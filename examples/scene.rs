@@ -1,0 +1,75 @@
+//! Simulates the scene that a file describes, and draws it.
+//!
+//! ```text
+//! cargo run --release --example scene -- examples/scenes/sleeping-top.toml
+//! cargo run --release --example scene -- examples/scenes/*.toml --out pictures --csv
+//! ```
+//!
+//! A file names a body, the effects on it, where the motion starts, the step and what to draw; the files in
+//! `examples/scenes` show every key. Numbers are in SI units, or texts with a unit: `"30 deg"`. Which effects there are
+//! is decided once a run: the step that then runs is that of the sum of just those, compiled as if it had been written
+//! by hand. A mistake in a file is reported with its line and column.
+
+#[path = "common/csv.rs"]
+mod csv;
+#[path = "common/output.rs"]
+mod output;
+#[path = "common/plot/mod.rs"]
+mod plot;
+#[path = "common/scene/mod.rs"]
+mod scene;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use output::{Output, print};
+
+/// Simulates the scenes that files describe, and draws them.
+#[derive(Parser)]
+#[command(name = "scene")]
+struct Arguments {
+    /// The scene files.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The folder for the pictures.
+    #[arg(long, value_name = "DIR", default_value = "out/scenes")]
+    out: PathBuf,
+    /// Also write the samples as CSV, next to the pictures.
+    #[arg(long)]
+    csv: bool,
+}
+
+fn main() -> ExitCode {
+    match simulate(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    // All files are read before the first is simulated, so a mistake in the last doesn't come after minutes.
+    let scenes = arguments.files.iter().map(|path| scene::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut output = Output::new(arguments.out.clone())?;
+    for (path, file) in arguments.files.iter().zip(&scenes) {
+        let samples = scene::run(file).map_err(|stopped| format!("{}: {stopped}", path.display()))?;
+        output.write(&name(path, "svg"), &scene::picture(file, &samples)?)?;
+        if arguments.csv {
+            output.write(&name(path, "csv"), &scene::table(&samples))?;
+        }
+        print(&scene::summary(file, &samples))?;
+    }
+    print(&output.to_string())?;
+    Ok(())
+}
+
+/// The file's name with another ending.
+fn name(path: &Path, extension: &str) -> String {
+    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    format!("{}.{extension}", stem.to_string_lossy())
+}

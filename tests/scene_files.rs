@@ -1,0 +1,224 @@
+//! Scene files by the example that reads them: each mistake with its place, and every file of `examples/scenes`.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use expect_test::expect;
+use liestep::effects::{Drag, Gravity, PrincipalBody};
+use liestep::{DiagonalNonstandardInertia, Stepper};
+use nalgebra::{UnitQuaternion, Vector3};
+
+const TOP: &str = r#"title = "A heavy top with drag"
+
+[body]
+moments = [3, 3, 4]
+
+[gravity]
+m = "1 kg"
+g = 9.81
+rho = [0, 0, 1.0]
+up = [0, 0, 1]
+
+[drag]
+c = 1e-3
+
+[start]
+euler = [0, "45 deg", 0]
+velocity = [0, 0, "60 rpm"]
+
+[run]
+step = "10 ms"
+duration = 2
+"#;
+
+/// The example, built if it isn't yet: a scene's types are compiled once, and not a second time into this test.
+fn example() -> &'static Path {
+    static EXAMPLE: OnceLock<PathBuf> = OnceLock::new();
+    EXAMPLE.get_or_init(|| {
+        let built = Command::new(env!("CARGO")).args(["build", "--quiet", "--example", "scene"]).status().unwrap();
+        assert!(built.success());
+        let test = std::env::current_exe().unwrap();
+        let folder = test.parent().and_then(Path::parent).unwrap();
+        folder.join("examples").join(format!("scene{}", std::env::consts::EXE_SUFFIX))
+    })
+}
+
+/// A folder of a test's own.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn simulate(folder: &Path, files: &[&str]) -> Output {
+    Command::new(example()).current_dir(folder).args(["--csv", "--out", "."]).args(files).output().unwrap()
+}
+
+/// The message for the top with one line replaced.
+fn mistake(folder: &Path, line: &str, by: &str) -> String {
+    assert_eq!(TOP.matches(line).count(), 1, "{line}");
+    fs::write(folder.join("top.toml"), TOP.replace(line, by)).unwrap();
+    let output = simulate(folder, &["top.toml"]);
+    assert!(!output.status.success() && output.stdout.is_empty(), "{by}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// The rows of a scene's table, after a run of a text.
+fn rows(folder: &Path, text: &str) -> Vec<Vec<f64>> {
+    fs::write(folder.join("scene.toml"), text).unwrap();
+    let output = simulate(folder, &["scene.toml"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    table(&fs::read_to_string(folder.join("scene.csv")).unwrap())
+}
+
+fn table(csv: &str) -> Vec<Vec<f64>> {
+    csv.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+#[test]
+fn mistakes_have_places() {
+    let folder = folder("mistakes");
+    let messages = [
+        ("c = 1e-3", "c = 1e-3\nviscosity = 2"),
+        ("[drag]", "[darg]"),
+        ("g = 9.81\n", ""),
+        ("[run]\nstep = \"10 ms\"\nduration = 2\n", ""),
+        ("c = 1e-3", "c = 1e-3\nrho = [0, 0, 1]"),
+        ("m = \"1 kg\"", "m = \"1 m\""),
+        ("m = \"1 kg\"", "m = \"heavy\""),
+        ("m = \"1 kg\"", "m = -1"),
+        ("m = \"1 kg\"", "m = true"),
+        ("c = 1e-3", "c = inf"),
+        ("rho = [0, 0, 1.0]", "rho = [0, 1.0]"),
+        ("rho = [0, 0, 1.0]", "rho = [0, \"1 m\", \"1 kg\"]"),
+        ("rho = [0, 0, 1.0]", "rho = 1.0"),
+        ("up = [0, 0, 1]", "up = [0, 0, 0]"),
+        ("moments = [3, 3, 4]", "moments = [1, 1, 4]"),
+        ("moments = [3, 3, 4]", "moments = [3, 3, 4]\nJ_d = [2, 2, 1]"),
+        ("euler = [0, \"45 deg\", 0]", "quaternion = [1, 0, 0]"),
+        ("euler = [0, \"45 deg\", 0]", "quaternion = [0, 0, 0, 0]"),
+        ("euler = [0, \"45 deg\", 0]", "euler = [0, 0, 0]\nquaternion = [1, 0, 0, 0]"),
+        ("velocity", "euler_rates = [0, 0, 1]\nvelocity"),
+        ("step = \"10 ms\"", "step = \"10 min\""),
+        ("step = \"10 ms\"", "step = 1e-9"),
+        ("[run]", "[rotor]\nspin = [0, 0, 1]\n[dipole]\nmoment = [0, 0, 1]\nfield = [0, 0, 1]\n[run]"),
+        ("[run]", "[picture]\npanels = [\"rates\", \"phase\"]\n[run]"),
+        ("[run]", "[run"),
+        ("[drag]", "[gravity]"),
+        ("m = \"1 kg\"", "m = { \"größe\" = 1, 2 }"),
+    ]
+    .map(|(line, by)| mistake(&folder, line, by));
+    expect![[r#"
+        error: top.toml:14:1: unknown field `viscosity`, expected `c`
+        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `start`, `run`, `picture`
+        error: top.toml:6:1: missing field `g`
+        error: top.toml:1:1: missing field `run`
+        error: top.toml:14:1: unknown field `rho`, expected `c`
+        error: top.toml:7:5: a mass isn't in `m` but in `kg`, `g`, `t`
+        error: top.toml:7:5: `heavy` doesn't begin with a number; a quantity is written as in "30 deg"
+        error: top.toml:7:5: must be above zero
+        error: top.toml:7:5: invalid type: boolean `true`, expected a mass in kg, or a text with a unit
+        error: top.toml:13:5: must be finite
+        error: top.toml:9:7: expected three components, found 2
+        error: top.toml:9:18: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
+        error: top.toml:9:7: invalid type: floating point `1.0`, expected a sequence
+        error: top.toml:10:6: a direction can't be zero
+        error: top.toml:3:1: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others
+        error: top.toml:3:1: a body has either `moments` (of inertia) or `J_d` (nonstandard)
+        error: top.toml:15:1: `quaternion` has the four components w, x, y, z, found 3
+        error: top.toml:15:1: `quaternion` can't be zero
+        error: top.toml:15:1: an attitude is given by either `euler` or `quaternion`
+        error: top.toml:15:1: a velocity is given by either `velocity` or `euler_rates`
+        error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 600 s
+        error: top.toml:19:1: `duration` makes 2.0e9 steps, more than 1e8; take a larger `step`
+        error: top.toml:21:1: a scene has at most 3 effects beside the body
+        error: top.toml:20:20: unknown variant `phase`, expected one of `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error`
+        error: top.toml:19:5: unclosed table, expected `]`
+        error: top.toml:12:2: duplicate key
+        error: top.toml:7:22: invalid literal string, expected `'`
+    "#]].assert_eq(&messages.concat());
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    let output = simulate(&folder("missing"), &["no-such.toml"]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.starts_with("error: no-such.toml: cannot be read: "), "{message}");
+}
+
+/// A step that is too large is found out while running: with the file, the time and the largest step.
+#[test]
+fn a_step_that_is_too_large() {
+    let folder = folder("fast");
+    fs::write(folder.join("fast.toml"), TOP.replace("60 rpm", "60000 rpm")).unwrap();
+    let output = simulate(&folder, &["fast.toml"]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.starts_with("error: fast.toml: stopped at t = 0 s: no solution at the step"), "{message}");
+}
+
+/// Every file that is there runs, moves, and has a picture and a table.
+#[test]
+fn the_scenes_run() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
+    let mut files: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    assert!(files.len() >= 12, "{}", files.len());
+    let names: Vec<_> = files.iter().map(|path| path.to_str().unwrap()).collect();
+    let folder = folder("scenes");
+    let output = simulate(&folder, &names);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for path in &files {
+        let result = |ending| {
+            let name = Path::new(path.file_name().unwrap()).with_extension(ending);
+            fs::read_to_string(folder.join(name)).unwrap()
+        };
+        let rows = table(&result("csv"));
+        assert!(rows.len() > 500 && rows.first() != rows.last(), "{}", path.display());
+        assert!(rows.iter().flatten().all(|value| value.is_finite()), "{}", path.display());
+        assert!(result("svg").matches("<polyline").count() > 3, "{}", path.display());
+    }
+}
+
+/// What a file's scene does is what the sum in a program does, bit for bit; and the units are those of SI.
+#[test]
+fn a_file_is_a_sum() {
+    let rows = rows(&folder("sum"), TOP);
+    let last = rows.last().unwrap();
+
+    let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let stepper = Stepper::new(PrincipalBody { J_d: body } + gravity + Drag { c: 1e-3 }, 10.0 * 1e-3).unwrap();
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    for _ in 0..200 {
+        stepper.step(&mut state).unwrap();
+    }
+    assert_eq!(rows.len(), 201);
+    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
+    assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
+}
+
+/// The rates of Euler's angles and the body velocity that they make are those of the same motion.
+#[test]
+fn rates_of_euler_angles() {
+    let angles = Vector3::new(0.3, 0.8, -0.5);
+    let rates = Vector3::new(1.5, -0.7, 2.5);
+    let at = |t: f64| {
+        let angles = angles + rates * t;
+        let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+        about(Vector3::z_axis(), angles.x) * about(Vector3::x_axis(), angles.y) * about(Vector3::z_axis(), angles.z)
+    };
+    let expected = (at(-1e-4).inverse() * at(1e-4)).scaled_axis() / 2e-4;
+    let start = "euler = [0.3, 0.8, -0.5]\neuler_rates = [1.5, -0.7, 2.5]\n";
+    let text = TOP.replace("euler = [0, \"45 deg\", 0]\nvelocity = [0, 0, \"60 rpm\"]\n", start);
+    let row = &self::rows(&folder("rates"), &text)[0];
+    let velocity = Vector3::new(row[1], row[2], row[3]);
+    assert!((velocity - expected).norm() < 1e-6, "{velocity} {expected}");
+    let axis = Vector3::new(row[8], row[9], row[10]);
+    assert!((axis - at(0.0) * Vector3::z()).norm() < 1e-14, "{axis}");
+}
