@@ -12,8 +12,8 @@ use common::measure::{derivative, slope};
 use common::random::Random;
 use common::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use liestep::{
-    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Inertia, Real, SO3,
-    StepError, Stepper, lagrangian,
+    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia, Real,
+    Regular, SO3, StepError, Stepper, lagrangian,
 };
 use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
 use num_dual::Dual64;
@@ -101,7 +101,7 @@ fn the_residual_alone_is_the_systems() {
 }
 
 /// How far a step's root is from what Newton's iteration from there on makes of it, in roundings of `ξ`, and iterations.
-fn missing<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone>(
+fn missing<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone>(
     lagrangian: &L,
     h: f64,
     speed: f64,
@@ -153,7 +153,11 @@ fn solves_end_at_the_level_of_rounding() {
 /// were solved without the Jacobian, with it after all, and not at all.
 fn compared<L>(without: &WithoutJacobian<L, f64>, h: f64, angle: f64) -> (f64, [u32; 3])
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Copy + core::fmt::Debug + PartialEq,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
+        + Regular
+        + Copy
+        + core::fmt::Debug
+        + PartialEq,
 {
     let with = DiscreteLiePoisson::new(without.0, h).unwrap();
     let without = DiscreteLiePoisson::new(*without, h).unwrap();
@@ -290,7 +294,7 @@ fn updates_along_a_symmetry_do_not_decide_the_branch() {
     assert!(refused > 0, "{refused}");
 }
 
-fn first<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone>(
+fn first<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone>(
     lagrangian: &L,
     h: f64,
     velocity: Vector3<f64>,

@@ -9,7 +9,7 @@
 mod common;
 
 use common::solvers::WithJacobian;
-use liestep::{DiscreteLagrangian, Inertia, LieGroup as _, SO3, Stepper};
+use liestep::{DiscreteLagrangian, Inertia, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 #[path = "../examples/declarations/fourth_order_top.rs"]
@@ -40,7 +40,10 @@ struct Kept {
     spin: f64,
 }
 
-fn kept<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(lagrangian: L, h: f64) -> Kept {
+fn kept<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular>(
+    lagrangian: L,
+    h: f64,
+) -> Kept {
     let stepper = Stepper::new(lagrangian, h).unwrap();
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
     let mut state = stepper.start(attitude, Vector3::new(0.5, 2.15, 12.09)).unwrap();

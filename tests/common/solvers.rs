@@ -4,28 +4,15 @@ use core::cell::Cell;
 use core::fmt::Debug;
 
 use liestep::{
-    DiscreteLagrangian, LieGroup as _, Matrix, Real, Retraction as _, SO3, Scalar, SetupError, Square, Vector,
+    DiscreteLagrangian, Effect, Group, LieGroup as _, Matrix, Parts, Real, Retraction as _, SO3, Scalar, SceneVisitor,
+    SetupError, Square, Vector, WithKinetic,
 };
 use nalgebra::{Matrix3, Vector3};
 
-/// The terms that don't depend on how the equation is solved.
-macro_rules! terms_of {
+/// The terms that don't know stages.
+macro_rules! declared_as {
     ($inner:ty) => {
-        type Scalar = Scalar<$inner>;
-        type Group = <$inner as DiscreteLagrangian>::Group;
-        type Retraction = <$inner as DiscreteLagrangian>::Retraction;
-        type Advected = <$inner as DiscreteLagrangian>::Advected;
-
-        const DERIVATION: &'static str = <$inner>::DERIVATION;
         const SELF_ADJOINT: bool = <$inner>::SELF_ADJOINT;
-
-        fn validate(&self) -> Result<(), SetupError> {
-            self.0.validate()
-        }
-
-        fn advected(&self) -> Self::Advected {
-            self.0.advected()
-        }
 
         fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
             self.0.l_d(f, w, h)
@@ -43,12 +30,38 @@ macro_rules! terms_of {
             self.0.diamond(f, w, h)
         }
 
-        fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
-            self.0.momentum_jacobian(f, w, h)
-        }
-
         fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
             self.0.discrete_energy(f, w, h)
+        }
+    };
+}
+
+/// What doesn't depend on how the equation is solved.
+macro_rules! staged_as {
+    ($inner:ty) => {
+        type Scalar = Scalar<$inner>;
+        type Group = Group<$inner>;
+        type Retraction = <$inner as Effect>::Retraction;
+        type Kinetic = WithKinetic;
+        type Advected = <$inner as Effect>::Advected;
+
+        const PARTS: Parts = <$inner>::PARTS;
+        const DERIVATION: &'static str = <$inner>::DERIVATION;
+
+        fn validate(&self) -> Result<(), SetupError> {
+            self.0.validate()
+        }
+
+        fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
+            self.0.describe(visitor);
+        }
+
+        fn advected(&self) -> Self::Advected {
+            self.0.advected()
+        }
+
+        fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
+            self.0.momentum_jacobian(f, w, h)
         }
 
         fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
@@ -66,10 +79,16 @@ macro_rules! terms_of {
 pub struct WithJacobian<L>(pub L);
 
 impl<L: DiscreteLagrangian> DiscreteLagrangian for WithJacobian<L> {
+    declared_as!(L);
+}
+
+impl<L: Effect> Effect for WithJacobian<L> {
     type Constants = L::Constants;
     type StepTerms = L::StepTerms;
 
-    terms_of!(L);
+    const DENOMINATORS: u32 = L::DENOMINATORS;
+
+    staged_as!(L);
 
     fn inertia(&self) -> Square<Self> {
         self.0.inertia()
@@ -126,10 +145,18 @@ where
     T: Real,
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy + Debug + PartialEq,
 {
+    declared_as!(L);
+}
+
+impl<T, L> Effect for WithoutJacobian<L, T>
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy + Debug + PartialEq,
+{
     type Constants = (L::Constants, L, T);
     type StepTerms = (Vector3<T>, L::Advected);
 
-    terms_of!(L);
+    staged_as!(L);
 
     const JACOBIAN_IS_DEAR: bool = true;
 
