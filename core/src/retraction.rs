@@ -33,7 +33,7 @@ pub trait Retraction<G: LieGroup> {
     /// `h`, with the given `J`.
     ///
     /// An approximation will do: a solver takes it for the Jacobian of a momentum equation where the exact one is dear,
-    /// see [`DiscreteLagrangian::JACOBIAN_IS_DEAR`](crate::DiscreteLagrangian::JACOBIAN_IS_DEAR), and corrects it as it
+    /// see [`Effect::JACOBIAN_IS_DEAR`](crate::Effect::JACOBIAN_IS_DEAR), and corrects it as it
     /// goes. This default is its value at the identity, `J`.
     #[must_use]
     fn free_momentum_tangent(

@@ -20,7 +20,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 pub struct StepReport {
     /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up.
     ///
-    /// Where the [Jacobian is dear](DiscreteLagrangian::JACOBIAN_IS_DEAR) they are residuals, up to eight, to which come
+    /// Where the [Jacobian is dear](Effect::JACOBIAN_IS_DEAR) they are residuals, up to eight, to which come
     /// the iterations with the Jacobian where these weren't enough.
     pub iterations: u32,
     /// What was done in the place of this step; only by a [`RemediedStepper`](crate::RemediedStepper).
