@@ -39,7 +39,7 @@ const fn shown<L: DiscreteLagrangian>(name: &'static str, about: &'static str) -
 }
 
 /// All of them; a new one is one line.
-const LAGRANGIANS: [Shown; 16] = [
+const LAGRANGIANS: [Shown; 17] = [
     shown::<declarations::HeavyTop>("heavy-top", "(3.13) in principal axes: μ is (3.17), (L_F)* δl_d/δF is (3.18)"),
     shown::<declarations::FullTop>("full-top", "(3.13) with a full inertia tensor"),
     shown::<declarations::FreeBody>("free-body", "the kinetic part of (3.13) alone"),
@@ -49,6 +49,7 @@ const LAGRANGIANS: [Shown; 16] = [
     shown::<declarations::FourthOrderTop>("fourth-order-top", "order 4 in one solve"),
     shown::<declarations::SixthOrderTop>("sixth-order-top", "order 6 in one solve"),
     shown::<declarations::FourthOrderBody>("fourth-order-body", "a free body, order 4 in one solve"),
+    shown::<declarations::SixthOrderBody>("sixth-order-body", "a free body, order 6 in one solve"),
     shown::<declarations::Satellite>("satellite", "attitude in the gravity of a near centre"),
     shown::<declarations::OrbitingBody>("orbiting-body", "orbit and attitude on SE(3)"),
     shown::<declarations::Spring>("spring", "a body tied to a fixed point"),
