@@ -86,8 +86,10 @@ impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
     /// What it returns is what [`solve`](Self::solve) returns. A determinant above `largest` is doubtful: where the right
-    /// side is so large that the Jacobian is lost in its rounding, an update may vanish far from any solution. Nothing here is lent to a function that isn't inlined,
-    /// so that all of it can stay in registers; that is a sixth of the time of a step.
+    /// side is so large that the Jacobian is lost in its rounding, an update may vanish far from any solution.
+    ///
+    /// Nothing here is lent to a function that isn't inlined, so that all of it can stay in registers; that is a sixth
+    /// of the time of a step.
     #[inline(always)]
     pub(crate) fn solve_directly(&self, guess: &Vector<L>, largest: Scalar<L>) -> Option<Root<L>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);

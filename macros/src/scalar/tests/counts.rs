@@ -60,7 +60,7 @@ fn in_principal_axes() {
     assert!(matrices.arithmetic <= 18 && matrices.sign_flips <= 6, "{matrices}");
     assert!(on_matrices(&derived, Stage::Construction).arithmetic <= 14);
     assert!(3 + on_matrices(&derived, Stage::Step).arithmetic <= 18);
-    // The matrix form needs fewer; in Cayley form sums and differences of the moments are made here.
+    // The matrix form needs fewer, but isn't what is emitted; in Cayley form sums and differences of the moments are made here.
     assert!(of_stage(&kernel, Stage::Construction).arithmetic <= 21);
     assert!(before_the_solve(&kernel) <= 15, "{}", before_the_solve(&kernel));
     assert!(left_momentum(&derived).arithmetic <= 52, "{}", left_momentum(&derived));
