@@ -20,6 +20,7 @@ mod sixth_order_body;
 mod sixth_order_top;
 mod spring;
 mod tethered_plate;
+mod tops;
 mod underwater_body;
 
 pub use cayley_top::CayleyTop;
@@ -37,4 +38,5 @@ pub use sixth_order_body::SixthOrderBody;
 pub use sixth_order_top::SixthOrderTop;
 pub use spring::Spring;
 pub use tethered_plate::TetheredPlate;
+pub use tops::Top;
 pub use underwater_body::UnderwaterBody;

@@ -1,13 +1,13 @@
 //! Symmetric compositions of declared Lagrangians.
 
-use liestep::{Composition, CompositionScheme, DiscreteLagrangian, Inertia, LieGroup as _, Regular, SO3, StepError};
+use liestep::{Composition, CompositionScheme, DiscreteLagrangian, LieGroup as _, Regular, SO3, StepError};
 use nalgebra::Vector3;
 
 use crate::common::measure::relative;
 use crate::common::random::Random;
 use crate::common::reference::{Motion, looping};
 use crate::common::structure::poisson::{TOLERANCE, defect_of};
-use crate::common::tops::{FreeBody, HeavyTop, moments};
+use crate::common::tops::{FreeBody, HeavyTop};
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::declarations::{FourthOrderTop, SixthOrderTop};
 
@@ -62,17 +62,11 @@ fn sofroniou_spaletta_10_is_of_order_10() {
     assert_order_on_tops(CompositionScheme::SOFRONIOU_SPALETTA_10, 1.07, &[370, 330, 340]);
 }
 
-fn inertia(motion: &Motion) -> Inertia {
-    Inertia::from_principal_moments(moments(&motion.top)).unwrap()
-}
-
 #[test]
 fn suzuki_6_of_the_fourth_order_top_is_of_order_6() {
     let scheme = CompositionScheme::SUZUKI_6;
     assert_order((scheme.name(), 6), (TOPS[0], 1.0), &counts(40, 1.5, 5), |motion, h, steps| {
-        let top = &motion.top;
-        let top = FourthOrderTop { J: inertia(motion), weight: top.m * top.g, rho: top.rho, up: top.up };
-        end(top, scheme, motion, h, steps)
+        end(motion.top.declared_as::<FourthOrderTop>(), scheme, motion, h, steps)
     });
 }
 
@@ -80,9 +74,7 @@ fn suzuki_6_of_the_fourth_order_top_is_of_order_6() {
 fn suzuki_8_of_the_sixth_order_top_is_of_order_8() {
     let scheme = CompositionScheme::SUZUKI_8;
     assert_order((scheme.name(), 8), (TOPS[0], 1.0), &counts(10, 1.3, 5), |motion, h, steps| {
-        let top = &motion.top;
-        let top = SixthOrderTop { J: inertia(motion), weight: top.m * top.g, rho: top.rho, up: top.up };
-        end(top, scheme, motion, h, steps)
+        end(motion.top.declared_as::<SixthOrderTop>(), scheme, motion, h, steps)
     });
 }
 

@@ -4,8 +4,6 @@
 
 // The letters of the field.
 #![allow(non_snake_case)]
-// The tops are declared for the other tests too, in `common`.
-#![allow(clippy::duplicate_mod)]
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -15,5 +13,6 @@ mod declarations;
 mod composition;
 mod conditions;
 mod convergence;
+mod higher_order;
 mod preprocessed;
 mod splitting;

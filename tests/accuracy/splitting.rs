@@ -10,7 +10,7 @@ use crate::common::measure::relative;
 use crate::common::random::Random;
 use crate::common::reference::{Motion, looping};
 use crate::common::structure::poisson::{TOLERANCE, defect_of};
-use crate::common::tops::{FreeBody, HeavyTop, moments};
+use crate::common::tops::{FreeBody, HeavyTop, inertia};
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBody};
 
@@ -25,10 +25,6 @@ const SCHEMES: [SplittingScheme; 9] = [
     SplittingScheme::NEAR_INTEGRABLE_8_6_4,
     SplittingScheme::NEAR_INTEGRABLE_10_6_4,
 ];
-
-fn inertia(top: &HeavyTop) -> Inertia {
-    Inertia::from_principal_moments(moments(top)).unwrap()
-}
 
 fn symmetric(top: &HeavyTop) -> SymmetricBody {
     SymmetricBody::new(&inertia(top)).unwrap()
@@ -298,8 +294,8 @@ fn a_body_without_symmetry_has_no_exact_flow() {
 /// The fourth-order top has `F` and `w` in one term; a half-step kick is all that a splitting may have.
 #[test]
 fn a_lagrangian_that_cannot_be_split_is_refused() {
-    let (top, J) = (HeavyTop::thesis(), inertia(&HeavyTop::thesis()));
-    let coupled = FourthOrderTop { J, weight: 9.81, rho: top.rho, up: top.up };
+    let top = HeavyTop::thesis();
+    let coupled: FourthOrderTop = top.declared_as();
     let error = Splitting::new(coupled, symmetric(&top), 0.01, SplittingScheme::STRANG).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }
@@ -308,8 +304,7 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
 #[test]
 fn the_kinetic_part_is_replaced() {
     let motion = looping();
-    let J = inertia(&motion.top);
-    let log = LogTop { J, weight: 9.81, rho: motion.top.rho, up: motion.top.up };
+    let log: LogTop = motion.top.declared_as();
     let scheme = SplittingScheme::NYSTROM_11;
     let (a, b) = (
         Splitting::new(log, symmetric(&motion.top), 0.05, scheme).unwrap(),

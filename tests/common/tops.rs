@@ -3,16 +3,11 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::{DiagonalNonstandardInertia, NonstandardInertia};
+use liestep::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
 use nalgebra::Vector3;
 
-#[path = "../../examples/declarations/free_body.rs"]
-mod free_body;
-#[path = "../../examples/declarations/heavy_top.rs"]
-mod heavy_top;
-
-pub use free_body::FreeBody;
-pub use heavy_top::{FullTop, HeavyTop};
+use crate::declarations::Top;
+pub use crate::declarations::{FreeBody, FullTop, HeavyTop};
 
 impl HeavyTop {
     /// The thesis' body: `J_d = diag(2, 2, 1)`, one metre below its centre of mass, reading A.
@@ -30,6 +25,13 @@ impl HeavyTop {
     pub fn asymmetric() -> Self {
         let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap();
         Self { J_d, m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
+    }
+}
+
+impl HeavyTop {
+    /// The same body under the same gravity, declared as another top.
+    pub fn declared_as<L: Top>(&self) -> L {
+        L::new(inertia(self), self.m * self.g, self.rho, self.up)
     }
 }
 
@@ -52,4 +54,9 @@ impl FreeBody {
 pub fn moments(top: &HeavyTop) -> Vector3<f64> {
     let d = top.J_d.diagonal();
     Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y)
+}
+
+/// The ordinary inertia, which all declarations but (3.13) take.
+pub fn inertia(top: &HeavyTop) -> Inertia {
+    Inertia::from_principal_moments(moments(top)).unwrap()
 }

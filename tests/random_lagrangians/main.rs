@@ -5,6 +5,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../../examples/declarations/mod.rs"]
+mod declarations;
 
 mod family;
 

@@ -2,9 +2,6 @@
 //!
 //! One crate, so that the declarations on SE(3) are expanded once.
 
-// The tops are declared for the other tests too, in `common`.
-#![allow(clippy::duplicate_mod)]
-
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../../examples/declarations/mod.rs"]

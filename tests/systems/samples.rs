@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, Matrix3, Matrix4, SVector, UnitComplex, UnitQuaternion, 
 
 use crate::declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
-    OrbitingBody, Satellite, SixthOrderTop, Spring, TetheredPlate, UnderwaterBody,
+    OrbitingBody, Satellite, SixthOrderTop, Spring, TetheredPlate, Top, UnderwaterBody,
 };
 
 /// Where a motion starts.
@@ -89,28 +89,30 @@ pub fn log_trace_top() -> LogTraceTop {
     LogTraceTop { I1: 3.0, weight: 5.0, rho: Vector3::new(0.1, 0.2, 0.9), up: Vector3::z() }
 }
 
-pub fn cayley_top() -> CayleyTop {
+/// Any of the tops that are declared with the same parameters.
+fn top<L: Top>() -> L {
     let J = Inertia::from_principal_moments(MOMENTS).unwrap();
-    CayleyTop { J, weight: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
+    L::new(J, 9.81, Vector3::new(0.3, 0.2, 0.4), Vector3::z())
+}
+
+pub fn cayley_top() -> CayleyTop {
+    top()
 }
 
 pub fn log_top() -> LogTop {
-    let CayleyTop { J, weight, rho, up } = cayley_top();
-    LogTop { J, weight, rho, up }
+    top()
 }
 
 pub fn fourth_order_top() -> FourthOrderTop {
-    let CayleyTop { J, weight, rho, up } = cayley_top();
-    FourthOrderTop { J, weight, rho, up }
+    top()
 }
 
 pub fn sixth_order_top() -> SixthOrderTop {
-    let CayleyTop { J, weight, rho, up } = cayley_top();
-    SixthOrderTop { J, weight, rho, up }
+    top()
 }
 
 pub fn fourth_order_body() -> FourthOrderBody {
-    FourthOrderBody { J: cayley_top().J }
+    FourthOrderBody { J: Inertia::from_principal_moments(MOMENTS).unwrap() }
 }
 
 /// So near to the centre that the potential is far from its expansion.

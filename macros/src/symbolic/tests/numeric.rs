@@ -135,7 +135,9 @@ fn factor_value(factor: &Factor, values: &Values) -> Matrix {
     let turned = |matrix: Matrix, transposed: bool| if transposed { matrix.transpose() } else { matrix };
     match factor {
         Factor::Symbol { id, transposed } => turned(values[id].clone(), *transposed),
-        Factor::Inverse { .. } => unreachable!("only off the orthogonal groups, where tests/other_groups.rs looks"),
+        Factor::Inverse { .. } => {
+            unreachable!("only off the orthogonal groups, where tests/derivation/other_groups.rs looks")
+        }
         Factor::Unit { index, size, transposed } => turned(Matrix::unit(*index, *size), *transposed),
         Factor::Hat(word) => product(word, values).hat(),
         Factor::Diagonal(word) => product(word, values).diagonal(),

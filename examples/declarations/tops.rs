@@ -1,0 +1,25 @@
+//! The tops that differ by their kinetic term or order alone: one body, one weight, one constructor.
+
+use liestep::Inertia;
+use nalgebra::Vector3;
+
+use super::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop};
+
+/// A top declared by its inertia about the pivot (kg m²), its weight (N), its centre of mass in the body's frame (m) and
+/// the vertical.
+pub trait Top: Sized {
+    /// The top with these parameters.
+    fn new(J: Inertia, weight: f64, rho: Vector3<f64>, up: Vector3<f64>) -> Self;
+}
+
+macro_rules! tops {
+    ($($top:ident)+) => {$(
+        impl Top for $top {
+            fn new(J: Inertia, weight: f64, rho: Vector3<f64>, up: Vector3<f64>) -> Self {
+                Self { J, weight, rho, up }
+            }
+        }
+    )+};
+}
+
+tops!(CayleyTop LogTop FourthOrderTop SixthOrderTop);

@@ -1,0 +1,226 @@
+//! Several tops at once in SIMD lanes: each lane is, bit for bit, a top of its own.
+
+use liestep::{DiagonalNonstandardInertia, LieGroup as _, Real, SO3, StepError, Stepper, lagrangian};
+use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
+use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
+
+use crate::common::random::Random;
+
+/// (3.13) in principal axes, for any scalar.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
+)]
+#[derive(Clone, Debug)]
+#[allow(non_snake_case)] // the letters of the field
+struct Top<T: Real> {
+    J_d: DiagonalNonstandardInertia<T>,
+    weight: T,
+    rho: Vector3<T>,
+    up: Vector3<T>,
+}
+
+/// One lane: a body, where it starts and how fast it turns.
+#[derive(Clone)]
+struct Lane<E: Real> {
+    top: Top<E>,
+    attitude: SO3<E>,
+    velocity: Vector3<E>,
+}
+
+fn lane<E: Real + RealField>(random: &mut Random, speed: f64) -> Lane<E> {
+    let vector = |v: Vector3<f64>| v.map(nalgebra::convert::<f64, E>);
+    let moments = Vector3::new(2.5, 3.0, 4.0) + random.vector() * 0.4;
+    let top = Top {
+        J_d: DiagonalNonstandardInertia::from_principal_moments(vector(moments)).unwrap(),
+        weight: nalgebra::convert(9.81 + random.signed()),
+        rho: vector(random.vector()),
+        up: Vector3::z(),
+    };
+    let attitude = UnitQuaternion::from_scaled_axis(vector(random.vector())).into();
+    Lane { top, attitude, velocity: vector(random.direction() * speed) }
+}
+
+/// The scalar of `N` lanes of `E`.
+trait Wide<const N: usize>: Real<Element: Real + RealField> + From<[Self::Element; N]> {}
+
+impl<T: Real<Element: Real + RealField> + From<[T::Element; N]>, const N: usize> Wide<N> for T {}
+
+fn gathered<T: Wide<N>, const N: usize>(lane: impl Fn(usize) -> Vector3<T::Element>) -> Vector3<T> {
+    Vector3::from_fn(|i, _| T::from(core::array::from_fn(|k| lane(k)[i])))
+}
+
+type Running<T> = (Stepper<Top<T>>, liestep::State<SO3<T>, Vector3<T>>);
+
+fn start<T: Real>(top: Top<T>, h: f64, attitude: SO3<T>, velocity: Vector3<T>) -> Running<T> {
+    let stepper = Stepper::new(top, nalgebra::convert(h)).unwrap();
+    let state = stepper.start(attitude, velocity).unwrap();
+    (stepper, state)
+}
+
+fn together<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64) -> Running<T> {
+    let top = Top {
+        J_d: lanes.each_ref().map(|lane| lane.top.J_d).into(),
+        weight: T::from(lanes.each_ref().map(|lane| lane.top.weight)),
+        rho: gathered::<T, N>(|k| lanes[k].top.rho),
+        up: gathered::<T, N>(|k| lanes[k].top.up),
+    };
+    let attitude: SO3<T> = lanes.each_ref().map(|lane| lane.attitude).into();
+    start(top, h, attitude, gathered::<T, N>(|k| lanes[k].velocity))
+}
+
+fn alone<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64) -> [Running<T::Element>; N] {
+    lanes.each_ref().map(|lane| start(lane.top.clone(), h, lane.attitude, lane.velocity))
+}
+
+/// Each lane against a scalar run of its own, after every step; how often the lanes' iteration counts differed.
+fn assert_independent<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64, steps: u32) -> u32 {
+    let (stepper, mut state) = together::<T, N>(lanes, h);
+    let mut singles = alone::<T, N>(lanes, h);
+    let mut unequal = 0;
+    for step in 0..steps {
+        let report = stepper.step(&mut state).unwrap();
+        let iterations = singles.each_mut().map(|(stepper, state)| stepper.step(state).unwrap().iterations);
+        unequal += u32::from(iterations.iter().any(|count| *count != iterations[0]));
+        assert_eq!(report.iterations, iterations.into_iter().max().unwrap(), "step {step}");
+        for (k, (_, single)) in singles.iter().enumerate() {
+            assert_eq!(
+                state.attitude().as_matrix().extract(k),
+                *single.attitude().as_matrix(),
+                "step {step}, lane {k}"
+            );
+            assert_eq!(state.momentum().extract(k), single.momentum(), "step {step}, lane {k}");
+            assert_eq!(state.advected().extract(k), single.advected(), "step {step}, lane {k}");
+        }
+    }
+    unequal
+}
+
+/// From slow to fast, so that the lanes need unequal numbers of iterations.
+#[allow(clippy::cast_precision_loss)] // a lane's number
+fn spread<E: Real + RealField, const N: usize>(seed: u64, fastest: f64) -> [Lane<E>; N] {
+    let mut random = Random::new(seed);
+    core::array::from_fn(|k| lane(&mut random, fastest * 0.01_f64.powf(k as f64 / (N - 1) as f64)))
+}
+
+#[test]
+fn each_lane_moves_as_alone() {
+    let unequal = [
+        assert_independent::<WideF64x4, 4>(&spread(1, 32.0), 0.01, 2000),
+        assert_independent::<AutoF64x8, 8>(&spread(2, 32.0), 0.01, 2000),
+        assert_independent::<WideF32x8, 8>(&spread(3, 4.0), 0.1, 2000),
+    ];
+    assert!(unequal.iter().all(|&steps| steps > 100), "{unequal:?}");
+}
+
+/// A lane that turns by some 70° a step extrapolates no more; the others still do.
+#[test]
+fn a_lane_near_a_quarter_turn_changes_no_other() {
+    let mut lanes: [Lane<f64>; 4] = spread(8, 4.0);
+    lanes[1].top.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    lanes[1].top.weight = 0.01;
+    lanes[1].velocity = Vector3::z() * 9.5;
+    assert_independent::<WideF64x4, 4>(&lanes, 0.1, 200);
+}
+
+/// A guess on another branch makes its lane start anew from the identity, and no other.
+#[test]
+fn a_lane_with_a_bad_guess_changes_no_other() {
+    let lanes: [Lane<f64>; 4] = spread(4, 32.0);
+    let (stepper, state) = together::<WideF64x4, 4>(&lanes, 0.01);
+    let singles = alone::<WideF64x4, 4>(&lanes, 0.01);
+    let mut random = Random::new(5);
+    let mut anew = 0;
+    for _ in 0..100 {
+        // Cayley coordinates of turns up to 175°.
+        let bad = random.vector() * 50.0;
+        let guess = |k: usize| if k == 0 { bad } else { lanes[k].velocity * 0.01 };
+        let wide = stepper.flow().step(&state.momentum(), &state.advected(), &gathered::<WideF64x4, 4>(guess)).unwrap();
+        for (k, (stepper, state)) in singles.iter().enumerate() {
+            let single = stepper.flow().step(&state.momentum(), &state.advected(), &guess(k)).unwrap();
+            assert_eq!(wide.coordinates.extract(k), single.coordinates, "lane {k}, guess {bad}");
+            assert_eq!(wide.momentum.extract(k), single.momentum, "lane {k}, guess {bad}");
+            assert!(k == 0 || single.iterations < 10);
+            anew += u32::from(single.iterations > 20);
+        }
+    }
+    assert!(anew >= 10, "{anew}");
+}
+
+/// One lane without a solution: no lane moves.
+#[test]
+fn an_unsolvable_lane_leaves_all_as_they_were() {
+    let mut lanes: [Lane<f64>; 4] = spread(6, 32.0);
+    lanes[1].velocity = Vector3::new(20.0, 20.0, 300.0);
+    let (stepper, mut state) = together::<WideF64x4, 4>(&lanes, 0.01);
+    let before = state;
+    let refused = stepper.step(&mut state);
+    assert!(
+        matches!(refused, Err(StepError::BeyondSolvable { step, largest }) if largest > 0.0 && largest < step),
+        "{refused:?}"
+    );
+    assert_eq!(state, before);
+    // Without it the others move.
+    lanes[1].velocity = Vector3::x();
+    assert_independent::<WideF64x4, 4>(&lanes, 0.01, 10);
+}
+
+/// What one lane can't use is refused for all.
+#[test]
+fn a_lane_that_is_not_finite_is_refused() {
+    let lanes: [Lane<f64>; 4] = spread(7, 32.0);
+    let (stepper, state) = together::<WideF64x4, 4>(&lanes, 0.01);
+    let mut momentum = state.momentum();
+    momentum.x.replace(3, f64::NAN);
+    assert!(stepper.start_with_momentum(state.attitude(), momentum).is_err());
+    let mut attitude = *state.attitude().as_matrix();
+    attitude.m11.replace(2, 0.0);
+    assert!(stepper.start_with_momentum(SO3::from_matrix_unchecked(attitude), state.momentum()).is_err());
+    let top = stepper.lagrangian().clone();
+    for bad in [0.0, f64::NAN] {
+        assert!(Stepper::new(top.clone(), WideF64x4::from([0.01, 0.01, bad, 0.01])).is_err(), "{bad}");
+    }
+}
+
+/// The logarithmic kinetic term of Bobenko and Suris, with a spring and an oscillating field.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = -(2.0 * k / h) * ((1.0 + F.trace()) / 4.0).ln()
+        - 0.5 * h * ((w - rho).norm() + (F * rho - w).norm() + k * w.dot(&(F * rho)).sin()),
+)]
+struct Smooth<T: Real> {
+    k: T,
+    rho: Vector3<T>,
+    up: Vector3<T>,
+}
+
+fn smooth<T: Real>(k: T, rho: Vector3<T>, velocity: Vector3<T>) -> (Matrix3<T>, Vector3<T>) {
+    let stepper = Stepper::new(Smooth { k, rho, up: Vector3::z() }, nalgebra::convert(0.01)).unwrap();
+    let mut state = stepper.start(SO3::identity(), velocity).unwrap();
+    for _ in 0..100 {
+        stepper.step(&mut state).unwrap();
+    }
+    (*state.attitude().as_matrix(), state.momentum())
+}
+
+/// Lanes have a sine of their own, so here they agree to rounding only.
+#[test]
+fn smooth_functions_in_lanes() {
+    let mut random = Random::new(9);
+    let k = [1.0, 1.5, 2.0, 3.0];
+    let (rho, velocity) = (k.map(|_| random.vector()), k.map(|k| random.direction() * 4.0 / k));
+    let wide = smooth(
+        WideF64x4::from(k),
+        gathered::<WideF64x4, 4>(|lane| rho[lane]),
+        gathered::<WideF64x4, 4>(|lane| velocity[lane]),
+    );
+    for lane in 0..4 {
+        let (attitude, momentum) = smooth(k[lane], rho[lane], velocity[lane]);
+        // A hundred steps' roundings.
+        assert!((wide.0.extract(lane) - attitude).norm() < 1e-13, "lane {lane}");
+        assert!((wide.1.extract(lane) - momentum).norm() < 1e-13 * momentum.norm(), "lane {lane}");
+    }
+}

@@ -1,0 +1,308 @@
+//! Lagrangians on groups other than SO(3): every derived term against central differences of the declared `l_d`, the
+//! staged step against the unstaged terms, and what the discrete flow conserves exactly.
+
+use crate::common::random::Random;
+use crate::common::structure::{System, momenta, stages};
+use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use liestep::{
+    Coordinates, DiscreteLiePoisson, Generators, Heisenberg, LieGroup, MatrixGroup, R2, Regular, SE2, SE3, SL2, SO2,
+    SU2, Stepper, lagrangian,
+};
+use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
+
+/// A planar pendulum.
+#[lagrangian(
+    group = SO2,
+    advected(w = up),
+    l_d = inertia * (2.0 - F.trace()) / h - 0.5 * h * weight * w.dot(&(rho + F * rho)),
+)]
+struct Pendulum {
+    inertia: f64,
+    weight: f64,
+    rho: Vector2<f64>,
+    up: Vector2<f64>,
+}
+
+/// A planar body in uniform gravity: `J = ∫ X Xᵀ dm` and `r = ∫ X dm` in homogeneous coordinates.
+#[lagrangian(
+    group = SE2,
+    advected(w = up),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * g * w.dot(&(r + F * r)),
+)]
+struct PlanarBody {
+    J: Matrix3<f64>,
+    g: f64,
+    r: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// The same in space.
+#[lagrangian(
+    group = SE3,
+    advected(w = up),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * g * w.dot(&(r + F * r)),
+)]
+struct Body {
+    J: Matrix4<f64>,
+    g: f64,
+    r: Vector4<f64>,
+    up: Vector4<f64>,
+}
+
+/// A top in unit quaternions, with a potential that a rotation by 2π would change.
+#[lagrangian(
+    group = SU2,
+    advected(w = up),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() * 2.0 / h - 0.5 * h * k * w.dot(&(rho + F * rho)),
+)]
+struct Quaternion {
+    J: Matrix4<f64>,
+    k: f64,
+    rho: Vector4<f64>,
+    up: Vector4<f64>,
+}
+
+/// A pseudo-rigid motion of unit determinant, with a nonlinear potential.
+#[lagrangian(
+    group = SL2,
+    advected(w = covector),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * (k * w.dot(&(r + F * r)) + k * w.dot(&(F * r)).powi(2) + k * w.dot(&r).powi(2)),
+)]
+struct PseudoRigid {
+    J: Matrix2<f64>,
+    k: f64,
+    r: Vector2<f64>,
+    covector: Vector2<f64>,
+}
+
+/// A left-invariant metric on the Heisenberg group, with a potential.
+#[lagrangian(
+    group = Heisenberg,
+    advected(w = covector),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * k * w.dot(&(r + F * r)),
+)]
+struct Nilpotent {
+    J: Matrix3<f64>,
+    k: f64,
+    r: Vector3<f64>,
+    covector: Vector3<f64>,
+}
+
+/// A particle in the plane, in uniform gravity: exactly a parabola.
+#[lagrangian(
+    group = R2,
+    advected(w = up),
+    l_d = m * (F - I).norm_squared() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(origin + F * origin)),
+)]
+struct Particle {
+    m: f64,
+    g: f64,
+    origin: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// The affine maps `x ↦ a x + b` of the line: a group of one's own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AffineGenerators;
+
+impl Generators<2, 2> for AffineGenerators {
+    const GENERATORS: [[[f64; 2]; 2]; 2] = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
+
+    fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+        m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
+    }
+}
+
+type Affine<T = f64> = MatrixGroup<AffineGenerators, T, 2, 2>;
+
+/// A scale and a shift.
+#[lagrangian(
+    group = Affine,
+    generators = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]],
+    advected(w = covector),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * k * w.dot(&(r + F * r)).powi(2),
+)]
+struct Scaling {
+    J: Matrix2<f64>,
+    k: f64,
+    r: Vector2<f64>,
+    covector: Vector2<f64>,
+}
+
+/// Every kind of advected parameter on SL(2), whose representation isn't orthogonal.
+#[lagrangian(
+    group = SL2,
+    advected(w = covector, v = vector, S = tensor, B = form, A = map),
+    l_d = {
+        let potential = w.dot(&(F * r)) + (F.transpose() * covariant).dot(&v) + (S * F).trace() + (B * F * r).dot(&r)
+            + (A * F).trace() * w.dot(&v) + (S * B).trace() + (A * S * F).trace();
+        ((F - I) * (F - I).transpose()).trace() * m / (2.0 * h) - 0.5 * h * potential
+    },
+)]
+struct Kinds {
+    m: f64,
+    r: Vector2<f64>,
+    covariant: Vector2<f64>,
+    covector: Vector2<f64>,
+    vector: ContravariantVector<f64, 2>,
+    tensor: ContravariantTensor<f64, 2>,
+    form: CovariantTensor<f64, 2>,
+    map: MixedTensor<f64, 2>,
+}
+
+fn kinds() -> Kinds {
+    let mut r = Random::new(8);
+    Kinds {
+        m: 1.5,
+        r: column(&mut r),
+        covariant: column(&mut r),
+        covector: column(&mut r),
+        vector: ContravariantVector(column(&mut r)),
+        tensor: ContravariantTensor(tensor(&mut r)),
+        form: CovariantTensor(tensor(&mut r)),
+        map: MixedTensor(tensor(&mut r)),
+    }
+}
+
+/// A symmetric positive definite matrix.
+fn tensor<const N: usize>(r: &mut Random) -> SMatrix<f64, N, N> {
+    let root = SMatrix::<f64, N, N>::from_fn(|_, _| r.signed());
+    root * root.transpose() + SMatrix::identity()
+}
+
+fn column<const N: usize>(r: &mut Random) -> SVector<f64, N> {
+    SVector::from_fn(|_, _| r.signed())
+}
+
+/// How far 100 steps and as many back end from the start; on the way the energy stays near.
+fn there_and_back<L, const N: usize, const D: usize>(forth: L, back: L) -> f64
+where
+    L: Regular<Scalar = f64, Advected = SVector<f64, N>>,
+    L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    let mut r = Random::new(9);
+    let (forth, back) = (Stepper::new(forth, 0.01).unwrap(), DiscreteLiePoisson::new(back, -0.01).unwrap());
+    let mut state = forth.start(L::Group::identity(), column::<D>(&mut r)).unwrap();
+    let (start, w, energy) = (state.momentum(), state.advected(), forth.energy(&state));
+    for _ in 0..100 {
+        forth.step(&mut state).unwrap();
+        let change = (forth.energy(&state) - energy).abs();
+        assert!(change < 1e-2 * (1.0 + energy.abs()), "{change} of {energy}");
+    }
+    assert!((state.momentum() - start).norm() > 1e-3, "something has moved");
+    let (mut momentum, mut advected) = (state.momentum(), state.advected());
+    for _ in 0..100 {
+        let step = back.step(&momentum, &advected, &SVector::zeros()).unwrap();
+        (momentum, advected) = (step.momentum, step.advected);
+    }
+    (momentum - start).norm() / (1.0 + start.norm()) + (advected - w).norm() / (1.0 + w.norm())
+}
+
+fn pendulum() -> Pendulum {
+    Pendulum { inertia: 1.3, weight: 9.81, rho: Vector2::new(0.1, -0.4), up: Vector2::y() }
+}
+
+fn planar_body() -> PlanarBody {
+    PlanarBody { J: tensor(&mut Random::new(1)), g: 9.81, r: Vector3::new(0.2, 0.1, 1.0), up: Vector3::y() }
+}
+
+fn body() -> Body {
+    Body { J: tensor(&mut Random::new(1)), g: 9.81, r: Vector4::new(0.2, 0.1, -0.3, 1.0), up: Vector4::z() }
+}
+
+fn quaternion() -> Quaternion {
+    let mut r = Random::new(2);
+    Quaternion { J: tensor(&mut r), k: 0.7, rho: column(&mut r), up: column(&mut r) }
+}
+
+fn pseudo_rigid() -> PseudoRigid {
+    let mut r = Random::new(4);
+    PseudoRigid { J: tensor(&mut r), k: 0.6, r: column(&mut r), covector: column(&mut r) }
+}
+
+fn nilpotent() -> Nilpotent {
+    let mut r = Random::new(5);
+    Nilpotent { J: tensor(&mut r), k: 0.8, r: column(&mut r), covector: column(&mut r) }
+}
+
+fn scaling() -> Scaling {
+    let mut r = Random::new(6);
+    Scaling { J: tensor(&mut r), k: 0.8, r: column(&mut r), covector: column(&mut r) }
+}
+
+fn particle() -> Particle {
+    Particle { m: 2.0, g: 9.81, origin: Vector3::z(), up: Vector3::y() }
+}
+
+/// The derived terms against the declared `l_d`, and the step in stages against these.
+fn derived_terms<L, const N: usize, const D: usize>(system: &L)
+where
+    L: System<N, D>,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    momenta::assert_momenta(system, 3);
+    stages::assert_stages(system, 4);
+}
+
+macro_rules! on_a_group {
+    ($($name:ident $system:ident),+ $(,)?) => {
+        $(
+            #[test]
+            fn $name() {
+                derived_terms(&$system());
+            }
+        )+
+    };
+}
+
+on_a_group!(
+    so2 pendulum,
+    se2 planar_body,
+    se3 body,
+    su2 quaternion,
+    sl2 pseudo_rigid,
+    heisenberg nilpotent,
+    r2 particle,
+    affine scaling,
+);
+
+/// All five kinds at once, each in a term of its own and in one with another.
+#[test]
+fn kinds_of_advected_parameters() {
+    derived_terms(&kinds());
+}
+
+/// Where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, a step of `−h` undoes one of `h`.
+#[test]
+fn self_adjoint_declarations_reverse() {
+    let ours = [
+        there_and_back::<_, 2, 1>(pendulum(), pendulum()),
+        there_and_back::<_, 3, 3>(planar_body(), planar_body()),
+        there_and_back::<_, 4, 6>(body(), body()),
+        there_and_back::<_, 4, 3>(quaternion(), quaternion()),
+        there_and_back::<_, 3, 2>(particle(), particle()),
+    ];
+    assert!(ours.iter().all(|&error| error <= 1e-12), "{ours:?}");
+}
+
+/// Off the orthogonal groups the square of `F − I` isn't that of `F⁻¹ − I`, and the scheme isn't symmetric.
+#[test]
+fn one_sided_kinetic_terms_do_not_reverse() {
+    assert!(there_and_back::<_, 2, 3>(pseudo_rigid(), pseudo_rigid()) > 1e-6);
+    assert!(there_and_back::<_, 3, 3>(nilpotent(), nilpotent()) > 1e-6);
+}
+
+/// On R² the scheme is Störmer and Verlet's, and a uniform field gives the exact parabola.
+#[test]
+fn a_particle_falls_on_a_parabola() {
+    let stepper = Stepper::new(particle(), 0.1).unwrap();
+    let mut state = stepper.start(R2::identity(), Vector2::new(3.0, 4.0)).unwrap();
+    for _ in 0..10 {
+        stepper.step(&mut state).unwrap();
+    }
+    let g = state.attitude().matrix();
+    assert!((g[(0, 2)] - 3.0).abs() < 1e-13);
+    assert!((g[(1, 2)] - (4.0 - 0.5 * 9.81)).abs() < 1e-13);
+}

@@ -1,0 +1,133 @@
+//! Which declarations are their own adjoint, as the macro has found out.
+
+#![allow(dead_code)] // nothing here is stepped
+
+use liestep::{DiscreteLagrangian, Inertia, NonstandardInertia, SE3, SO3, lagrangian};
+use nalgebra::{Matrix4, Vector3};
+
+/// The kinetic term of (3.13) with all of the potential at one end.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * weight * w.dot(&rho),
+)]
+struct OneEnd {
+    J_d: NonstandardInertia,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// (3.13): half of it at each end.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
+)]
+struct BothEnds {
+    J_d: NonstandardInertia,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// In Cayley coordinates.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let x = vee(F - F.transpose()) / (1.0 + F.trace());
+        2.0 * x.dot(&(J * x)) / h - 0.5 * h * weight * w.dot(&(rho + F * rho))
+    },
+)]
+struct Cayley {
+    J: Inertia,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// The kinetic term of Bobenko and Suris.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = -(2.0 * I1 / h) * ((1.0 + F.trace()) / 4.0).ln() - 0.5 * h * weight * w.dot(&(rho + F * rho)),
+)]
+struct LogTrace {
+    I1: f64,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// A rigid body by `J = ∫ X Xᵀ dm` in homogeneous coordinates: isometries leave it alone, which the normal form doesn't
+/// know.
+#[lagrangian(group = SE3, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h))]
+struct Body {
+    J: Matrix4<f64>,
+}
+
+/// Added mass `a` along the first axis, for the translation as the body sees it at the beginning of the step only.
+#[lagrangian(
+    group = SE3,
+    l_d = (((F - I) * J * (F - I).transpose()).trace() + a * F[(0, 3)].powi(2)) / (2.0 * h),
+)]
+struct AddedMass {
+    J: Matrix4<f64>,
+    a: f64,
+}
+
+/// The same at the beginning and at the end, in equal parts.
+#[lagrangian(
+    group = SE3,
+    l_d = {
+        let at_the_end = F[(0, 0)] * F[(0, 3)] + F[(1, 0)] * F[(1, 3)] + F[(2, 0)] * F[(2, 3)];
+        let squares = 0.5 * (F[(0, 3)].powi(2) + at_the_end.powi(2));
+        (((F - I) * J * (F - I).transpose()).trace() + a * squares) / (2.0 * h)
+    },
+)]
+struct SymmetricAddedMass {
+    J: Matrix4<f64>,
+    a: f64,
+}
+
+// A constant: a composition that needs it can ask at compile time.
+const _: () = assert!(BothEnds::SELF_ADJOINT && !OneEnd::SELF_ADJOINT);
+
+/// What the constant says, if the text says it with these words.
+fn found<L: DiscreteLagrangian>(words: &str) -> Option<bool> {
+    let line = L::DERIVATION.lines().find(|line| line.contains("l_d(F, w, h)"));
+    line.filter(|line| line.contains(words)).map(|_| L::SELF_ADJOINT)
+}
+
+#[test]
+fn it_is_found_by_the_normal_forms() {
+    let words = "= −l_d(F⁻¹, F⁻¹·w, −h)    [by the normal forms";
+    assert_eq!([found::<BothEnds>(words), found::<Cayley>(words), found::<LogTrace>(words)], [Some(true); 3]);
+}
+
+#[test]
+fn it_is_found_at_random_points() {
+    let words = "= −l_d(F⁻¹, F⁻¹·w, −h)    [at random points, to rounding";
+    assert_eq!([found::<Body>(words), found::<SymmetricAddedMass>(words)], [Some(true); 2]);
+}
+
+#[test]
+fn it_is_missing() {
+    let words = "≠ −l_d(F⁻¹, F⁻¹·w, −h)    [at random points";
+    assert_eq!([found::<OneEnd>(words), found::<AddedMass>(words)], [Some(false); 2]);
+}
+
+/// The words are those of the declared function.
+#[test]
+fn values_agree_with_the_words() {
+    let (rho, up) = (Vector3::new(0.3, -0.2, 0.5), Vector3::z());
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.5, 1.0)).unwrap();
+    let f = *nalgebra::Rotation3::new(Vector3::new(0.3, -0.2, 0.1)).matrix();
+    let (w, h) = (Vector3::new(0.1, 0.7, -0.4), 0.1);
+    let (both, one) = (BothEnds { J_d, weight: 3.0, rho, up }, OneEnd { J_d, weight: 3.0, rho, up });
+    let back = (f.transpose(), f.transpose() * w, -h);
+    assert!((both.l_d(&f, &w, h) + both.l_d(&back.0, &back.1, back.2)).abs() < 1e-14);
+    assert!((one.l_d(&f, &w, h) + one.l_d(&back.0, &back.1, back.2)).abs() > 1e-3);
+}

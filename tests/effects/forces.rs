@@ -1,0 +1,173 @@
+//! Forces by the discrete Lagrange–d'Alembert principle: what is derived from their virtual work, and what they do.
+
+use crate::common::measure::{derivative, relative};
+use crate::common::random::Random;
+use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Thrust, Torque};
+use liestep::{Advected as _, Force, LieGroup as _, NonstandardInertia, Retraction as _, SO3, Stepper, force};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+/// A force of no physics, different at both ends, with terms of all kinds.
+#[force(
+    group = SO3,
+    advected(w = up),
+    work = h * k * w.cross(&rho).dot(&eta)
+        - c * (A * vee(F)).dot(&eta)
+        + h * w.dot(&(F * rho)) * rho.dot(&eta)
+        - 0.3 * c * vee(F * A).dot(&eta_next)
+        + h * k * (F.transpose() * w).cross(&rho).dot(&eta_next),
+)]
+struct Push {
+    k: f64,
+    c: f64,
+    A: Matrix3<f64>,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+fn unit(k: usize) -> Vector3<f64> {
+    Vector3::ith(k, 1.0)
+}
+
+/// `f⁻` and `f⁺` by their components.
+fn forces<E: Force<Scalar = f64, Group = SO3>>(
+    push: &E,
+    f: &Matrix3<f64>,
+    w: &E::Advected,
+    h: f64,
+) -> (Vector3<f64>, Vector3<f64>) {
+    let zero = Vector3::zeros();
+    let before = Vector3::from_fn(|k, _| push.virtual_work(f, w, h, &unit(k), &zero));
+    (before, Vector3::from_fn(|k, _| push.virtual_work(f, w, h, &zero, &unit(k))))
+}
+
+/// The stages against the declared virtual work, at random increments.
+fn check<E: Force<Scalar = f64, Group = SO3>>(push: &E, r: &mut Random) {
+    let (h, xi) = (0.1, r.vector());
+    let element = E::Retraction::retract(&xi);
+    let f = element.matrix();
+    let w = push.advected().seen_from(&r.rotation());
+    let constants = push.constants(h);
+    let (before, after) = forces(push, &f, &w, h);
+    let kick = E::kick_before(&constants, &w);
+    // U = −(f⁻ − kick_before), and newton_system is a multiple of U − a.
+    let a = r.vector();
+    let terms = E::step_terms(&constants, &a, &w);
+    let (residual, jacobian) = E::newton_system(&constants, &terms, &xi);
+    let factor = (4.0 + xi.norm_squared()).powi(E::DENOMINATORS.cast_signed());
+    assert!((residual - (kick - before - a) * factor).norm() < 1e-13 * factor * (1.0 + before.norm()));
+    for j in 0..3 {
+        let slope = derivative(|s| E::newton_system(&constants, &terms, &(xi + unit(j) * s)).0);
+        assert!((jacobian.column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()));
+        let along = |s: f64| SO3::from(UnitQuaternion::from_scaled_axis(unit(j) * s)).compose(&element).matrix();
+        let slope = derivative(|s| -forces(push, &along(s), &w, h).0);
+        assert!((push.momentum_jacobian(&f, &w, h).column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()));
+    }
+    let next = w.advect(&element.increment());
+    let expected = element.adjoint_transpose(&(before - kick)) + after;
+    assert!(
+        (E::kick_after(&constants, &element.increment(), &next) - expected).norm() < 1e-13 * (1.0 + expected.norm())
+    );
+}
+
+#[test]
+fn stages_follow_from_the_virtual_work() {
+    let mut r = Random::new(7);
+    for _ in 0..10 {
+        check(&Drag { c: 1.0 + r.signed() }, &mut r);
+        check(&Torque { torque: r.vector() }, &mut r);
+        check(&Thrust { at: r.vector(), thrust: r.vector() }, &mut r);
+        check(&MagneticDamping { k: 1.0 + r.signed(), field: r.vector() }, &mut r);
+        let push = Push { k: r.signed(), c: r.signed(), A: r.matrix(), rho: r.vector(), up: r.direction() };
+        check(&push, &mut r);
+    }
+}
+
+fn body() -> RigidBody {
+    RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap() }
+}
+
+/// About a principal axis the momentum of a constant torque grows by `h τ` a step, and by nothing else.
+#[test]
+fn a_constant_torque_adds_its_impulse() {
+    let stepper = Stepper::new(body() + Torque { torque: Vector3::new(0.0, 0.0, 0.25) }, 0.0625).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::zeros()).unwrap();
+    for step in 1..=1000 {
+        stepper.step(&mut state).unwrap();
+        assert_eq!(state.momentum(), Vector3::new(0.0, 0.0, 0.25 * 0.0625 * f64::from(step)));
+    }
+}
+
+/// Energy falls at any strength, in every step.
+#[test]
+fn drag_takes_energy() {
+    for c in [1e-6, 0.1, 10.0, 100.0, 1e3, 1e6] {
+        let stepper = Stepper::new(body() + Drag { c }, 0.05).unwrap();
+        let mut state = stepper.start(SO3::identity(), Vector3::new(1.0, 4.0, 0.5)).unwrap();
+        let mut energy = stepper.energy(&state);
+        for _ in 0..2000 {
+            stepper.step(&mut state).unwrap();
+            let after = stepper.energy(&state);
+            assert!(after < energy || after == 0.0, "{c}: {after} after {energy}");
+            energy = after;
+        }
+    }
+}
+
+/// Damping leaves the momentum along the field alone, and ends in a turn about the major axis, which is then along the
+/// field: the least energy for that momentum.
+#[test]
+fn damping_ends_on_the_major_axis() {
+    let field = Vector3::new(0.0, 0.6, 0.8);
+    let stepper = Stepper::new(body() + MagneticDamping { k: 0.2, field }, 0.05).unwrap();
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
+    // Nearly about the minor axis.
+    let mut state = stepper.start(attitude, Vector3::new(2.0, 0.1, 0.1)).unwrap();
+    let along = state.momentum_along(&field);
+    let mut energy = stepper.energy(&state);
+    for _ in 0..20_000 {
+        stepper.step(&mut state).unwrap();
+        let after = stepper.energy(&state);
+        assert!(after <= energy * (1.0 + 1e-14), "{after} after {energy}");
+        energy = after;
+        assert!((state.momentum_along(&field) - along).abs() < 1e-12);
+    }
+    let velocity = stepper.velocity(&state);
+    assert!(along.abs() > 0.5 && velocity.xy().norm() < 1e-4 * velocity.z.abs(), "{velocity}");
+    assert!((energy - along * along / (2.0 * 4.5)).abs() < 1e-6 * energy);
+}
+
+/// Drag in proportion to the body velocity is the same in every direction, but the major axis loses the least of its
+/// turn by it: what is left turns about that one.
+#[test]
+fn drag_leaves_a_turn_about_the_major_axis() {
+    let stepper = Stepper::new(body() + Drag { c: 0.05 }, 0.05).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::new(2.0, 0.1, 0.1)).unwrap();
+    let minor = |state: &_| stepper.velocity(state).x.abs() / stepper.velocity(state).norm();
+    assert!(minor(&state) > 0.99);
+    for _ in 0..20_000 {
+        stepper.step(&mut state).unwrap();
+    }
+    let velocity = stepper.velocity(&state);
+    assert!(velocity.xy().norm() < 1e-2 * velocity.z.abs(), "{velocity}");
+}
+
+/// A heavy body with drag, a torque and the rest, against a fine step: second order.
+#[test]
+fn forces_keep_the_order() {
+    let scene = || {
+        let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() };
+        body() + gravity + Drag { c: 0.7 } + Torque { torque: Vector3::new(0.3, -0.2, 0.1) }
+    };
+    let at_one = |steps: u32| {
+        let stepper = Stepper::new(scene(), 1.0 / f64::from(steps)).unwrap();
+        let mut state = stepper.start(SO3::identity(), Vector3::new(0.5, 1.0, 3.0)).unwrap();
+        for _ in 0..steps {
+            stepper.step(&mut state).unwrap();
+        }
+        state.momentum()
+    };
+    let truth = at_one(20_000);
+    let [coarse, fine] = [100, 200].map(|steps| relative(&at_one(steps), &truth));
+    println!("{coarse:e} {fine:e}");
+    assert!((coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
+}

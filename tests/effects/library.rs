@@ -1,0 +1,127 @@
+//! Each effect of the library against the physics that it stands for.
+
+use crate::common::measure::relative;
+use crate::common::random::Random;
+use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
+use liestep::{
+    AxiallyInvariant, DiagonalNonstandardInertia, Effect, Inertia, LieGroup as _, Regular, SO3, State, Stepper,
+};
+use nalgebra::{UnitQuaternion, Vector3};
+
+fn body(moments: [f64; 3]) -> PrincipalBody {
+    PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap() }
+}
+
+/// The state after so many steps of 0.01 s, and how far from its first value the axial momentum has been.
+fn moved<L>(scene: L, count: usize) -> (State<SO3, L::Advected>, f64)
+where
+    L: Regular<Scalar = f64, Group = SO3> + AxiallyInvariant,
+{
+    let stepper = Stepper::new(scene, 0.01).unwrap();
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
+    let mut state = stepper.start(attitude, Vector3::new(0.3, -1.0, 2.0)).unwrap();
+    let axial = stepper.momentum_along_advected(&state);
+    let mut error = 0.0_f64;
+    for _ in 0..count {
+        stepper.step(&mut state).unwrap();
+        error = error.max((stepper.momentum_along_advected(&state) - axial).abs());
+    }
+    (state, error)
+}
+
+/// A dipole `m` in a field `B` is a weight with `m g ρ = −m` and the vertical `B`; so is a spring of no length with
+/// `m g ρ = −k r` and the vertical `a`.
+#[test]
+fn dipole_and_spring_are_weights() {
+    let mut r = Random::new(5);
+    for _ in 0..5 {
+        let (lever, direction, k) = (r.vector(), r.vector(), 2.0 + r.signed());
+        let weight = Gravity { m: k, g: 1.0, rho: -lever, up: direction };
+        let (expected, _) = moved(body([2.0, 3.0, 4.5]) + weight, 1000);
+        let (dipole, first) = moved(body([2.0, 3.0, 4.5]) + Dipole { moment: lever * k, field: direction }, 1000);
+        let spring = Spring { k, length: 0.0, at: lever, anchor: direction };
+        let (spring, second) = moved(body([2.0, 3.0, 4.5]) + spring, 1000);
+        let errors = [
+            relative(&dipole.momentum(), &expected.momentum()),
+            relative(&spring.momentum(), &expected.momentum()),
+            first,
+            second,
+        ];
+        println!("{errors:?}");
+        assert!(errors.iter().all(|&error| error < 1e-11), "{errors:?}");
+    }
+}
+
+/// The potentials as they are in a textbook, with the vectors in space.
+#[test]
+fn potentials_are_those_of_the_continuous_system() {
+    let mut r = Random::new(6);
+    for _ in 0..20 {
+        let (attitude, at, anchor) = (r.rotation(), r.vector(), r.vector());
+        let R = *attitude.as_matrix();
+        let J = Inertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap();
+        let spring = Spring { k: 3.0, length: 0.7, at, anchor };
+        let gradient = GravityGradient { GM: 5.0, r: 2.0, J, direction: anchor };
+        let stretch = (R * at - anchor).norm() - 0.7;
+        let n = R.transpose() * anchor;
+        let checks = [
+            (spring.potential(&(R.transpose() * anchor)), 1.5 * stretch * stretch),
+            (gradient.potential(&n), 1.5 * 5.0 / 8.0 * n.dot(&(J.as_matrix() * n))),
+        ];
+        assert!(
+            checks.iter().all(|(found, expected)| (found - expected).abs() < 1e-13 * (1.0 + expected)),
+            "{checks:?}"
+        );
+    }
+}
+
+/// Small librations about a principal axis have `ω² = 3 GM/r³ (J_2 − J_1)/J_3`, and in the discrete flow, which is then
+/// that of Störmer and Verlet, `sin(ω_h h/2) = ω h/2`.
+#[test]
+fn librations_in_the_gravity_gradient() {
+    let moments = [1.0, 2.0, 2.5];
+    let (GM, r, h, amplitude) = (7.0, 1.5_f64, 0.05, 1e-4);
+    for axis in 0..3 {
+        // About one axis, between the two others; the lesser moment points at the mass.
+        let (low, high) = if axis == 0 { (1, 2) } else { (0, 3 - axis) };
+        let J = Inertia::from_principal_moments(moments.into()).unwrap();
+        let direction = Vector3::ith(low, 1.0);
+        let stepper = Stepper::new(body(moments) + GravityGradient { GM, r, J, direction }, h).unwrap();
+        let tilt = Vector3::ith(axis, amplitude);
+        let mut state = stepper.start(UnitQuaternion::from_scaled_axis(tilt), Vector3::zeros()).unwrap();
+        let omega = (3.0 * GM / r.powi(3) * (moments[high] - moments[low]) / moments[axis]).sqrt();
+        let discrete = 2.0 / h * (omega * h / 2.0).asin();
+        for step in 1..=1000 {
+            stepper.step(&mut state).unwrap();
+            let expected = amplitude * (discrete * h * f64::from(step)).cos();
+            let angle = SO3::vee(&state.attitude().matrix())[axis];
+            assert!((angle - expected).abs() < 1e-5 * amplitude, "{axis} {step}: {angle:e} {expected:e}");
+        }
+        // The continuous frequency is another, so the test tells them apart.
+        assert!((discrete - omega) * h * 1000.0 > 0.01);
+    }
+}
+
+/// A spin about the intermediate axis is unstable by itself, and stable with a rotor on that axis of more than the
+/// difference to the major moment: `(J_2 Ω + s − J_1 Ω)(J_2 Ω + s − J_3 Ω) > 0`.
+#[test]
+fn a_rotor_stabilises_the_intermediate_axis() {
+    let wobble = |spin: f64| {
+        let scene = body([1.0, 2.0, 2.5]) + Rotor { spin: Vector3::new(0.0, spin, 0.0) };
+        let stepper = Stepper::new(scene, 0.02).unwrap();
+        let mut state = stepper.start(SO3::identity(), Vector3::new(1e-3, 1.0, 1e-3)).unwrap();
+        let (momentum, energy) = (stepper.spatial_momentum(&state), stepper.energy(&state));
+        let mut most = 0.0_f64;
+        for _ in 0..5000 {
+            stepper.step(&mut state).unwrap();
+            let velocity = stepper.velocity(&state);
+            most = most.max(velocity.x.hypot(velocity.z));
+            assert!(relative(&stepper.spatial_momentum(&state), &momentum) < 1e-12);
+            assert!((stepper.energy(&state) - energy).abs() < 1e-3 * energy);
+        }
+        most
+    };
+    let [alone, too_slow, fast] = [0.0, 0.4, 0.6].map(wobble);
+    println!("{alone} {too_slow} {fast}");
+    assert!(alone > 0.5 && too_slow > 0.1 && fast < 0.01, "{alone} {too_slow} {fast}");
+}

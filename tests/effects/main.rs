@@ -1,0 +1,17 @@
+//! Scenes: sums of Lagrangians and forces, the effects of the library, what changes during a run, scenes in files.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../examples/declarations/mod.rs"]
+mod declarations;
+
+mod changing_scenes;
+mod control;
+mod forces;
+mod forces_by_hand;
+mod library;
+mod scene_files;
+mod sums;

@@ -1,0 +1,272 @@
+//! Scenes are sums: a sum is the same integrator as the Lagrangian written in one piece, and costs what it holds.
+
+use crate::common::measure::{derivative, relative};
+use crate::common::random::Random;
+use crate::common::tops::{FreeBody, FullTop, HeavyTop};
+use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
+use liestep::{
+    Advected, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia, Regular, Retraction as _, SO3,
+    State, Stepper, lagrangian,
+};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// A kinetic term with a part of fourth order: its Newton system has the square of the Cayley denominator.
+#[lagrangian(
+    group = SO3,
+    l_d = k * (((F - I) * (F - I).transpose()).trace() + ((F - I) * (F - I).transpose()).trace().powi(2)) / h,
+)]
+#[derive(Clone, Copy, Debug)]
+struct Quartic {
+    k: f64,
+}
+
+/// The kinetic energy of a ball, in half angles: its Newton system has no denominator taken out.
+#[lagrangian(group = SO3, l_d = -(2.0 * k / h) * (0.25 + 0.25 * F.trace()).ln())]
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    k: f64,
+}
+
+/// The sum of all effects that are used here, in one declaration.
+#[lagrangian(
+    group = SO3,
+    advected(w = up, n = direction, b = field, a = anchor),
+    l_d = {
+        let after = F.transpose() * n;
+        ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+            + k_4 * (((F - I) * (F - I).transpose()).trace() + ((F - I) * (F - I).transpose()).trace().powi(2)) / h
+            - (2.0 * k_b / h) * (0.25 + 0.25 * F.trace()).ln()
+            + spin.dot(&vee(F))
+            - 0.5 * h * m * g * w.dot(&(rho + F * rho))
+            - 0.75 * h * GM / r.powi(3) * (n.dot(&(J * n)) + after.dot(&(J * after)))
+            + 0.5 * h * b.dot(&(moment + F * moment))
+            - 0.25 * h * k * (((at - a).norm() - length).powi(2) + ((F * at - a).norm() - length).powi(2))
+    },
+)]
+#[derive(Clone, Copy, Debug)]
+struct Everything {
+    J_d: NonstandardInertia,
+    k_4: f64,
+    k_b: f64,
+    spin: Vector3<f64>,
+    m: f64,
+    g: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+    GM: f64,
+    r: f64,
+    J: Inertia,
+    direction: Vector3<f64>,
+    moment: Vector3<f64>,
+    field: Vector3<f64>,
+    k: f64,
+    length: f64,
+    at: Vector3<f64>,
+    anchor: Vector3<f64>,
+}
+
+impl Everything {
+    fn random(r: &mut Random) -> Self {
+        let axes = *r.rotation().as_matrix();
+        let inertia = nalgebra::Matrix3::from_diagonal(&Vector3::new(1.0, 1.5, 0.7));
+        let J_d = NonstandardInertia::new(axes * inertia * axes.transpose()).unwrap();
+        Self {
+            J_d,
+            k_4: 0.1 * r.signed(),
+            k_b: 0.5 + 0.2 * r.signed(),
+            spin: r.vector(),
+            m: 1.0 + r.signed(),
+            g: 9.81,
+            rho: r.vector() * 0.3,
+            up: r.direction(),
+            GM: 3.0 + r.signed(),
+            r: 1.2,
+            J: J_d.to_inertia(),
+            direction: r.direction(),
+            moment: r.vector(),
+            field: r.vector(),
+            k: 2.0 + r.signed(),
+            length: 0.4,
+            at: r.vector() * 0.3,
+            anchor: r.direction() * 2.0,
+        }
+    }
+
+    #[allow(clippy::type_complexity)] // a list of terms
+    fn terms(&self) -> (RigidBody, Quartic, Ball, Rotor, Gravity, GravityGradient, Dipole, Spring) {
+        let Self { J_d, k_4, k_b, spin, m, g, rho, up, GM, r, J, direction, moment, field, k, length, at, anchor } =
+            *self;
+        (
+            RigidBody { J_d },
+            Quartic { k: k_4 },
+            Ball { k: k_b },
+            Rotor { spin },
+            Gravity { m, g, rho, up },
+            GravityGradient { GM, r, J, direction },
+            Dipole { moment, field },
+            Spring { k, length, at, anchor },
+        )
+    }
+}
+
+fn gravity(top: &HeavyTop) -> Gravity {
+    Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up }
+}
+
+/// How far attitude and momentum of two motions are apart.
+fn apart<A: Advected<SO3>, B: Advected<SO3>>(a: &State<SO3, A>, b: &State<SO3, B>) -> f64 {
+    let attitude = (a.attitude().as_matrix() - b.attitude().as_matrix()).norm();
+    attitude.max(relative(&a.momentum(), &b.momentum()))
+}
+
+/// The state after so many steps from one start.
+fn moved<L: Regular<Scalar = f64, Group = SO3>>(lagrangian: L, h: f64, count: usize) -> State<SO3, L::Advected> {
+    let stepper = Stepper::new(lagrangian, h).unwrap();
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
+    let mut state = stepper.start_with_momentum(attitude, Vector3::new(1.5, -4.0, 9.0)).unwrap();
+    for _ in 0..count {
+        stepper.step(&mut state).unwrap();
+    }
+    state
+}
+
+/// Asymmetric, with the centre of mass off the axes; the second inertia isn't diagonal.
+#[test]
+fn body_and_gravity_are_the_heavy_top() {
+    let top = HeavyTop::asymmetric();
+    let (one, sum) =
+        (moved(top.clone(), 0.01, 10_000), moved(PrincipalBody { J_d: top.J_d } + gravity(&top), 0.01, 10_000));
+    // The operations are the same, so it isn't only to rounding.
+    assert_eq!((one.attitude(), one.momentum()), (sum.attitude(), sum.momentum()));
+    let full = FullTop::in_axes(&top, Random::new(4).rotation().as_matrix());
+    let weight = Gravity { m: full.m, g: full.g, rho: full.rho, up: full.up };
+    let (one, sum) = (moved(full.clone(), 0.01, 10_000), moved(weight + RigidBody { J_d: full.J_d }, 0.01, 10_000));
+    assert_eq!((one.attitude(), one.momentum()), (sum.attitude(), sum.momentum()));
+}
+
+/// Every momentum map, the Jacobian, the limit and the energy of a sum, against the declaration in one piece.
+#[test]
+fn derived_terms_add() {
+    let mut r = Random::new(1);
+    for _ in 0..20 {
+        let one = Everything::random(&mut r);
+        let (body, quartic, ball, rotor, gravity, gradient, dipole, spring) = one.terms();
+        let sum = body + quartic + ball + rotor + gravity + gradient + dipole + spring;
+        let (f, h) = (r.rotation_by(0.4).matrix(), 0.1);
+        let attitude = r.rotation();
+        let w = one.advected().seen_from(&attitude);
+        let v = sum.advected().seen_from(&attitude);
+        let close =
+            |a: Vector3<f64>, b: Vector3<f64>| assert!((a - b).norm() < 1e-13 * (1.0 + b.norm()) / h, "{a} {b}");
+        close(sum.right_momentum(&f, &v, h), one.right_momentum(&f, &w, h));
+        close(sum.left_momentum(&f, &v, h), one.left_momentum(&f, &w, h));
+        close(sum.diamond(&f, &v, h), one.diamond(&f, &w, h));
+        close(sum.legendre_minus(&f, &v, h), one.legendre_minus(&f, &w, h));
+        close(sum.legendre_plus(&f, &v, h), one.legendre_plus(&f, &w, h));
+        close(sum.momentum_bias(&v), one.momentum_bias(&w));
+        assert!(relative(&sum.momentum_jacobian(&f, &v, h), &one.momentum_jacobian(&f, &w, h)) < 1e-13);
+        assert!(relative(&sum.inertia(), &one.inertia()) < 1e-14);
+        let scalars = [
+            (sum.l_d(&f, &v, h), one.l_d(&f, &w, h)),
+            (sum.discrete_energy(&f, &v, h), one.discrete_energy(&f, &w, h)),
+            (sum.potential(&v), one.potential(&w)),
+        ];
+        assert!(scalars.iter().all(|(a, b)| (a - b).abs() < 1e-13 * (1.0 + b.abs()) / h), "{scalars:?}");
+    }
+}
+
+/// The Newton system of a sum is the declared multiple of its equation, and its Jacobian the derivative.
+#[test]
+fn newton_systems_of_three_scales_add() {
+    fn check<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(sum: &L, r: &mut Random) {
+        let (h, xi, offset) = (0.05, r.vector(), r.vector());
+        let f = L::Retraction::retract(&xi).matrix();
+        let w = sum.advected().seen_from(&r.rotation());
+        let constants = sum.constants(h);
+        let unknown = sum.legendre_minus(&f, &w, h) + L::kick_before(&constants, &w);
+        let a = unknown + offset;
+        let terms = L::step_terms(&constants, &a, &w);
+        let (residual, jacobian) = L::newton_system(&constants, &terms, &xi);
+        let factor = (4.0 + xi.norm_squared()).powi(L::DENOMINATORS.cast_signed());
+        assert!((residual + offset * factor).norm() < 1e-13 * factor * (1.0 + unknown.norm()));
+        for j in 0..3 {
+            let slope = derivative(|s| L::newton_system(&constants, &terms, &(xi + Vector3::ith(j, s))).0);
+            assert!((jacobian.column(j) - slope).norm() < 1e-10 * jacobian.norm());
+        }
+    }
+    assert_eq!([Ball::DENOMINATORS, RigidBody::<f64>::DENOMINATORS, Quartic::DENOMINATORS], [0, 1, 2]);
+    let mut r = Random::new(3);
+    for _ in 0..5 {
+        let (body, quartic, ball, rotor, gravity, ..) = Everything::random(&mut r).terms();
+        check(&(body + rotor), &mut r);
+        check(&(ball + gravity + body), &mut r);
+        check(&(ball + quartic), &mut r);
+        check(&(gravity + (quartic + (body + rotor))), &mut r);
+    }
+}
+
+/// Terms with Newton systems of three scales, in five orders.
+#[test]
+fn the_order_of_terms_only_rounds_differently() {
+    let mut r = Random::new(2);
+    for _ in 0..5 {
+        let everything = Everything::random(&mut r);
+        let (body, quartic, ball, rotor, gravity, gradient, dipole, spring) = everything.terms();
+        let one = moved(everything, 0.02, 200);
+        let distances = [
+            apart(&moved(body + quartic + ball + rotor + gravity + gradient + dipole + spring, 0.02, 200), &one),
+            apart(&moved(spring + dipole + gradient + gravity + rotor + ball + quartic + body, 0.02, 200), &one),
+            apart(
+                &moved((gravity + ball) + (quartic + spring) + (body + (dipole + rotor)) + gradient, 0.02, 200),
+                &one,
+            ),
+            apart(
+                &moved(rotor + (gravity + (body + (quartic + (gradient + (ball + (spring + dipole)))))), 0.02, 200),
+                &one,
+            ),
+            apart(&moved(quartic + body + rotor + ball + (spring + (gravity + gradient) + dipole), 0.02, 200), &one),
+        ];
+        println!("{distances:?}");
+        assert!(distances.iter().all(|&distance| distance < 2e-13), "{distances:?}");
+    }
+}
+
+/// What a term adds to a scene is known when the crate is built.
+#[test]
+fn a_scene_holds_what_its_terms_name() {
+    const fn size<E: Effect<Group = SO3>>() -> usize {
+        size_of::<State<SO3, E::Advected>>()
+    }
+    const fn size_of_sum<A: Effect<Group = SO3>, B: Effect<Group = SO3>>() -> usize {
+        size_of::<State<SO3, (A::Advected, B::Advected)>>()
+    }
+    const VECTOR: usize = 3 * size_of::<f64>();
+    const {
+        assert!(size::<RigidBody>() == size_of::<[f64; 9]>() + 3 * VECTOR + size_of::<u64>());
+        assert!(size_of_sum::<RigidBody, Rotor>() == size::<RigidBody>());
+        assert!(size_of_sum::<RigidBody, Gravity>() == size::<RigidBody>() + VECTOR);
+        assert!(size_of_sum::<RigidBody, Gravity>() == size::<FullTop>());
+        assert!(size_of_sum::<Gravity, Dipole>() == size::<RigidBody>() + 2 * VECTOR);
+        // Potentials kick and leave the Newton system alone; a rotor has a part in it and doesn't kick.
+        let kicks = [<Gravity>::PARTS, <GravityGradient>::PARTS, <Dipole>::PARTS, <Spring>::PARTS];
+        let mut index = 0;
+        while index < kicks.len() {
+            assert!(!kicks[index].unknown && kicks[index].kick_before && kicks[index].kick_after);
+            index += 1;
+        }
+        let coupled = [<RigidBody>::PARTS, <PrincipalBody>::PARTS, <Rotor>::PARTS, Quartic::PARTS];
+        let mut index = 0;
+        while index < coupled.len() {
+            assert!(coupled[index].unknown && !coupled[index].kick_before && !coupled[index].kick_after);
+            index += 1;
+        }
+    }
+}
+
+/// Other effects in the same program change no bit of a free body.
+#[test]
+fn a_free_body_is_alone() {
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    let (own, library) = (moved(FreeBody { J_d }, 0.01, 10_000), moved(RigidBody { J_d }, 0.01, 10_000));
+    assert_eq!(own, library);
+}

@@ -1,0 +1,16 @@
+//! The laws of the groups, of their retractions and of what they move; the groups of the crate and a user's own.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../examples/declarations/mod.rs"]
+mod declarations;
+
+mod built_in_groups;
+mod laws;
+mod laws_can_fail;
+mod retraction_laws;
+mod so3_laws;
+mod user_group;

@@ -1,0 +1,133 @@
+//! The laws of `Retraction` on SO(3): `τ(0) = e`, `τ(ξ)` is a rotation, `local_coordinates` is its inverse, the tangent
+//! is `dF F⁻¹ = (T dξ)^`, and `D = τ(ξ) − I` keeps the digits of a small `ξ`.
+
+use crate::common::measure::derivative;
+use crate::common::random::Random;
+use core::f64::consts::{FRAC_PI_2, PI};
+use liestep::{CayleyRetraction, ExponentialRetraction, LieGroup as _, Retraction, SO3};
+use nalgebra::{Matrix3, Vector3};
+
+/// On both sides of the places where a formula changes: `θ² = 0.01` and `0.04`, the latter also by way of `θ/2`.
+const ANGLES: [f64; 14] =
+    [0.0, 1e-300, 1e-160, 1e-12, 1e-8, 1e-4, 0.099_999, 0.100_001, 0.199_999, 0.200_001, 0.7, 1.5, 2.5, 3.1];
+
+/// Some products of 3 × 3 matrices.
+const ROUNDING: f64 = 4e-15;
+
+fn samples(seed: u64) -> Vec<(f64, Vector3<f64>)> {
+    let mut random = Random::new(seed);
+    ANGLES.iter().flat_map(|&angle| [angle; 10]).map(|angle| (angle, random.direction() * angle)).collect()
+}
+
+/// `Σ ξ̂ᵏ/(k + offset)!`: the exponential for zero, its right-trivialised tangent for one.
+fn series(xi: &Vector3<f64>, offset: u32) -> Matrix3<f64> {
+    let (hat, mut sum, mut term) = (SO3::hat(xi), Matrix3::zeros(), Matrix3::identity());
+    for k in 0..40 {
+        sum += term;
+        term = term * hat / f64::from(k + 1 + offset);
+    }
+    sum
+}
+
+fn assert_laws<R: Retraction<SO3>>() {
+    assert_eq!(R::increment(&Vector3::zeros()), Matrix3::zeros());
+    assert_eq!(R::tangent(&Vector3::zeros()), Matrix3::identity());
+    for (angle, xi) in samples(61) {
+        let f = R::retract(&xi);
+        assert!(f.defect() < ROUNDING, "{angle}: {:e}", f.defect());
+        assert!(f.matrix().determinant() > 0.0);
+        assert!(R::retract(&-xi).compose(&f).log().norm() < ROUNDING, "τ(−ξ) is the inverse");
+
+        // To first order in `ξ` every retraction is `I + ξ̂`; its second order is `ξ̂²/2`.
+        let remainder = R::increment(&xi) - SO3::hat(&xi) - SO3::hat(&xi) * SO3::hat(&xi) * 0.5;
+        let allowed = angle.powi(3) + 4.0 * f64::EPSILON * angle;
+        assert!(remainder.norm() <= allowed, "{angle}: {:e}", remainder.norm());
+
+        let tangent = R::tangent(&xi);
+        for k in 0..3 {
+            // The six-point difference leaves 10⁻¹³ by the derivatives, which grow with the coordinates.
+            let rate = derivative(|t| R::retract(&(xi + Vector3::ith(k, t))).matrix()) * f.inverse().matrix();
+            let (error, column) = (SO3::vee(&rate) - tangent.column(k), tangent.column(k));
+            assert!(error.norm() < 1e-11, "{angle}: {rate} against {column}");
+        }
+    }
+}
+
+fn assert_round_trips<R: Retraction<SO3>>() {
+    let mut random = Random::new(62);
+    assert_eq!(R::local_coordinates(&SO3::identity()), Some(Vector3::zeros()));
+    for f in random.hard_rotations() {
+        let xi = R::local_coordinates(&f).unwrap();
+        // Cayley coordinates of a turn by `π − δ` are `4/δ`, and the relative rounding `ε/δ` of `1 + tr F`, which is
+        // `δ²/2`, is `4ε/δ²`: it moves the angle by a `δ`-th part of that.
+        let distance = R::retract(&xi).inverse().compose(&f).log().norm();
+        let allowed = ROUNDING / (PI - f.log().norm()).min(1.0);
+        assert!(distance < allowed, "{}: {distance:e}", f.log().norm());
+    }
+    for (angle, xi) in samples(63) {
+        // Roundings of `F` are absolute: coordinates come back to a rounding of one.
+        let returned = R::local_coordinates(&R::retract(&xi)).unwrap();
+        let back = R::retract(&returned).inverse().compose(&R::retract(&xi)).log().norm();
+        assert!(back < ROUNDING / (PI - angle).min(1.0), "{angle}: {back:e}");
+        if angle < 1.0 {
+            assert!((returned - xi).norm() < ROUNDING, "{angle}");
+        }
+    }
+}
+
+/// `is_near_identity` is the angle below 90°.
+fn assert_knows_a_quarter_turn<R: Retraction<SO3>>() {
+    let mut random = Random::new(64);
+    for _ in 0..20 {
+        let near = R::local_coordinates(&random.rotation_by(FRAC_PI_2 - 1e-9)).unwrap();
+        let far = R::local_coordinates(&random.rotation_by(FRAC_PI_2 + 1e-9)).unwrap();
+        assert!(R::is_near_identity(&near) && !R::is_near_identity(&far));
+    }
+    assert!(R::is_near_identity(&Vector3::zeros()));
+}
+
+#[test]
+fn cayley() {
+    assert_laws::<CayleyRetraction>();
+    assert_round_trips::<CayleyRetraction>();
+    assert_knows_a_quarter_turn::<CayleyRetraction>();
+}
+
+#[test]
+fn exponential() {
+    assert_laws::<ExponentialRetraction>();
+    assert_round_trips::<ExponentialRetraction>();
+    assert_knows_a_quarter_turn::<ExponentialRetraction>();
+}
+
+/// `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`, with an inverse from elsewhere; the angle is `2 atan(|ξ|/2)`.
+#[test]
+fn cayley_map_by_its_definition() {
+    for (angle, xi) in samples(65) {
+        let half = SO3::hat(&xi) * 0.5;
+        let defined = (Matrix3::identity() - half).try_inverse().unwrap() * (Matrix3::identity() + half);
+        let f: SO3 = CayleyRetraction::retract(&xi);
+        assert!((f.matrix() - defined).norm() < ROUNDING, "{angle}");
+        assert!((f.log().norm() - 2.0 * (0.5 * xi.norm()).atan()).abs() < ROUNDING, "{angle}");
+    }
+}
+
+/// Only half turns are out of reach.
+#[test]
+fn cayley_map_does_not_reach_half_turns() {
+    let half_turn: SO3 = SO3::try_from(Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))).unwrap();
+    assert_eq!(CayleyRetraction::local_coordinates(&half_turn), None);
+    let log: Vector3<f64> = ExponentialRetraction::local_coordinates(&half_turn).unwrap();
+    assert!((log.norm() - PI).abs() < ROUNDING);
+}
+
+#[test]
+fn exponential_and_its_tangent_by_their_series() {
+    for (angle, xi) in samples(66) {
+        let f: SO3 = ExponentialRetraction::retract(&xi);
+        let tangent = <ExponentialRetraction as Retraction<SO3>>::tangent(&xi);
+        // The series loses what its largest term exceeds one, some units.
+        assert!((f.matrix() - series(&xi, 0)).norm() < ROUNDING, "{angle}");
+        assert!((tangent - series(&xi, 1)).norm() < ROUNDING, "{angle}");
+    }
+}

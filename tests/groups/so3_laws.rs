@@ -1,0 +1,133 @@
+//! The laws of `LieGroup` on SO(3): `Ad_F ξ = (F ξ̂ F⁻¹)^∨`, `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`, their transposes by the pairing,
+//! hat and vee, exp and log, and the reconstruction.
+
+use crate::common::measure::{derivative, relative};
+use crate::common::random::Random;
+use liestep::{ExponentialRetraction, LieGroup as _, Retraction as _, SO3, reconstruct};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+/// A product of three 3 × 3 matrices of size one.
+const ROUNDING: f64 = 4e-15;
+
+/// The basis element `E_k`, written out.
+fn basis(k: usize) -> Matrix3<f64> {
+    [
+        Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0),
+        Matrix3::new(0.0, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0),
+        Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    ][k]
+}
+
+/// On SO(3) among the groups that the exponential is defined on.
+fn exponential(xi: &Vector3<f64>) -> SO3 {
+    ExponentialRetraction::retract(xi)
+}
+
+#[test]
+fn hat_and_vee_are_inverse_in_the_declared_basis() {
+    let mut random = Random::new(51);
+    for _ in 0..50 {
+        let v = random.vector();
+        let hat = SO3::hat(&v);
+        assert_eq!(hat, basis(0) * v.x + basis(1) * v.y + basis(2) * v.z);
+        assert_eq!(SO3::vee(&hat), v);
+        // Two products and a difference, rounded in two orders.
+        assert!((hat * v).norm() < 1e-15);
+    }
+}
+
+#[test]
+fn group_axioms() {
+    let mut random = Random::new(52);
+    for f in random.hard_rotations() {
+        let (g, h) = (random.rotation(), random.rotation());
+        assert!(f.defect() < ROUNDING && f.compose(&g).defect() < ROUNDING);
+        assert!(relative(&f.compose(&f.inverse()).matrix(), &Matrix3::identity()) < ROUNDING);
+        assert!(relative(&f.inverse().compose(&f).matrix(), &Matrix3::identity()) < ROUNDING);
+        assert_eq!(f.compose(&SO3::identity()), f);
+        let (left, right) = (f.compose(&g).compose(&h), f.compose(&g.compose(&h)));
+        assert!(relative(&left.matrix(), &right.matrix()) < ROUNDING);
+    }
+}
+
+#[test]
+fn adjoint_actions_and_their_pairings() {
+    let mut random = Random::new(53);
+    for f in random.hard_rotations() {
+        let (xi, eta, momentum) = (random.vector(), random.vector(), random.vector());
+        let conjugated = f.matrix() * SO3::hat(&xi) * f.inverse().matrix();
+        assert!((SO3::hat(&f.adjoint(&xi)) - conjugated).norm() < ROUNDING);
+        assert!((f.adjoint_transpose(&momentum).dot(&xi) - momentum.dot(&f.adjoint(&xi))).abs() < ROUNDING);
+        let commutator = SO3::hat(&xi) * SO3::hat(&eta) - SO3::hat(&eta) * SO3::hat(&xi);
+        assert!((SO3::hat(&SO3::lie_bracket(&xi, &eta)) - commutator).norm() < ROUNDING);
+        let paired = SO3::lie_bracket_transpose(&xi, &momentum).dot(&eta);
+        assert!((paired - momentum.dot(&SO3::lie_bracket(&xi, &eta))).abs() < ROUNDING);
+
+        let g = random.rotation();
+        assert!((f.compose(&g).adjoint(&xi) - f.adjoint(&g.adjoint(&xi))).norm() < ROUNDING);
+        let twice = g.adjoint_transpose(&f.adjoint_transpose(&momentum));
+        assert!((f.compose(&g).adjoint_transpose(&momentum) - twice).norm() < ROUNDING);
+    }
+}
+
+/// `ad` is the derivative of `Ad` at the identity, and `ad*` that of `Ad*`.
+#[test]
+fn brackets_are_derivatives_of_the_adjoint_actions() {
+    let mut random = Random::new(54);
+    for _ in 0..20 {
+        let (xi, eta) = (random.vector(), random.vector());
+        let along = |t: f64| exponential(&(xi * t));
+        // The six-point difference leaves 10⁻¹³.
+        assert!((derivative(|t| along(t).adjoint(&eta)) - SO3::lie_bracket(&xi, &eta)).norm() < 1e-12);
+        let transposed = SO3::lie_bracket_transpose(&xi, &eta);
+        assert!((derivative(|t| along(t).adjoint_transpose(&eta)) - transposed).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn logarithm_inverts_the_exponential() {
+    let mut random = Random::new(55);
+    for f in random.hard_rotations() {
+        assert!(relative(&exponential(&f.log()).matrix(), &f.matrix()) < ROUNDING);
+    }
+    for angle in [1e-8, 1e-4, 0.1, 1.0, 2.0, 3.0, core::f64::consts::PI - 1e-6] {
+        for _ in 0..20 {
+            let xi = random.direction() * angle;
+            let log = SO3::from(UnitQuaternion::from_scaled_axis(xi)).log();
+            // The entries of a matrix carry a small angle to a rounding of the angle, of a larger one to a rounding of
+            // one.
+            assert!((log - xi).norm() < ROUNDING * angle.max(1e-1), "{angle}: {:e}", (log - xi).norm());
+        }
+    }
+    assert_eq!(SO3::<f64>::identity().log(), Vector3::zeros());
+}
+
+/// `g F = g + g D` and `Ad*_F μ − μ`, formed from the increment `D = F − I`.
+#[test]
+fn increments_stand_for_elements() {
+    let mut random = Random::new(56);
+    for f in random.hard_rotations() {
+        let (g, momentum, d) = (random.rotation(), random.vector(), f.increment());
+        assert!(relative(&SO3::from_increment(&d).matrix(), &f.matrix()) < ROUNDING);
+        assert!(relative(&g.advance(&d).matrix(), &g.compose(&f).matrix()) < ROUNDING);
+        assert!(relative(&reconstruct(&g, &f).matrix(), &g.compose(&f).matrix()) < ROUNDING);
+        let change = SO3::adjoint_transpose_increment(&d, &momentum);
+        assert!((change - (f.adjoint_transpose(&momentum) - momentum)).norm() < ROUNDING);
+    }
+}
+
+#[test]
+fn what_is_not_a_rotation_is_refused() {
+    let mut random = Random::new(57);
+    for f in random.hard_rotations() {
+        let matrix = f.matrix();
+        assert_eq!(SO3::try_from(matrix).unwrap(), f);
+        // A reflection is orthogonal, too.
+        let reflected = SO3::try_from(-matrix).unwrap_err();
+        assert!((reflected.determinant + 1.0).abs() < ROUNDING && reflected.defect < ROUNDING);
+        // `‖(1 + 10⁻⁹)² I − I‖ = 2√3 10⁻⁹`.
+        let scaled = SO3::try_from(matrix * (1.0 + 1e-9)).unwrap_err();
+        assert!((scaled.defect / (2.0 * 3.0_f64.sqrt() * 1e-9) - 1.0).abs() < 1e-5);
+        assert!(SO3::try_from(matrix * f64::NAN).is_err());
+    }
+}

@@ -1,0 +1,3 @@
+mod body_axes;
+mod free_bodies;
+mod inertia;

@@ -1,0 +1,111 @@
+//! Ten million steps of the looping top at `h = 0.01` keep the group, the Casimirs `|w|²` and `p·w`, the energy's mean
+//! and extremes, and the momentum about the axis of symmetry. What rounding leaves is a random walk, not a drift.
+
+use crate::common::reference::looping;
+use liestep::{LieGroup as _, Stepper};
+use nalgebra::{SVector, Vector3};
+
+const STEPS: u64 = 10_000_000;
+/// The first and the last tenth are compared.
+const WINDOW: u64 = STEPS / 10;
+/// How often the invariants are looked at.
+const SAMPLE: u64 = 10_000;
+
+/// Mean and extremes of the energy over a window of the motion.
+///
+/// The mean is weighted by `sin²`, so that the oscillations which the two ends cut don't count: with equal weights they
+/// alone make up most of what the criterion allows.
+#[derive(Clone, Copy)]
+struct Energies {
+    weighted: f64,
+    weights: f64,
+    lowest: f64,
+    highest: f64,
+}
+
+impl Energies {
+    fn new() -> Self {
+        Self { weighted: 0.0, weights: 0.0, lowest: f64::INFINITY, highest: f64::NEG_INFINITY }
+    }
+
+    #[allow(clippy::cast_precision_loss)] // a million
+    fn add(&mut self, step: u64, energy: f64) {
+        let weight = (core::f64::consts::PI * (step as f64 + 0.5) / WINDOW as f64).sin().powi(2);
+        self.weights += weight;
+        self.weighted += weight * energy;
+        self.lowest = self.lowest.min(energy);
+        self.highest = self.highest.max(energy);
+    }
+
+    fn mean(&self) -> f64 {
+        self.weighted / self.weights
+    }
+}
+
+/// `|w|² − 1`, `p·w` relative to its start, and the six entries of `RRᵀ − I`: those of `RᵀR − I` turn with
+/// the body, and what turns doesn't walk.
+type Defects = SVector<f64, 8>;
+
+#[test]
+fn t3_ten_million_steps_neither_drift_nor_leave_the_group() {
+    let motion = looping();
+    let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
+    let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
+    let (axial, vertical) = (state.momentum().z, state.momentum().dot(&state.advected()));
+    let start = stepper.energy(&state);
+
+    let mut windows = [Energies::new(); 2];
+    let mut defects = vec![Defects::zeros()];
+    let mut worst = Vector3::<f64>::zeros();
+    for step in 1..=STEPS {
+        stepper.step(&mut state).unwrap();
+        assert!(state.momentum().z.to_bits() == axial.to_bits(), "p_3 changed in step {step}");
+        if step <= WINDOW {
+            windows[0].add(step - 1, stepper.energy(&state) - start);
+        } else if step > STEPS - WINDOW {
+            windows[1].add(step - (STEPS - WINDOW) - 1, stepper.energy(&state) - start);
+        }
+        if step % SAMPLE == 0 {
+            let w = state.advected();
+            let gram = state.attitude().matrix() * state.attitude().matrix().transpose();
+            let casimirs = [w.norm_squared() - 1.0, state.momentum().dot(&w) / vertical - 1.0];
+            defects.push(Defects::from_column_slice(&[
+                casimirs[0],
+                casimirs[1],
+                gram.m11 - 1.0,
+                gram.m22 - 1.0,
+                gram.m33 - 1.0,
+                gram.m12,
+                gram.m23,
+                gram.m31,
+            ]));
+            worst = worst.sup(&Vector3::new(state.orthogonality_defect(), (w.norm() - 1.0).abs(), casimirs[1].abs()));
+        }
+    }
+
+    println!("‖RᵀR − I‖ {:.1e}, |w| {:.1e}, p·w {:.1e}", worst.x, worst.y, worst.z);
+    assert!(worst.x <= 2e-12, "‖RᵀR − I‖ = {:e}", worst.x);
+    assert!(worst.y <= 3e-12, "|w| is off by {:e}", worst.y);
+    assert!(worst.z <= 3e-12, "p·w is off by {:e}", worst.z);
+
+    let [first, last] = windows;
+    println!("energy {start}: means +{:e} and +{:e}", first.mean(), last.mean());
+    println!("extremes {:e} {:e} and {:e} {:e}", first.lowest, first.highest, last.lowest, last.highest);
+    assert!((first.mean() - last.mean()).abs() <= 1e-10 * start);
+    // Half a unit of the fourth digit.
+    let allowed = 5e-4 * (first.highest - first.lowest);
+    assert!((first.lowest - last.lowest).abs() < allowed && (first.highest - last.highest).abs() < allowed);
+
+    assert_random_walk(&defects);
+}
+
+/// Growth like `√N`: nothing gets farther than four standard deviations of a walk whose steps are the changes from
+/// sample to sample. Were these all alike, a drift, the end of a thousand would be at thirty-two.
+fn assert_random_walk(defects: &[Defects]) {
+    for k in 0..8 {
+        let deviation = defects.windows(2).map(|pair| (pair[1][k] - pair[0][k]).powi(2)).sum::<f64>().sqrt();
+        let farthest = defects.iter().map(|defect| defect[k].abs()).fold(0.0, f64::max);
+        println!("defect {k}: {farthest:.1e}, {:.2} standard deviations", farthest / deviation);
+        assert!(farthest < 4.0 * deviation, "defect {k} drifts: {farthest:e} against {deviation:e}");
+    }
+}

@@ -1,0 +1,187 @@
+//! Rounding grows like `√N`, and with compensated sums it grows from the changes of a step instead of from the state.
+
+use crate::common::measure::{relative, slope, steps_in};
+use crate::common::random::Random;
+use crate::common::reference::looping;
+use crate::common::tops::HeavyTop;
+use liestep::{CompensatedState, CompensatedStepper, LieGroup as _, SO3, State, Stepper};
+use nalgebra::{SVector, Vector3};
+
+type TopState = State<SO3, Vector3<f64>>;
+
+/// The six entries of `RRᵀ − I`, `|w|² − 1`, and the change of `p·w` relative to `|p|`.
+fn defects(state: &TopState, vertical: f64) -> SVector<f64, 8> {
+    let (w, r) = (state.advected(), state.attitude().matrix());
+    let gram = r * r.transpose();
+    let casimirs = [w.norm_squared() - 1.0, (state.momentum().dot(&w) - vertical) / state.momentum().norm()];
+    SVector::from([
+        gram.m11 - 1.0,
+        gram.m22 - 1.0,
+        gram.m33 - 1.0,
+        gram.m12,
+        gram.m23,
+        gram.m31,
+        casimirs[0],
+        casimirs[1],
+    ])
+}
+
+#[allow(clippy::cast_precision_loss)] // a few motions
+/// Root mean squares of the defects of orthogonality and of the two Casimirs.
+fn sizes(defects: &[SVector<f64, 8>]) -> [f64; 3] {
+    [(0, 6), (6, 1), (7, 1)].map(|(first, count)| {
+        let squared: f64 = defects.iter().map(|defects| defects.rows(first, count).norm_squared()).sum();
+        (squared / (defects.len() * count) as f64).sqrt()
+    })
+}
+
+const DECADES: [u64; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
+
+/// For each decade of steps the sizes of the defects over a number of motions.
+fn growth(h: f64, motions: u64, compensated: bool) -> Vec<[f64; 3]> {
+    let mut random = Random::new(6);
+    let stepper = Stepper::new(HeavyTop::asymmetric(), h).unwrap();
+    let mut found = vec![Vec::new(); DECADES.len()];
+    for _ in 0..motions {
+        let start = stepper.start(random.rotation(), random.vector() * 4.0).unwrap();
+        let vertical = start.momentum().dot(&start.advected());
+        let (mut plain, mut kept, carrying) = (start, CompensatedState::from(start), stepper.clone().compensated());
+        let mut done = 0;
+        for (decade, steps) in DECADES.into_iter().enumerate() {
+            for _ in done..steps {
+                if compensated {
+                    carrying.step(&mut kept).unwrap();
+                } else {
+                    stepper.step(&mut plain).unwrap();
+                }
+            }
+            done = steps;
+            found[decade].push(defects(if compensated { kept.state() } else { &plain }, vertical));
+        }
+    }
+    found.iter().map(|defects| sizes(defects)).collect()
+}
+
+/// The exponent of the growth of each size.
+#[allow(clippy::cast_precision_loss)] // a million
+fn exponents(growth: &[[f64; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|k| {
+        let points: Vec<_> = DECADES.iter().zip(growth).map(|(n, sizes)| ((*n as f64).ln(), sizes[k].ln())).collect();
+        slope(&points)
+    })
+}
+
+fn print(title: &str, growth: &[[f64; 3]]) {
+    println!("{title}: ‖RRᵀ − I‖, |w|², p·w grow like N to the {:.2?}", exponents(growth));
+    for (steps, sizes) in DECADES.iter().zip(growth) {
+        println!("{steps:>9} steps {:9.1e} {:9.1e} {:9.1e}", sizes[0], sizes[1], sizes[2]);
+    }
+}
+
+/// A walk of independent roundings has the exponent ½, a systematic one has 1. Of 24 motions a root mean square is known
+/// to a seventh, and so the exponent over four decades to some hundredths.
+#[test]
+fn t3_rounding_grows_like_the_square_root_of_the_steps() {
+    let plain = growth(0.01, 24, false);
+    print("plain", &plain);
+    for exponent in exponents(&plain) {
+        assert!((exponent - 0.5).abs() < 0.1, "the exponent {exponent}");
+    }
+}
+
+/// The angle of a step is .04 here: what is added is that much smaller than what it is added to.
+#[test]
+fn t3_compensated_sums_lose_a_tenth_at_common_steps() {
+    let (plain, compensated) = (growth(0.01, 24, false), growth(0.01, 24, true));
+    print("compensated", &compensated);
+    for k in 0..3 {
+        let (plain, compensated) = (plain[4][k], compensated[4][k]);
+        assert!(compensated < 0.1 * plain, "size {k} after 10⁶ steps: {compensated:e} against {plain:e}");
+    }
+}
+
+/// At a small step there is no growth: after 10⁶ steps the defects are those of a matrix rounded to `f64`.
+#[test]
+fn t3_compensated_sums_lose_nothing_at_small_steps() {
+    let (plain, compensated) = (growth(1e-4, 8, false), growth(1e-4, 8, true));
+    print("compensated", &compensated);
+    let [orthogonality, length, momentum] = compensated[4];
+    assert!(orthogonality < 3e-16 && length < 4e-16 && momentum < 4e-16, "{:?}", compensated[4]);
+    assert!(plain[4].iter().zip(compensated[4]).all(|(plain, compensated)| compensated < 0.02 * plain));
+}
+
+/// `h = 10⁻⁸` and a million steps: the momentum against a thousand steps of `10⁻⁵`, whose own error is below `10⁻¹¹ h²`.
+#[test]
+fn t4_tiny_steps() {
+    let motion = looping();
+    let end = |h: f64| {
+        let stepper = Stepper::new(motion.top.clone(), h).unwrap().compensated();
+        let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
+        for _ in 0..steps_in(0.01, h) {
+            stepper.step(&mut state).unwrap();
+        }
+        state
+    };
+    // Richardson's extrapolation of the order 2 leaves an error of the order of h⁴.
+    let (coarse, fine) = (end(2e-5), end(1e-5));
+    let expected = fine.state().momentum() + (fine.state().momentum() - coarse.state().momentum()) / 3.0;
+    let error = relative(&end(1e-8).state().momentum(), &expected);
+    println!("relative error of the momentum {error:e}");
+    assert!(error < 5e-16, "{error:e}");
+}
+
+/// The map is the same: over a short time the two differ by roundings.
+#[test]
+fn t3_compensation_changes_nothing_but_rounding() {
+    let stepper = Stepper::new(HeavyTop::asymmetric(), 0.01).unwrap();
+    let start = stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap();
+    let (mut plain, mut kept, carrying) = (start, CompensatedState::from(start), stepper.clone().compensated());
+    for _ in 0..100 {
+        assert_eq!(stepper.step(&mut plain), carrying.step(&mut kept));
+    }
+    assert!(relative(&kept.state().momentum(), &plain.momentum()) < 1e-14);
+    assert!(relative(&kept.state().advected(), &plain.advected()) < 1e-14);
+    assert!(relative(&kept.state().attitude().matrix(), &plain.attitude().matrix()) < 1e-14);
+    assert_eq!(kept.state().steps(), plain.steps());
+}
+
+fn compensated(top: HeavyTop, h: f64) -> CompensatedStepper<HeavyTop> {
+    Stepper::new(top, h).unwrap().compensated()
+}
+
+#[test]
+fn s5_zero_step_and_the_inverse_map() {
+    let motion = looping();
+    let standing = compensated(motion.top.clone(), 0.0);
+    let mut state = standing.start(motion.attitude, motion.velocity).unwrap();
+    let before = state;
+    standing.step(&mut state).unwrap();
+    assert_eq!(state.state().momentum(), before.state().momentum());
+    assert_eq!(state.state().attitude(), before.state().attitude());
+
+    let [there, back] = [1e-5, -1e-5].map(|h| compensated(motion.top.clone(), h));
+    for _ in 0..1_000_000 {
+        there.step(&mut state).unwrap();
+    }
+    for _ in 0..1_000_000 {
+        back.step(&mut state).unwrap();
+    }
+    let error = relative(&state.state().momentum(), &before.state().momentum())
+        .max(relative(&state.state().attitude().matrix(), &before.state().attitude().matrix()));
+    println!("a million steps there and back: {error:e}");
+    assert!(error < 1e-14, "{error:e}");
+}
+
+#[test]
+fn s2_a_refused_step_leaves_state_and_carry_alone() {
+    let motion = looping();
+    let mut state = {
+        let stepper = compensated(motion.top.clone(), 0.01);
+        let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
+        stepper.step(&mut state).unwrap();
+        state
+    };
+    let before = state;
+    assert!(compensated(motion.top, 0.1).step(&mut state).is_err());
+    assert_eq!(format!("{before:?}"), format!("{state:?}"));
+}

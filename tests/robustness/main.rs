@@ -1,0 +1,18 @@
+//! Any input gets an answer or a typed error: solving, limits of a step, policies, checkpoints, random inputs.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../examples/declarations/mod.rs"]
+mod declarations;
+
+mod checkpoints;
+mod compensated;
+mod policies;
+mod random_inputs;
+mod secants;
+mod secants_long_run;
+mod solvability;
+mod solve;

@@ -1,0 +1,122 @@
+//! What a stepper with a policy does where there is no step, and that it says so.
+
+use crate::common::measure::relative;
+use crate::common::reference::{Motion, looping};
+use crate::common::tops::HeavyTop;
+use crate::declarations::CayleyTop;
+use liestep::{Fallback, Remedy, SO3, State, StepError, StepReport, Stepper, Substeps};
+use nalgebra::Vector3;
+
+type TopState = State<SO3, Vector3<f64>>;
+
+/// The thesis' published setting, at which (3.13) has no first step.
+fn published() -> (Stepper<HeavyTop>, TopState) {
+    let Motion { top, attitude, velocity, .. } = looping();
+    let stepper = Stepper::new(top, 0.1).unwrap();
+    let state = stepper.start(attitude, velocity).unwrap();
+    (stepper, state)
+}
+
+/// What every step keeps: the group, `|w|` and the momentum about the vertical.
+fn assert_kept(state: &TopState, start: &TopState) {
+    assert!(state.orthogonality_defect() < 1e-14);
+    assert!((state.advected().norm() - 1.0).abs() < 1e-14);
+    let vertical = |state: &TopState| state.momentum_along(&Vector3::z());
+    assert!((vertical(state) / vertical(start) - 1.0).abs() < 1e-13);
+}
+
+#[test]
+fn s2_substeps_in_the_place_of_the_published_step() {
+    let (stepper, start) = published();
+    let remedied = stepper.clone().on_failure(Substeps { at_most: 16 });
+    let mut state = start;
+    let report = remedied.step(&mut state).unwrap();
+    assert_eq!(report.remedy, Some(Remedy::Substeps(2)));
+    assert_eq!(state.steps(), 1);
+
+    // Two steps of half the size, to the bit.
+    let half = Stepper::new(stepper.lagrangian().clone(), 0.05).unwrap();
+    let mut expected = half.start(looping().attitude, looping().velocity).unwrap();
+    let iterations: u32 = (0..2).map(|_| half.step(&mut expected).unwrap().iterations).sum();
+    assert_eq!(report.iterations, iterations);
+    assert_eq!(
+        (state.attitude(), state.momentum(), state.advected()),
+        (expected.attitude(), expected.momentum(), expected.advected())
+    );
+
+    for _ in 0..100 {
+        remedied.step(&mut state).unwrap();
+    }
+    assert_eq!(state.steps(), 101);
+    assert_kept(&state, &start);
+}
+
+#[test]
+fn s2_cayley_step_in_the_place_of_the_published_step() {
+    let (stepper, start) = published();
+    let other = stepper.lagrangian().declared_as::<CayleyTop>();
+    let remedied = stepper.clone().on_failure(Fallback::new(other.clone(), &stepper).unwrap());
+    let mut state = start;
+    assert_eq!(remedied.step(&mut state).unwrap().remedy, Some(Remedy::Fallback));
+
+    let mut expected = start;
+    let alone = Stepper::new(other, 0.1).unwrap();
+    alone.step(&mut expected).unwrap();
+    assert_eq!(state, expected);
+
+    for _ in 0..100 {
+        remedied.step(&mut state).unwrap();
+    }
+    assert_kept(&state, &start);
+}
+
+/// Where the step has a solution it is that one, to the bit, and the report is the stepper's own.
+#[test]
+fn s2_a_policy_does_nothing_where_there_is_a_step() {
+    let Motion { top, attitude, velocity, .. } = looping();
+    let stepper = Stepper::new(top, 0.01).unwrap();
+    let substeps = stepper.clone().on_failure(Substeps { at_most: 16 });
+    let fallback =
+        stepper.clone().on_failure(Fallback::new(stepper.lagrangian().declared_as::<CayleyTop>(), &stepper).unwrap());
+    let start = stepper.start(attitude, velocity).unwrap();
+    let (mut plain, mut first, mut second) = (start, start, start);
+    for _ in 0..1000 {
+        let report = stepper.step(&mut plain).unwrap();
+        assert_eq!(report, StepReport { iterations: report.iterations, remedy: None });
+        assert_eq!(substeps.step(&mut first).unwrap(), report);
+        assert_eq!(fallback.step(&mut second).unwrap(), report);
+    }
+    assert_eq!((first, second), (plain, plain));
+}
+
+/// The spin alone makes every step impossible here, so the motion is that of half the step, but for the guesses.
+#[test]
+fn s2_substeps_move_by_the_whole_step() {
+    let (stepper, mut state) = published();
+    let remedied = stepper.on_failure(Substeps { at_most: 16 });
+    let half = Stepper::new(HeavyTop::thesis(), 0.05).unwrap();
+    let mut expected = half.start(looping().attitude, looping().velocity).unwrap();
+    for _ in 0..10 {
+        assert_eq!(remedied.step(&mut state).unwrap().remedy, Some(Remedy::Substeps(2)));
+        half.step(&mut expected).unwrap();
+        half.step(&mut expected).unwrap();
+    }
+    assert!(relative(&state.advected(), &expected.advected()) < 1e-13);
+    assert!((remedied.stepper().time(&state) - half.time(&expected)).abs() < 1e-15);
+}
+
+/// Nothing helps: the first error, and the state to the bit.
+#[test]
+fn s2_without_a_remedy_the_state_is_left_alone() {
+    let (stepper, start) = published();
+    let mut state = start;
+    let error = stepper.clone().on_failure(Substeps { at_most: 1 }).step(&mut state).unwrap_err();
+    assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error:?}");
+    assert_eq!(format!("{start:?}"), format!("{state:?}"));
+
+    // A Lagrangian with the same limit is no way out.
+    let same = Fallback::new(stepper.lagrangian().clone(), &stepper).unwrap();
+    let error = stepper.on_failure(same).step(&mut state).unwrap_err();
+    assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error:?}");
+    assert_eq!(format!("{start:?}"), format!("{state:?}"));
+}

@@ -1,0 +1,92 @@
+//! What many steps without the Jacobian keep: energy without drift, Casimirs and momenta, and the way back, no worse than
+//! Newton's iteration does.
+
+use crate::common::solvers::WithJacobian;
+use crate::declarations::{self, FourthOrderTop, SixthOrderTop};
+use liestep::{DiscreteLagrangian, Inertia, LieGroup as _, Regular, SO3, Stepper};
+use nalgebra::{UnitQuaternion, Vector3};
+
+const STEPS: u32 = 100_000;
+
+fn body<L: declarations::Top>() -> L {
+    let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    L::new(J, 9.81, Vector3::z(), Vector3::z())
+}
+
+fn fourth() -> FourthOrderTop {
+    body()
+}
+
+fn sixth() -> SixthOrderTop {
+    body()
+}
+
+/// Relative changes: of the energy's mean between the first and the last tenth, and at the end of `w·w`, `p·w` and `p₃`.
+#[derive(Debug)]
+struct Kept {
+    energy: f64,
+    casimirs: f64,
+    spin: f64,
+}
+
+fn kept<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular>(
+    lagrangian: L,
+    h: f64,
+) -> Kept {
+    let stepper = Stepper::new(lagrangian, h).unwrap();
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+    let mut state = stepper.start(attitude, Vector3::new(0.5, 2.15, 12.09)).unwrap();
+    let start = state;
+    let mean = |state: &mut _, steps: u32| {
+        let sum = (0..steps).fold(0.0, |sum, _| {
+            stepper.step(state).unwrap();
+            sum + stepper.energy(state)
+        });
+        sum / f64::from(steps)
+    };
+    let first = mean(&mut state, STEPS / 10);
+    mean(&mut state, 8 * (STEPS / 10));
+    let last = mean(&mut state, STEPS / 10);
+    let casimir = |state: &liestep::State<SO3, Vector3<f64>>| state.momentum().dot(&state.advected());
+    Kept {
+        energy: (last / first - 1.0).abs(),
+        casimirs: (state.advected().norm_squared() - 1.0).abs().max((casimir(&state) / casimir(&start) - 1.0).abs()),
+        spin: (state.momentum().z / start.momentum().z - 1.0).abs(),
+    }
+}
+
+fn assert_no_worse(without: &Kept, with: &Kept) {
+    println!("{without:?} without, {with:?} with");
+    assert!(without.energy < 2.0 * with.energy + 1e-11);
+    assert!(without.casimirs < 1e-12 && without.spin < 1e-12);
+}
+
+#[test]
+fn the_fourth_order_top_keeps_what_it_kept() {
+    assert_no_worse(&kept(fourth(), 0.01), &kept(WithJacobian(fourth()), 0.01));
+    assert_no_worse(&kept(fourth(), 0.05), &kept(WithJacobian(fourth()), 0.05));
+}
+
+#[test]
+fn the_sixth_order_top_keeps_what_it_kept() {
+    assert_no_worse(&kept(sixth(), 0.01), &kept(WithJacobian(sixth()), 0.01));
+    assert_no_worse(&kept(sixth(), 0.05), &kept(WithJacobian(sixth()), 0.05));
+}
+
+/// A thousand steps and as many back.
+#[test]
+fn there_and_back() {
+    let (forward, back) = (Stepper::new(sixth(), 0.02).unwrap(), Stepper::new(sixth(), -0.02).unwrap());
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+    let start = forward.start(attitude, Vector3::new(0.5, 2.15, 12.09)).unwrap();
+    let mut state = start;
+    for _ in 0..1000 {
+        forward.step(&mut state).unwrap();
+    }
+    let mut state = back.start_with_momentum(state.attitude(), state.momentum()).unwrap();
+    for _ in 0..1000 {
+        back.step(&mut state).unwrap();
+    }
+    assert!((state.attitude().matrix() - start.attitude().matrix()).norm() < 1e-11);
+    assert!((state.momentum() - start.momentum()).norm() < 1e-11 * start.momentum().norm());
+}

@@ -1,0 +1,119 @@
+//! What is proved about a step before it is solved agrees with what the solver finds.
+
+use crate::common::random::Random;
+use crate::common::reference::{Motion, looping};
+use crate::common::tops::{FreeBody, FullTop, HeavyTop, moments};
+use crate::declarations::CayleyTop;
+use liestep::effects::{Gravity, RigidBody};
+use liestep::{DiscreteLiePoisson, LieGroup as _, NonstandardInertia, Regular, SO3, Solvability, StepError, Stepper};
+use nalgebra::Vector3;
+
+/// Steps and directions all around the two bounds: the sure ones have a solution under 90°, the impossible ones none.
+fn assert_bounds_hold<L>(lagrangian: &L, seed: u64)
+where
+    L: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + core::fmt::Debug,
+{
+    let mut random = Random::new(seed);
+    let inertia = lagrangian.inertia().symmetric_eigenvalues();
+    let mut found = [0; 3];
+    for _ in 0..2000 {
+        let h = 10.0_f64.powf(random.signed() * 3.0);
+        let flow = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
+        let w = random.direction();
+        // `h|a|` from a third of the smallest moment to twice the largest.
+        let size = inertia.min() / 3.0 * (6.0 * inertia.max() / inertia.min()).powf(0.5 + 0.5 * random.signed());
+        let momentum = random.direction() * (size / h) - L::kick_before(&lagrangian.constants(h), &w);
+        let step = flow.step(&momentum, &w, &Vector3::zeros());
+        match flow.solvability(&momentum, &w) {
+            Solvability::Certain => {
+                found[0] += 1;
+                let angle = step.unwrap().element().log().norm();
+                assert!(size < inertia.min() && angle < core::f64::consts::FRAC_PI_2, "{angle} at {size}");
+            }
+            Solvability::Impossible => {
+                found[1] += 1;
+                let error = step.unwrap_err();
+                assert!(size > inertia.max() && matches!(error, StepError::BeyondSolvable { .. }), "{error:?}");
+            }
+            Solvability::Open => {
+                found[2] += 1;
+                let margin = 1.0 + 1e-9;
+                assert!(size * margin > inertia.min() && size < inertia.max() * margin, "{size} within {inertia}");
+            }
+        }
+    }
+    println!("certain, impossible, open: {found:?}");
+    assert!(found.iter().all(|&count| count > 100), "{found:?}");
+}
+
+#[test]
+fn s1_bounds_of_tops() {
+    for (seed, top) in [HeavyTop::thesis(), HeavyTop::asymmetric()].into_iter().enumerate() {
+        assert_bounds_hold(&top, seed as u64);
+        let axes = Random::new(9).rotation();
+        assert_bounds_hold(&FullTop::in_axes(&top, axes.as_matrix()), 10 + seed as u64);
+    }
+}
+
+/// The guaranteed and the impossible step of the thesis' first case.
+#[test]
+fn s1_bounds_of_the_looping_top() {
+    let Motion { top, attitude, velocity, .. } = looping();
+    let at = |h: f64| {
+        let stepper = Stepper::new(top.clone(), h).unwrap();
+        stepper.solvability(&stepper.start(attitude, velocity).unwrap())
+    };
+    assert_eq!(
+        (at(0.061), at(0.062), at(0.081), at(0.083)),
+        (Solvability::Certain, Solvability::Open, Solvability::Open, Solvability::Impossible)
+    );
+    assert_eq!((at(-0.061), at(-0.083)), (Solvability::Certain, Solvability::Impossible));
+}
+
+/// Without an advected parameter, and for a sphere, where nothing is open.
+#[test]
+fn s1_bounds_of_free_bodies() {
+    for (inertia, open) in [([1.0, 2.0, 2.5], true), ([2.0, 2.0, 2.0], false)] {
+        let flow = DiscreteLiePoisson::new(FreeBody::with_moments(inertia), 0.5).unwrap();
+        let at = |size: f64| flow.solvability(&(Vector3::new(0.6, 0.0, 0.8) * (size / 0.5)), &());
+        assert_eq!(at(0.999 * inertia[0]), Solvability::Certain);
+        assert_eq!(at(1.001 * inertia[2]), Solvability::Impossible);
+        assert_eq!(at(1.001 * inertia[0]) == Solvability::Open, open);
+    }
+}
+
+/// The bounds are those of (3.13); another kinetic part has none.
+#[test]
+fn s6_nothing_is_said_of_other_lagrangians() {
+    let top = HeavyTop::asymmetric();
+    let flow = DiscreteLiePoisson::new(top.declared_as::<CayleyTop>(), 0.01).unwrap();
+    assert_eq!(flow.solvability(&Vector3::new(0.1, 0.2, 0.3), &Vector3::z()), Solvability::Open);
+    assert_eq!(flow.solvability(&Vector3::new(1e6, 0.0, 0.0), &Vector3::z()), Solvability::Open);
+}
+
+/// A scene is known by its body: potentials of the positions only move the right side.
+#[test]
+fn s1_bounds_of_a_scene() {
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.0, 0.5, 1.0), up: Vector3::z() };
+    let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.01).unwrap();
+    let at = |spin: f64| stepper.solvability(&stepper.start(SO3::identity(), Vector3::z() * spin).unwrap());
+    assert_eq!((at(1.0), at(1e3)), (Solvability::Certain, Solvability::Impossible));
+}
+
+/// Momenta far beyond any that could be stepped with: the bounds answer at once, and name a step that would do.
+#[test]
+fn s1_the_largest_step_of_extreme_momenta() {
+    let top = HeavyTop::thesis();
+    for exponent in [3, 30, 60, 100] {
+        let momentum = Vector3::new(0.3, -0.4, 0.5) * 10.0_f64.powi(exponent);
+        let flow = DiscreteLiePoisson::new(top.clone(), 1.0).unwrap();
+        let error = flow.step(&momentum, &Vector3::z(), &Vector3::zeros()).unwrap_err();
+        let StepError::BeyondSolvable { largest, .. } = error else { panic!("{error:?}") };
+        let size = largest * momentum.norm();
+        let j = moments(&top);
+        assert!(size >= j.min() * (1.0 - 1e-5) && size <= j.max(), "10^{exponent}: h|p| = {size}");
+        let flow = DiscreteLiePoisson::new(top.clone(), largest).unwrap();
+        assert!(flow.step(&momentum, &Vector3::z(), &Vector3::zeros()).is_ok(), "10^{exponent}: {largest:e}");
+    }
+}
