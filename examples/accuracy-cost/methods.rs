@@ -5,7 +5,7 @@ use liestep::{
     PreprocessedOrder, Regular, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
-use crate::rivals::{Equations, dop853, rk4};
+use crate::rivals::{Equations, dop853, library, rk4};
 use crate::scenes::{End, Kind, Scene};
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
@@ -52,6 +52,11 @@ impl Method {
         Self { name: name.into(), family, control, prepare: Box::new(prepare) }
     }
 
+    /// Whether the method's steps are all of one length, which is what is varied.
+    pub(crate) fn steps_are_equal(&self) -> bool {
+        matches!(self.control, Control::Step(_))
+    }
+
     /// Steps that divide the time, each shorter than the one before by the ratio; or tolerances.
     pub(crate) fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
         let (first, next, last) = match self.control {
@@ -59,7 +64,7 @@ impl Method {
             // An error of order 8 falls by the eighth power of the step.
             Control::Tolerance => (1.0, ratio.powi(-8), 1e-15),
         };
-        let whole = matches!(self.control, Control::Step(_));
+        let whole = self.steps_are_equal();
         core::iter::successors(Some(first), move |parameter| Some(parameter * next))
             .take_while(move |parameter| *parameter > last)
             .map(move |parameter| if whole { t / (t / parameter).ceil() } else { parameter })
@@ -197,7 +202,7 @@ where
     core::iter::once(alone).chain(composed).collect()
 }
 
-fn rivals() -> [Method; 3] {
+fn rivals() -> [Method; 4] {
     [
         Method::new("RK4", Family::Rival, Control::Step(0.5), |scene, t, h| {
             let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
@@ -222,6 +227,10 @@ fn rivals() -> [Method; 3] {
         Method::new("DOP853", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
             let (equations, start) = (Equations::of(scene), Equations::start(scene));
             Some(Box::new(move || Some(equations.end(&dop853::integrate(&equations, t, tolerance, start)?))))
+        }),
+        Method::new("DOP853 of a library", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
+            let (equations, start) = (Equations::of(scene), Equations::start(scene));
+            Some(Box::new(move || Some(equations.end(&library::integrate(&equations, t, tolerance, start)?))))
         }),
     ]
 }

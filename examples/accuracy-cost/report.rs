@@ -21,7 +21,8 @@ impl Measured {
         Self { name: method.name.clone(), family: method.family, runs }
     }
 
-    fn cost(&self, error: f64) -> Option<f64> {
+    /// The least time to an error, s.
+    pub(crate) fn cost(&self, error: f64) -> Option<f64> {
         cost_of(&self.runs, error)
     }
 }

@@ -1,0 +1,100 @@
+//! What a million steps leave of the energy, of the vertical momentum and of the attitude's orthogonality.
+//!
+//! Each method makes as many steps, of the length with which it reached [`ERROR`] after ten seconds.
+
+use nalgebra::Matrix3;
+
+use crate::common::table::{aligned, number};
+use crate::measure::Run;
+use crate::methods::{Family, Method};
+use crate::report::Measured;
+use crate::scenes::{End, Scene};
+
+/// The error that sets the step.
+const ERROR: f64 = 1e-4;
+
+/// Deviations after a number of steps.
+#[derive(Clone, Copy)]
+pub(crate) struct Lost {
+    pub(crate) steps: f64,
+    /// Relative to the kinetic energy at the start.
+    pub(crate) energy: f64,
+    /// Of `e₃·RJΩ`, relative to the momentum's size at the start.
+    pub(crate) vertical: f64,
+    /// `‖RᵀR − I‖`, Frobenius.
+    pub(crate) orthogonality: f64,
+}
+
+/// A method, its step in s, and what it lost after ever more steps.
+pub(crate) struct Kept {
+    pub(crate) name: String,
+    pub(crate) family: Family,
+    step: f64,
+    pub(crate) lost: Vec<Lost>,
+}
+
+/// Runs those methods that a user would choose among: the first declared one, the cheapest of each family, and both
+/// rivals with steps of equal length.
+pub(crate) fn kept(scene: &Scene, methods: &[Method], measured: &[Measured], most: u32) -> Vec<Kept> {
+    let cheapest = [Family::Poisson, Family::NearlyPoisson].map(|family| {
+        let costs = measured.iter().enumerate().filter(|(_, method)| method.family == family);
+        let costs = costs.filter_map(|(i, method)| Some((i, method.cost(ERROR)?)));
+        costs.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+    });
+    let chosen = methods.iter().enumerate().filter(|(i, method)| {
+        let rival = method.family == Family::Rival && method.steps_are_equal();
+        *i == 0 || rival || cheapest.contains(&Some(*i))
+    });
+    chosen
+        .filter_map(|(i, method)| {
+            let step = longest(&measured[i].runs)?;
+            let ends = decades(most).map(|steps| {
+                let end = (method.prepare)(scene, steps * step, step)?()?;
+                Some(lost(scene, steps, &end))
+            });
+            let lost = ends.collect::<Option<Vec<_>>>()?;
+            Some(Kept { name: method.name.clone(), family: method.family, step, lost })
+        })
+        .collect()
+}
+
+/// The longest step of those that reach the error.
+fn longest(runs: &[Run]) -> Option<f64> {
+    runs.iter().filter(|run| run.error <= ERROR).map(|run| run.parameter).max_by(f64::total_cmp)
+}
+
+/// Ten, then twice or more and five times or more as many, up to the most.
+fn decades(most: u32) -> impl Iterator<Item = f64> {
+    (1..=6)
+        .flat_map(|power| [1, 2, 5].map(|digit| digit * 10_u32.pow(power)))
+        .filter(move |n| *n <= most)
+        .map(f64::from)
+}
+
+fn lost(scene: &Scene, steps: f64, (attitude, velocity): &End) -> Lost {
+    let momentum = scene.moments.component_mul(velocity);
+    let start = scene.moments.component_mul(&scene.velocity);
+    let kinetic = 0.5 * start.dot(&scene.velocity);
+    let potential = |attitude: &Matrix3<f64>| scene.weight * (attitude * scene.rho).z;
+    let energy = 0.5 * momentum.dot(velocity) - kinetic + potential(attitude) - potential(&scene.attitude);
+    Lost {
+        steps,
+        energy: (energy / kinetic).abs(),
+        vertical: ((attitude * momentum - scene.attitude * start).z / start.norm()).abs(),
+        orthogonality: (attitude.transpose() * attitude - Matrix3::identity()).norm(),
+    }
+}
+
+/// What the methods lost in all their steps.
+pub(crate) fn table(methods: &[Kept]) -> String {
+    let steps = methods.iter().filter_map(|kept| kept.lost.last()).map(|lost| lost.steps).fold(0.0, f64::max);
+    let heading = [&format!("after {steps:.0e} steps"), "h, s", "energy", "vertical momentum", "‖RᵀR − I‖"];
+    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    for Kept { name, step, lost, .. } in methods {
+        if let Some(last) = lost.last() {
+            let values = [*step, last.energy, last.vertical, last.orthogonality].map(number);
+            rows.push(core::iter::once(name.clone()).chain(values).collect());
+        }
+    }
+    aligned(&rows)
+}
