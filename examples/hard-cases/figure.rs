@@ -60,9 +60,9 @@ pub(crate) fn figure(curves: &Curves) -> Drawn<String> {
         places.push(place("R1–R3: the same step again", count, Vertical::Logarithmic, &curves.composed));
     }
     let rows = places.len().div_ceil(COLUMNS);
-    render((1350, 60 + 330 * u32::try_from(rows)?), |area| {
+    render((1500, 60 + 330 * u32::try_from(rows)?), |area| {
         let (header, body) = area.split_vertically(px(60));
-        heading(&header, "Hard cases", "what the rows of the table look like")?;
+        heading(&header, "Hard cases", "energies of the same body by several methods; steps up to the fold; what early stopping and rounding leave")?;
         for (area, place) in body.split_evenly((rows, COLUMNS)).iter().zip(&places) {
             place.draw(area)?;
         }

@@ -69,7 +69,11 @@ impl Row {
     }
 }
 
-/// A size in two digits, zero as such.
+/// A size in two digits, or three where it needs no power of ten.
 pub(crate) fn short(size: f64) -> String {
-    if size == 0.0 { "0".to_owned() } else { crate::common::table::number(size) }
+    if size == 0.0 || (0.1..1e4).contains(&size.abs()) {
+        crate::common::table::short(format!("{size:.2e}").parse().unwrap_or(size))
+    } else {
+        crate::common::table::number(size)
+    }
 }

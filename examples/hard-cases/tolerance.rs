@@ -3,7 +3,7 @@
 //! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by a
 //! loop of a few lines.
 
-use liestep::{Advected as _, Coordinates as _, Effect, LieGroup as _, Retraction as _, SO3};
+use liestep::{Advected, Coordinates as _, DiscreteLagrangian, LieGroup as _, Retraction as _, SO3};
 use nalgebra::Vector3;
 
 use crate::measure::{Tenths, float, greater};
@@ -16,6 +16,15 @@ pub(crate) enum Guess {
     Last,
     /// The straight line through the last two.
     Extrapolated,
+}
+
+/// How the new momentum is written.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Form {
+    /// `μ⁺ = Ad*_F (μ + diamond)`, from the old momentum; (2.9).
+    Transport,
+    /// `μ⁺ = 𝔽l_d⁺(F, w)`, from `F` alone, as (3.18) reads.
+    Printed,
 }
 
 /// What is left of a run.
@@ -39,10 +48,11 @@ pub(crate) fn run<L>(
     h: f64,
     (mut momentum, mut w): (Vector3<f64>, Vector3<f64>),
     (guess, tolerance): (Guess, f64),
+    form: Form,
     steps: u64,
 ) -> Left
 where
-    L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
 {
     let constants = lagrangian.constants(h);
     let (energy_before, vertical, axial) = (energy(lagrangian, &momentum, &w), momentum.dot(&w), momentum.z);
@@ -65,10 +75,14 @@ where
         }
         (before, last) = (last, xi);
         let increment = L::Retraction::increment(&xi);
-        let next = w.advect(&increment);
-        momentum += SO3::adjoint_transpose_increment(&increment, &a)
-            + (a - momentum)
-            + L::kick_after(&constants, &increment, &next);
+        let next = Advected::<SO3>::advect(&w, &increment);
+        momentum = match form {
+            Form::Transport => {
+                let kicks = (a - momentum) + L::kick_after(&constants, &increment, &next);
+                momentum + (SO3::adjoint_transpose_increment(&increment, &a) + kicks)
+            }
+            Form::Printed => lagrangian.legendre_plus(&SO3::from_increment(&increment).matrix(), &w, h),
+        };
         w = next;
         energies.after(step, || energy(lagrangian, &momentum, &w) - energy_before);
         left.vertical = greater(left.vertical, (momentum.dot(&w) / vertical - 1.0).abs());

