@@ -19,7 +19,7 @@ fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(Tenths, Walk)
     let mut plain = stepper.start(motion.attitude, motion.velocity)?;
     let mut kept = CompensatedState::from(plain);
     let start = stepper.energy(&plain);
-    let (mut energies, mut walk) = (Tenths::new(steps), Walk::from_state(&plain));
+    let (mut energies, mut walk) = (Tenths::new(steps), Walk::from_state(&plain, steps));
     for step in 1..=steps {
         if compensated {
             carrying.step(&mut kept)?;

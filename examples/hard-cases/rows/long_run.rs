@@ -9,7 +9,7 @@ use crate::measure::{Tenths, float};
 use crate::motion::Motion;
 use crate::rivals::{GREY, energy_of, on_matrix, on_quaternion};
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::{Defects, TopState, Walk};
+use crate::walk::{FARTHEST, TopState, Walk};
 
 const STEP: f64 = 0.01;
 
@@ -27,7 +27,7 @@ fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(f64, Run), Fa
     let mut plain: TopState = stepper.start(motion.attitude, motion.velocity)?;
     let mut kept = CompensatedState::from(plain);
     let (start, axial) = (stepper.energy(&plain), plain.momentum().z);
-    let mut run = Run { walk: Walk::from_state(&plain), energies: Tenths::new(steps), axial: 0 };
+    let mut run = Run { walk: Walk::from_state(&plain, steps), energies: Tenths::new(steps), axial: 0 };
     for step in 1..=steps {
         if compensated {
             carrying.step(&mut kept)?;
@@ -45,7 +45,7 @@ fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(f64, Run), Fa
 fn theirs<M: Method>(motion: &Motion, mut method: M, steps: u64) -> Result<(Walk, f64), Failure> {
     let vertical = |sample: &Sample| sample.attitude.row(2).transpose();
     let start = method.sample();
-    let mut walk = Walk::from(&start.momentum, &vertical(&start));
+    let mut walk = Walk::from(&start.momentum, &vertical(&start), steps);
     let energy = energy_of(&motion.top, &start);
     // They are looked at every hundred steps.
     for step in (100..=steps).step_by(100) {
@@ -73,12 +73,11 @@ pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let (matrix, _) = theirs(&motion, on_matrix(&motion, STEP), steps.min(1_000_000))?;
 
     let worst = plain.walk.worst;
-    let growth = |defect: fn(&Defects) -> f64| plain.walk.exponent(defect);
     let mut row = Row::new(
         "T3",
         "looping top, h = 0.01, a million steps (1e8 with --long)",
         "‖RᵀR − I‖ ≤ 2e-12, |w| and p·w ≤ 3e-12, energy window means within 1e-10 E, extremes to 4 digits, growth like \
-         √N, p₃ to the last bit",
+         √N (4 deviations of a walk), p₃ to the last bit",
     )
     .shows(format!("{:.0e} steps", float(steps)))
     .at_most("‖RᵀR − I‖", worst.orthogonality, 2e-12)
@@ -87,16 +86,12 @@ pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     .at_most("energy window means, relative", plain.energies.drift() / energy, 1e-10)
     .at_most("energy extremes, relative", plain.energies.extremes(), 5e-4)
     .at_most("steps that changed p₃", float(plain.axial), 0.0)
-    .shows(format!(
-        "growth over the last two decades like N to the {:.2} (R), {:.2} (w), {:.2} (p·w)",
-        growth(|d| d.orthogonality),
-        growth(|d| d.length),
-        growth(|d| d.vertical),
-    ));
+    .at_most("RRᵀ − I, in deviations of a walk", plain.walk.attitude_deviations(), FARTHEST)
+    .at_most("|w|² and p·w, in deviations of a walk", plain.walk.casimir_deviations(), FARTHEST);
     let kept_worst = kept.walk.worst;
     row = row
         .shows(format!(
-            "compensated: {}, {}, {}; energy {}",
+            "compensated: ‖RᵀR − I‖ {}, |w| {}, p·w {}, energy means {}",
             short(kept_worst.orthogonality),
             short(kept_worst.length),
             short(kept_worst.vertical),

@@ -18,10 +18,7 @@ use crate::declarations::HeavyTop;
 use crate::measure::{Tenths, float};
 use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::{TopState, Walk, energy};
-
-/// Between the exponent of a walk and that of a drift.
-const WALK: f64 = 0.75;
+use crate::walk::{FARTHEST, TopState, Walk, energy};
 
 /// Steps and looks.
 fn walk(
@@ -30,7 +27,7 @@ fn walk(
     steps: u64,
     mut step: impl FnMut(u64) -> Result<TopState, Failure>,
 ) -> Result<(Walk, f64), Failure> {
-    let (mut walk, mut energies) = (Walk::from_state(start), Tenths::new(steps));
+    let (mut walk, mut energies) = (Walk::from_state(start, steps), Tenths::new(steps));
     let before = energy(top, &start.momentum(), &start.advected());
     for count in 1..=steps {
         let state = step(count)?;
@@ -42,12 +39,16 @@ fn walk(
 
 /// What is left of a run: the criterion is for the library's step as it is.
 fn told(row: Row, name: &str, (walk, energy): &(Walk, f64), is_judged: bool) -> Row {
-    let (worst, growth) = (walk.worst, walk.exponent(|d| d.orthogonality));
+    let (worst, deviations) = (walk.worst, walk.attitude_deviations());
     let defect = format!("{name}: ‖RᵀR − I‖");
     let row = if is_judged {
-        row.at_most(&defect, worst.orthogonality, 2e-12).at_most(&format!("{name}: growth like N to the"), growth, WALK)
+        row.at_most(&defect, worst.orthogonality, 2e-12).at_most(
+            &format!("{name}: in deviations of a walk"),
+            deviations,
+            FARTHEST,
+        )
     } else {
-        row.shows(format!("{defect} {}, growth like N to the {growth:.2}", short(worst.orthogonality)))
+        row.shows(format!("{defect} {}, {deviations:.1} deviations of a walk", short(worst.orthogonality)))
     };
     row.shows(format!(
         "{name}: p·w {}, p₃ {}, energy means {}",
@@ -85,7 +86,7 @@ impl CompensatedComposition {
     }
 }
 
-const CRITERION: &str = "‖RᵀR − I‖ ≤ 2e-12, growing like √N (exponent up to 0.75)";
+const CRITERION: &str = "‖RᵀR − I‖ ≤ 2e-12, growing like √N (4 deviations of a walk)";
 
 fn line(name: &'static str, colour: RGBColor, (walk, _): &(Walk, f64)) -> Curve {
     Curve { name, colour, points: walk.points(|d| d.orthogonality) }
