@@ -24,7 +24,7 @@ fn place<'a>(title: &'a str, (across, up): (&'a str, &'a str), vertical: Vertica
 }
 
 /// The same with the limits of the step, from the bottom to the top.
-fn with_limits<'a>(mut place: Place<'a>, limits: [f64; 3], top: f64) -> Place<'a> {
+fn with_limits(mut place: Place<'_>, limits: [f64; 3], top: f64) -> Place<'_> {
     place.panel.function = false;
     for limit in limits {
         place.panel.lines.push(Line { colour: GREY, width: 2, points: vec![(limit, 0.0), (limit, top)] });
@@ -62,7 +62,11 @@ pub(crate) fn figure(curves: &Curves) -> Drawn<String> {
     let rows = places.len().div_ceil(COLUMNS);
     render((1500, 60 + 330 * u32::try_from(rows)?), |area| {
         let (header, body) = area.split_vertically(px(60));
-        heading(&header, "Hard cases", "energies of the same body by several methods; steps up to the fold; what early stopping and rounding leave")?;
+        heading(
+            &header,
+            "Hard cases",
+            "energies of the same body by several methods; steps up to the fold; what early stopping and rounding leave",
+        )?;
         for (area, place) in body.split_evenly((rows, COLUMNS)).iter().zip(&places) {
             place.draw(area)?;
         }

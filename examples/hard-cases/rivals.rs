@@ -94,7 +94,8 @@ impl Spin {
     }
 }
 
-type Update = fn(&Moments, &Vector3<f64>, f64) -> Vector3<f64>;
+/// The rates after a step from those before it.
+pub(crate) type Update = fn(&Moments, &Vector3<f64>, f64) -> Vector3<f64>;
 
 impl Trace {
     /// The largest relative error of the energy.

@@ -16,9 +16,11 @@ pub(crate) fn box_of_engines(velocity: [f64; 3], h: f64) -> Result<Spin, Failure
 /// Ours against the bound, the others as they are.
 fn judged(mut row: Row, name: &str, traces: &[Trace], bound: f64) -> Row {
     let [ours, others @ ..] = traces else { return row };
-    row = row
-        .at_most(&format!("{name}energy"), ours.energy_error(), bound)
-        .at_most(&format!("{name}spatial momentum"), ours.momentum_error(), bound);
+    row = row.at_most(&format!("{name}energy"), ours.energy_error(), bound).at_most(
+        &format!("{name}spatial momentum"),
+        ours.momentum_error(),
+        bound,
+    );
     for other in others {
         let momentum = short(other.momentum_error());
         row = row.other(format!("{name}{} E/E(0) {:.6}, momentum {momentum}", other.name, other.final_energy()));

@@ -53,8 +53,11 @@ pub(crate) fn t7(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
         row = row.at_most(&what, last / first - 1.0, 0.02);
         // The criterion is for compensated sums.
         row = if compensated {
-            row.at_most("compensated: |w|", walk.worst.length, 1e-13)
-                .at_most("compensated: p·w", walk.worst.vertical, 1e-13)
+            row.at_most("compensated: |w|", walk.worst.length, 1e-13).at_most(
+                "compensated: p·w",
+                walk.worst.vertical,
+                1e-13,
+            )
         } else {
             row.shows(format!("plain: |w| {}, p·w {}", short(walk.worst.length), short(walk.worst.vertical)))
         };

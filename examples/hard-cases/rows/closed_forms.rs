@@ -79,7 +79,8 @@ pub(crate) fn b8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         let mut method = OnQuaternion::new(rk4, 0.02, &nalgebra::UnitQuaternion::identity(), momentum);
         method.advance(steps_in(t, 0.02))?;
         let error = relative(&method.sample().momentum.component_div(&moments), &exact.1);
-        row = row.other(format!("{name}: RK4 at h = 0.02 has the error {} (ours {})", short(error), short(errors[0].1)));
+        row =
+            row.other(format!("{name}: RK4 at h = 0.02 has the error {} (ours {})", short(error), short(errors[0].1)));
     }
     Ok(row)
 }

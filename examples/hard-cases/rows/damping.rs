@@ -69,7 +69,9 @@ pub(crate) fn p6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         magnetic.step(&mut held)?;
     }
     let off = |velocity: Vector3<f64>| velocity.xy().norm().atan2(velocity.z.abs());
-    Ok(row
-        .at_most("weak drag: last axis from the major one, rad", off(drag.velocity(&slowed)), 1e-3)
-        .at_most("magnetic damping: last axis from the major one, rad", off(magnetic.velocity(&held)), 1e-4))
+    Ok(row.at_most("weak drag: last axis from the major one, rad", off(drag.velocity(&slowed)), 1e-3).at_most(
+        "magnetic damping: last axis from the major one, rad",
+        off(magnetic.velocity(&held)),
+        1e-4,
+    ))
 }

@@ -14,6 +14,7 @@ use crate::free_body::engines::{Moments, explicit, implicit, rescaled};
 use crate::free_body::lagrangian::FreeBody;
 use crate::heavy_top::rk4::{Body, OnQuaternion};
 use crate::measure::{exponent, four_halvings};
+use crate::rivals::Update;
 use crate::row::{Effort, Failure, Row};
 
 /// What a step of this length does to the body momentum.
@@ -55,7 +56,11 @@ fn share(method: &Steps<'_>, momentum: &Vector3<f64>, h: f64) -> Result<f64, Fai
             return Ok(t);
         }
         // The side that stays is halved, or it would stay for good.
-        if value * high.1 < 0.0 { low = high } else { low.1 *= 0.5 }
+        if value * high.1 < 0.0 {
+            low = high;
+        } else {
+            low.1 *= 0.5;
+        }
         high = (t, value);
     }
     Ok(high.0)
@@ -103,10 +108,11 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
             Ok(state.momentum())
         }))
     };
-    let mut row = Row::new("B7", "flip period of J = (1, 2, 3), Ω = (.01, 2, .02)", "order 2 towards it; high order to 1e-12")
-        .near("two flips in closed form, s", exact, 19.001_635_511_000_25, 1e-12)
-        .near("order", exponent(&errors), 2.0, 0.05)
-        .shows(format!("(3.13) at h = 0.01 off by {:+.1e}", off(&ours, 0.01)?));
+    let mut row =
+        Row::new("B7", "flip period of J = (1, 2, 3), Ω = (.01, 2, .02)", "order 2 towards it; high order to 1e-12")
+            .near("two flips in closed form, s", exact, 19.001_635_511_000_25, 1e-12)
+            .near("order", exponent(&errors), 2.0, 0.05)
+            .shows(format!("(3.13) at h = 0.01 off by {:+.1e}", off(&ours, 0.01)?));
     let kahan_li = composed(FreeBody { J_d: inertia }, CompositionScheme::KAHAN_LI_8);
     let suzuki = composed(sixth, CompositionScheme::SUZUKI_8);
     let tenth: [(&str, &Steps<'_>, f64); 3] = [
@@ -118,8 +124,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         row = row.at_most(name, off(method, h)?.abs(), 1e-12);
     }
     let engines = Moments::of(&body);
-    let updates: [(&str, fn(&Moments, &Vector3<f64>, f64) -> Vector3<f64>); 3] =
-        [("explicit", explicit), ("implicit", implicit), ("rescaled", rescaled)];
+    let updates: [(&str, Update); 3] = [("explicit", explicit), ("implicit", implicit), ("rescaled", rescaled)];
     for (name, update) in updates {
         let method = |h: f64| -> Result<Map<'_>, Failure> {
             Ok(Box::new(move |momentum| Ok(engines.momentum(&update(&engines, &engines.rates(momentum), h)))))

@@ -15,7 +15,8 @@ const STEPS: u32 = 1000;
 const ROUNDING: f64 = 4.0 * 31_623.0 * f64::EPSILON;
 
 pub(crate) fn p5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let mut row = Row::new("P5", "(2.5) and (2.8); the sum of effects and (3.13), 1000 steps", "round-off, 4 n^{3/2} ε");
+    let mut row =
+        Row::new("P5", "(2.5) and (2.8); the sum of effects and (3.13), 1000 steps", "round-off, 4 n^{3/2} ε");
     for motion in [Motion::looping()?, Motion::chaotic()?] {
         for h in [0.001, 0.01] {
             let stepper = Stepper::new(motion.top.clone(), h)?;
@@ -39,9 +40,11 @@ pub(crate) fn p5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
                 sums = greater(sums, relative(&summed.attitude().matrix(), &state.attitude().matrix()));
             }
             let name = motion.name;
-            row = row
-                .at_most(&format!("{name}, h = {h}: the two flows"), flows, ROUNDING)
-                .at_most(&format!("{name}, h = {h}: sum and struct"), sums, ROUNDING);
+            row = row.at_most(&format!("{name}, h = {h}: the two flows"), flows, ROUNDING).at_most(
+                &format!("{name}, h = {h}: sum and struct"),
+                sums,
+                ROUNDING,
+            );
         }
     }
     Ok(row)

@@ -54,9 +54,12 @@ pub(crate) fn t2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
                 modified.push((h, corrected));
             }
         }
-        row = row
-            .near(&format!("{}: order of the modified energy", motion.name), exponent(&modified), 4.0, 0.1)
-            .near(&format!("{}: order of H itself", motion.name), exponent(&plain), 2.0, 0.1);
+        row = row.near(&format!("{}: order of the modified energy", motion.name), exponent(&modified), 4.0, 0.1).near(
+            &format!("{}: order of H itself", motion.name),
+            exponent(&plain),
+            2.0,
+            0.1,
+        );
     }
     Ok(row)
 }

@@ -81,6 +81,7 @@ fn changes<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() -> (f64, f
     (right, naive)
 }
 
+#[allow(clippy::unnecessary_wraps)] // as all rows
 pub(crate) fn p3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let groups = [
         ("SE(2)", changes::<SE2, _, _>()),
@@ -88,7 +89,8 @@ pub(crate) fn p3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         ("SL(2)", changes::<SL2, _, _>()),
         ("Heisenberg", changes::<Heisenberg, _, _>()),
     ];
-    let mut row = Row::new("P3", "a covector under matrices that aren't orthogonal", "⟨w, v⟩ constant to round-off (1e-13)");
+    let mut row =
+        Row::new("P3", "a covector under matrices that aren't orthogonal", "⟨w, v⟩ constant to round-off (1e-13)");
     for (name, (right, naive)) in groups {
         row = row.at_most(name, right, 1e-13).other(format!("{name}: F⁻¹w changes it by {naive:.1e}"));
     }

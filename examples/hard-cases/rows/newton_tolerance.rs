@@ -6,8 +6,8 @@ use crate::common::plot::{BLUE, ORANGE};
 use crate::curves::{Curve, Curves};
 use crate::measure::{Tenths, float};
 use crate::motion::Motion;
-use crate::row::{Effort, Failure, Row, short};
 use crate::rivals::GREY;
+use crate::row::{Effort, Failure, Row, short};
 use crate::tolerance::{Form, Guess, Left, run};
 
 const H: f64 = 0.01;

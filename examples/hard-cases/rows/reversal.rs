@@ -4,10 +4,10 @@ use liestep::{LieGroup as _, Stepper};
 
 use crate::common::run::Method as _;
 use crate::curves::Curves;
+use crate::heavy_top::rk4::OnQuaternion;
 use crate::measure::relative;
 use crate::motion::Motion;
 use crate::rivals::{on_quaternion, rk4_body};
-use crate::heavy_top::rk4::OnQuaternion;
 use crate::row::{Effort, Failure, Row, short};
 
 const STEPS: u64 = 1_000_000;

@@ -117,8 +117,12 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         compensated.step(&mut state)?;
         Ok(*state.state())
     })?;
-    let row = Row::new("R1", "Kahan-Li 8 of (3.13), looping top, h = 0.05, 5e5 steps of 17 stages (5e6 with --long)", CRITERION)
-        .shows(format!("{:.1e} stages", 17.0 * float(steps)));
+    let row = Row::new(
+        "R1",
+        "Kahan-Li 8 of (3.13), looping top, h = 0.05, 5e5 steps of 17 stages (5e6 with --long)",
+        CRITERION,
+    )
+    .shows(format!("{:.1e} stages", 17.0 * float(steps)));
     let row = told(row, "plain", &plain, true);
     let row = told(row, "compensated", &kept, false);
     let row = told(row, "polar step every 1000", &corrected, false);

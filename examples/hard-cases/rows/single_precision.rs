@@ -67,9 +67,11 @@ pub(crate) fn p8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     ];
     let mut row = Row::new("P8", "f32", "thresholds of f64 in units of epsilon; the same errors");
     for (name, [energy, momentum], bound) in free_bodies {
-        row = row
-            .at_most(&format!("{name}: energy, ε"), energy, bound)
-            .at_most(&format!("{name}: momentum, ε"), momentum, bound);
+        row = row.at_most(&format!("{name}: energy, ε"), energy, bound).at_most(
+            &format!("{name}: momentum, ε"),
+            momentum,
+            bound,
+        );
     }
 
     // S1, S2.

@@ -77,22 +77,24 @@ pub(crate) fn t5(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     )
     .near("ω_c", critical_speed(), 2.712_471, 5e-7);
     for (fraction, known) in [(0.9, 0.788_03), (0.99, 0.254_10)] {
-        row = row
-            .near(&format!("rate at {fraction} ω_c"), growth_rate(&tilts(fraction, 10_000)?), known, 1e-5)
-            .other(format!(
+        row = row.near(&format!("rate at {fraction} ω_c"), growth_rate(&tilts(fraction, 10_000)?), known, 1e-5).other(
+            format!(
                 "RK4 at {fraction} ω_c: {:.5} (continuous top {:.5})",
                 growth_rate(&rk4_tilts(fraction, 10_000)?),
                 continuous_rate(fraction)
-            ));
+            ),
+        );
     }
     let steps: u32 = if effort.long { 10_000_000 } else { 200_000 };
     let largest = |tilts: &[f64]| tilts.iter().copied().fold(0.0, f64::max);
     let tilts = tilts(1.01, steps as usize)?;
     let (first, second) = tilts.split_at(tilts.len() / 2);
     let what = format!("1.01 ω_c, {:.0e} steps: largest tilt", float(u64::from(steps)));
-    row = row
-        .at_most(&what, largest(second), 1e-8)
-        .at_most("its growth from the first half to the second", largest(second) / largest(first) - 1.0, 1e-3);
+    row = row.at_most(&what, largest(second), 1e-8).at_most(
+        "its growth from the first half to the second",
+        largest(second) / largest(first) - 1.0,
+        1e-3,
+    );
     let theirs = rk4_tilts(1.01, steps as usize)?;
     let (first, second) = theirs.split_at(theirs.len() / 2);
     Ok(row.other(format!("RK4 at 1.01 ω_c: largest tilt {} and {}", short(largest(first)), short(largest(second)))))

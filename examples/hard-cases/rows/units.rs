@@ -8,8 +8,11 @@ use crate::declarations::HeavyTop;
 use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};
 
+/// Attitude, momentum and the vertical as the body sees it.
+type End = (Matrix3<f64>, Vector3<f64>, Vector3<f64>);
+
 /// The end of a motion with masses and times multiplied, in the old units.
-fn moved(motion: &Motion, mass: f64, time: f64) -> Result<(Matrix3<f64>, Vector3<f64>, Vector3<f64>), Failure> {
+fn moved(motion: &Motion, mass: f64, time: f64) -> Result<End, Failure> {
     let top = &motion.top;
     let scaled = HeavyTop {
         J_d: DiagonalNonstandardInertia::new(top.J_d.diagonal() * mass)?,

@@ -39,8 +39,9 @@ pub(crate) fn s6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
             drift = greater(drift, (energy(state.momentum(), state.advected()) / start - 1.0).abs());
         }
     }
-    let row = Row::new("S6", "Cayley and log-trace kinetic terms at h Ω = 2.46", "solved; E_h of the log-trace top to 1e-12")
-        .at_most("Cayley, 1000 steps solved: vertical momentum", moved, 1e-12)
-        .at_most("log-trace, 10⁴ steps solved: E_h", drift, 1e-12);
+    let row =
+        Row::new("S6", "Cayley and log-trace kinetic terms at h Ω = 2.46", "solved; E_h of the log-trace top to 1e-12")
+            .at_most("Cayley, 1000 steps solved: vertical momentum", moved, 1e-12)
+            .at_most("log-trace, 10⁴ steps solved: E_h", drift, 1e-12);
     Ok(row)
 }
