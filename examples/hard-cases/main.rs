@@ -8,7 +8,8 @@
 //! Each row is a claim with a criterion that a program decides. The others are what physics engines do (the explicit
 //! gyroscopic update, one implicit Newton step, the explicit update rescaled), the classical Runge–Kutta method, and
 //! careless versions of this integrator; each gets the same body and the same step, and is printed as it comes. A row
-//! that misses its criterion says so.
+//! that misses its criterion says so. Rows S to P are those of `tests/hard_cases`, R is what rounding does where it is
+//! always the same.
 
 // What the other examples share, of which this one uses a part.
 #[allow(dead_code, unused_imports)]

@@ -19,7 +19,7 @@ fn digest(mut hash: u64, state: &TopState) -> u64 {
     hash
 }
 
-/// The digest of a thousand steps of the looping top that `tests/digest.rs` has committed.
+/// The digest of a thousand steps of the looping top that `tests/hard_cases/structure/digest.rs` has committed.
 const COMMITTED: u64 = 0x3744_f144_dae0_96d7;
 
 fn thousand_steps(motion: &Motion) -> Result<u64, Failure> {
@@ -60,6 +60,6 @@ pub(crate) fn p7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         .holds("the same run twice", first == second)
         .holds(&format!("the committed digest {COMMITTED:016x}, in this {build} build"), first == COMMITTED)
         .holds("saved (JSON, binary) and resumed at 20 random steps", resumed_alike)
-        .shows("debug and release, generic and native: tests/digest.rs");
+        .shows("debug and release, generic and native: tests/hard_cases/structure/digest.rs");
     Ok(row)
 }
