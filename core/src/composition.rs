@@ -166,7 +166,7 @@ impl<L: DiscreteLagrangian> Composition<L> {
             next.coordinates = step.coordinates;
             iterations += step.iterations;
         }
-        next.steps += 1;
+        next.count(1);
         *state = next;
         Ok(StepReport { iterations, remedy: None })
     }

@@ -162,11 +162,11 @@ where
             }
             let last = if remaining == 0 { &self.outer } else { &self.joint };
             self.make(last, &mut next, &mut iterations)?;
+            next.count(1);
         }
         if !(Coordinates::is_finite(&next.momentum) && Advected::is_finite(&next.advected)) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        next.steps += steps;
         *state = next;
         Ok(StepReport { iterations, remedy: None })
     }

@@ -22,6 +22,9 @@ pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) steps: u64,
 }
 
+/// So rarely that it costs nothing, so often that the defect stays at some roundings.
+const CORRECTED_EVERY: u64 = 256;
+
 impl<G: LieGroup, A: Advected<G>> State<G, A> {
     pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, coordinates: G::Vector) -> Self {
         Self { attitude, momentum, advected, coordinates, guess: coordinates, steps: 0 }
@@ -43,7 +46,20 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
             self.guess = coordinates.select(far, self.guess);
         }
         self.coordinates = coordinates;
-        self.steps += 1;
+        self.count(1);
+    }
+
+    /// Counts steps, of which the attitude has been made, and now and then corrects it.
+    ///
+    /// The rounding of an increment is the same wherever the increment is: in a motion that repeats itself the attitude
+    /// would leave the group in proportion to the number of steps.
+    #[inline(always)]
+    pub(crate) fn count(&mut self, steps: u64) {
+        let before = self.steps;
+        self.steps += steps;
+        if before / CORRECTED_EVERY != self.steps / CORRECTED_EVERY {
+            self.attitude = self.attitude.corrected();
+        }
     }
 
     /// The attitude `g_i`, body to space.

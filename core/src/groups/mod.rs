@@ -139,6 +139,14 @@ pub trait LieGroup: Copy + Debug + PartialEq {
         None
     }
 
+    /// The element, brought back towards the group where rounding has led it away by more than a few digits; as it is
+    /// on groups without such a correction.
+    #[inline]
+    #[must_use]
+    fn corrected(&self) -> Self {
+        *self
+    }
+
     /// How far the matrix is from satisfying the relation of the group; zero on it.
     fn defect(&self) -> Self::Scalar;
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use nalgebra::{Matrix3, RealField, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
 use crate::scalar::{Real, gathered, real};
@@ -209,6 +209,19 @@ impl<T: Real> LieGroup for SO3<T> {
 
     fn turning_limits(unknown: &dyn Fn(&Self) -> Option<Vector3<T>>, inertia: &Matrix3<T>) -> Option<TurningLimits> {
         solvability::of_rotations(unknown, inertia)
+    }
+
+    /// One step of Newton's iteration for the polar factor, `R (3 I − RᵀR)/2`, where the defect is beyond 16 roundings:
+    /// what is right to rounding is left as it is, to the bit.
+    #[inline]
+    fn corrected(&self) -> Self {
+        let gram = self.0.transpose() * self.0 - Matrix3::identity();
+        let far = gram.norm_squared().simd_gt((T::simd_default_epsilon() * real(16.0)).simd_powi(2));
+        if !far.any() {
+            return *self;
+        }
+        let corrected = self.0 - self.0 * gram * real::<T>(0.5);
+        Self(corrected.zip_map(&self.0, |corrected, entry| corrected.select(far, entry)))
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
