@@ -158,7 +158,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
             method.start(start.attitude, start.velocity)?;
         }
         let found = search(&self.methods, accuracy, &start)?;
-        let method = (self.methods[found.index].make)(accuracy.horizon / found.steps)?;
+        let method = (self.methods[found.run.index].make)(accuracy.horizon / found.run.steps)?;
         let state = method.start(start.attitude, start.velocity)?;
         let choice = Choice::new(&self.methods, accuracy, &found);
         Ok(AccurateStepper { method, start: state, choice })

@@ -68,24 +68,24 @@ impl Choice {
         found: &Found,
     ) -> Self {
         let offer = |(index, (candidate, estimate)): (usize, (&Candidate<G, A>, &Estimate))| {
-            let is_chosen = index == found.index;
-            let (steps, cost) = if is_chosen { (found.steps, found.cost) } else { (estimate.steps, estimate.cost) };
+            let is_chosen = index == found.run.index;
+            let (steps, cost) = if is_chosen { (found.run.steps, found.run.cost) } else { (estimate.steps, estimate.cost) };
             Offer {
                 name: candidate.name.clone(),
                 order: candidate.order,
                 step: accuracy.horizon / steps,
-                cost: cost / found.cost,
+                cost: cost / found.run.cost,
                 is_bound: estimate.is_bound && !is_chosen,
             }
         };
         Self {
             accuracy,
-            steps: found.steps as u64,
-            error: found.error,
-            trials: found.spent / found.cost,
-            nearby: found.nearby.map(|estimate| estimate.cost / found.cost),
+            steps: found.run.steps as u64,
+            error: found.run.error,
+            trials: found.spent / found.run.cost,
+            nearby: found.nearby.map(|estimate| estimate.cost / found.run.cost),
             offers: candidates.iter().zip(&found.estimates).enumerate().map(offer).collect(),
-            chosen: found.index,
+            chosen: found.run.index,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Accuracy, Candidate};
 use crate::advected::Advected;
+use crate::coordinates::Coordinates as _;
 use crate::entries::Entries;
 use crate::error::StepError;
 use crate::groups::LieGroup;
@@ -18,6 +19,21 @@ pub(super) struct Start<G: LieGroup> {
     pub(super) attitude: G,
     pub(super) velocity: G::Vector,
     pub(super) horizon: f64,
+}
+
+/// How far apart two starts are that rounding doesn't tell apart in a run: about what the roundings of its first hundred
+/// stages add up to.
+const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+
+impl<G: LieGroup<Scalar = f64>> Start<G> {
+    /// A start some roundings away, in all directions.
+    fn nearby(&self) -> Self {
+        let axes = (0..G::DIMENSION).map(G::Vector::axis);
+        let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
+        let attitude = self.attitude.compose(&G::from_increment(&G::hat(&aside)));
+        let velocity = self.velocity + aside * Accuracy::scale(size(&self.velocity), 0.0, self.horizon);
+        Self { attitude, velocity, horizon: self.horizon }
+    }
 }
 
 /// One run to the horizon.
@@ -49,8 +65,12 @@ pub(super) struct Estimate {
 
 /// Errors that are larger fall by no law of powers.
 pub(super) const LARGEST_ERROR: f64 = 0.05;
-/// An order to count on at most, as far as differences of doubles show.
+/// Errors may fall by so much more than the order promised, where a potential is small or a low order's share of the error
+/// is; and by no more than differences of doubles show.
+const BEYOND_THE_ORDER: f64 = 4.0;
 const HIGHEST_ORDER: f64 = 12.0;
+/// Of a step's operations those of iterations become fewer as it becomes shorter.
+const CHEAPER: f64 = 0.6;
 /// Below this a difference is zero.
 const SMALLEST_ERROR: f64 = 1e-17;
 /// Of the tolerance, the error that is aimed at; errors aren't quite powers of the step.
@@ -85,6 +105,12 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
             self.differences.push(coarse.end.zip(trial.end).map(|(coarse, fine)| difference(&coarse, &fine, start)));
         }
         self.trials.push(trial);
+    }
+
+    /// How far a run with so many steps ends from one that starts some roundings away.
+    pub(super) fn magnified_roundings(&mut self, start: &Start<G>, steps: f64) -> Option<f64> {
+        let [there, nearby] = [self.run(start, steps).end?, self.run(&start.nearby(), steps).end?];
+        Some(difference(&there, &nearby, start))
     }
 
     /// The error of a run with so many steps against the finest trial, and its cost.
@@ -138,23 +164,29 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
             [.., before, last] => (before.error / last.error).log2(),
             _ => promised,
         };
-        let within = |order: f64| order.clamp(1.0, HIGHEST_ORDER);
-        (within(shown.min(promised)), within(shown.max(promised)))
+        (shown.min(promised).max(1.0), shown.max(promised).min(self.most()))
+    }
+
+    /// The highest order that may show.
+    fn most(&self) -> f64 {
+        (f64::from(self.candidate.order) + BEYOND_THE_ORDER).min(HIGHEST_ORDER)
     }
 
     /// What an error takes, rather too little than too much where trials haven't come so far.
     pub(super) fn estimate(&self, error: f64) -> Estimate {
         let points = self.points();
         let Some(last) = points.last() else {
-            // At least the next trial.
-            let steps = self.next_steps();
-            let of_the_last = self.trials.last().map_or(0.0, |trial| 2.0 * trial.cost);
-            return Estimate { steps, cost: of_the_last.max(steps * self.candidate.least), is_bound: true };
+            // At least the next trial; far more, if the last but one has had a larger error than any that says something.
+            let (next, falls) = (self.next_steps(), (LARGEST_ERROR / error).max(1.0).powf(self.most().recip()));
+            let steps = if self.last_difference().is_some() { next.max(0.25 * next * falls) } else { next };
+            return Estimate { steps, cost: steps * self.candidate.least, is_bound: true };
         };
         let at = |steps: f64, near: &Point| Estimate { steps, cost: near.cost / near.steps * steps, is_bound: false };
         let Some(place) = points.iter().position(|point| point.error <= error) else {
             let (_, order) = self.orders(&points);
-            return at(last.steps * (last.error / error).powf(order.recip()), last);
+            let steps = last.steps * (last.error / error).powf(order.recip());
+            let a_step = (CHEAPER * last.cost / last.steps).max(self.candidate.least);
+            return Estimate { steps, cost: steps * a_step, is_bound: false };
         };
         let fine = &points[place];
         let Some(coarse) = place.checked_sub(1).map(|before| &points[before]) else { return at(fine.steps, fine) };
