@@ -14,8 +14,8 @@ mod ladder;
 mod method;
 mod search;
 
-pub use candidates::Candidates;
 use candidates::Candidate;
+pub use candidates::Candidates;
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
 

@@ -53,7 +53,7 @@ mod symmetry;
 #[path = "private.rs"]
 pub mod __private;
 
-pub use accuracy::{AccuracyError, AccurateStepper, Accuracy, Candidates, Choice, Offer};
+pub use accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates, Choice, Offer};
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};

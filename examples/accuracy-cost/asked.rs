@@ -3,9 +3,7 @@
 use std::error::Error;
 use std::time::Duration;
 
-use liestep::{
-    Accuracy, AccurateStepper, Candidates, PreprocessedFlow, PreprocessedOrder, SO3, SymmetricBody,
-};
+use liestep::{Accuracy, AccurateStepper, Candidates, PreprocessedFlow, PreprocessedOrder, SO3, SymmetricBody};
 use nalgebra::Vector3;
 
 use crate::common::table::{aligned, number};
@@ -75,18 +73,18 @@ impl Question {
                 .and_preprocessed(scene.nonstandard());
             return Self { ask: asking(candidates, start, velocity), fixed };
         }
-        let candidates = Candidates::of(scene.top(), 2)
-            .and_declared("L4", scene.fourth_order_top(), 4)
-            .and_declared("L6", scene.sixth_order_top(), 6);
+        let candidates = Candidates::of(scene.top(), 2).and_declared("L4", scene.fourth_order_top(), 4).and_declared(
+            "L6",
+            scene.sixth_order_top(),
+            6,
+        );
         let candidates = match SymmetricBody::new(&scene.inertia()) {
             Ok(body) => candidates.and_splittings("exact", scene.top(), body),
-            Err(_) => candidates
-                .and_splittings("K6", scene.top(), scene.sixth_order_body())
-                .and_splittings(
-                    "preprocessed",
-                    scene.top(),
-                    PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten),
-                ),
+            Err(_) => candidates.and_splittings("K6", scene.top(), scene.sixth_order_body()).and_splittings(
+                "preprocessed",
+                scene.top(),
+                PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten),
+            ),
         };
         Self { ask: asking(candidates, start, velocity), fixed }
     }
@@ -126,7 +124,9 @@ fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, 
                 ));
                 row.push(format!("{:.1}", answer.trials));
             }
-            Err(liestep::AccuracyError::Unreachable { floor, .. }) => row.push(format!("only {floor:.0e} can be reached")),
+            Err(liestep::AccuracyError::Unreachable { floor, .. }) => {
+                row.push(format!("only {floor:.0e} can be reached"))
+            }
             Err(refusal) => row.push(refusal.to_string()),
         }
         rows.push(row);

@@ -100,7 +100,9 @@ pub(crate) fn ours(scene: &Scene) -> Vec<Method> {
     match scene.kind {
         Kind::Free => methods.extend(preprocessed()),
         Kind::SymmetricTop => {
-            methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| SymmetricBody::new(&scene.inertia()).ok()));
+            methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
+                SymmetricBody::new(&scene.inertia()).ok()
+            }));
         }
         Kind::Top => {
             methods.extend(splittings("preprocessed", Family::NearlyPoisson, Scene::top, |scene| {

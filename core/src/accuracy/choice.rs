@@ -2,10 +2,10 @@
 
 use core::fmt;
 
+use super::Accuracy;
 use super::candidates::Candidate;
 use super::ladder::Estimate;
 use super::search::Found;
-use super::Accuracy;
 use crate::advected::Advected;
 use crate::groups::LieGroup;
 
@@ -69,7 +69,8 @@ impl Choice {
     ) -> Self {
         let offer = |(index, (candidate, estimate)): (usize, (&Candidate<G, A>, &Estimate))| {
             let is_chosen = index == found.run.index;
-            let (steps, cost) = if is_chosen { (found.run.steps, found.run.cost) } else { (estimate.steps, estimate.cost) };
+            let (steps, cost) =
+                if is_chosen { (found.run.steps, found.run.cost) } else { (estimate.steps, estimate.cost) };
             Offer {
                 name: candidate.name.clone(),
                 order: candidate.order,
@@ -105,7 +106,11 @@ impl Choice {
 impl fmt::Display for Choice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (chosen, Accuracy { tolerance, horizon }) = (self.chosen(), self.accuracy);
-        writeln!(f, "{tolerance:.0e} at t = {horizon} s: {}, {} steps of {:.4e} s", chosen.name, self.steps, chosen.step)?;
+        writeln!(
+            f,
+            "{tolerance:.0e} at t = {horizon} s: {}, {} steps of {:.4e} s",
+            chosen.name, self.steps, chosen.step
+        )?;
         writeln!(f, "error {:.1e}; its trials cost {:.1} runs", self.error, self.trials)?;
         let [rougher, finer] = self.nearby;
         writeln!(f, "{:.0e} would cost {rougher:.2}, {:.0e} {finer:.2}", 10.0 * tolerance, 0.1 * tolerance)?;

@@ -24,6 +24,8 @@ pub(super) struct Start<G: LieGroup> {
 /// How far apart two starts are that rounding doesn't tell apart in a run: about what the roundings of its first hundred
 /// stages add up to.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+/// Rounding may grow to this part of the tolerance.
+const OF_ROUNDING: f64 = 0.25;
 
 impl<G: LieGroup<Scalar = f64>> Start<G> {
     /// A start some roundings away, in all directions.
@@ -69,8 +71,6 @@ pub(super) const LARGEST_ERROR: f64 = 0.05;
 /// is; and by no more than differences of doubles show.
 const BEYOND_THE_ORDER: f64 = 4.0;
 const HIGHEST_ORDER: f64 = 12.0;
-/// Of a step's operations those of iterations become fewer as it becomes shorter.
-const CHEAPER: f64 = 0.6;
 /// Below this a difference is zero.
 const SMALLEST_ERROR: f64 = 1e-17;
 /// Of the tolerance, the error that is aimed at; errors aren't quite powers of the step.
@@ -107,10 +107,12 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         self.trials.push(trial);
     }
 
-    /// How far a run with so many steps ends from one that starts some roundings away.
-    pub(super) fn magnified_roundings(&mut self, start: &Start<G>, steps: f64) -> Option<f64> {
-        let [there, nearby] = [self.run(start, steps).end?, self.run(&start.nearby(), steps).end?];
-        Some(difference(&there, &nearby, start))
+    /// The least tolerance that rounding leaves, by how far the finest trial ends from one that starts some roundings
+    /// away.
+    pub(super) fn least_tolerance(&mut self, start: &Start<G>) -> f64 {
+        let Some(Trial { steps, end: Some(there), .. }) = self.trials.last().copied() else { return f64::INFINITY };
+        let nearby = self.run(&start.nearby(), steps).end;
+        nearby.map_or(f64::INFINITY, |nearby| difference(&nearby, &there, start) / OF_ROUNDING)
     }
 
     /// The error of a run with so many steps against the finest trial, and its cost.
@@ -160,10 +162,8 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     /// The order that the last trials show, and the one that was promised: which of them is lower, and which is higher.
     fn orders(&self, points: &[Point]) -> (f64, f64) {
         let promised = f64::from(self.candidate.order);
-        let shown = match points {
-            [.., before, last] => (before.error / last.error).log2(),
-            _ => promised,
-        };
+        let [.., before, last] = points else { return (promised, self.most()) };
+        let shown = (before.error / last.error).log2();
         (shown.min(promised).max(1.0), shown.max(promised).min(self.most()))
     }
 
@@ -185,7 +185,8 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         let Some(place) = points.iter().position(|point| point.error <= error) else {
             let (_, order) = self.orders(&points);
             let steps = last.steps * (last.error / error).powf(order.recip());
-            let a_step = (CHEAPER * last.cost / last.steps).max(self.candidate.least);
+            // Shorter steps take fewer iterations than the trial's, between those and the fewest.
+            let a_step = (last.cost / last.steps * self.candidate.least).sqrt();
             return Estimate { steps, cost: steps * a_step, is_bound: false };
         };
         let fine = &points[place];

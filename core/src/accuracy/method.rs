@@ -106,11 +106,7 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
     K: KineticFlow<f64>,
 {
-    fn start(
-        &self,
-        attitude: SO3,
-        velocity: nalgebra::Vector3<f64>,
-    ) -> Result<State<SO3, L::Advected>, SetupError> {
+    fn start(&self, attitude: SO3, velocity: nalgebra::Vector3<f64>) -> Result<State<SO3, L::Advected>, SetupError> {
         self.start(attitude, velocity)
     }
 
@@ -162,7 +158,7 @@ impl Method<SO3, ()> for PreprocessedBody {
     }
 }
 
-/// What a solve makes at least.
+/// What a solve makes at least; with one iteration none is known to have settled.
 pub(super) fn least(operations: Operations) -> f64 {
-    solves(operations, 1, u64::from(operations.iteration > 0))
+    solves(operations, 1, if operations.iteration > 0 { 2 } else { 0 })
 }

@@ -22,8 +22,6 @@ const ABOVE_THE_FLOOR: f64 = 8.0;
 const WORTH_LOOKING: f64 = 0.8;
 /// Of the tolerance, an error so small that longer steps are tried.
 const TOO_GOOD: f64 = 0.2;
-/// Rounding may grow to this part of the tolerance.
-const OF_ROUNDING: f64 = 0.25;
 
 /// The method found, and how it compares.
 pub(super) struct Found {
@@ -75,7 +73,8 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
             best = best.filter(|best| best.cost <= run.cost).or(Some(run));
             limit = limit.min(WORTH_LOOKING * run.cost);
         } else if let Some((least, cost)) = ladder.floor() {
-            refused.floor = refused.floor.min(ABOVE_THE_FLOOR * least);
+            let of_rounding = ladder.least_tolerance(start);
+            refused.floor = refused.floor.min(of_rounding.max(ABOVE_THE_FLOOR * least));
             limit = limit.min(BEYOND_THE_FLOOR * cost);
         } else if ladder.next_steps() * f64::from(ladder.candidate.stages) > most {
             refused.steps = refused.steps.max(estimate.steps);
@@ -87,9 +86,8 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
         open.retain(|other| *other != index);
     }
     let Some(run) = best else { return Err(refused.error(ladders, accuracy.tolerance)) };
-    let magnified = ladders[run.index].magnified_roundings(start, run.steps).unwrap_or(f64::INFINITY);
-    if magnified > OF_ROUNDING * tolerance {
-        let floor = magnified / OF_ROUNDING;
+    let floor = ladders[run.index].least_tolerance(start);
+    if floor > tolerance {
         return Err(AccuracyError::Unreachable { tolerance: accuracy.tolerance, floor });
     }
     let estimates = ladders.iter().map(|ladder| ladder.estimate(aim)).collect();

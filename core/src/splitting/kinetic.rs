@@ -147,7 +147,8 @@ where
     type Drift = DeclaredDrift<L>;
 
     // And a guess.
-    const OPERATIONS: Operations = Operations { step: L::OPERATIONS.step.saturating_add(40), iteration: L::OPERATIONS.iteration };
+    const OPERATIONS: Operations =
+        Operations { step: L::OPERATIONS.step.saturating_add(40), iteration: L::OPERATIONS.iteration };
 
     fn inertia(&self) -> Matrix3<T> {
         Effect::inertia(self)

@@ -36,7 +36,8 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, Mistake> {
         return Err(Mistake::at(path, text, &span, message));
     }
     if let Some((span, force)) = file.force_in_the_way() {
-        let message = format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
+        let message =
+            format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
         return Err(Mistake::at(path, text, &span, message));
     }
     Ok(file)
