@@ -104,7 +104,9 @@ fn a_step_twice_as_long_misses_the_tolerance() {
     let steps = stepper.choice().steps.div_ceil(2);
     let composed = Composition::new(motion.top.clone(), horizon / steps as f64, scheme).unwrap();
     let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
-    (0..steps).for_each(|_| drop(composed.step(&mut state).unwrap()));
+    for _ in 0..steps {
+        composed.step(&mut state).unwrap();
+    }
     let longer = (*state.attitude().as_matrix(), composed.velocity(&state));
     let missed = error(&longer, &motion.at(horizon), &motion.velocity, horizon) / tolerance;
     assert!(missed > f64::from(1 << (scheme.order() - 3)), "{missed}");
@@ -181,7 +183,9 @@ fn the_tolerance_is_reached_on_another_group() {
     let (horizon, tolerance, velocity) = (10.0, 1e-7, Vector1::new(2.0));
     let fine = Composition::new(pendulum.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
     let mut exact = fine.start(SO2::identity(), velocity).unwrap();
-    (0..1000).for_each(|_| drop(fine.step(&mut exact).unwrap()));
+    for _ in 0..1000 {
+        fine.step(&mut exact).unwrap();
+    }
     let stepper = Stepper::for_accuracy(pendulum, Accuracy { tolerance, horizon }, SO2::identity(), velocity).unwrap();
     let mut state = stepper.start();
     stepper.run(&mut state).unwrap();

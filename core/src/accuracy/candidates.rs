@@ -69,6 +69,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     ///
     /// A scene that isn't self-adjoint is refused when the user's crate is built, as by [`Composition::new`].
     #[must_use]
+    #[allow(clippy::needless_pass_by_value)] // as `Stepper::new`
     pub fn of<L>(scene: L, order: u32) -> Self
     where
         L: DiscreteLagrangian<Scalar = f64, Group = G, Advected = A> + Regular + Clone + 'static,
@@ -77,20 +78,21 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         let (inertia, known) = (inertia(&scene), scene.clone());
         let potential = Box::new(move |w: &A| known.potential(w));
         let empty = Self { methods: Vec::new(), inertia, potential, samples, mistake: None };
-        empty.and_steps_of("", scene, order)
+        empty.and_steps_of("", &scene, order)
     }
 
     /// The step of another declaration of the same scene, of this order, and its symmetric compositions.
     #[must_use]
+    #[allow(clippy::needless_pass_by_value)] // as `of`
     pub fn and_declared<L>(mut self, name: &str, scene: L, order: u32) -> Self
     where
         L: DiscreteLagrangian<Scalar = f64, Group = G, Advected = A> + Regular + Clone + 'static,
     {
         self.compare(&scene);
-        self.and_steps_of(&format!("{name}, "), scene, order)
+        self.and_steps_of(&format!("{name}, "), &scene, order)
     }
 
-    fn and_steps_of<L>(mut self, prefix: &str, scene: L, order: u32) -> Self
+    fn and_steps_of<L>(mut self, prefix: &str, scene: &L, order: u32) -> Self
     where
         L: DiscreteLagrangian<Scalar = f64, Group = G, Advected = A> + Regular + Clone + 'static,
     {
@@ -168,6 +170,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
 impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
     /// The kinetic-potential splittings of a declaration of the same scene, with this flow of its body.
     #[must_use]
+    #[allow(clippy::needless_pass_by_value)] // as `Splitting::new`
     pub fn and_splittings<L, K>(mut self, name: &str, scene: L, kinetic: K) -> Self
     where
         L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = A> + Regular + Clone + 'static,
