@@ -25,7 +25,7 @@ pub(crate) fn run(file: &SceneFile) -> Outcome {
     match &file.run.pace {
         Pace::Step { step, steps } => three::gravity(file.body(), &Task { file, step: *step, steps: *steps }),
         Pace::Accuracy(tolerance) => {
-            conservative::three::gravity(file.body(), &Question { file, tolerance: *tolerance.get_ref() })
+            conservative::run(file.body(), &Question { file, tolerance: *tolerance.get_ref() })
         }
     }
 }
@@ -70,11 +70,18 @@ at_most!(three, then two: gravity gravity_gradient dipole spring rotor drag magn
 
 /// The sums that an accuracy can be asked of: 26 types.
 mod conservative {
+    use liestep::effects::PrincipalBody;
+
     use super::{DiscreteLagrangian, Outcome, Question as Task, Sum, Table, ask};
 
     pub(super) trait Scene: super::Scene + DiscreteLagrangian<Advected: 'static> + Clone + 'static {}
 
     impl<S: super::Scene + DiscreteLagrangian<Advected: 'static> + Clone + 'static> Scene for S {}
+
+    /// Simulates the sum of the body and those effects that the file has.
+    pub(super) fn run(body: PrincipalBody, question: &Task<'_>) -> Outcome {
+        three::gravity(body, question)
+    }
 
     mod none {
         pub(super) use super::ask as simulate;

@@ -16,7 +16,7 @@ pub(crate) use choose::run;
 pub(crate) use file::SceneFile;
 pub(crate) use mistake::Mistake;
 pub(crate) use picture::picture;
-pub(crate) use run::{Run, table};
+pub(crate) use run::table;
 
 /// Reads a scene file.
 pub(crate) fn read(path: &Path) -> Result<SceneFile, Mistake> {
