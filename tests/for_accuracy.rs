@@ -63,7 +63,7 @@ fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Result<AccurateStepper<SO3, Ve
                 }
                 // Errors of this motion have grown by 10⁹ until then.
                 Err(AccuracyError::Unreachable { floor, .. }) => {
-                    assert!(*name == "chaotic_asymmetric_top" && horizon == 100.0, "{name} {horizon} {tolerance}");
+                    assert!(*name == "chaotic_asymmetric_top" && horizon > 50.0, "{name} {horizon} {tolerance}");
                     assert!(floor > tolerance && floor < 1e-3, "{tolerance} {floor}");
                 }
                 Err(other) => panic!("{name}: {other}"),
@@ -117,7 +117,7 @@ fn body(moments: [f64; 3]) -> PrincipalBody {
 }
 
 /// Compares what is asked for with a run by far shorter steps.
-fn reaches<L>(scene: L, turn: [f64; 3], velocity: [f64; 3])
+fn reaches<L>(scene: &L, turn: [f64; 3], velocity: [f64; 3])
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: 'static> + Regular + Clone + 'static,
 {
@@ -141,26 +141,26 @@ fn the_tolerance_is_reached_in_the_gravity_gradient() {
     let satellite = body([1.0, 2.5, 3.0]);
     let J = NonstandardInertia::from(satellite.J_d).to_inertia();
     let gradient = GravityGradient { GM: 1.0, r: 1.0, J, direction: Vector3::z() };
-    reaches(satellite + gradient, [0.3, 0.9, 1.2], [-0.2, 0.5, 0.4]);
+    reaches(&(satellite + gradient), [0.3, 0.9, 1.2], [-0.2, 0.5, 0.4]);
 }
 
 #[test]
 fn the_tolerance_is_reached_on_a_spring() {
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.0, 0.0, 0.6), up: Vector3::z() };
     let spring = Spring { k: 30.0, length: 0.4, at: Vector3::z(), anchor: Vector3::new(0.8, 0.0, 1.0) };
-    reaches(body([0.4, 0.4, 0.02]) + gravity + spring, [0.3, 1.2, 0.0], [0.5, 1.0, 2.0]);
+    reaches(&(body([0.4, 0.4, 0.02]) + gravity + spring), [0.3, 1.2, 0.0], [0.5, 1.0, 2.0]);
 }
 
 /// From rest, so that no velocity is there to compare with at the start.
 #[test]
 fn the_tolerance_is_reached_in_a_magnetic_field_from_rest() {
     let dipole = Dipole { moment: Vector3::new(0.3, 0.0, 2.0), field: Vector3::new(1.0, 0.0, 1.0) };
-    reaches(body([1.0, 1.2, 0.4]) + dipole, [0.7, 0.2, 0.0], [0.0, 0.0, 0.0]);
+    reaches(&(body([1.0, 1.2, 0.4]) + dipole), [0.7, 0.2, 0.0], [0.0, 0.0, 0.0]);
 }
 
 #[test]
 fn the_tolerance_is_reached_with_a_rotor() {
-    reaches(body([1.0, 2.0, 2.5]) + Rotor { spin: Vector3::new(0.2, 0.5, 0.0) }, [0.0, 0.0, 0.1], [0.1, 0.3, -0.6]);
+    reaches(&(body([1.0, 2.0, 2.5]) + Rotor { spin: Vector3::new(0.2, 0.5, 0.0) }), [0.0, 0.0, 0.1], [0.1, 0.3, -0.6]);
 }
 
 /// A planar pendulum.
@@ -218,7 +218,7 @@ fn the_report_names_the_choice_and_its_neighbours() {
     let accuracy = Accuracy { tolerance: 1e-6, horizon: 10.0 };
     let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
     let (choice, text) = (stepper.choice(), stepper.choice().to_string());
-    assert!(choice.chosen().cost == 1.0 && choice.error <= 1e-6);
+    assert!((choice.chosen().cost - 1.0).abs() < 1e-12 && choice.error <= 1e-6);
     assert!(choice.nearby[0] < 1.0 && choice.nearby[1] > 1.0, "{:?}", choice.nearby);
     assert!(choice.offers().iter().all(|offer| offer.cost > 0.5 && text.contains(&offer.name)), "{text}");
     assert!(text.starts_with(&format!("1e-6 at t = 10 s: {}, ", choice.chosen().name)), "{text}");
