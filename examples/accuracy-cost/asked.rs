@@ -125,7 +125,7 @@ fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, 
                 row.push(format!("{:.1}", answer.trials));
             }
             Err(liestep::AccuracyError::Unreachable { floor, .. }) => {
-                row.push(format!("only {floor:.0e} can be reached"))
+                row.push(format!("only {floor:.0e} can be reached"));
             }
             Err(refusal) => row.push(refusal.to_string()),
         }
