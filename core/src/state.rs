@@ -23,7 +23,7 @@ pub struct State<G: LieGroup, A: Advected<G>> {
 }
 
 /// So rarely that it costs nothing, so often that the defect stays at some roundings.
-const CORRECTED_EVERY: u64 = 256;
+pub(crate) const CORRECTED_EVERY: u64 = 256;
 
 impl<G: LieGroup, A: Advected<G>> State<G, A> {
     pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, coordinates: G::Vector) -> Self {
@@ -58,8 +58,15 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         let before = self.steps;
         self.steps += steps;
         if before / CORRECTED_EVERY != self.steps / CORRECTED_EVERY {
-            self.attitude = self.attitude.corrected();
+            self.correct();
         }
+    }
+
+    /// Apart, so that the steps themselves stay short.
+    #[cold]
+    #[inline(never)]
+    fn correct(&mut self) {
+        self.attitude = self.attitude.corrected();
     }
 
     /// The attitude `g_i`, body to space.

@@ -48,11 +48,12 @@ fn large<T: Real>(q: T) -> (T, T) {
     (sinc, versine)
 }
 
-/// `Σ a_k q^k` in pairs, which don't wait for each other.
+/// `Σ a_k q^k` in pairs, which don't wait for each other; the small ones first, or what is less than half of
+/// a rounding would be lost each time.
 #[inline(always)]
 fn polynomial<T: Real>(a: &[f64; 8], q: T, q2: T, q4: T) -> T {
     let pair = |k: usize| real::<T>(a[k]) + q * real(a[k + 1]);
-    (pair(0) + q2 * pair(2)) + q4 * (pair(4) + q2 * pair(6))
+    pair(0) + (q2 * pair(2) + q4 * (pair(4) + q2 * pair(6)))
 }
 
 /// `(−1)^k/(2k + first)!`.
@@ -68,9 +69,20 @@ const fn coefficients(first: usize) -> [f64; 8] {
     coefficients
 }
 
+/// `a²` rounded and what the rounding left behind, by Dekker's product.
+#[inline(always)]
+pub(super) fn square<T: Real>(a: T) -> (T, T) {
+    // Half of the digits of a double; where a scalar has fewer, the rest is zero and nothing is made good.
+    let split = a * real(134_217_729.0);
+    let high = split - (split - a);
+    let low = a - high;
+    let product = a * a;
+    (product, ((high * high - product) + (high * low + high * low)) + low * low)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{rotation_coefficients, small};
+    use super::{rotation_coefficients, small, square};
 
     /// Both sides of each place where the number of doublings changes, and some angles beyond a turn.
     #[test]
@@ -83,6 +95,13 @@ mod tests {
             assert!((versine - 2.0 * half * half).abs() < 4e-16, "{q}: {versine}");
         }
         assert_eq!(rotation_coefficients(0.0), (1.0, 0.5));
+    }
+
+    #[test]
+    fn a_square_is_exact_in_two_numbers() {
+        // (1 + 2⁻³⁰)² = 1 + 2⁻²⁹ + 2⁻⁶⁰.
+        let (product, rest) = square(1.0 + 2.0_f64.powi(-30));
+        assert_eq!((product, rest), (1.0 + 2.0_f64.powi(-29), 2.0_f64.powi(-60)));
     }
 
     #[test]

@@ -32,6 +32,13 @@ pub trait KineticFlow<T: Real> {
     /// [`SetupError`] for a body or a time that can't be used.
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError>;
 
+    /// Takes out of a drift its rotation about the third body axis, where it is one that commutes with all else about
+    /// that axis, and returns its angle in units of `p_3`; without such a rotation there is nothing to take.
+    #[must_use]
+    fn take_spin(_drift: &mut Self::Drift) -> Option<T> {
+        None
+    }
+
     /// Moves the body.
     ///
     /// # Errors
@@ -110,33 +117,51 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         Ok(SymmetricDrift { about_momentum, about_axis })
     }
 
+    fn take_spin(drift: &mut Self::Drift) -> Option<T> {
+        Some(core::mem::replace(&mut drift.about_axis, T::zero()))
+    }
+
     #[inline(always)]
     fn advance(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
+        if drift.about_axis.simd_eq(T::zero()).all() {
+            let ((a11, a21, a31), (a12, a22, a32), (a13, a23, a33)) = rotation(p, drift.about_momentum);
+            let increment = Matrix3::new(a11, a12, a13, a21, a22, a23, a31, a32, a33);
+            return Ok(Turn { increment, change: Vector3::repeat(T::zero()), iterations: 0 });
+        }
         let angle = drift.about_axis * p.z;
         let (sinc, versine) = rotation_coefficients(angle * angle);
         // sin θ and cos θ − 1, without cancellation.
         let (s, v) = (angle * sinc, -(angle * angle * versine));
         let change = Vector3::new(v * p.x - s * p.y, v * p.y + s * p.x, T::zero());
 
-        // A = exp(h p/J_1) − I, by Rodrigues' formula.
-        let (x, y, z) = (p.x * drift.about_momentum, p.y * drift.about_momentum, p.z * drift.about_momentum);
-        let (xx, yy, zz) = (x * x, y * y, z * z);
-        let (first, second) = rotation_coefficients(xx + yy + zz);
-        let (ax, ay, az) = (first * x, first * y, first * z);
-        let (xy, xz, yz) = (second * x * y, second * x * z, second * y * z);
-        let (xx, yy, zz) = (second * xx, second * yy, second * zz);
-        let (a1, a2) = ((-(yy + zz), xy + az, xz - ay), (xy - az, -(xx + zz), yz + ax));
+        let (a1, a2, a3) = rotation(p, drift.about_momentum);
         // D = A + B + A B, where B turns by −θ about the third axis: B_11 = B_22 = v, B_12 = −B_21 = s.
         let turned_1 = (a1.0 * v - a2.0 * s, a1.1 * v - a2.1 * s, a1.2 * v - a2.2 * s);
         let turned_2 = (a1.0 * s + a2.0 * v, a1.1 * s + a2.1 * v, a1.2 * s + a2.2 * v);
         #[rustfmt::skip]
         let increment = Matrix3::new(
-            a1.0 + (v + turned_1.0), a2.0 + (s + turned_2.0), xz + ay,
-            a1.1 + (turned_1.1 - s), a2.1 + (v + turned_2.1), yz - ax,
-            a1.2 + turned_1.2,       a2.2 + turned_2.2,       -(xx + yy),
+            a1.0 + (v + turned_1.0), a2.0 + (s + turned_2.0), a3.0,
+            a1.1 + (turned_1.1 - s), a2.1 + (v + turned_2.1), a3.1,
+            a1.2 + turned_1.2,       a2.2 + turned_2.2,       a3.2,
         );
         Ok(Turn { increment, change, iterations: 0 })
     }
+}
+
+/// `exp(t p̂) − I` by Rodrigues' formula, column by column.
+#[inline(always)]
+fn rotation<T: Real>(p: &Vector3<T>, t: T) -> ((T, T, T), (T, T, T), (T, T, T)) {
+    let (x, y, z) = (p.x * t, p.y * t, p.z * t);
+    let (xx, yy) = (x * x, y * y);
+    // Where `p_3` is constant the rounding of its square is the same at each step, and would make turns that lengthen
+    // or shorten in proportion to the number of steps; z² − x² is rounded anew each time.
+    let difference = (z - x) * (z + x);
+    let (both, zz) = (difference + (xx + xx), difference + xx);
+    let (first, second) = rotation_coefficients(both + yy);
+    let (ax, ay, az) = (first * x, first * y, first * z);
+    let (xy, xz, yz) = (second * x * y, second * x * z, second * y * z);
+    let (d1, d2, d3) = (second * (yy + zz), second * both, second * (xx + yy));
+    ((-d1, xy + az, xz - ay), (xy - az, -d2, yz + ax), (xz + ay, yz - ax, -d3))
 }
 
 /// The flow of a declared Lagrangian without potential: any of its structure, to its order.
