@@ -77,8 +77,8 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body + rotor", body + Rotor { spin });
     visit.visit("body + torque", body + Torque { torque: spin * 1e-3 });
     visit.visit("body + thrust", body + Thrust { at: rho, thrust: spin * 1e-3 });
-    visit.visit("body + drag", body + Drag { c: 1e-3 });
-    visit.visit("body + magnetic damping", body + MagneticDamping { k: 1e-3, field: rho });
+    visit.visit("body + drag", body + Drag { c: 1e-3, J });
+    visit.visit("body + magnetic damping", body + MagneticDamping { k: 1e-3, field: rho, J });
     visit.visit("gyrostat in one piece", Gyrostat { J_d, spin });
 }
 

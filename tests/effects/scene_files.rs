@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use expect_test::expect;
 use liestep::effects::{Drag, Gravity, PrincipalBody};
-use liestep::{DiagonalNonstandardInertia, Stepper};
+use liestep::{DiagonalNonstandardInertia, NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const TOP: &str = r#"title = "A heavy top with drag"
@@ -192,7 +192,11 @@ fn a_file_is_a_sum() {
 
     let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
-    let stepper = Stepper::new(PrincipalBody { J_d: body } + gravity + Drag { c: 1e-3 }, 10.0 * 1e-3).unwrap();
+    let stepper = Stepper::new(
+        PrincipalBody { J_d: body } + gravity + Drag { c: 1e-3, J: NonstandardInertia::from(body).to_inertia() },
+        10.0 * 1e-3,
+    )
+    .unwrap();
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
     let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
     for _ in 0..200 {

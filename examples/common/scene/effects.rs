@@ -84,8 +84,14 @@ tables! {
             Spring { k: p.k.value, length: p.length.value, at: p.at.value, anchor: p.anchor.value }
         }
     RotorTable { spin: Triple<Momentum> } => |_, p| -> Rotor { Rotor { spin: p.spin.value } }
-    DragTable { c: Positive<Damping> } => |_, p| -> Drag { Drag { c: p.c.value } }
+    DragTable { c: Positive<Damping> }
+        => |body, p| -> Drag {
+            Drag { c: p.c.value, J: NonstandardInertia::from(body.J_d).to_inertia() }
+        }
     MagneticDampingTable { k: Positive<MagneticGain>, field: Triple<FluxDensity> }
-        => |_, p| -> MagneticDamping { MagneticDamping { k: p.k.value, field: p.field.value } }
+        => |body, p| -> MagneticDamping {
+            let J = NonstandardInertia::from(body.J_d).to_inertia();
+            MagneticDamping { k: p.k.value, field: p.field.value, J }
+        }
     TorqueTable { torque: Triple<quantity::Torque> } => |_, p| -> Torque { Torque { torque: p.torque.value } }
 }
