@@ -17,8 +17,11 @@ use crate::{Inertia, SO3, force};
     advected(b = field),
     work = {
         let y = 0.5 * h * k * b.norm_squared() * inverse(J).trace();
-        let middle = (b + F.transpose() * b) * 0.5;
-        -0.5 * k / (1.0 + y * y).sqrt() * middle.cross(&vee(F)).dot(&middle.cross(&(eta + eta_next)))
+        let after = F.transpose() * b;
+        let turn = vee(F);
+        // B × (turn × B) for the middle field B = (b + Fᵀb)/2, which has the same part along the turn as b.
+        let across = turn * (b.norm_squared() + b.dot(&after)) - (b + after) * b.dot(&turn);
+        -0.25 * k / (1.0 + y * y).sqrt() * across.dot(&(eta + eta_next))
     },
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
