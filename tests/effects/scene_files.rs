@@ -245,6 +245,25 @@ fn a_file_that_is_not_there() {
     assert!(message.starts_with("error: no-such.toml: cannot be read: "), "{message}");
 }
 
+/// A folder for the pictures that can't be one, and no file at all.
+#[test]
+fn command_lines() {
+    let folder = folder("commands");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    let refused = |arguments: &[&str], message: &str| {
+        let output = Command::new(example()).current_dir(&folder).args(arguments).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(matches!(output.status.code(), Some(1 | 2)) && text.starts_with("error: "), "{text}");
+        assert!(output.stdout.is_empty() && text.contains(message), "{text}");
+    };
+    refused(&[], "required arguments were not provided");
+    refused(&["."], ".: cannot be read");
+    refused(&["top.toml", "--out", "top.toml"], "cannot write to top.toml");
+    refused(&["top.toml", "--out", "top.toml/out"], "cannot write to top.toml/out");
+    refused(&["top.toml", "--out="], "a value is required");
+    refused(&["top.toml", "--pictures"], "unexpected argument '--pictures'");
+}
+
 /// A step that is too large is found out while running: with the file, the time and the largest step.
 #[test]
 fn a_step_that_is_too_large() {
@@ -260,7 +279,9 @@ fn a_step_that_is_too_large() {
 #[test]
 fn the_scenes_run() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
+    let gallery = fs::read_to_string(scenes.join("README.md")).unwrap();
     let mut files: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     files.sort();
     assert!(files.len() >= 12, "{}", files.len());
     let names: Vec<_> = files.iter().map(|path| path.to_str().unwrap()).collect();
@@ -276,6 +297,10 @@ fn the_scenes_run() {
         assert!(rows.len() > 500 && rows.first() != rows.last(), "{}", path.display());
         assert!(rows.iter().flatten().all(|value| value.is_finite()), "{}", path.display());
         assert!(result("svg").matches("<polyline").count() > 3, "{}", path.display());
+        // Small enough to be kept beside the file, where the gallery has it.
+        assert!(result("svg").len() < 60_000, "{}", path.display());
+        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap();
+        assert!(gallery.contains(&format!("({name}.toml)")) && gallery.contains(&format!("/{name}.svg)")), "{name}");
     }
 }
 
