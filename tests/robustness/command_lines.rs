@@ -43,7 +43,7 @@ fn steps_and_times() {
         ("1e400", "must be a finite number above zero"),
         ("1e-400", "must be a finite number above zero"),
         ("ten", "not a number; write seconds, as in 0.01"),
-        ("", "a value is required"),
+        ("", "not a number; write seconds, as in 0.01"),
         ("0,01", "not a number; write seconds, as in 0.01"),
     ];
     for example in ["heavy-top", "free-rigid-body"] {
