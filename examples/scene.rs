@@ -5,7 +5,7 @@
 //! cargo run --release --example scene -- examples/scenes/*.toml --out pictures --csv
 //! ```
 //!
-//! A file names a body, the effects on it, where the motion starts, the step and what to draw; the files in
+//! A file names a body, the effects on it, where the motion starts, the step or an accuracy, and what to draw; the files in
 //! `examples/scenes` show every key. Numbers are in SI units, or texts with a unit: `"30 deg"`. Which effects there are
 //! is decided once a run: the step that then runs is that of the sum of just those, compiled as if it had been written
 //! by hand. A mistake in a file is reported with its line and column.
@@ -61,12 +61,12 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         if count > 1 {
             eprintln!("[{number}/{count}] {}", path.display());
         }
-        let samples = scene::run(file).map_err(|stopped| format!("{}: {stopped}", path.display()))?;
-        output.write(&name(path, "svg"), &scene::picture(file, &samples)?)?;
+        let run = scene::run(file).map_err(|stopped| format!("{}: {stopped}", path.display()))?;
+        output.write(&name(path, "svg"), &scene::picture(file, &run)?)?;
         if arguments.csv {
-            output.write(&name(path, "csv"), &scene::table(&samples))?;
+            output.write(&name(path, "csv"), &scene::table(&run.samples))?;
         }
-        print(&scene::summary(file, &samples))?;
+        print(&run.summary(file))?;
     }
     print(&output.to_string())?;
     Ok(())

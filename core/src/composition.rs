@@ -153,8 +153,9 @@ impl<L: DiscreteLagrangian + Regular + Clone> Composition<L> {
 }
 
 impl<L: DiscreteLagrangian> Composition<L> {
+    /// A step whose error speaks of a stage.
     #[inline]
-    fn all_stages(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
+    pub(crate) fn all_stages(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
         let mut next = *state;
         let mut iterations = 0;
         for stage in &self.stages {

@@ -7,6 +7,7 @@ use crate::coordinates::Coordinates;
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::kinetic::KineticPart;
+use crate::operations::Operations;
 use crate::retraction::Retraction;
 use crate::scalar::Real;
 use crate::scene::SceneVisitor;
@@ -107,6 +108,9 @@ pub trait Effect {
     /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which the system must have the
     /// factor one. The macro decides it by counting operations.
     const JACOBIAN_IS_DEAR: bool = false;
+
+    /// How much arithmetic its share of a step is; the macro counts it.
+    const OPERATIONS: Operations = Operations::UNCOUNTED;
 
     /// What was declared and everything derived from it, as text.
     const DERIVATION: &'static str;

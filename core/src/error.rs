@@ -43,6 +43,8 @@ pub enum SetupError {
         /// The largest difference of two entries, kg m².
         difference: f64,
     },
+    /// One of the candidates for an accuracy is another scene than the first.
+    AnotherPotential,
 }
 
 impl fmt::Display for SetupError {
@@ -71,6 +73,9 @@ impl fmt::Display for SetupError {
                 f,
                 "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}"
             ),
+            Self::AnotherPotential => {
+                write!(f, "one of the methods to choose from has another potential than the first")
+            }
         }
     }
 }

@@ -7,7 +7,7 @@
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
 //! direction: `scalar ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ←
-//! stepper`, and on it `{composition, preprocessed ← splitting}`.
+//! stepper`, and on it `{composition, preprocessed ← splitting} ← accuracy`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
@@ -17,6 +17,7 @@ pub mod effects;
 pub mod groups;
 pub mod laws;
 
+mod accuracy;
 mod advected;
 mod bisection;
 #[cfg(feature = "serde")]
@@ -35,6 +36,7 @@ mod inertia;
 mod kinetic;
 mod lagrangian;
 mod newton;
+mod operations;
 mod preprocessed;
 mod remedy;
 mod retraction;
@@ -51,6 +53,7 @@ mod symmetry;
 #[path = "private.rs"]
 pub mod __private;
 
+pub use accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates, Choice, Offer};
 pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
@@ -69,6 +72,7 @@ pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, Nonstandard
 pub use kinetic::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
 pub use lagrangian::DiscreteLagrangian;
 pub use liestep_macros::{force, lagrangian};
+pub use operations::Operations;
 pub use preprocessed::{PreprocessedBody, PreprocessedOrder};
 pub use remedy::{Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};

@@ -8,6 +8,7 @@ use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::kinetic::KineticPart;
 use crate::lagrangian::DiscreteLagrangian;
+use crate::operations::Operations;
 use crate::scalar::real;
 use crate::scene::SceneVisitor;
 
@@ -96,6 +97,14 @@ where
         (true, true) => false,
         (true, false) => A::JACOBIAN_IS_DEAR,
         (false, _) => B::JACOBIAN_IS_DEAR,
+    };
+    const OPERATIONS: Operations = Operations {
+        step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),
+        iteration: match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) => A::OPERATIONS.iteration.saturating_add(B::OPERATIONS.iteration),
+            (true, false) => A::OPERATIONS.iteration,
+            (false, _) => B::OPERATIONS.iteration,
+        },
     };
     const DERIVATION: &'static str = "the sum of two effects: their momentum maps, diamonds, unknown parts, kicks, \
                                       Jacobians and energies, each added; see DERIVATION of either\n";

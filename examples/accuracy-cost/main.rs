@@ -3,21 +3,27 @@
 //! ```text
 //! cargo run --release --example accuracy-cost
 //! cargo run --release --example accuracy-cost -- --quick --out costs
+//! cargo run --release --example accuracy-cost -- --quick --asked
 //! ```
 //!
 //! Each method integrates each scene for 10 s and for 100 s with shorter and shorter steps. The error is that of the
 //! attitude and the body velocity at the end, against references to 25 digits and more; the cost is the time of one
 //! processor for the run, constants folded and nothing printed. The tables say which of our methods is the cheapest for
 //! an error, and how its time compares with that of the fastest rival. The rivals integrate unit quaternion and momentum.
+//!
+//! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
+//! fixed choice; the column `trials` says how many such runs the choice itself took.
 
 // What the other examples share, of which this one uses a part.
 #[allow(dead_code, unused_imports)]
 #[path = "../common/mod.rs"]
 mod common;
 
+mod asked;
 mod figure;
 mod measure;
 mod methods;
+mod others;
 mod report;
 mod rivals;
 mod scenes;
@@ -48,6 +54,9 @@ struct Arguments {
     /// Only this scene: looping, cuspidal, third, chaotic or free.
     #[arg(long)]
     scene: Option<String>,
+    /// Ask for accuracies instead, and see what the choices take beside the best fixed ones.
+    #[arg(long)]
+    asked: bool,
     /// The folder for the figure and the runs.
     #[arg(long, value_name = "DIR", default_value = "out/accuracy-cost")]
     out: PathBuf,
@@ -71,7 +80,6 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             Effort { longest: 4e-3 * t, repeated: Duration::from_millis(15), ratio: 1.25 }
         }
     };
-    let mut output = Output::new(arguments.out.clone())?;
     let mut scenes = Scene::all()?;
     if let Some(wanted) = &arguments.scene {
         scenes.retain(|scene| scene.short == wanted);
@@ -79,6 +87,11 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             return Err(format!("no scene is called {wanted}; see --help").into());
         }
     }
+    if arguments.asked {
+        print(&format!("{}\n", asked::compare(&scenes, effort)?))?;
+        return Ok(());
+    }
+    let mut output = Output::new(arguments.out.clone())?;
     let (mut text, mut csv, mut results) = (String::new(), report::CSV_HEADING.to_owned(), Vec::new());
     let count: usize = scenes.iter().map(|scene| 2 * methods::all(scene).len()).sum();
     let bar = progress(count.try_into()?);

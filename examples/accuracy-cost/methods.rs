@@ -73,7 +73,7 @@ fn count(t: f64, h: f64) -> u64 {
 }
 
 /// The compositions of a method of order 2.
-const OF_ORDER_2: [CompositionScheme; 4] = [
+pub(crate) const OF_ORDER_2: [CompositionScheme; 4] = [
     CompositionScheme::SUZUKI_4,
     CompositionScheme::KAHAN_LI_6,
     CompositionScheme::KAHAN_LI_8,
@@ -82,6 +82,11 @@ const OF_ORDER_2: [CompositionScheme; 4] = [
 
 /// All the methods that a scene allows.
 pub(crate) fn all(scene: &Scene) -> Vec<Method> {
+    ours(scene).into_iter().chain(rivals()).collect()
+}
+
+/// Of these, those that keep the structure.
+pub(crate) fn ours(scene: &Scene) -> Vec<Method> {
     let mut methods = Vec::new();
     if scene.kind == Kind::Free {
         methods.extend(declared("(3.13)", Scene::free_body, OF_ORDER_2));
@@ -95,16 +100,17 @@ pub(crate) fn all(scene: &Scene) -> Vec<Method> {
     match scene.kind {
         Kind::Free => methods.extend(preprocessed()),
         Kind::SymmetricTop => {
-            methods.extend(splittings("exact", Family::Poisson, |scene| SymmetricBody::new(&scene.inertia()).ok()));
+            methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
+                SymmetricBody::new(&scene.inertia()).ok()
+            }));
         }
         Kind::Top => {
-            methods.extend(splittings("preprocessed", Family::NearlyPoisson, |scene| {
+            methods.extend(splittings("preprocessed", Family::NearlyPoisson, Scene::top, |scene| {
                 Some(PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten))
             }));
-            methods.extend(splittings("K6", Family::Poisson, |scene| Some(scene.sixth_order_body())));
+            methods.extend(splittings("K6", Family::Poisson, Scene::top, |scene| Some(scene.sixth_order_body())));
         }
     }
-    methods.extend(rivals());
     methods
 }
 
@@ -127,12 +133,14 @@ fn preprocessed() -> [Method; 4] {
 }
 
 /// Splittings with a kinetic flow.
-fn splittings<K>(
+pub(crate) fn splittings<L, K>(
     name: &'static str,
     family: Family,
+    lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
     kinetic: impl Fn(&Scene) -> Option<K> + Copy + 'static,
 ) -> Vec<Method>
 where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
     K: KineticFlow<f64> + 'static,
 {
     let schemes = [
@@ -148,7 +156,7 @@ where
     ];
     let method = |scheme: SplittingScheme| {
         Method::new(format!("{name}, {}", scheme.name()), family, Control::Step(5.0), move |scene, t, h| {
-            let (splitting, steps) = (Splitting::new(scene.top(), kinetic(scene)?, h, scheme).ok()?, count(t, h));
+            let (splitting, steps) = (Splitting::new(lagrangian(scene), kinetic(scene)?, h, scheme).ok()?, count(t, h));
             let start = splitting.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
             Some(Box::new(move || {
                 let mut state = start;
@@ -161,7 +169,7 @@ where
 }
 
 /// The step of a declared Lagrangian, and its compositions.
-fn declared<L, const N: usize>(
+pub(crate) fn declared<L, const N: usize>(
     name: &'static str,
     lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
     schemes: [CompositionScheme; N],

@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use expect_test::expect;
 use liestep::effects::{Drag, Gravity, PrincipalBody};
-use liestep::{DiagonalNonstandardInertia, NonstandardInertia, Stepper};
+use liestep::{Accuracy, DiagonalNonstandardInertia, NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const TOP: &str = r#"title = "A heavy top with drag"
@@ -104,6 +104,10 @@ fn mistakes_have_places() {
         ("velocity", "euler_rates = [0, 0, 1]\nvelocity"),
         ("step = \"10 ms\"", "step = \"10 min\""),
         ("step = \"10 ms\"", "step = 1e-9"),
+        ("step = \"10 ms\"", "step = \"10 ms\"\naccuracy = 1e-6"),
+        ("step = \"10 ms\"\n", ""),
+        ("step = \"10 ms\"", "accuracy = 1e-6"),
+        ("step = \"10 ms\"", "accuracy = 0"),
         ("[run]", "[rotor]\nspin = [0, 0, 1]\n[dipole]\nmoment = [0, 0, 1]\nfield = [0, 0, 1]\n[run]"),
         ("[run]", "[picture]\npanels = [\"rates\", \"phase\"]\n[run]"),
         ("[run]", "[run"),
@@ -150,6 +154,10 @@ fn mistakes_have_places() {
         error: top.toml:18:12: a velocity is given by either `velocity` or `euler_rates`
         error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 600 s
         error: top.toml:19:1: `duration` makes 2.0e9 steps, more than 1e8; take a larger `step`
+        error: top.toml:21:12: a run has either a `step` or an `accuracy`
+        error: top.toml:19:1: a run has either a `step` or an `accuracy`
+        error: top.toml:20:12: an accuracy can be asked for in conservative scenes; drag does work, so give a `step`
+        error: top.toml:20:12: must be above zero
         error: top.toml:21:1: a scene has at most 3 effects beside the body
         error: top.toml:20:20: unknown variant `phase`, expected one of `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error`
         error: top.toml:19:5: unclosed table, expected `]`
@@ -325,6 +333,25 @@ fn a_file_is_a_sum() {
     assert_eq!(rows.len(), 201);
     assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
     assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
+}
+
+/// What a file asks for is what a program that asks the same gets, bit for bit.
+#[test]
+fn a_file_may_ask_for_an_accuracy() {
+    let text = TOP.replace("step = \"10 ms\"", "accuracy = 1e-7").replace("[drag]\nc = 1e-3\n", "");
+    let rows = rows(&folder("asked"), &text);
+    let last = rows.last().unwrap();
+
+    let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let scene = PrincipalBody { J_d: body } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let velocity = Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)));
+    let accuracy = Accuracy { tolerance: 1e-7, horizon: 2.0 };
+    let stepper = Stepper::for_accuracy(scene, accuracy, tilt, velocity).unwrap();
+    let mut state = stepper.start();
+    stepper.run(&mut state).unwrap();
+    assert_eq!(rows.len() as u64, stepper.choice().steps + 1);
+    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
 }
 
 /// The rates of Euler's angles and the body velocity that they make are those of the same motion.

@@ -11,12 +11,16 @@ use crate::groups::SO3;
 use crate::inertia::Inertia;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
+use crate::operations::Operations;
 use crate::scalar::{Real, real, reported};
 
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
 pub trait KineticFlow<T: Real> {
     /// The flow over one share of the step, its constants folded.
     type Drift;
+
+    /// How much arithmetic the flow over one share is.
+    const OPERATIONS: Operations = Operations::UNCOUNTED;
 
     /// The inertia `J` of the body, kg m².
     fn inertia(&self) -> Matrix3<T>;
@@ -90,6 +94,9 @@ pub struct SymmetricDrift<T> {
 impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     type Drift = SymmetricDrift<T>;
 
+    // Two pairs of rotation coefficients among them; nothing is solved.
+    const OPERATIONS: Operations = Operations { step: 130, iteration: 0 };
+
     fn inertia(&self) -> Matrix3<T> {
         Matrix3::from_diagonal(&Vector3::new(self.transverse, self.transverse, self.axial))
     }
@@ -138,6 +145,10 @@ where
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = ()> + Regular + Clone,
 {
     type Drift = DeclaredDrift<L>;
+
+    // And a guess.
+    const OPERATIONS: Operations =
+        Operations { step: L::OPERATIONS.step.saturating_add(40), iteration: L::OPERATIONS.iteration };
 
     fn inertia(&self) -> Matrix3<T> {
         Effect::inertia(self)

@@ -7,6 +7,7 @@ use crate::error::{SetupError, StepError};
 use crate::flows::DiscreteLiePoisson;
 use crate::groups::{LieGroup as _, SO3};
 use crate::inertia::DiagonalNonstandardInertia;
+use crate::operations::Operations;
 use crate::preprocessed::{FreeBody, ModifiedBody, PreprocessedOrder};
 use crate::scalar::{Real, real};
 
@@ -39,6 +40,9 @@ pub struct PreprocessedDrift<T> {
 
 impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
     type Drift = PreprocessedDrift<T>;
+
+    // The series and their moments, which the solve waits for.
+    const OPERATIONS: Operations = Operations { step: 150, iteration: 40 };
 
     fn inertia(&self) -> Matrix3<T> {
         let d = self.inertia.diagonal();

@@ -1,12 +1,12 @@
 //! The choice of a scene's type, once a run.
 
-use liestep::{CayleyRetraction, Effect, SO3, Sum, WithKinetic};
+use liestep::{CayleyRetraction, DiscreteLagrangian, Effect, SO3, Sum, WithKinetic};
 
 use super::effects::Table;
-use super::file::SceneFile;
-use super::run::{Sample, Stopped, simulate};
+use super::file::{Pace, SceneFile};
+use super::run::{Question, Run, Stopped, Task, ask, simulate};
 
-type Outcome = Result<Vec<Sample>, Stopped>;
+type Outcome = Result<Run, Stopped>;
 
 /// A body with some effects on it.
 pub(super) trait Scene:
@@ -22,7 +22,12 @@ pub(super) const MOST_EFFECTS: usize = 3;
 
 /// Simulates the sum of the body and those effects that the file has.
 pub(crate) fn run(file: &SceneFile) -> Outcome {
-    three::gravity(file.body(), file)
+    match &file.run.pace {
+        Pace::Step { step, steps } => three::gravity(file.body(), &Task { file, step: *step, steps: *steps }),
+        Pace::Accuracy(tolerance) => {
+            conservative::run(file.body(), &Question { file, tolerance: *tolerance.get_ref() })
+        }
+    }
 }
 
 /// A function for each effect, which adds it or not and goes on to the next: together they have a type for every
@@ -30,17 +35,17 @@ pub(crate) fn run(file: &SceneFile) -> Outcome {
 macro_rules! at_most {
     ($number:ident, then $fewer:ident: $first:ident $($rest:ident)+) => {
         mod $number {
-            use super::{Scene, SceneFile, Outcome, Sum, Table, $fewer};
+            use super::{Scene, Task, Outcome, Sum, Table, $fewer};
             pub(super) use super::simulate;
 
             at_most!(function $fewer: $first $($rest)+);
         }
     };
     (function $fewer:ident: $effect:ident $next:ident $($rest:ident)*) => {
-        pub(super) fn $effect<S: Scene>(scene: S, file: &SceneFile) -> Outcome {
-            match &file.$effect {
-                Some(table) => $fewer::$next(Sum::new(scene, Table::effect(table.get_ref(), &file.body())), file),
-                None => $next(scene, file),
+        pub(super) fn $effect<S: Scene>(scene: S, task: &Task<'_>) -> Outcome {
+            match &task.file.$effect {
+                Some(table) => $fewer::$next(Sum::new(scene, Table::effect(table.get_ref(), &task.file.body())), task),
+                None => $next(scene, task),
             }
         }
 
@@ -62,3 +67,30 @@ mod none {
 at_most!(one, then none: dipole spring rotor drag magnetic_damping torque simulate);
 at_most!(two, then one: gravity_gradient dipole spring rotor drag magnetic_damping torque simulate);
 at_most!(three, then two: gravity gravity_gradient dipole spring rotor drag magnetic_damping torque simulate);
+
+/// The sums that an accuracy can be asked of: 26 types.
+mod conservative {
+    use liestep::effects::PrincipalBody;
+
+    use super::{DiscreteLagrangian, Outcome, Question as Task, Sum, Table, ask};
+
+    pub(super) trait Scene: super::Scene + DiscreteLagrangian<Advected: 'static> + Clone + 'static {}
+
+    impl<S: super::Scene + DiscreteLagrangian<Advected: 'static> + Clone + 'static> Scene for S {}
+
+    /// Simulates the sum of the body and those effects that the file has.
+    pub(super) fn run(body: PrincipalBody, question: &Task<'_>) -> Outcome {
+        three::gravity(body, question)
+    }
+
+    mod none {
+        pub(super) use super::ask as simulate;
+        pub(super) use super::ask as spring;
+        pub(super) use super::ask as rotor;
+    }
+
+    use ask as simulate;
+    at_most!(one, then none: dipole spring rotor simulate);
+    at_most!(two, then one: gravity_gradient dipole spring rotor simulate);
+    at_most!(three, then two: gravity gravity_gradient dipole spring rotor simulate);
+}

@@ -18,7 +18,7 @@ pub(crate) use choose::run;
 pub(crate) use file::SceneFile;
 pub(crate) use mistake::Mistake;
 pub(crate) use picture::picture;
-pub(crate) use run::{summary, table};
+pub(crate) use run::table;
 
 /// A scene is a few hundred bytes; more than this is another file, and may have no end.
 const MOST_BYTES: u64 = 1 << 20;
@@ -43,11 +43,18 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
 /// The scene that a text describes; `path` is for messages.
 pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, Mistake> {
     let file: SceneFile = toml::from_str(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-    match file.excess() {
-        Some(span) => {
-            let message = format!("a scene has at most {} effects beside the body", choose::MOST_EFFECTS);
-            Err(Mistake::at(path, text, &span, message))
-        }
-        None => Ok(file),
+    if let Some(span) = file.excess() {
+        let message = format!("a scene has at most {} effects beside the body", choose::MOST_EFFECTS);
+        return Err(Mistake::at(path, text, &span, message));
     }
+    if let Some(span) = file.step_and_accuracy() {
+        let message = "a run has either a `step` or an `accuracy`".to_owned();
+        return Err(Mistake::at(path, text, &span, message));
+    }
+    if let Some((span, force)) = file.force_in_the_way() {
+        let message =
+            format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
+        return Err(Mistake::at(path, text, &span, message));
+    }
+    Ok(file)
 }

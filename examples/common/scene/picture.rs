@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::file::SceneFile;
 use super::quantity::Direction;
-use super::run::Sample;
+use super::run::{Run, Sample};
 use crate::plot::{
     Area, BLUE, Drawn, GREEN, Line, ORANGE, PURPLE, Panel, Path, Vertical, heading, legend, px, render, sphere,
 };
@@ -63,11 +63,11 @@ impl Default for Picture {
 const COLOURS: [plotters::style::RGBColor; 3] = [BLUE, ORANGE, GREEN];
 
 /// The picture as SVG.
-pub(crate) fn picture(file: &SceneFile, samples: &[Sample]) -> Drawn<String> {
-    let picture = &file.picture;
+pub(crate) fn picture(file: &SceneFile, run: &Run) -> Drawn<String> {
+    let (picture, samples) = (&file.picture, run.samples.as_slice());
     render((1200, 640), |area| {
         let (header, body) = area.split_vertically(px(64));
-        let subtitle = format!("{}, h = {} s", file.sum(), file.run.step);
+        let subtitle = format!("{}, h = {} s", file.sum(), run.step);
         heading(&header, &file.title, &subtitle)?;
         let (left, right) = body.split_horizontally(px(520));
         picture.draw_path(&left, samples)?;

@@ -130,9 +130,11 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
         [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero());
     let denominators = Literal::u32_unsuffixed(kernel.denominators);
     let u32 = quote_spanned!(span=> #root::__private::core::primitive::u32);
+    let [step, iteration] = kernel.operations().map(Literal::u32_unsuffixed);
     quote_spanned! {span=>
         const PARTS: #root::Parts = #root::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
+        const OPERATIONS: #root::Operations = #root::Operations { step: #step, iteration: #iteration };
     }
 }
 

@@ -51,6 +51,17 @@ impl Kernel {
         !self.in_increment && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
     }
 
+    /// Of a step without the solve and of an iteration, as `Effect::OPERATIONS` has them.
+    pub(crate) fn operations(&self) -> [u32; 2] {
+        let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
+        let step = count(&self.graph, &before, Some(Stage::Step))
+            + count(&self.graph, &self.kick_after, Some(Stage::Step))
+            + count(&self.graph, &self.kick_after, Some(Stage::Iteration));
+        let outputs = if self.jacobian_is_dear() { &self.residual } else { &before };
+        let iteration = count(&self.graph, outputs, Some(Stage::Iteration));
+        [step, iteration].map(|operations| u32::try_from(operations.cost() / 2).unwrap_or(u32::MAX))
+    }
+
     /// What a step of two Newton iterations costs.
     pub(crate) fn cost(&self) -> usize {
         let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());

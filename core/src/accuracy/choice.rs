@@ -1,0 +1,126 @@
+//! What was chosen, and what else there was.
+
+use core::fmt;
+
+use super::Accuracy;
+use super::candidates::Candidate;
+use super::ladder::Estimate;
+use super::search::Found;
+use crate::advected::Advected;
+use crate::groups::LieGroup;
+
+/// A method for an accuracy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Offer {
+    /// What it is called in tables.
+    pub name: String,
+    /// The order promised; errors fall faster where a small potential is split off.
+    pub order: u32,
+    /// About the step that it needs, s; a larger one than it needs, if [`is_bound`](Self::is_bound).
+    pub step: f64,
+    /// The arithmetic of the run, relative to that of the method chosen.
+    pub cost: f64,
+    /// Whether its trials ended early, as it could only have been dearer.
+    pub is_bound: bool,
+}
+
+/// What [`Stepper::for_accuracy`](crate::Stepper::for_accuracy) has chosen, with its reasons; as text, a table.
+///
+/// # Examples
+///
+/// The choice for a heavy top:
+///
+/// ```
+/// use liestep::effects::{Gravity, PrincipalBody};
+/// use liestep::{Accuracy, DiagonalNonstandardInertia, LieGroup, SO3, Stepper};
+/// use nalgebra::Vector3;
+///
+/// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
+/// let scene = PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::x() };
+/// let accuracy = Accuracy { tolerance: 1e-8, horizon: 10.0 };
+/// let stepper = Stepper::for_accuracy(scene, accuracy, SO3::identity(), Vector3::new(0.1, 0.0, 9.0))?;
+/// let choice = stepper.choice();
+/// assert!(choice.error <= 1e-8 && choice.chosen().order >= 6);
+/// println!("{choice}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// What was asked for.
+    pub accuracy: Accuracy,
+    /// The number of steps to the horizon.
+    pub steps: u64,
+    /// The error at the horizon, measured against a run of the same method with shorter steps.
+    pub error: f64,
+    /// The arithmetic of all trial runs, relative to that of the run.
+    pub trials: f64,
+    /// What the method costs for ten times the tolerance and for a tenth of it.
+    pub nearby: [f64; 2],
+    offers: Vec<Offer>,
+    chosen: usize,
+}
+
+impl Choice {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number
+    pub(super) fn new<G: LieGroup, A: Advected<G>>(
+        candidates: &[Candidate<G, A>],
+        accuracy: Accuracy,
+        found: &Found,
+    ) -> Self {
+        let offer = |(index, (candidate, estimate)): (usize, (&Candidate<G, A>, &Estimate))| {
+            let is_chosen = index == found.run.index;
+            let (steps, cost) =
+                if is_chosen { (found.run.steps, found.run.cost) } else { (estimate.steps, estimate.cost) };
+            Offer {
+                name: candidate.name.clone(),
+                order: candidate.order,
+                step: accuracy.horizon / steps,
+                cost: cost / found.run.cost,
+                is_bound: estimate.is_bound && !is_chosen,
+            }
+        };
+        Self {
+            accuracy,
+            steps: found.run.steps as u64,
+            error: found.run.error,
+            trials: found.spent / found.run.cost,
+            nearby: found.nearby.map(|estimate| estimate.cost / found.run.cost),
+            offers: candidates.iter().zip(&found.estimates).enumerate().map(offer).collect(),
+            chosen: found.run.index,
+        }
+    }
+
+    /// The method chosen.
+    #[must_use]
+    pub fn chosen(&self) -> &Offer {
+        &self.offers[self.chosen]
+    }
+
+    /// All methods, in the order of the candidates.
+    #[must_use]
+    pub fn offers(&self) -> &[Offer] {
+        &self.offers
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (chosen, Accuracy { tolerance, horizon }) = (self.chosen(), self.accuracy);
+        writeln!(
+            f,
+            "{tolerance:.0e} at t = {horizon} s: {}, {} steps of {:.4e} s",
+            chosen.name, self.steps, chosen.step
+        )?;
+        writeln!(f, "error {:.1e}; its trials cost {:.1} runs", self.error, self.trials)?;
+        let [rougher, finer] = self.nearby;
+        writeln!(f, "{:.0e} would cost {rougher:.2}, {:.0e} {finer:.2}", 10.0 * tolerance, 0.1 * tolerance)?;
+        let width = self.offers.iter().map(|offer| offer.name.chars().count()).max().unwrap_or(0);
+        writeln!(f, "{:<width$}  order    step, s      cost", "method")?;
+        for Offer { name, order, step, cost, is_bound } in &self.offers {
+            let (least, most) = if *is_bound { ("≥", "<") } else { ("", "") };
+            let (step, cost) = (format!("{most}{step:.2e}"), format!("{least}{cost:.2}"));
+            writeln!(f, "{name:<width$}  {order:>5}  {step:>9}  {cost:>8}")?;
+        }
+        Ok(())
+    }
+}

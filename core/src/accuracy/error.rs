@@ -1,0 +1,77 @@
+//! Why no step was chosen.
+
+use core::fmt;
+
+use crate::error::{SetupError, StepError};
+
+/// Why there is no method and step for an accuracy.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum AccuracyError {
+    /// The tolerance isn't a number above zero.
+    Tolerance {
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// The horizon isn't a finite time above zero.
+    Horizon {
+        /// What was asked for, s.
+        horizon: f64,
+    },
+    /// No method comes so near to the motion in double precision: rounding, as much as the motion magnifies it until the
+    /// horizon, is larger.
+    Unreachable {
+        /// What was asked for.
+        tolerance: f64,
+        /// About the smallest tolerance that can be reached; of the order of one where the motion can't be predicted so
+        /// far.
+        floor: f64,
+    },
+    /// The steps that all methods would need are too many.
+    TooManySteps {
+        /// How many the cheapest one would make, or has made in vain.
+        steps: f64,
+    },
+    /// The scene or the start can't be used.
+    Setup(SetupError),
+    /// No method gets to the horizon, with however short a step; the last of their errors.
+    Step(StepError),
+}
+
+impl fmt::Display for AccuracyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tolerance { tolerance } => {
+                write!(f, "the tolerance {tolerance:e} can't be used; choose a number between 0 and 1")
+            }
+            Self::Horizon { horizon } => {
+                write!(f, "the horizon {horizon:e} s can't be used; choose a finite time above zero")
+            }
+            Self::Unreachable { tolerance, floor } => write!(
+                f,
+                "the tolerance {tolerance:e} is below what rounding leaves at the horizon: about {floor:.0e} can be reached"
+            ),
+            Self::TooManySteps { steps } => {
+                write!(f, "about {steps:.0e} steps would be needed; choose a larger tolerance or a nearer horizon")
+            }
+            Self::Setup(cause) => cause.fmt(f),
+            Self::Step(cause) => write!(f, "no step leads to the horizon: {cause}"),
+        }
+    }
+}
+
+impl core::error::Error for AccuracyError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Setup(cause) => Some(cause),
+            Self::Step(cause) => Some(cause),
+            _ => None,
+        }
+    }
+}
+
+impl From<SetupError> for AccuracyError {
+    fn from(cause: SetupError) -> Self {
+        Self::Setup(cause)
+    }
+}

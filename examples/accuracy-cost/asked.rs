@@ -1,0 +1,138 @@
+//! What the asked choice takes, beside the best of all fixed ones.
+
+use std::error::Error;
+use std::time::Duration;
+
+use liestep::{Accuracy, AccurateStepper, Candidates, PreprocessedFlow, PreprocessedOrder, SO3, SymmetricBody};
+use nalgebra::Vector3;
+
+use crate::common::table::{aligned, number};
+use crate::measure::{Effort, cost_of, ladder, timed};
+use crate::methods::{self, Family, Prepared};
+use crate::others;
+use crate::scenes::{Kind, Scene, error};
+
+/// The tolerances asked for.
+const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
+
+/// The table, and whether all choices are within their tolerance and twice the best time.
+pub(crate) fn compare(scenes: &[Scene], effort: impl Fn(f64) -> Effort) -> Result<String, Box<dyn Error>> {
+    let heading = ["scene", "t, s", "asked", "chosen", "step, s", "error", "µs", "best fixed", "µs", "ratio", "trials"];
+    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    for t in [10.0, 100.0] {
+        for scene in scenes {
+            add(&mut rows, &Question::of(scene), scene, t, effort(t));
+        }
+        for (scene, question) in others::all()? {
+            add(&mut rows, &question, &scene, t, effort(t));
+        }
+    }
+    Ok(aligned(&rows))
+}
+
+/// A scene to be asked for, and the methods that the answer is compared with.
+pub(crate) struct Question {
+    /// The end of a run that has the accuracy, with the name of its method, its step and the cost of the trials in runs.
+    pub(crate) ask: Box<dyn Fn(Accuracy) -> Result<Answer, liestep::AccuracyError>>,
+    pub(crate) fixed: Vec<methods::Method>,
+}
+
+/// A choice ready to run.
+pub(crate) struct Answer {
+    name: String,
+    step: f64,
+    trials: f64,
+    run: Prepared,
+}
+
+impl Answer {
+    pub(crate) fn new<A>(stepper: AccurateStepper<SO3, A>) -> Self
+    where
+        A: liestep::Advected<SO3> + 'static,
+    {
+        let choice = stepper.choice();
+        let (name, step, trials) = (choice.chosen().name.clone(), choice.chosen().step, choice.trials);
+        let run = Box::new(move || {
+            let mut state = stepper.start();
+            stepper.run(&mut state).ok()?;
+            Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
+        });
+        Self { name, step, trials, run }
+    }
+}
+
+impl Question {
+    /// Of one of the five.
+    fn of(scene: &Scene) -> Self {
+        let (start, velocity) = (SO3::from_matrix_unchecked(scene.attitude), scene.velocity);
+        let fixed = methods::ours(scene);
+        if scene.kind == Kind::Free {
+            let candidates = Candidates::of(scene.free_body(), 2)
+                .and_declared("K4", scene.fourth_order_body(), 4)
+                .and_declared("K6", scene.sixth_order_body(), 6)
+                .and_preprocessed(scene.nonstandard());
+            return Self { ask: asking(candidates, start, velocity), fixed };
+        }
+        let candidates = Candidates::of(scene.top(), 2).and_declared("L4", scene.fourth_order_top(), 4).and_declared(
+            "L6",
+            scene.sixth_order_top(),
+            6,
+        );
+        let candidates = match SymmetricBody::new(&scene.inertia()) {
+            Ok(body) => candidates.and_splittings("exact", scene.top(), body),
+            Err(_) => candidates.and_splittings("K6", scene.top(), scene.sixth_order_body()).and_splittings(
+                "preprocessed",
+                scene.top(),
+                PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten),
+            ),
+        };
+        Self { ask: asking(candidates, start, velocity), fixed }
+    }
+}
+
+/// Asks these candidates.
+pub(crate) fn asking<A>(
+    candidates: Candidates<SO3, A>,
+    attitude: SO3,
+    velocity: Vector3<f64>,
+) -> Box<dyn Fn(Accuracy) -> Result<Answer, liestep::AccuracyError>>
+where
+    A: liestep::Advected<SO3> + 'static,
+{
+    Box::new(move |accuracy| candidates.for_accuracy(accuracy, attitude, velocity).map(Answer::new))
+}
+
+fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, effort: Effort) {
+    let Some(exact) = scene.reference(t) else { return };
+    let runs: Vec<_> = question.fixed.iter().map(|method| (method, ladder(method, scene, t, effort))).collect();
+    for tolerance in TOLERANCES {
+        let mut row = vec![scene.name.to_owned(), t.to_string(), format!("{tolerance:.0e}")];
+        match (question.ask)(Accuracy { tolerance, horizon: t }) {
+            Ok(answer) => {
+                let best = runs
+                    .iter()
+                    .filter(|(method, _)| method.family != Family::Rival)
+                    .filter_map(|(method, runs)| Some((method.name.as_str(), cost_of(runs, tolerance)?)))
+                    .min_by(|a, b| a.1.total_cmp(&b.1));
+                let Some((end, cost)) = timed(&answer.run, effort.repeated.max(Duration::from_millis(5))) else {
+                    continue;
+                };
+                row.extend([answer.name.clone(), number(answer.step), number(error(&end, exact)), microseconds(cost)]);
+                row.extend(best.map_or_else(
+                    || vec!["–".to_owned(); 3],
+                    |(name, least)| vec![name.to_owned(), microseconds(least), format!("{:.2}", cost / least)],
+                ));
+                row.push(format!("{:.1}", answer.trials));
+            }
+            Err(liestep::AccuracyError::Unreachable { floor, .. }) => {
+                row.push(format!("only {floor:.0e} can be reached"));
+            }
+            Err(refusal) => row.push(refusal.to_string()),
+        }
+        rows.push(row);
+    }
+}
+
+fn microseconds(cost: f64) -> String {
+    format!("{:.1}", cost * 1e6)
+}

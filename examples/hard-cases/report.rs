@@ -1,0 +1,54 @@
+//! The table, for the terminal, as Markdown and as comma-separated values.
+
+use std::fmt::Write as _;
+
+use crate::row::Row;
+
+/// For the terminal: a line for each row, and below it what the others do.
+pub(crate) fn text(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for row in rows {
+        let verdict = if row.is_met { "met   " } else { "MISSED" };
+        // Writing to a string can't fail.
+        let _ = writeln!(text, "{:<3} {verdict}  {}: {}", row.id, row.case, row.criterion);
+        for measured in &row.ours {
+            let _ = writeln!(text, "              {measured}");
+        }
+        for measured in &row.others {
+            let _ = writeln!(text, "            · {measured}");
+        }
+    }
+    let missed: Vec<_> = rows.iter().filter(|row| !row.is_met).map(|row| row.id).collect();
+    let _ = write!(text, "\n{} of {} rows are met", rows.len() - missed.len(), rows.len());
+    if !missed.is_empty() {
+        let _ = write!(text, "; missed: {}", missed.join(", "));
+    }
+    text.push_str(".\nWhat other methods do is marked ·");
+    text
+}
+
+/// As a table in Markdown.
+pub(crate) fn markdown(rows: &[Row]) -> String {
+    let mut text = "| | case | criterion | measured | others | |\n|---|---|---|---|---|---|\n".to_owned();
+    for row in rows {
+        let cells = [row.id, row.case, row.criterion, &row.ours.join("; "), &row.others.join("; ")];
+        let cells = cells.map(|cell| cell.replace('|', "\\|"));
+        let _ = writeln!(text, "| {} | {} |", cells.join(" | "), verdict(row));
+    }
+    text
+}
+
+/// As comma-separated values, each in quotes.
+pub(crate) fn csv(rows: &[Row]) -> String {
+    let mut text = "row,case,criterion,measured,others,verdict\n".to_owned();
+    for row in rows {
+        let cells = [row.id, row.case, row.criterion, &row.ours.join("; "), &row.others.join("; "), verdict(row)];
+        let cells = cells.map(|cell| format!("\"{}\"", cell.replace('"', "\"\"")));
+        let _ = writeln!(text, "{}", cells.join(","));
+    }
+    text
+}
+
+fn verdict(row: &Row) -> &'static str {
+    if row.is_met { "met" } else { "missed" }
+}

@@ -1,0 +1,66 @@
+//! B1, B2: a box, in the way that a physics engine tests itself.
+
+use liestep::DiagonalNonstandardInertia;
+use nalgebra::Vector3;
+
+use crate::curves::{Curve, Curves};
+use crate::rivals::{Spin, Trace};
+use crate::row::{Effort, Failure, Row, short};
+
+/// A box of 1 kg with half-extents 0.1, 0.2, 0.3: `J_d = m/3 diag(a², b², c²)`.
+pub(crate) fn box_of_engines(velocity: [f64; 3], h: f64) -> Result<Spin, Failure> {
+    let inertia = DiagonalNonstandardInertia::new(Vector3::new(0.01, 0.04, 0.09) / 3.0)?;
+    Ok(Spin { inertia, velocity: velocity.into(), h })
+}
+
+/// Ours against the bound, the others as they are.
+fn judged(mut row: Row, name: &str, traces: &[Trace], bound: f64) -> Row {
+    let [ours, others @ ..] = traces else { return row };
+    row = row.at_most(&format!("{name}energy"), ours.energy_error(), bound).at_most(
+        &format!("{name}spatial momentum"),
+        ours.momentum_error(),
+        bound,
+    );
+    for other in others {
+        let momentum = short(other.momentum_error());
+        row = row.other(format!("{name}{} E/E(0) {:.6}, momentum {momentum}", other.name, other.final_energy()));
+    }
+    row
+}
+
+fn drawn(curves: &mut Curves, title: &'static str, traces: &[Trace]) {
+    let lines = traces.iter().map(|trace| {
+        // What has blown up would press the others flat.
+        let points = trace.relative_energy().into_iter().filter(|point| point.1 < 1.5).collect();
+        Curve { name: trace.name, colour: trace.colour, points }
+    });
+    curves.energies.push((title, lines.collect()));
+}
+
+pub(crate) fn b1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+    let traces = box_of_engines([1.0, 2.0, 3.0], 0.01)?.traces(500, 1)?;
+    drawn(curves, "B1: box, ω = (1, 2, 3), h = 0.01", &traces);
+    let row = Row::new("B1", "box, ω = (1, 2, 3), h = 0.01, 500 steps", "energy to 1e-14");
+    Ok(judged(row, "", &traces, 1e-14))
+}
+
+pub(crate) fn b2(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+    let (steps, h) = (20_000, 0.005);
+    let middle = box_of_engines([0.05, 5.0, 0.05], h)?.traces(steps, 1)?;
+    let fast = box_of_engines([20.0, 0.05, 0.05], h)?.traces(steps, 1)?;
+    drawn(curves, "B2: middle axis, ω = (.05, 5, .05), h = 0.005", &middle);
+    drawn(curves, "B2: fast stable spin, ω = (20, .05, .05), h = 0.005", &fast);
+    let mut row = Row::new(
+        "B2",
+        "the box about its middle axis, and spun fast about its major one, h = 0.005, 20 000 steps",
+        "energy to 1e-13, the stable spin stays",
+    );
+    row = judged(row, "middle axis: ", &middle, 1e-13);
+    row = judged(row, "fast spin: ", &fast, 1e-13);
+    for (place, trace) in fast.iter().enumerate() {
+        let tilt = trace.worst(|kept| kept.velocity.yz().norm().atan2(kept.velocity.x).to_degrees());
+        let what = format!("fast spin: {} leaves its axis by {tilt:.1}°", trace.name);
+        row = if place == 0 { row.holds(&what, tilt < 1.0) } else { row.other(what) };
+    }
+    Ok(row)
+}

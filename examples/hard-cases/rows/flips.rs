@@ -1,0 +1,143 @@
+//! B7: a body that flips about its middle axis, and when.
+
+use liestep::{
+    Composition, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _,
+    PreprocessedBody, PreprocessedOrder, Regular, SO3, Stepper,
+};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::closed::flip;
+use crate::common::run::Method as _;
+use crate::curves::Curves;
+use crate::declarations::SixthOrderBody;
+use crate::free_body::engines::{Moments, explicit, implicit, rescaled};
+use crate::free_body::lagrangian::FreeBody;
+use crate::heavy_top::rk4::{Body, OnQuaternion};
+use crate::measure::{exponent, four_halvings};
+use crate::rivals::Update;
+use crate::row::{Effort, Failure, Row};
+
+/// What a step of this length does to the body momentum.
+type Map<'a> = Box<dyn Fn(&Vector3<f64>) -> Result<Vector3<f64>, Failure> + 'a>;
+/// The method for each step.
+type Steps<'a> = dyn Fn(f64) -> Result<Map<'a>, Failure> + 'a;
+
+/// The time of two flips: from the first to the third change of sign of the middle momentum.
+///
+/// Each is found by a shorter step of the same method, so that nothing is interpolated.
+fn period(method: &Steps<'_>, start: Vector3<f64>, h: f64) -> Result<f64, Failure> {
+    let step = method(h)?;
+    let (mut momentum, mut time, mut first, mut flips) = (start, 0.0, 0.0, 0);
+    for count in 0_u32.. {
+        let next = step(&momentum)?;
+        if next.y * momentum.y < 0.0 {
+            time = h * f64::from(count) + share(method, &momentum, h)?;
+            flips += 1;
+            if flips == 1 {
+                first = time;
+            }
+        }
+        if flips == 3 || f64::from(count) * h > 200.0 {
+            break;
+        }
+        momentum = next;
+    }
+    Ok(if flips == 3 { time - first } else { f64::NAN })
+}
+
+/// The step after which the middle momentum is zero, by false position.
+fn share(method: &Steps<'_>, momentum: &Vector3<f64>, h: f64) -> Result<f64, Failure> {
+    let after = |t: f64| -> Result<f64, Failure> { Ok(method(t)?(momentum)?.y) };
+    let (mut low, mut high) = ((0.0, momentum.y), (h, after(h)?));
+    for _ in 0..60 {
+        let t = low.0 - low.1 * (high.0 - low.0) / (high.1 - low.1);
+        let value = after(t)?;
+        if value == 0.0 || (high.0 - low.0).abs() < 1e-15 {
+            return Ok(t);
+        }
+        // The side that stays is halved, or it would stay for good.
+        if value * high.1 < 0.0 {
+            low = high;
+        } else {
+            low.1 *= 0.5;
+        }
+        high = (t, value);
+    }
+    Ok(high.0)
+}
+
+fn composed<'a, L>(lagrangian: L, scheme: CompositionScheme) -> impl Fn(f64) -> Result<Map<'a>, Failure> + 'a
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = ()> + Regular + Clone + 'a,
+{
+    move |h| {
+        let composition = Composition::new(lagrangian.clone(), h, scheme)?;
+        Ok(Box::new(move |momentum| {
+            let mut state = composition.start_with_momentum(SO3::identity(), *momentum)?;
+            composition.step(&mut state)?;
+            Ok(state.momentum())
+        }))
+    }
+}
+
+pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let (moments, velocity) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.01, 2.0, 0.02));
+    let exact = flip::period(&moments, &velocity);
+    let inertia = DiagonalNonstandardInertia::from_principal_moments(moments)?;
+    let (body, start) = (FreeBody { J_d: inertia }, moments.component_mul(&velocity));
+    let off = |method: &Steps<'_>, h: f64| period(method, start, h).map(|period| period / exact - 1.0);
+
+    let ours = |h: f64| -> Result<Map<'_>, Failure> {
+        let stepper = Stepper::new(body.clone(), h)?;
+        Ok(Box::new(move |momentum| {
+            let mut state = stepper.start_with_momentum(SO3::identity(), *momentum)?;
+            stepper.step(&mut state)?;
+            Ok(state.momentum())
+        }))
+    };
+    let mut errors = Vec::new();
+    for h in four_halvings(0.02) {
+        errors.push((h, off(&ours, h)?.abs()));
+    }
+    let sixth = SixthOrderBody { J: Inertia::from_principal_moments(moments)? };
+    let preprocessed = |h: f64| -> Result<Map<'_>, Failure> {
+        let body = PreprocessedBody::new(inertia, h, PreprocessedOrder::Ten)?;
+        Ok(Box::new(move |momentum| {
+            let mut state = body.start_with_momentum(SO3::identity(), *momentum)?;
+            body.step(&mut state)?;
+            Ok(state.momentum())
+        }))
+    };
+    let mut row =
+        Row::new("B7", "flip period of J = (1, 2, 3), Ω = (.01, 2, .02)", "order 2 towards it; high order to 1e-12")
+            .near("two flips in closed form, s", exact, 19.001_635_511_000_25, 1e-12)
+            .near("order", exponent(&errors), 2.0, 0.05)
+            .shows(format!("(3.13) at h = 0.01 off by {:+.1e}", off(&ours, 0.01)?));
+    let kahan_li = composed(FreeBody { J_d: inertia }, CompositionScheme::KAHAN_LI_8);
+    let suzuki = composed(sixth, CompositionScheme::SUZUKI_8);
+    let tenth: [(&str, &Steps<'_>, f64); 3] = [
+        ("(3.13), Kahan-Li 8, h = 0.02", &kahan_li, 0.02),
+        ("K6, Suzuki 8, h = 0.05", &suzuki, 0.05),
+        ("preprocessed to order 10, h = 0.05", &preprocessed, 0.05),
+    ];
+    for (name, method, h) in tenth {
+        row = row.at_most(name, off(method, h)?.abs(), 1e-12);
+    }
+    let engines = Moments::of(&body);
+    let updates: [(&str, Update); 3] = [("explicit", explicit), ("implicit", implicit), ("rescaled", rescaled)];
+    for (name, update) in updates {
+        let method = |h: f64| -> Result<Map<'_>, Failure> {
+            Ok(Box::new(move |momentum| Ok(engines.momentum(&update(&engines, &engines.rates(momentum), h)))))
+        };
+        row = row.other(format!("{name} at h = 0.01 off by {:+.1e}", off(&method, 0.01)?));
+    }
+    let rk4 = |h: f64| -> Result<Map<'_>, Failure> {
+        let body = Body { inverse_moments: moments.map(f64::recip), lever: Vector3::zeros() };
+        Ok(Box::new(move |momentum| {
+            let mut method = OnQuaternion::new(body, h, &UnitQuaternion::identity(), *momentum);
+            method.advance(1)?;
+            Ok(method.sample().momentum)
+        }))
+    };
+    Ok(row.other(format!("RK4 at h = 0.01 off by {:+.1e}", off(&rk4, 0.01)?)))
+}

@@ -1,0 +1,135 @@
+//! T3: many steps of the looping top.
+
+use liestep::{CompensatedState, Stepper};
+
+use crate::common::plot::{BLUE, GREEN, ORANGE};
+use crate::common::run::{Method, Sample};
+use crate::curves::{Curve, Curves};
+use crate::measure::{Tenths, float};
+use crate::motion::Motion;
+use crate::rivals::{GREY, energy_of, on_matrix, on_quaternion};
+use crate::row::{Effort, Failure, Row, short};
+use crate::walk::{FARTHEST, TopState, Walk};
+
+const STEP: f64 = 0.01;
+
+/// What is left after a run.
+struct Run {
+    walk: Walk,
+    energies: Tenths,
+    /// The steps that changed `p_3`.
+    axial: u64,
+}
+
+fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(f64, Run), Failure> {
+    let stepper = Stepper::new(motion.top.clone(), STEP)?;
+    let carrying = stepper.clone().compensated();
+    let mut plain: TopState = stepper.start(motion.attitude, motion.velocity)?;
+    let mut kept = CompensatedState::from(plain);
+    let (start, axial) = (stepper.energy(&plain), plain.momentum().z);
+    let mut run = Run { walk: Walk::from_state(&plain, steps), energies: Tenths::new(steps), axial: 0 };
+    for step in 1..=steps {
+        if compensated {
+            carrying.step(&mut kept)?;
+            plain = *kept.state();
+        } else {
+            stepper.step(&mut plain)?;
+        }
+        run.axial += u64::from(plain.momentum().z.to_bits() != axial.to_bits());
+        run.energies.after(step, || stepper.energy(&plain) - start);
+        run.walk.after_step(step, &plain);
+    }
+    Ok((start, run))
+}
+
+fn theirs<M: Method>(motion: &Motion, mut method: M, steps: u64) -> Result<(Walk, f64), Failure> {
+    let vertical = |sample: &Sample| sample.attitude.row(2).transpose();
+    let start = method.sample();
+    let mut walk = Walk::from(&start.momentum, &vertical(&start), steps);
+    let energy = energy_of(&motion.top, &start);
+    // They are looked at every hundred steps.
+    for step in (100..=steps).step_by(100) {
+        method.advance(100)?;
+        let sample = method.sample();
+        walk.after(step, || (sample.attitude, sample.momentum, vertical(&sample)));
+    }
+    let drift = energy_of(&motion.top, &method.sample()) / energy - 1.0;
+    Ok((walk, drift))
+}
+
+/// `N` to a power through a point, from 100 steps on.
+fn guide(name: &'static str, (at, height): (f64, f64), power: f64, end: f64) -> Curve {
+    let line = |x: f64| (x, height * 10.0_f64.powf(power * (x - at)));
+    Curve { name, colour: GREY, points: (0..=40).map(|k| line(2.0 + f64::from(k) / 40.0 * (end - 2.0))).collect() }
+}
+
+pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
+    let steps = effort.steps(1_000_000, 100_000_000);
+    let motion = Motion::looping()?;
+    let (energy, plain) = ours(&motion, steps, false)?;
+    let (_, kept) = ours(&motion, steps, true)?;
+    // The nine entries leave the rotations soon, and a million steps show it.
+    let (quaternion, change) = theirs(&motion, on_quaternion(&motion, STEP), steps)?;
+    let (matrix, _) = theirs(&motion, on_matrix(&motion, STEP), steps.min(1_000_000))?;
+
+    let worst = plain.walk.worst;
+    let mut row = Row::new(
+        "T3",
+        "looping top, h = 0.01, a million steps (1e8 with --long)",
+        "‖RᵀR − I‖ ≤ 2e-12, |w| and p·w ≤ 3e-12, energy window means within 1e-10 E, extremes to 4 digits, growth like \
+         √N (4 deviations of a walk), p₃ to the last bit",
+    )
+    .shows(format!("{:.0e} steps", float(steps)))
+    .at_most("‖RᵀR − I‖", worst.orthogonality, 2e-12)
+    .at_most("|w|", worst.length, 3e-12)
+    .at_most("p·w", worst.vertical, 3e-12)
+    .at_most("energy window means, relative", plain.energies.drift() / energy, 1e-10)
+    .at_most("energy extremes, relative", plain.energies.extremes(), 5e-4)
+    .at_most("steps that changed p₃", float(plain.axial), 0.0)
+    .at_most("RRᵀ − I, in deviations of a walk", plain.walk.attitude_deviations(), FARTHEST)
+    .at_most("|w|² and p·w, in deviations of a walk", plain.walk.casimir_deviations(), FARTHEST);
+    let kept_worst = kept.walk.worst;
+    row = row
+        .shows(format!(
+            "compensated: ‖RᵀR − I‖ {}, |w| {}, p·w {}, energy means {}",
+            short(kept_worst.orthogonality),
+            short(kept_worst.length),
+            short(kept_worst.vertical),
+            short(kept.energies.drift() / energy)
+        ))
+        .shows(format!(
+            "compensated: p₃ is off by {} (in {:.0e} steps by a unit of its last digit or more)",
+            short(kept_worst.axial),
+            float(kept.axial)
+        ));
+    for (name, walk) in [("quaternion", &quaternion), ("nine entries", &matrix)] {
+        let worst = walk.worst;
+        row = row.other(format!(
+            "RK4 ({name}): ‖RᵀR − I‖ {}, p·w {}, p₃ {}",
+            short(worst.orthogonality),
+            short(worst.vertical),
+            short(worst.axial)
+        ));
+    }
+    row = row.other(format!("RK4 (quaternion): energy at the end off by {change:+.1e}"));
+
+    let end = float(steps).log10();
+    let anchor = plain.walk.points(|d| d.orthogonality)[10];
+    let line = |name, colour, points| Curve { name, colour, points };
+    curves.orthogonality.extend([
+        line("RK4 (R)", ORANGE, matrix.points(|d| d.orthogonality)),
+        line("variational", BLUE, plain.walk.points(|d| d.orthogonality)),
+        line("compensated", GREEN, kept.walk.points(|d| d.orthogonality)),
+        guide("√N and N", anchor, 0.5, end),
+        guide("", anchor, 1.0, end),
+    ]);
+    let anchor = plain.walk.points(|d| d.vertical)[10];
+    curves.casimirs.extend([
+        line("RK4 (q)", ORANGE, quaternion.points(|d| d.vertical)),
+        line("variational", BLUE, plain.walk.points(|d| d.vertical)),
+        line("compensated", GREEN, kept.walk.points(|d| d.vertical)),
+        guide("√N and N", anchor, 0.5, end),
+        guide("", anchor, 1.0, end),
+    ]);
+    Ok(row)
+}

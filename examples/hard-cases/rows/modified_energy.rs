@@ -1,0 +1,65 @@
+//! T2: backward error analysis of (3.13).
+
+use liestep::Stepper;
+use nalgebra::Vector3;
+
+use crate::curves::Curves;
+use crate::declarations::HeavyTop;
+use crate::measure::{exponent, four_halvings, steps_in};
+use crate::motion::Motion;
+use crate::row::{Effort, Failure, Row};
+
+/// What the step conserves is `H` and `h²` times this, up to an oscillation of fourth order:
+///
+/// ```text
+/// ((Ω·JΩ)|Ω|² − γ·J⁻¹γ)/24 + V̈/12 − τ·J⁻¹τ/24        γ = Ω × JΩ,  τ = m g w × ρ
+/// V̈ = m g [(w × Ω) × Ω + w × J⁻¹(JΩ × Ω)]·ρ
+/// ```
+fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
+    let d = top.J_d.diagonal();
+    let (j, weight) = (Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y), top.m * top.g);
+    let momentum = j.component_mul(velocity);
+    let gyroscopic = velocity.cross(&momentum);
+    let torque = w.cross(&top.rho) * weight;
+    let acceleration = w.cross(velocity).cross(velocity) + w.cross(&(-gyroscopic).component_div(&j));
+    let kinetic = velocity.dot(&momentum) * velocity.norm_squared() - gyroscopic.dot(&gyroscopic.component_div(&j));
+    kinetic / 24.0 + weight * acceleration.dot(&top.rho) / 12.0 - torque.dot(&torque.component_div(&j)) / 24.0
+}
+
+/// How far `H`, and `H` with its correction, move along ten seconds.
+fn oscillations(motion: &Motion, h: f64) -> Result<(f64, f64), Failure> {
+    let stepper = Stepper::new(motion.top.clone(), h)?;
+    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let mut range = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+    for _ in 0..steps_in(10.0, h) {
+        stepper.step(&mut state)?;
+        let energy = stepper.energy(&state);
+        let corrected = energy + h * h * correction(&motion.top, &stepper.velocity(&state), &state.advected());
+        for (range, value) in range.iter_mut().zip([energy, corrected]) {
+            *range = (range.0.min(value), range.1.max(value));
+        }
+    }
+    Ok((range[0].1 - range[0].0, range[1].1 - range[1].0))
+}
+
+pub(crate) fn t2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let mut row = Row::new("T2", "modified Hamiltonian along 10 s", "its oscillation falls with order 4.0 ± 0.1");
+    for motion in [Motion::looping()?, Motion::chaotic()?] {
+        let (mut plain, mut modified) = (Vec::new(), Vec::new());
+        for h in four_halvings(0.01) {
+            let (energy, corrected) = oscillations(&motion, h)?;
+            plain.push((h, energy));
+            // Rounding of a sum of hundreds of J over thousands of steps.
+            if corrected > 1e-11 {
+                modified.push((h, corrected));
+            }
+        }
+        row = row.near(&format!("{}: order of the modified energy", motion.name), exponent(&modified), 4.0, 0.1).near(
+            &format!("{}: order of H itself", motion.name),
+            exponent(&plain),
+            2.0,
+            0.1,
+        );
+    }
+    Ok(row)
+}

@@ -1,0 +1,63 @@
+//! S4: where nothing acts nothing happens.
+
+use liestep::{DiscreteLagrangian, NonstandardInertia, Regular, SO3, Stepper};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::common::run::Method as _;
+use crate::curves::Curves;
+use crate::declarations::{FreeBody, HeavyTop};
+use crate::heavy_top::rk4::OnQuaternion;
+use crate::motion::Motion;
+use crate::rivals::rk4_body;
+use crate::row::{Effort, Failure, Row};
+
+const STEPS: u64 = 1000;
+
+/// Whether attitude, momentum and parameters are the same after each of many steps from rest.
+fn stays<L>(lagrangian: L, attitude: UnitQuaternion<f64>) -> Result<bool, Failure>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+{
+    let stepper = Stepper::new(lagrangian, 0.01)?;
+    let mut state = stepper.start(attitude, Vector3::zeros())?;
+    let before = (state.attitude(), state.momentum(), state.advected());
+    for _ in 0..STEPS {
+        stepper.step(&mut state)?;
+        if (state.attitude(), state.momentum(), state.advected()) != before {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+pub(crate) fn s4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, -0.3, 0.1));
+    let (level, top) = (UnitQuaternion::identity(), Motion::chaotic()?.top);
+    let rho = Vector3::new(0.3, 0.2, 0.4);
+    let scenes = [
+        ("g = 0", HeavyTop { g: 0.0, ..top.clone() }, tilted),
+        ("m = 0", HeavyTop { m: 0.0, ..top.clone() }, tilted),
+        ("ρ = 0", HeavyTop { rho: Vector3::zeros(), ..top.clone() }, tilted),
+        ("w = 0", HeavyTop { up: Vector3::zeros(), ..top.clone() }, tilted),
+        // Twice the same digits, so that the torque is zero to the last bit.
+        ("inverted", HeavyTop { rho, up: rho * 2.0, ..top.clone() }, level),
+        ("hanging", HeavyTop { rho, up: rho * -2.0, ..top.clone() }, level),
+    ];
+    let mut row = Row::new("S4", "at rest: no momentum, no torque", "exact");
+    let mut still = 0;
+    for (name, scene, attitude) in scenes {
+        // A vertical that isn't e₃ is no scene of the Runge–Kutta program.
+        if scene.up == Vector3::z() {
+            let mut rk4 = OnQuaternion::new(rk4_body(&scene), 0.01, &attitude, Vector3::zeros());
+            let before = rk4.sample();
+            rk4.advance(STEPS)?;
+            still += u32::from((rk4.sample().attitude - before.attitude).amax() < 1e-15);
+        }
+        row = row.holds(name, stays(scene, attitude)?);
+    }
+    for moments in [[3.0, 3.0, 4.0], [1.0, 2.0, 3.0]] {
+        let inertia = NonstandardInertia::from_principal_moments(moments.into())?;
+        row = row.holds(&format!("free body {moments:?}"), stays(FreeBody { J_d: inertia }, tilted)?);
+    }
+    Ok(row.other(format!("RK4 (quaternion) stays, too: {still} of 3 scenes to 1e-15")))
+}

@@ -1,0 +1,57 @@
+//! S5: the step of zero, and the step of `−h`.
+
+use liestep::{LieGroup as _, Stepper};
+
+use crate::common::run::Method as _;
+use crate::curves::Curves;
+use crate::heavy_top::rk4::OnQuaternion;
+use crate::measure::relative;
+use crate::motion::Motion;
+use crate::rivals::{on_quaternion, rk4_body};
+use crate::row::{Effort, Failure, Row, short};
+
+const STEPS: u64 = 1_000_000;
+
+/// The relative error of attitude, momentum and `w` after steps there and back.
+fn error_on_return(motion: &Motion, h: f64) -> Result<f64, Failure> {
+    let there = Stepper::new(motion.top.clone(), h)?;
+    let back = there.inverse()?;
+    let mut state = there.start(motion.attitude, motion.velocity)?;
+    let before = state;
+    for stepper in [there, back] {
+        for _ in 0..STEPS {
+            stepper.step(&mut state)?;
+        }
+    }
+    let attitude = relative(&state.attitude().matrix(), &before.attitude().matrix());
+    let momentum = relative(&state.momentum(), &before.momentum());
+    Ok(attitude.max(momentum).max(relative(&state.advected(), &before.advected())))
+}
+
+pub(crate) fn s5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let motion = Motion::looping()?;
+    let standing = Stepper::new(motion.top.clone(), 0.0)?;
+    let mut state = standing.start(motion.attitude, motion.velocity)?;
+    let before = (state.attitude(), state.momentum(), state.advected());
+    standing.step(&mut state)?;
+    let stands = (state.attitude(), state.momentum(), state.advected()) == before;
+
+    let mut rk4 = on_quaternion(&motion, 1e-4);
+    let start = rk4.sample();
+    rk4.advance(STEPS)?;
+    let turned = rk4.sample();
+    let quaternion = nalgebra::UnitQuaternion::from_matrix(&turned.attitude);
+    let mut rk4 = OnQuaternion::new(rk4_body(&motion.top), -1e-4, &quaternion, turned.momentum);
+    rk4.advance(STEPS)?;
+    let end = rk4.sample();
+    let theirs = relative(&end.attitude, &start.attitude).max(relative(&end.momentum, &start.momentum));
+    let row = Row::new("S5", "a million steps there and back, looping top", "h = 0 is the identity; back to 1e-12")
+        .holds("h = 0 is the identity", stands)
+        .at_most("h = 1e-5: error", error_on_return(&motion, 1e-5)?, 1e-12)
+        .at_most("h = 1e-4: error", error_on_return(&motion, 1e-4)?, 1e-12)
+        .shows(format!(
+            "h = 1e-2 (10⁴ s, where a rounding of the rate has grown with time): {}",
+            short(error_on_return(&motion, 1e-2)?)
+        ));
+    Ok(row.other(format!("RK4 (quaternion), h = 1e-4: {}", short(theirs))))
+}

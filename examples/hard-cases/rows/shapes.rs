@@ -1,0 +1,105 @@
+//! B3 to B5: thin, flat, round, and in other axes.
+
+use liestep::{DiagonalNonstandardInertia, LieGroup as _, NonstandardInertia, SO3, Stepper};
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use super::boxes::box_of_engines;
+use crate::curves::Curves;
+use crate::declarations::FreeBody;
+use crate::measure::{greater, relative};
+use crate::rivals::Spin;
+use crate::row::{Effort, Failure, Row, short};
+
+/// A cylinder of 1 kg and 1 m length about its centre.
+fn rod(slenderness: f64) -> Result<DiagonalNonstandardInertia, Failure> {
+    let diameter = 1.0 / slenderness;
+    let across = diameter * diameter / 16.0;
+    Ok(DiagonalNonstandardInertia::new(Vector3::new(across, across, 1.0 / 12.0))?)
+}
+
+pub(crate) fn b3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let moments = |moments: [f64; 3]| DiagonalNonstandardInertia::from_principal_moments(moments.into());
+    let bodies = [
+        ("rod 100:1", rod(1e2)?, [1.0, 0.5, 3.0]),
+        ("rod 10⁴:1", rod(1e4)?, [1.0, 0.5, 3.0]),
+        ("plate J = (1, 2, 3)", moments([1.0, 2.0, 3.0])?, [1.0, 0.5, 0.3]),
+        ("J = (1e-6, 1, 1.000001)", moments([1e-6, 1.0, 1.000_001])?, [1.0, 0.5, 0.3]),
+    ];
+    let mut row = Row::new("B3", "rods, a flat plate, an extreme ratio, at 60 Hz, 10⁴ steps", "energy to 1e-13");
+    for (name, inertia, velocity) in bodies {
+        let traces = Spin { inertia, velocity: velocity.into(), h: 1.0 / 60.0 }.traces(10_000, 1)?;
+        row = row.at_most(&format!("{name}: energy"), traces[0].energy_error(), 1e-13);
+        row = row.at_most(&format!("{name}: momentum"), traces[0].momentum_error(), 1e-13);
+        let others: Vec<_> = traces[1..].iter().map(|t| format!("{} {}", t.name, short(t.energy_error()))).collect();
+        row = row.other(format!("{name}: energy error {}", others.join(", ")));
+    }
+    let needle = rod(1e9).map_or_else(|error| error.to_string(), |_| "accepted".to_owned());
+    Ok(row.shows(format!("rod 10⁹:1: {needle}")))
+}
+
+pub(crate) fn b4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let inertia = DiagonalNonstandardInertia::from_principal_moments(Vector3::repeat(0.4))?;
+    let spin = Spin { inertia, velocity: Vector3::new(1.0, 2.0, 3.0), h: 0.01 };
+    let stepper = Stepper::new(spin.body(), spin.h)?;
+    let mut state = stepper.start(SO3::identity(), spin.velocity)?;
+    let energy = stepper.energy(&state);
+    // The first step has no increment to start from.
+    stepper.step(&mut state)?;
+    let (mut iterations, mut error) = (0, 0.0);
+    for _ in 0..10_000 {
+        iterations = stepper.step(&mut state)?.iterations.max(iterations);
+        error = greater(error, (stepper.energy(&state) / energy - 1.0).abs());
+    }
+    let row = Row::new("B4", "sphere, 10⁴ steps", "one Newton iteration, energy exact")
+        .at_most("iterations", f64::from(iterations), 1.0)
+        .at_most("energy", error, 0.0);
+    let traces = spin.traces(10_000, 1)?;
+    let others: Vec<_> = traces[1..].iter().map(|t| format!("{} {}", t.name, short(t.energy_error()))).collect();
+    Ok(row.other(format!("energy error {}", others.join(", "))))
+}
+
+pub(crate) fn b5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    const STEPS: u32 = 500;
+    let spin = box_of_engines([1.0, 2.0, 3.0], 0.01)?;
+    // Attitude and momentum at the end, in the axes of the box, whatever the axes of the computation.
+    let moved = |axes: &Matrix3<f64>| -> Result<(Matrix3<f64>, Vector3<f64>, f64), Failure> {
+        let inertia = NonstandardInertia::new(axes * spin.inertia.to_matrix() * axes.transpose())?;
+        let stepper = Stepper::new(FreeBody { J_d: inertia }, spin.h)?;
+        // A reflection turns the sense of rotations.
+        let mut state = stepper.start(SO3::identity(), axes * spin.velocity * axes.determinant())?;
+        let (energy, mut error) = (stepper.energy(&state), 0.0);
+        for _ in 0..STEPS {
+            stepper.step(&mut state)?;
+            error = greater(error, (stepper.energy(&state) / energy - 1.0).abs());
+        }
+        let momentum = axes.transpose() * state.momentum() * axes.determinant();
+        Ok((axes.transpose() * state.attitude().matrix() * axes, momentum, error))
+    };
+    let expected = moved(&Matrix3::identity())?;
+    let mut signed = Vec::new();
+    for [x, y, z] in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
+        for signs in 0..8 {
+            let sign = |bit: usize| if signs >> bit & 1 == 0 { 1.0 } else { -1.0 };
+            let column = |axis: usize, bit: usize| Vector3::ith(axis, sign(bit));
+            signed.push(Matrix3::from_columns(&[column(x, 0), column(y, 1), column(z, 2)]));
+        }
+    }
+    let mut errors = [0.0; 2];
+    for axes in &signed {
+        let (attitude, momentum, _) = moved(axes)?;
+        let error = relative(&attitude, &expected.0).max(relative(&momentum, &expected.1));
+        errors[0] = greater(errors[0], error);
+    }
+    let mut energy = 0.0;
+    for angles in [(0.3, -0.7, 1.1), (1.0, 0.2, -2.0), (-0.4, 1.3, 0.6)] {
+        let axes = Rotation3::from_euler_angles(angles.0, angles.1, angles.2).into_inner();
+        let (attitude, momentum, error) = moved(&axes)?;
+        errors[1] = greater(errors[1], relative(&attitude, &expected.0).max(relative(&momentum, &expected.1)));
+        energy = greater(energy, error);
+    }
+    let row = Row::new("B5", "the box in other axes, 500 steps", "the same motion to 1e-13")
+        .at_most(&format!("{} permutations and signs", signed.len()), errors[0], 1e-13)
+        .at_most("full tensors", errors[1], 1e-13)
+        .at_most("energy with full tensors", energy, 1e-13);
+    Ok(row)
+}

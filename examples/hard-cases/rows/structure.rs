@@ -1,0 +1,77 @@
+//! P1: the step is a Poisson map.
+
+use liestep::laws::samples::Random;
+use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Inertia, Regular, SO3};
+use nalgebra::Vector3;
+
+use crate::common::run::Method as _;
+use crate::curves::Curves;
+use crate::declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, SixthOrderTop};
+use crate::heavy_top::rk4::OnQuaternion;
+use crate::measure::greater;
+use crate::motion::Motion;
+use crate::poisson::{Phase, defect};
+use crate::rivals::rk4_body;
+use crate::row::{Effort, Failure, Row, short};
+
+const H: f64 = 0.1;
+
+/// Momenta of velocities of about 3 rad/s, and verticals of length one.
+fn phases(moments: &Vector3<f64>) -> Vec<Phase> {
+    let mut random = Random::new(11);
+    let phase = |_| {
+        let (velocity, w): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
+        (moments.component_mul(&velocity) * 3.0, w.normalize())
+    };
+    (0..5).map(phase).collect()
+}
+
+fn worst<L>(lagrangian: L, phases: &[Phase]) -> Result<f64, Failure>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular,
+{
+    let flow = DiscreteLiePoisson::new(lagrangian, H)?;
+    let map = |(momentum, w): &Phase| {
+        let step = flow.step(momentum, w, &Vector3::zeros()).ok()?;
+        Some((step.momentum, step.advected))
+    };
+    Ok(phases.iter().map(|z| defect(map, z)).fold(0.0, greater))
+}
+
+pub(crate) fn p1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let top = Motion::chaotic()?.top;
+    let d = top.J_d.diagonal();
+    let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
+    let (phases, weight, rho, up) = (phases(&moments), top.m * top.g, top.rho, Vector3::z());
+    #[allow(non_snake_case)] // the letter of the field
+    let J = Inertia::from_principal_moments(moments)?;
+    let axes = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1).into_inner();
+    let full = liestep::NonstandardInertia::new(axes * top.J_d.to_matrix() * axes.transpose())?;
+    let row =
+        Row::new("P1", "Poisson structure, h = 0.1, asymmetric top", "defect below 1e-10 (six-point differences)")
+            .at_most("(3.13)", worst(top.clone(), &phases)?, 1e-10)
+            .at_most("full tensor", worst(FullTop { J_d: full, m: top.m, g: top.g, rho, up }, &phases)?, 1e-10)
+            .at_most("Cayley", worst(CayleyTop { J, weight, rho, up }, &phases)?, 1e-10)
+            .at_most("geodesic", worst(LogTop { J, weight, rho, up }, &phases)?, 1e-10)
+            .at_most("log-trace", worst(LogTraceTop { I1: 3.0, weight, rho, up }, &phases)?, 1e-10)
+            .at_most("L4", worst(FourthOrderTop { J, weight, rho, up }, &phases)?, 1e-10)
+            .at_most("L6", worst(SixthOrderTop { J, weight, rho, up }, &phases)?, 1e-10)
+            .shows("all other declared systems: tests/systems/poisson.rs");
+
+    let mut theirs = 0.0;
+    for z in &phases {
+        // Runge–Kutta moves the attitude; the vertical of a nearby `w` is reached by turning `R`, of any length by scaling.
+        let map = |(momentum, w): &Phase| {
+            let length = w.norm();
+            let body = rk4_body(&top);
+            let body = crate::heavy_top::rk4::Body { lever: body.lever * length, ..body };
+            let attitude = nalgebra::UnitQuaternion::rotation_between(w, &Vector3::z())?;
+            let mut method = OnQuaternion::new(body, H, &attitude, *momentum);
+            method.advance(1).ok()?;
+            let end = method.sample();
+            Some((end.momentum, end.attitude.row(2).transpose() * length))
+        };
+        theirs = greater(theirs, defect(map, z));
+    }
+    Ok(row.other(format!("RK4 (quaternion): {}", short(theirs))))
+}

@@ -1,0 +1,60 @@
+//! T4: steps so small that `F` is the identity in most of its digits.
+
+use liestep::{LieGroup as _, SO3, Stepper};
+use nalgebra::Vector3;
+
+use crate::common::run::Method as _;
+use crate::curves::Curves;
+use crate::measure::{relative, steps_in};
+use crate::motion::Motion;
+use crate::rivals::on_quaternion;
+use crate::row::{Effort, Failure, Row, short};
+
+const TIME: f64 = 0.01;
+
+/// The momentum at the end, without and with compensated sums.
+fn ends(motion: &Motion, h: f64) -> Result<[Vector3<f64>; 2], Failure> {
+    let stepper = Stepper::new(motion.top.clone(), h)?;
+    let carrying = stepper.clone().compensated();
+    let mut plain = stepper.start(motion.attitude, motion.velocity)?;
+    let mut kept = carrying.start(motion.attitude, motion.velocity)?;
+    for _ in 0..steps_in(TIME, h) {
+        stepper.step(&mut plain)?;
+        carrying.step(&mut kept)?;
+    }
+    Ok([plain.momentum(), kept.state().momentum()])
+}
+
+/// The same step with products in the place of sums: `R F`, `Fᵀ w`, `Fᵀ a`, as one writes it down.
+fn by_products(motion: &Motion, h: f64) -> Result<Vector3<f64>, Failure> {
+    let stepper = Stepper::new(motion.top.clone(), h)?;
+    let state = stepper.start(motion.attitude, motion.velocity)?;
+    let (mut momentum, mut w, mut guess) = (state.momentum(), state.advected(), Vector3::zeros());
+    let half_kick = motion.top.rho * (0.5 * h * motion.top.m * motion.top.g);
+    for _ in 0..steps_in(TIME, h) {
+        let step = stepper.flow().step(&momentum, &w, &guess)?;
+        let f = SO3::from_increment(&step.increment).matrix();
+        let turned = f.transpose() * (momentum + w.cross(&half_kick));
+        w = f.transpose() * w;
+        momentum = turned + w.cross(&half_kick);
+        guess = step.coordinates;
+    }
+    Ok(momentum)
+}
+
+pub(crate) fn t4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let (motion, h) = (Motion::looping()?, 1e-8);
+    // Richardson's extrapolation of the order 2 leaves an error of the order of h⁴.
+    let (coarse, fine) = (ends(&motion, 2e-5)?[1], ends(&motion, 1e-5)?[1]);
+    let exact = fine + (fine - coarse) / 3.0;
+    let [plain, kept] = ends(&motion, h)?;
+    let mut rk4 = on_quaternion(&motion, h);
+    rk4.advance(steps_in(TIME, h))?;
+    let row = Row::new("T4", "h = 1e-8, a million steps", "momentum to 1e-14, relative")
+        .at_most("error", relative(&plain, &exact), 1e-14)
+        .at_most("compensated: error", relative(&kept, &exact), 1e-14);
+    let products = relative(&by_products(&motion, h)?, &exact);
+    Ok(row
+        .other(format!("the same equations with R F and Fᵀ a: {}", short(products)))
+        .other(format!("RK4 (quaternion): {}", short(relative(&rk4.sample().momentum, &exact)))))
+}

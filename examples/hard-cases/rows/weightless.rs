@@ -1,0 +1,58 @@
+//! T8: no gravity.
+
+use liestep::effects::{Gravity, PrincipalBody};
+use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::curves::Curves;
+use crate::declarations::HeavyTop;
+use crate::free_body::lagrangian::FreeBody;
+use crate::measure::{greater, relative};
+use crate::motion::Motion;
+use crate::row::{Effort, Failure, Row};
+
+/// Attitude and momentum after a thousand steps, about twenty turns, and how far `R p` has gone.
+fn moved<L>(lagrangian: L, motion: &Motion) -> Result<(Matrix3<f64>, Vector3<f64>, f64), Failure>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+{
+    let stepper = Stepper::new(lagrangian, 0.01)?;
+    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (spatial, mut error) = (state.spatial_momentum(), 0.0);
+    for _ in 0..1000 {
+        stepper.step(&mut state)?;
+        error = greater(error, relative(&state.spatial_momentum(), &spatial));
+    }
+    Ok((state.attitude().matrix(), state.momentum(), error))
+}
+
+pub(crate) fn t8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let (mut apart, mut kept, mut bits) = (0.0, 0.0, true);
+    for motion in [Motion::looping()?, Motion::chaotic()?] {
+        let top = motion.top.clone();
+        let free = moved(FreeBody { J_d: top.J_d }, &motion)?;
+        kept = greater(kept, free.2);
+        let body = PrincipalBody { J_d: top.J_d };
+        let sum = moved(body, &motion)?;
+        bits &= (sum.0, sum.1) == (free.0, free.1);
+        let weightless = [
+            HeavyTop { g: 0.0, ..top.clone() },
+            HeavyTop { m: 0.0, ..top.clone() },
+            HeavyTop { rho: Vector3::zeros(), ..top.clone() },
+        ];
+        for top in weightless {
+            let (attitude, momentum, spatial) = moved(top, &motion)?;
+            kept = greater(kept, spatial);
+            apart = greater(apart, relative(&attitude, &free.0).max(relative(&momentum, &free.1)));
+        }
+        let scene = body + Gravity { m: 1.0, g: 0.0, rho: top.rho, up: top.up };
+        let (attitude, momentum, _) = moved(scene, &motion)?;
+        apart = greater(apart, relative(&attitude, &free.0).max(relative(&momentum, &free.1)));
+    }
+    // Two sums may round differently; a thousand steps and their twist make 1000^{3/2} ε of it.
+    let row = Row::new("T8", "no gravity, 1000 steps", "the free body to round-off; a scene without it to the bit")
+        .at_most("g, m or ρ zero, against the free body", apart, 7e-12)
+        .at_most("spatial momentum", kept, 5e-14)
+        .holds("a scene without gravity is the free body to the bit", bits);
+    Ok(row)
+}

@@ -1,0 +1,152 @@
+//! Long runs: defects of the group and of the Casimirs while they grow.
+
+use liestep::{Effect, LieGroup as _, SO3, State};
+use nalgebra::{Matrix3, SVector, Vector3};
+
+use crate::measure::{float, greater};
+
+/// A state with one advected vector.
+pub(crate) type TopState = State<SO3, Vector3<f64>>;
+
+/// `‖RᵀR − I‖`.
+pub(crate) fn orthogonality(attitude: &Matrix3<f64>) -> f64 {
+    (attitude.transpose() * attitude - Matrix3::identity()).norm()
+}
+
+/// The largest defects up to a number of steps.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Defects {
+    pub(crate) orthogonality: f64,
+    /// `|w| − 1`.
+    pub(crate) length: f64,
+    /// `p·w`, relative.
+    pub(crate) vertical: f64,
+    /// `p_3`, relative.
+    pub(crate) axial: f64,
+}
+
+/// Whether what grows walks or drifts: its largest size over that of a walk with the same steps.
+///
+/// Looked at `n` times, a walk gets to some four standard deviations at most, and what always grows alike to `√n`. What is
+/// followed are the six entries of `RRᵀ − I` (those of `RᵀR − I` turn with the body), `|w|²` and `p·w`.
+struct Followed {
+    last: SVector<f64, 8>,
+    squares: SVector<f64, 8>,
+    farthest: SVector<f64, 8>,
+}
+
+impl Followed {
+    fn new() -> Self {
+        Self { last: SVector::zeros(), squares: SVector::zeros(), farthest: SVector::zeros() }
+    }
+
+    fn add(&mut self, now: SVector<f64, 8>) {
+        self.squares += (now - self.last).map(|change| change * change);
+        self.farthest = self.farthest.sup(&now.abs());
+        self.last = now;
+    }
+
+    /// In standard deviations, of the places `from` to `to`; nothing has gone nowhere.
+    fn deviations(&self, from: usize, to: usize) -> f64 {
+        let ratio = |k: usize| if self.squares[k] > 0.0 { self.farthest[k] / self.squares[k].sqrt() } else { 0.0 };
+        (from..to).map(ratio).fold(0.0, greater)
+    }
+}
+
+/// How often a run is looked at to tell a walk from a drift: a drift then gets to thirty standard deviations.
+const LOOKS: u64 = 1000;
+
+/// The defects of a run, and how they grew.
+pub(crate) struct Walk {
+    start: (f64, f64),
+    followed: Followed,
+    /// Steps from one look to the next.
+    stride: u64,
+    pub(crate) worst: Defects,
+    /// At ten numbers of steps a decade.
+    pub(crate) history: Vec<(f64, Defects)>,
+    next: f64,
+}
+
+/// Looking at every step would cost more than the step.
+const SAMPLE: u64 = 100;
+
+impl Walk {
+    /// A run of so many steps.
+    pub(crate) fn from(momentum: &Vector3<f64>, w: &Vector3<f64>, steps: u64) -> Self {
+        let start = (momentum.dot(w), momentum.z);
+        let stride = (steps / LOOKS).next_multiple_of(SAMPLE);
+        let (worst, followed) = (Defects::default(), Followed::new());
+        Self { start, followed, stride, worst, history: Vec::new(), next: 100.0 }
+    }
+
+    pub(crate) fn from_state(state: &TopState, steps: u64) -> Self {
+        Self::from(&state.momentum(), &state.advected(), steps)
+    }
+
+    /// Looks at the state after the step of this number now and then.
+    pub(crate) fn after(&mut self, step: u64, state: impl FnOnce() -> (Matrix3<f64>, Vector3<f64>, Vector3<f64>)) {
+        if step.is_multiple_of(SAMPLE) {
+            self.look(step, &state());
+        }
+    }
+
+    /// As [`after`](Self::after), for our states.
+    pub(crate) fn after_step(&mut self, step: u64, state: &TopState) {
+        self.after(step, || (state.attitude().matrix(), state.momentum(), state.advected()));
+    }
+
+    fn look(&mut self, step: u64, (attitude, momentum, w): &(Matrix3<f64>, Vector3<f64>, Vector3<f64>)) {
+        let (vertical, axial) = self.start;
+        let worst = &mut self.worst;
+        worst.orthogonality = greater(worst.orthogonality, orthogonality(attitude));
+        worst.length = greater(worst.length, (w.norm() - 1.0).abs());
+        worst.vertical = greater(worst.vertical, (momentum.dot(w) / vertical - 1.0).abs());
+        worst.axial = greater(worst.axial, (momentum.z / axial - 1.0).abs());
+        if step.is_multiple_of(self.stride) {
+            let gram = attitude * attitude.transpose();
+            self.followed.add(SVector::from([
+                gram.m11 - 1.0,
+                gram.m22 - 1.0,
+                gram.m33 - 1.0,
+                gram.m12,
+                gram.m23,
+                gram.m31,
+                w.norm_squared() - 1.0,
+                momentum.dot(w) / vertical - 1.0,
+            ]));
+        }
+        if float(step) >= self.next {
+            self.history.push((float(step), self.worst));
+            self.next = float(step) * 10.0_f64.powf(0.1);
+        }
+    }
+
+    /// A defect against the logarithm of the number of steps.
+    pub(crate) fn points(&self, defect: impl Fn(&Defects) -> f64) -> Vec<(f64, f64)> {
+        self.history.iter().map(|(steps, defects)| (steps.log10(), defect(defects))).collect()
+    }
+
+    /// How far the attitude has left the rotations, in standard deviations of a walk.
+    pub(crate) fn attitude_deviations(&self) -> f64 {
+        self.followed.deviations(0, 6)
+    }
+
+    /// The same for `|w|²` and `p·w`.
+    pub(crate) fn casimir_deviations(&self) -> f64 {
+        self.followed.deviations(6, 8)
+    }
+}
+
+/// Farther than this no walk goes.
+pub(crate) const FARTHEST: f64 = 4.0;
+
+/// The energy of a declared scene at a momentum and a parameter, J: that of its continuous limit without a bias.
+pub(crate) fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
+    lagrangian: &L,
+    momentum: &Vector3<f64>,
+    w: &Vector3<f64>,
+) -> f64 {
+    let rates = lagrangian.inertia().lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
+    0.5 * rates.dot(momentum) + lagrangian.potential(w)
+}

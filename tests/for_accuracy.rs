@@ -1,0 +1,275 @@
+//! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+mod common;
+
+use common::reference::Motion;
+use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
+use liestep::{
+    Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, Composition, CompositionScheme,
+    DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _, NonstandardInertia, PreprocessedFlow,
+    PreprocessedOrder, Regular, SO2, SO3, SetupError, Stepper, SymmetricBody, lagrangian,
+};
+use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3};
+
+/// The five scenes of the example accuracy-cost.
+const MOTIONS: [&str; 5] = [
+    "thesis_looping_A_Jd221",
+    "thesis_cuspidal_A_Jd221",
+    "thesis_unidirectional_A_Jd221",
+    "chaotic_asymmetric_top",
+    "free_asymmetric_body",
+];
+
+const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
+
+type End = (Matrix3<f64>, Vector3<f64>);
+
+/// As `Accuracy` defines it.
+fn error((attitude, velocity): &End, exact: &End, at_start: &Vector3<f64>, horizon: f64) -> f64 {
+    let scale = exact.1.norm().max(at_start.norm()).max(1.0 / horizon);
+    ((attitude - exact.0).norm() / exact.0.norm()).hypot((velocity - exact.1).norm() / scale)
+}
+
+fn end<A: Advected<SO3>>(stepper: &AccurateStepper<SO3, A>) -> End {
+    let mut state = stepper.start();
+    stepper.run(&mut state).unwrap();
+    assert!((stepper.time(&state) - stepper.choice().accuracy.horizon).abs() < 1e-9);
+    (*state.attitude().as_matrix(), stepper.velocity(&state))
+}
+
+fn all(motion: &Motion) -> Candidates<SO3, Vector3<f64>> {
+    let (top, J_d) = (motion.top.clone(), motion.top.J_d);
+    let candidates = Candidates::of(top.clone(), 2);
+    match SymmetricBody::new(&NonstandardInertia::from(J_d).to_inertia()) {
+        Ok(body) => candidates.and_splittings("exact", top, body),
+        Err(_) => candidates.and_splittings("preprocessed", top, PreprocessedFlow::new(J_d, PreprocessedOrder::Ten)),
+    }
+}
+
+/// The worst ratio of error to tolerance, over the motions and tolerances that can be reached.
+fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Result<AccurateStepper<SO3, Vector3<f64>>, AccuracyError>) -> f64 {
+    let mut worst = 0.0_f64;
+    for (name, horizon) in MOTIONS.iter().flat_map(|name| [(name, 10.0), (name, 100.0)]) {
+        let motion = Motion::read(name);
+        let exact = motion.at(horizon);
+        for tolerance in TOLERANCES {
+            match ask(&motion, Accuracy { tolerance, horizon }) {
+                Ok(stepper) => {
+                    let error = error(&end(&stepper), &exact, &motion.velocity, horizon);
+                    worst = worst.max(error / tolerance);
+                }
+                // Errors of this motion have grown by 10⁹ until then.
+                Err(AccuracyError::Unreachable { floor, .. }) => {
+                    assert!(*name == "chaotic_asymmetric_top" && horizon > 50.0, "{name} {horizon} {tolerance}");
+                    assert!(floor > tolerance && floor < 1e-3, "{tolerance} {floor}");
+                }
+                Err(other) => panic!("{name}: {other}"),
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn the_tolerance_is_reached_on_five_scenes() {
+    let worst = worst_ratio(|motion, accuracy| all(motion).for_accuracy(accuracy, motion.attitude, motion.velocity));
+    assert!(worst <= 1.0, "{worst}");
+    // Nor is it missed by far to the other side: the step is as long as may be.
+    assert!(worst > 0.5, "{worst}");
+}
+
+#[test]
+fn the_tolerance_is_reached_by_compositions_alone() {
+    let worst = worst_ratio(|motion, accuracy| {
+        Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity)
+    });
+    assert!(worst <= 1.0 && worst > 0.5, "{worst}");
+}
+
+/// A control: with the step taken twice as long the tolerance is missed, by as much as the order says.
+#[test]
+#[allow(clippy::cast_precision_loss)] // few steps
+fn a_step_twice_as_long_misses_the_tolerance() {
+    let motion = Motion::read("thesis_looping_A_Jd221");
+    let (tolerance, horizon) = (1e-8, 10.0);
+    let accuracy = Accuracy { tolerance, horizon };
+    let stepper = Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity).unwrap();
+    let chosen = stepper.choice().chosen();
+    let schemes =
+        [CompositionScheme::KAHAN_LI_6, CompositionScheme::KAHAN_LI_8, CompositionScheme::SOFRONIOU_SPALETTA_10];
+    let scheme = schemes.into_iter().find(|scheme| scheme.name() == chosen.name).unwrap();
+    let steps = stepper.choice().steps.div_ceil(2);
+    let composed = Composition::new(motion.top.clone(), horizon / steps as f64, scheme).unwrap();
+    let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
+    for _ in 0..steps {
+        composed.step(&mut state).unwrap();
+    }
+    let longer = (*state.attitude().as_matrix(), composed.velocity(&state));
+    let missed = error(&longer, &motion.at(horizon), &motion.velocity, horizon) / tolerance;
+    assert!(missed > f64::from(1 << (scheme.order() - 3)), "{missed}");
+}
+
+fn body(moments: [f64; 3]) -> PrincipalBody {
+    PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap() }
+}
+
+/// Compares what is asked for with a run by far shorter steps.
+fn reaches<L>(scene: &L, turn: [f64; 3], velocity: [f64; 3])
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: 'static> + Regular + Clone + 'static,
+{
+    let (attitude, velocity) = (UnitQuaternion::from_scaled_axis(turn.into()), Vector3::from(velocity));
+    for (horizon, tolerance) in [10.0, 100.0].into_iter().flat_map(|t| TOLERANCES.map(|tolerance| (t, tolerance))) {
+        let fine = Composition::new(scene.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
+        let mut state = fine.start(attitude, velocity).unwrap();
+        while fine.time(&state) < horizon - 1e-3 {
+            fine.step(&mut state).unwrap();
+        }
+        let exact = (*state.attitude().as_matrix(), fine.velocity(&state));
+        let accuracy = Accuracy { tolerance, horizon };
+        let stepper = Stepper::for_accuracy(scene.clone(), accuracy, attitude, velocity).unwrap();
+        let error = error(&end(&stepper), &exact, &velocity, horizon);
+        assert!(error <= tolerance, "{horizon} {tolerance} {error}\n{}", stepper.choice());
+    }
+}
+
+#[test]
+fn the_tolerance_is_reached_in_the_gravity_gradient() {
+    let satellite = body([1.0, 2.5, 3.0]);
+    let J = NonstandardInertia::from(satellite.J_d).to_inertia();
+    let gradient = GravityGradient { GM: 1.0, r: 1.0, J, direction: Vector3::z() };
+    reaches(&(satellite + gradient), [0.3, 0.9, 1.2], [-0.2, 0.5, 0.4]);
+}
+
+#[test]
+fn the_tolerance_is_reached_on_a_spring() {
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.0, 0.0, 0.6), up: Vector3::z() };
+    let spring = Spring { k: 30.0, length: 0.4, at: Vector3::z(), anchor: Vector3::new(0.8, 0.0, 1.0) };
+    reaches(&(body([0.4, 0.4, 0.02]) + gravity + spring), [0.3, 1.2, 0.0], [0.5, 1.0, 2.0]);
+}
+
+/// From rest, so that no velocity is there to compare with at the start.
+#[test]
+fn the_tolerance_is_reached_in_a_magnetic_field_from_rest() {
+    let dipole = Dipole { moment: Vector3::new(0.3, 0.0, 2.0), field: Vector3::new(1.0, 0.0, 1.0) };
+    reaches(&(body([1.0, 1.2, 0.4]) + dipole), [0.7, 0.2, 0.0], [0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn the_tolerance_is_reached_with_a_rotor() {
+    reaches(&(body([1.0, 2.0, 2.5]) + Rotor { spin: Vector3::new(0.2, 0.5, 0.0) }), [0.0, 0.0, 0.1], [0.1, 0.3, -0.6]);
+}
+
+/// A planar pendulum.
+#[lagrangian(
+    group = SO2,
+    advected(w = up),
+    l_d = inertia * (2.0 - F.trace()) / h - 0.5 * h * weight * w.dot(&(rho + F * rho)),
+)]
+#[derive(Clone)]
+struct Pendulum {
+    inertia: f64,
+    weight: f64,
+    rho: Vector2<f64>,
+    up: Vector2<f64>,
+}
+
+#[test]
+fn the_tolerance_is_reached_on_another_group() {
+    let pendulum = Pendulum { inertia: 1.5, weight: 9.81, rho: Vector2::x(), up: -Vector2::x() };
+    let (horizon, tolerance, velocity) = (10.0, 1e-7, Vector1::new(2.0));
+    let fine = Composition::new(pendulum.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
+    let mut exact = fine.start(SO2::identity(), velocity).unwrap();
+    for _ in 0..1000 {
+        fine.step(&mut exact).unwrap();
+    }
+    let stepper = Stepper::for_accuracy(pendulum, Accuracy { tolerance, horizon }, SO2::identity(), velocity).unwrap();
+    let mut state = stepper.start();
+    stepper.run(&mut state).unwrap();
+    let attitudes = (state.attitude().matrix() - exact.attitude().matrix()).norm() / f64::sqrt(2.0);
+    let error = attitudes.hypot((stepper.velocity(&state) - fine.velocity(&exact)).norm() / 2.0);
+    assert!(error <= tolerance && error > 0.0, "{error}");
+}
+
+#[test]
+fn the_same_question_has_the_same_answer() {
+    let motion = Motion::read("chaotic_asymmetric_top");
+    let ask = || {
+        let accuracy = Accuracy { tolerance: 1e-7, horizon: 10.0 };
+        all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap()
+    };
+    let [one, other] = [ask(), ask()];
+    assert_eq!(one.choice(), other.choice());
+    assert_eq!(end(&one), end(&other));
+    // By single steps it is the same motion, to rounding.
+    let mut state = one.start();
+    while state.steps() < one.choice().steps {
+        one.step(&mut state).unwrap();
+    }
+    assert!((state.attitude().as_matrix() - end(&one).0).norm() < 1e-12);
+}
+
+#[test]
+fn the_report_names_the_choice_and_its_neighbours() {
+    let motion = Motion::read("thesis_cuspidal_A_Jd221");
+    let accuracy = Accuracy { tolerance: 1e-6, horizon: 10.0 };
+    let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let (choice, text) = (stepper.choice(), stepper.choice().to_string());
+    assert!((choice.chosen().cost - 1.0).abs() < 1e-12 && choice.error <= 1e-6);
+    assert!(choice.nearby[0] < 1.0 && choice.nearby[1] > 1.0, "{:?}", choice.nearby);
+    assert!(choice.offers().iter().all(|offer| offer.cost > 0.5 && text.contains(&offer.name)), "{text}");
+    assert!(text.starts_with(&format!("1e-6 at t = 10 s: {}, ", choice.chosen().name)), "{text}");
+}
+
+#[test]
+fn questions_without_an_answer() {
+    let motion = Motion::read("thesis_looping_A_Jd221");
+    let ask = |tolerance, horizon| {
+        let accuracy = Accuracy { tolerance, horizon };
+        Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity).unwrap_err()
+    };
+    for tolerance in [0.0, -1e-6, f64::NAN, f64::INFINITY] {
+        assert!(matches!(ask(tolerance, 1.0), AccuracyError::Tolerance { .. }), "{tolerance}");
+    }
+    for horizon in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(ask(1e-6, horizon), AccuracyError::Horizon { .. }), "{horizon}");
+    }
+    let accuracy = Accuracy { tolerance: 1e-6, horizon: 1.0 };
+    let fast = Vector3::new(f64::NAN, 0.0, 0.0);
+    let refusal = Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, fast).unwrap_err();
+    assert_eq!(refusal, AccuracyError::Setup(SetupError::NonFinite { what: "velocity" }));
+}
+
+/// The floor is named, and what is named can be had.
+#[test]
+fn a_tolerance_below_rounding_is_refused_with_the_floor() {
+    let motion = Motion::read("thesis_looping_A_Jd221");
+    let ask = |tolerance| {
+        let accuracy = Accuracy { tolerance, horizon: 10.0 };
+        all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity)
+    };
+    let refusal = ask(1e-17).unwrap_err();
+    let AccuracyError::Unreachable { floor, .. } = refusal else { panic!("{refusal}") };
+    assert!(floor > 1e-15 && floor < 1e-11, "{floor}");
+    let stepper = ask(4.0 * floor).unwrap();
+    assert!(error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0) <= 4.0 * floor);
+}
+
+#[test]
+fn candidates_of_another_scene_are_refused() {
+    let motion = Motion::read("thesis_looping_A_Jd221");
+    let ask = |candidates: Candidates<SO3, Vector3<f64>>| {
+        let accuracy = Accuracy { tolerance: 1e-6, horizon: 1.0 };
+        candidates.for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap_err()
+    };
+    let mut heavier = motion.top.clone();
+    heavier.m *= 1.01;
+    let refusal = ask(all(&motion).and_declared("heavier", heavier, 2));
+    assert_eq!(refusal, AccuracyError::Setup(SetupError::AnotherPotential));
+    let rounder = SymmetricBody::new(&Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap()).unwrap();
+    let refusal = ask(all(&motion).and_splittings("rounder", motion.top.clone(), rounder));
+    assert!(matches!(refusal, AccuracyError::Setup(SetupError::AnotherInertia { .. })), "{refusal}");
+}
