@@ -56,7 +56,11 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     // All files are read before the first is simulated, so a mistake in the last doesn't come after minutes.
     let scenes = arguments.files.iter().map(|path| scene::read(path)).collect::<Result<Vec<_>, _>>()?;
     let mut output = Output::new(arguments.out.clone())?;
-    for (path, file) in arguments.files.iter().zip(&scenes) {
+    let count = scenes.len();
+    for (number, (path, file)) in (1..).zip(arguments.files.iter().zip(&scenes)) {
+        if count > 1 {
+            eprintln!("[{number}/{count}] {}", path.display());
+        }
         let run = scene::run(file).map_err(|stopped| format!("{}: {stopped}", path.display()))?;
         output.write(&name(path, "svg"), &scene::picture(file, &run)?)?;
         if arguments.csv {

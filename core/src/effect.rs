@@ -115,6 +115,13 @@ pub trait Effect {
     /// What was declared and everything derived from it, as text.
     const DERIVATION: &'static str;
 
+    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms, each once it is asked for:
+    /// a constant can't be put together from others.
+    #[must_use]
+    fn derivation() -> String {
+        Self::DERIVATION.to_owned()
+    }
+
     /// Checks the parameters.
     ///
     /// # Errors

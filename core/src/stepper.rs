@@ -237,7 +237,28 @@ impl<L: Effect> Stepper<L> {
         self.flow.solvability(&state.momentum, &state.advected)
     }
 
-    /// The stepper of `−h`, which undoes the steps of this one; exactly, where `l_d` is self-adjoint.
+    /// The stepper of `−h`, which undoes the steps of this one exactly.
+    ///
+    /// For that `l_d` has to be [self-adjoint](DiscreteLagrangian::SELF_ADJOINT); another is refused when the user's crate
+    /// is built:
+    ///
+    /// ```compile_fail,E0080
+    /// use liestep::effects::RigidBody;
+    /// use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+    /// use nalgebra::Vector3;
+    ///
+    /// #[lagrangian(group = SO3, advected(w = up), l_d = -h * weight * w.dot(&rho))]
+    /// #[derive(Clone)]
+    /// struct OneSided {
+    ///     weight: f64,
+    ///     rho: Vector3<f64>,
+    ///     up: Vector3<f64>,
+    /// }
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap() };
+    /// let weight = OneSided { weight: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    /// let _ = Stepper::new(body + weight, 0.01).unwrap().inverse();
+    /// ```
     ///
     /// # Errors
     ///
@@ -246,6 +267,9 @@ impl<L: Effect> Stepper<L> {
     where
         L: DiscreteLagrangian + Regular + Clone,
     {
+        const {
+            assert!(L::SELF_ADJOINT, "a step of -h undoes one of h only where l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
+        }
         Self::new(self.lagrangian().clone(), -self.step_size())
     }
 

@@ -109,6 +109,11 @@ where
     const DERIVATION: &'static str = "the sum of two effects: their momentum maps, diamonds, unknown parts, kicks, \
                                       Jacobians and energies, each added; see DERIVATION of either\n";
 
+    fn derivation() -> String {
+        // A blank line between terms; those of an inner sum have theirs.
+        format!("{}\n{}", A::derivation(), B::derivation())
+    }
+
     fn validate(&self) -> Result<(), SetupError> {
         self.first.validate()?;
         self.second.validate()

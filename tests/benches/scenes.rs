@@ -2,32 +2,31 @@
 //!
 //! ```text
 //! cargo bench --bench scenes                       times a step of every scene
+//! cargo bench --bench scenes -- instructions       counts the instructions of a step of every scene, by valgrind
+//! cargo bench --bench scenes -- zero-cost          counts those of the free body here and in a program of its own
 //! cargo bench --bench scenes -- count NAME 1000    runs 1000 steps of one scene and nothing else
 //! ```
 //!
-//! Instructions a step are a difference of two counts, as in `heavy_top_step.rs`. A scene with gravity is there four times:
+//! A scene with gravity is there four times:
 //! without it, behind a run-time flag, with the coefficient zero, and with it.
 
 // The letters of the field.
 #![allow(non_snake_case)]
 
+mod counting;
+mod stepping;
 mod switched;
 
-use core::hint::black_box;
-use std::time::Instant;
-
 use liestep::effects::{
-    Dipole, Drag, Gravity, GravityGradient, MagneticDamping, PrincipalBody, Rotor, Spring, Thrust, Torque,
+    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
+    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
 };
-use liestep::{DiagonalNonstandardInertia, Inertia, Regular, SO3, Stepper, lagrangian};
-use nalgebra::{UnitQuaternion, Vector3};
+use liestep::{DiagonalNonstandardInertia, Inertia, Regular, SO3, lagrangian};
+use nalgebra::Vector3;
 
+use counting::{Uncounted, built, instructions};
+use stepping::{Count, Time, Visit};
 use switched::Switched;
-
-const STEP: f64 = 0.01;
-/// Long enough to hide the clock, short enough that a disturbance spoils few batches.
-const BATCH: u32 = 20_000;
-const ROUNDS: usize = 100;
 
 /// (3.13) in one piece.
 #[lagrangian(
@@ -54,11 +53,6 @@ struct Gyrostat {
     spin: Vector3<f64>,
 }
 
-/// What is done with each scene.
-trait Visit {
-    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L);
-}
-
 fn visit_all(visit: &mut impl Visit) {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).expect("a body");
     let (body, spin) = (PrincipalBody { J_d }, Vector3::new(0.1, 0.2, 0.3));
@@ -77,77 +71,60 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body + rotor", body + Rotor { spin });
     visit.visit("body + torque", body + Torque { torque: spin * 1e-3 });
     visit.visit("body + thrust", body + Thrust { at: rho, thrust: spin * 1e-3 });
-    visit.visit("body + drag", body + Drag { c: 1e-3 });
-    visit.visit("body + magnetic damping", body + MagneticDamping { k: 1e-3, field: rho });
+    visit.visit("body + drag", body + Drag { c: 1e-3, J });
+    visit.visit("body + magnetic damping", body + MagneticDamping { k: 1e-3, field: rho, J });
     visit.visit("gyrostat in one piece", Gyrostat { J_d, spin });
+    visit.visit("Cayley body", CayleyBody { J });
+    visit.visit("geodesic body", GeodesicBody { J });
+    visit.visit("body of fourth order", FourthOrderBody { J });
+    visit.visit("body of sixth order", SixthOrderBody { J });
+    visit.visit("body, full inertia", RigidBody { J_d: J.to_nonstandard() });
 }
 
-#[inline(never)]
-fn run<L: Regular<Scalar = f64, Group = SO3>>(
-    stepper: &Stepper<L>,
-    state: &mut liestep::State<SO3, L::Advected>,
-    steps: u32,
-) {
-    for _ in 0..steps {
-        stepper.step(state).expect("a solvable step");
-    }
-}
+/// Counts the instructions of every scene, each in a process of its own.
+struct Instructions(Result<(), Uncounted>);
 
-/// The scene, with the tilt and the spin of the thesis' looping top.
-fn start<L: Regular<Scalar = f64, Group = SO3>>(scene: L) -> (Stepper<L>, liestep::State<SO3, L::Advected>) {
-    let stepper = Stepper::new(scene, STEP).expect("a usable step");
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-    let state = stepper.start(attitude, Vector3::new(0.5, 2.0, 12.0)).expect("a usable start");
-    (stepper, state)
-}
-
-/// Times every scene.
-struct Time;
-
-impl Visit for Time {
-    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L) {
-        let (stepper, first) = start(scene);
-        let mut times: Vec<f64> = (0..ROUNDS)
-            .map(|_| {
-                // From the beginning: a torque would wind the body up until no step can be made.
-                let mut state = first;
-                let start = Instant::now();
-                run(black_box(&stepper), black_box(&mut state), BATCH);
-                start.elapsed().as_secs_f64() * 1e9 / f64::from(BATCH)
-            })
-            .collect();
-        times.sort_by(f64::total_cmp);
-        println!("{name:<28}{:>8.1} ns a step", times[ROUNDS / 2]);
-    }
-}
-
-/// Runs one scene.
-struct Count<'a> {
-    wanted: &'a str,
-    steps: u32,
-    found: bool,
-}
-
-impl Visit for Count<'_> {
-    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L) {
-        if name == self.wanted {
-            self.found = true;
-            let (stepper, mut state) = start(scene);
-            run(black_box(&stepper), black_box(&mut state), self.steps);
+impl Visit for Instructions {
+    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, _: L) {
+        let count = || -> Result<(), Uncounted> {
+            let steps = instructions(&std::env::current_exe()?, &["count", name])?;
+            println!("{name:<28}{steps:>8.1} instructions a step");
+            Ok(())
+        };
+        if self.0.is_ok() {
+            self.0 = count();
         }
     }
 }
 
-fn main() {
+/// The free body beside all other effects and in a program without them.
+fn zero_cost() -> Result<(), Uncounted> {
+    let beside = instructions(&std::env::current_exe()?, &["count", "body"])?;
+    let alone = instructions(&built("free-body-alone")?, &["count", "body"])?;
+    println!("free body beside the other effects{beside:>10.1} instructions a step");
+    println!("free body alone                   {alone:>10.1} instructions a step");
+    // Counts of whole programs, and not estimates: they are the same or they aren't.
+    if beside.to_bits() == alone.to_bits() { Ok(()) } else { Err("what isn't in the scene costs something".into()) }
+}
+
+fn main() -> Result<(), Uncounted> {
     // Cargo adds `--bench`.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-    if let [word, wanted, steps] = arguments.as_slice()
-        && word == "count"
-    {
-        let mut count = Count { wanted, steps: steps.parse().expect("a number of steps"), found: false };
-        visit_all(&mut count);
-        assert!(count.found, "there is no scene `{wanted}`");
-        return;
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["count", wanted, steps] => {
+            let mut count = Count::new(wanted, steps.parse()?);
+            visit_all(&mut count);
+            if count.found { Ok(()) } else { Err(format!("there is no scene `{wanted}`").into()) }
+        }
+        ["instructions"] => {
+            let mut all = Instructions(Ok(()));
+            visit_all(&mut all);
+            all.0
+        }
+        ["zero-cost"] => zero_cost(),
+        _ => {
+            visit_all(&mut Time);
+            Ok(())
+        }
     }
-    visit_all(&mut Time);
 }

@@ -22,7 +22,7 @@ fn started<L: Regular<Scalar = f64, Group = SO3>>(scene: L, h: f64) -> (Stepper<
 
 #[test]
 fn no_torque_changes_no_bit() {
-    let (stepper, mut free) = started(body() + gravity() + Drag { c: 0.1 }, 0.01);
+    let (stepper, mut free) = started(body() + gravity() + Drag { c: 0.1, J: body().J_d.to_inertia() }, 0.01);
     let mut controlled = free;
     for _ in 0..1000 {
         stepper.step(&mut free).unwrap();

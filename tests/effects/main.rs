@@ -12,6 +12,7 @@ mod changing_scenes;
 mod control;
 mod forces;
 mod forces_by_hand;
+mod kinetic_terms;
 mod library;
 mod scene_files;
 mod sums;

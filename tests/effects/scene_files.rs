@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use expect_test::expect;
 use liestep::effects::{Drag, Gravity, PrincipalBody};
-use liestep::{Accuracy, DiagonalNonstandardInertia, Stepper};
+use liestep::{Accuracy, DiagonalNonstandardInertia, NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const TOP: &str = r#"title = "A heavy top with drag"
@@ -113,6 +113,22 @@ fn mistakes_have_places() {
         ("[run]", "[run"),
         ("[drag]", "[gravity]"),
         ("m = \"1 kg\"", "m = { \"größe\" = 1, 2 }"),
+        ("velocity = [0, 0, \"60 rpm\"]", "velocity = [0, 0, 1]\neuler_rates = [0, 0, 1]"),
+        ("euler = [0, \"45 deg\", 0]\nvelocity", "quaternion = [1, 0, 0, 0]\neuler_rates"),
+        ("euler = [0, \"45 deg\", 0]\nvelocity", "euler_rates = [0, 0, 1]\nquaternion = [1, 0, 0, 0]\n#"),
+        ("euler = [0, \"45 deg\", 0]\n", ""),
+        ("moments = [3, 3, 4]\n", ""),
+        ("moments = [3, 3, 4]", "mass = 3"),
+        ("moments = [3, 3, 4]", "moments = [3, 4]"),
+        ("c = 1e-3", "c = nan"),
+        ("c = 1e-3", "c = 1e400"),
+        ("c = 1e-3", "c = 1e-400"),
+        ("c = 1e-3", "c = \"1e400 N m s\""),
+        ("c = 1e-3", "c = 99999999999999999999"),
+        ("rho = [0, 0, 1.0]", "rho = [0, \"1e306 km\", 0]"),
+        ("moments = [3, 3, 4]", "moments = [3e-160, 3e-160, 4e-160]"),
+        ("moments = [3, 3, 4]", "moments = [3e200, 3e200, 4e200]"),
+        ("step = \"10 ms\"", "step = -0.0"),
     ]
     .map(|(line, by)| mistake(&folder, line, by));
     expect![[r#"
@@ -130,12 +146,12 @@ fn mistakes_have_places() {
         error: top.toml:9:18: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
         error: top.toml:9:7: invalid type: floating point `1.0`, expected a sequence
         error: top.toml:10:6: a direction can't be zero
-        error: top.toml:3:1: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others
-        error: top.toml:3:1: a body has either `moments` (of inertia) or `J_d` (nonstandard)
-        error: top.toml:15:1: `quaternion` has the four components w, x, y, z, found 3
-        error: top.toml:15:1: `quaternion` can't be zero
-        error: top.toml:15:1: an attitude is given by either `euler` or `quaternion`
-        error: top.toml:15:1: a velocity is given by either `velocity` or `euler_rates`
+        error: top.toml:4:11: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others
+        error: top.toml:4:11: a body has either `moments` (of inertia) or `J_d` (nonstandard)
+        error: top.toml:16:14: `quaternion` has the four components w, x, y, z, found 3
+        error: top.toml:16:14: `quaternion` can't be zero
+        error: top.toml:17:14: an attitude is given by either `euler` or `quaternion`
+        error: top.toml:18:12: a velocity is given by either `velocity` or `euler_rates`
         error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 600 s
         error: top.toml:19:1: `duration` makes 2.0e9 steps, more than 1e8; take a larger `step`
         error: top.toml:21:12: a run has either a `step` or an `accuracy`
@@ -147,7 +163,86 @@ fn mistakes_have_places() {
         error: top.toml:19:5: unclosed table, expected `]`
         error: top.toml:12:2: duplicate key
         error: top.toml:7:22: invalid literal string, expected `'`
+        error: top.toml:17:12: a velocity is given by either `velocity` or `euler_rates`
+        error: top.toml:16:14: `euler_rates` need the attitude by `euler`
+        error: top.toml:17:14: `euler_rates` need the attitude by `euler`
+        error: top.toml:15:1: an attitude is given by either `euler` or `quaternion`
+        error: top.toml:3:1: a body has either `moments` (of inertia) or `J_d` (nonstandard)
+        error: top.toml:4:1: unknown field `mass`, expected `moments` or `J_d`
+        error: top.toml:4:11: expected three components, found 2
+        error: top.toml:13:5: must be finite
+        error: top.toml:13:5: floating-point number overflowed
+        error: top.toml:13:5: must be above zero
+        error: top.toml:13:5: must be finite
+        error: top.toml:13:5: invalid type: integer `99999999999999999999` as i128, expected a damping coefficient in N m s, or a text with a unit
+        error: top.toml:9:11: must be finite
+        error: top.toml:4:11: the inertia has the trace 5e-160, out of range; choose units in which it is nearer to one
+        error: top.toml:4:11: the inertia has the trace 4.999999999999999e200, out of range; choose units in which it is nearer to one
+        error: top.toml:20:8: must be above zero
     "#]].assert_eq(&messages.concat());
+}
+
+/// What is no scene at all, with its place if there is text.
+#[test]
+fn files_of_another_kind() {
+    let folder = folder("kinds");
+    let contents: [(&str, Vec<u8>); 6] = [
+        ("empty", Vec::new()),
+        ("mark", [b"\xef\xbb\xbf", TOP.replace("[drag]", "[darg]").as_bytes()].concat()),
+        ("bytes", [b"title = \"\xc3\xb6 \xff\"", TOP.as_bytes()].concat()),
+        ("nested", [b"title = ".as_slice(), &b"[".repeat(100_000)].concat()),
+        ("large", b" \n".repeat(600_000)),
+        ("table", b"[[body]]\nmoments = [3, 3, 4]\n".to_vec()),
+    ];
+    let messages = contents.map(|(name, content)| {
+        let file = format!("{name}.toml");
+        fs::write(folder.join(&file), content).unwrap();
+        let output = simulate(&folder, &[&file]);
+        assert!(!output.status.success() && output.stdout.is_empty(), "{name}");
+        String::from_utf8(output.stderr).unwrap()
+    });
+    expect![[r"
+        error: empty.toml:1:1: missing field `title`
+        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `start`, `run`, `picture`
+        error: bytes.toml:1:12: isn't a text in UTF-8
+        error: nested.toml:1:89: cannot recurse further; max recursion depth met
+        error: large.toml: has more than 1048576 bytes, so it is no scene
+        error: table.toml:1:1: invalid type: sequence, expected a table with an inertia
+    "]].assert_eq(&messages.concat());
+}
+
+/// A file of a hundred megabytes isn't read to its end.
+#[test]
+fn a_file_without_an_end() {
+    let folder = folder("endless");
+    fs::File::create(folder.join("endless.toml")).unwrap().set_len(100_000_000).unwrap();
+    let output = simulate(&folder, &["endless.toml"]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(message, "error: endless.toml: has more than 1048576 bytes, so it is no scene\n");
+}
+
+/// A mark of the byte order is no mistake.
+#[test]
+fn a_file_with_a_mark_of_the_byte_order() {
+    let text = format!("\u{feff}{TOP}");
+    assert_eq!(rows(&folder("mark"), &text).len(), 201);
+}
+
+/// Directions and quaternions of any length are brought to length one.
+#[test]
+fn directions_of_any_length() {
+    let folder = folder("lengths");
+    let plain = rows(&folder, &TOP.replace("euler = [0, \"45 deg\", 0]", "quaternion = [3, 4, 0, 0]"));
+    for scale in ["e250", "e-250"] {
+        let quaternion = format!("quaternion = [3{scale}, 4{scale}, 0, 0]");
+        let text = TOP.replace("euler = [0, \"45 deg\", 0]", &quaternion);
+        let text = text.replace("up = [0, 0, 1]", &format!("up = [0, 0, 7{scale}]"));
+        let rows = rows(&folder, &text);
+        assert_eq!(rows.len(), plain.len());
+        let pairs = rows.iter().flatten().zip(plain.iter().flatten());
+        assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() <= 1e-12 * (1.0 + b.abs())), "{scale}");
+    }
 }
 
 #[test]
@@ -156,6 +251,25 @@ fn a_file_that_is_not_there() {
     assert!(!output.status.success());
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.starts_with("error: no-such.toml: cannot be read: "), "{message}");
+}
+
+/// A folder for the pictures that can't be one, and no file at all.
+#[test]
+fn command_lines() {
+    let folder = folder("commands");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    let refused = |arguments: &[&str], message: &str| {
+        let output = Command::new(example()).current_dir(&folder).args(arguments).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(matches!(output.status.code(), Some(1 | 2)) && text.starts_with("error: "), "{text}");
+        assert!(output.stdout.is_empty() && text.contains(message), "{text}");
+    };
+    refused(&[], "required arguments were not provided");
+    refused(&["."], ".: cannot be read");
+    refused(&["top.toml", "--out", "top.toml"], "cannot write to top.toml");
+    refused(&["top.toml", "--out", "top.toml/out"], "cannot write to top.toml/out");
+    refused(&["top.toml", "--out="], "a value is required");
+    refused(&["top.toml", "--pictures"], "unexpected argument '--pictures'");
 }
 
 /// A step that is too large is found out while running: with the file, the time and the largest step.
@@ -173,7 +287,9 @@ fn a_step_that_is_too_large() {
 #[test]
 fn the_scenes_run() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
+    let gallery = fs::read_to_string(scenes.join("README.md")).unwrap();
     let mut files: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     files.sort();
     assert!(files.len() >= 12, "{}", files.len());
     let names: Vec<_> = files.iter().map(|path| path.to_str().unwrap()).collect();
@@ -189,6 +305,10 @@ fn the_scenes_run() {
         assert!(rows.len() > 500 && rows.first() != rows.last(), "{}", path.display());
         assert!(rows.iter().flatten().all(|value| value.is_finite()), "{}", path.display());
         assert!(result("svg").matches("<polyline").count() > 3, "{}", path.display());
+        // Small enough to be kept beside the file, where the gallery has it.
+        assert!(result("svg").len() < 60_000, "{}", path.display());
+        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap();
+        assert!(gallery.contains(&format!("({name}.toml)")) && gallery.contains(&format!("/{name}.svg)")), "{name}");
     }
 }
 
@@ -200,7 +320,11 @@ fn a_file_is_a_sum() {
 
     let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
-    let stepper = Stepper::new(PrincipalBody { J_d: body } + gravity + Drag { c: 1e-3 }, 10.0 * 1e-3).unwrap();
+    let stepper = Stepper::new(
+        PrincipalBody { J_d: body } + gravity + Drag { c: 1e-3, J: NonstandardInertia::from(body).to_inertia() },
+        10.0 * 1e-3,
+    )
+    .unwrap();
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
     let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
     for _ in 0..200 {

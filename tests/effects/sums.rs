@@ -144,6 +144,18 @@ fn body_and_gravity_are_the_heavy_top() {
     assert_eq!((one.attitude(), one.momentum()), (sum.attitude(), sum.momentum()));
 }
 
+/// A sum is explained by its terms, in their order.
+#[test]
+fn derivations_add() {
+    fn derivation<E: Effect>(_: &E) -> String {
+        E::derivation()
+    }
+    let (body, _, _, rotor, gravity, ..) = Everything::random(&mut Random::new(2)).terms();
+    let alone = [derivation(&body), derivation(&gravity), derivation(&rotor)];
+    assert_eq!(alone, [RigidBody::<f64>::DERIVATION, Gravity::<f64>::DERIVATION, Rotor::<f64>::DERIVATION]);
+    assert_eq!(derivation(&(body + gravity + rotor)), alone.join("\n"));
+}
+
 /// Every momentum map, the Jacobian, the limit and the energy of a sum, against the declaration in one piece.
 #[test]
 fn derived_terms_add() {

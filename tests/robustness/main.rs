@@ -9,6 +9,7 @@ mod common;
 mod declarations;
 
 mod checkpoints;
+mod command_lines;
 mod compensated;
 mod policies;
 mod random_inputs;

@@ -1,14 +1,26 @@
 //! Viscous drag.
 
-use crate::{SO3, force};
+use crate::{Inertia, SO3, force};
 
 /// A torque `−c Ω` against the body velocity, which `((F − Fᵀ)/2)^∨/h` stands for in a step.
 ///
-/// The energy falls at any strength. Half of the torque acts at either end of the step, so the scheme stays of second
-/// order; where `c h` is more than twice a moment of inertia a spin changes its sign from step to step while it decays.
-#[force(group = SO3, work = -0.5 * c * vee(F).dot(&(eta + eta_next)))]
+/// At any `c h` the energy of a free body falls in every step and no spin changes its sign; the scheme is of second
+/// order; and under a constant torque `τ` the body ends up turning at the rate `τ/c`. For that the torque of a step is
+/// shared between its ends: halves where `c h` is small against the moments of inertia, all of it at the beginning where
+/// it is large. About a principal axis a step divides the momentum by `1 + x/(1 − b)`, with `x = c h/J_i` and `b ≤ ½` for
+/// what the end takes away (`y ≥ x/2` below); halves at any strength, `b = x/2`, would turn a spin over once `x > 2`.
+#[force(
+    group = SO3,
+    work = {
+        let y = 0.5 * c * h * inverse(J).trace();
+        let end = 0.5 * c / (1.0 + y * y);
+        -vee(F).dot(&(eta * (c - end) + eta_next * end))
+    },
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drag<T = f64> {
     /// Coefficient, N m s.
     pub c: T,
+    /// Inertia of the scene, kg m²: no moment larger than the body's, or a spin may turn over after all.
+    pub J: Inertia<T>,
 }

@@ -7,6 +7,7 @@ mod envelope;
 mod panel;
 mod sphere;
 mod style;
+mod thin;
 
 pub(crate) use canvas::{Area, Drawn, render};
 pub(crate) use panel::{Line, Panel, Vertical};

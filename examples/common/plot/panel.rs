@@ -7,6 +7,7 @@ use plotters::prelude::*;
 use super::canvas::{Area, Drawn};
 use super::envelope::{crest, envelope};
 use super::style::{GRID, INK, at, letters, px};
+use super::thin::thinned;
 
 /// A line of one colour.
 pub(crate) struct Line {
@@ -48,7 +49,9 @@ impl<'a> Panel<'a> {
 impl Panel<'_> {
     /// Draws it into the area.
     pub(crate) fn draw(&self, area: &Area<'_>) -> Drawn {
-        let (columns, _) = area.dim_in_pixel();
+        let (width, height) = area.dim_in_pixel();
+        // Two pixels each: a line has about that width.
+        let columns = width / px(2);
         let lines: Vec<Line> = self.lines.iter().map(|line| self.prepared(line, columns)).collect();
         let all = || lines.iter().flat_map(|line| &line.points);
         let x_range = range(self.lines.iter().flat_map(|line| &line.points).map(|p| p.0), 0.0);
@@ -56,6 +59,8 @@ impl Panel<'_> {
             Vertical::Linear => range(all().map(|p| p.1), 0.06),
             Vertical::Logarithmic => decades(all().map(|p| p.1)),
         };
+        // The axes take a part of the area, so that this is on the fine side.
+        let (across, up) = (f64::from(width) / length(&x_range), f64::from(height) / length(&y_range));
         let (x_step, y_step) = (tick_step(&x_range), tick_step(&y_range));
         area.draw_text(self.title, &letters(13, INK), (at(16), at(6)))?;
         let mut chart = ChartBuilder::on(area)
@@ -85,7 +90,8 @@ impl Panel<'_> {
             .y_label_formatter(&tick)
             .draw()?;
         for line in lines {
-            chart.draw_series(LineSeries::new(line.points, line.colour.stroke_width(line.width)))?;
+            let points = thinned(&line.points, |(x, y)| (x * across, y * up));
+            chart.draw_series(LineSeries::new(points, line.colour.stroke_width(line.width)))?;
         }
         Ok(())
     }
@@ -127,9 +133,13 @@ fn decades(exponents: impl Iterator<Item = f64>) -> Range<f64> {
     low..high.max(low + 2.0)
 }
 
+fn length(range: &Range<f64>) -> f64 {
+    range.end - range.start
+}
+
 /// About the distance of two labels.
 fn tick_step(range: &Range<f64>) -> f64 {
-    (range.end - range.start) / 10.0
+    length(range) / 10.0
 }
 
 /// With as many places as a distance needs that this is about the size of.

@@ -5,6 +5,7 @@ use plotters::prelude::*;
 
 use super::canvas::{Area, Drawn};
 use super::style::{INK, at, letters, px};
+use super::thin::thinned;
 
 /// A path near the unit sphere.
 pub(crate) struct Path<'a> {
@@ -113,6 +114,9 @@ impl View {
                 }
                 None => arcs.push(Arc { near, points: vec![place] }),
             }
+        }
+        for arc in &mut arcs {
+            arc.points = thinned(&arc.points, |&(x, y)| (f64::from(x), f64::from(y)));
         }
         arcs
     }

@@ -3,38 +3,87 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+use std::fmt;
+
 use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, PrincipalBody, Rotor, Spring, Torque};
 use liestep::{DiagonalNonstandardInertia, InertiaError, NonstandardInertia};
 use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 
 use super::quantity;
 use super::quantity::{
     Acceleration, Damping, Direction, FluxDensity, GravitationalParameter, Inertia, Length, MagneticGain,
     MagneticMoment, Mass, Momentum, Positive, Scalar, Stiffness, Triple,
 };
+use super::refused::refused;
 
 /// A body in its principal axes, by its moments of inertia or by its nonstandard ones.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(try_from = "BodyTable")]
+#[derive(Clone, Copy)]
 pub(super) struct Body(pub(super) PrincipalBody);
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BodyTable {
-    moments: Option<Triple<Inertia>>,
-    J_d: Option<Triple<Inertia>>,
+#[serde(field_identifier)]
+enum BodyKey {
+    #[serde(rename = "moments")]
+    Moments,
+    #[serde(rename = "J_d")]
+    Nonstandard,
 }
 
-impl TryFrom<BodyTable> for Body {
-    type Error = String;
+const BODY: &str = "a body has either `moments` (of inertia) or `J_d` (nonstandard)";
 
-    fn try_from(table: BodyTable) -> Result<Self, String> {
-        let J_d = match (table.moments, table.J_d) {
-            (Some(moments), None) => DiagonalNonstandardInertia::from_principal_moments(moments.value),
-            (None, Some(diagonal)) => DiagonalNonstandardInertia::new(diagonal.value),
-            _ => return Err("a body has either `moments` (of inertia) or `J_d` (nonstandard)".to_owned()),
-        };
-        J_d.map(|J_d| Self(PrincipalBody { J_d })).map_err(|error: InertiaError| error.to_string())
+impl<'de> Deserialize<'de> for Body {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_map(BodyTable)
+    }
+}
+
+struct BodyTable;
+
+/// By hand, so that a key too many is refused where it stands.
+impl<'de> Visitor<'de> for BodyTable {
+    type Value = Body;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table with an inertia")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Body, M::Error> {
+        let mut J_d = None;
+        while let Some(key) = table.next_key()? {
+            J_d = Some(match (key, J_d) {
+                (_, Some(_)) => return refused(&mut table, BODY),
+                (BodyKey::Moments, None) => table.next_value::<Moments>()?.0,
+                (BodyKey::Nonstandard, None) => table.next_value::<Nonstandard>()?.0,
+            });
+        }
+        J_d.map(|J_d| Body(PrincipalBody { J_d })).ok_or_else(|| M::Error::custom(BODY))
+    }
+}
+
+/// Moments of inertia that a body can have.
+#[derive(Deserialize)]
+#[serde(try_from = "Triple<Inertia>")]
+struct Moments(DiagonalNonstandardInertia);
+
+impl TryFrom<Triple<Inertia>> for Moments {
+    type Error = InertiaError;
+
+    fn try_from(moments: Triple<Inertia>) -> Result<Self, InertiaError> {
+        DiagonalNonstandardInertia::from_principal_moments(moments.value).map(Self)
+    }
+}
+
+/// The same, nonstandard.
+#[derive(Deserialize)]
+#[serde(try_from = "Triple<Inertia>")]
+struct Nonstandard(DiagonalNonstandardInertia);
+
+impl TryFrom<Triple<Inertia>> for Nonstandard {
+    type Error = InertiaError;
+
+    fn try_from(diagonal: Triple<Inertia>) -> Result<Self, InertiaError> {
+        DiagonalNonstandardInertia::new(diagonal.value).map(Self)
     }
 }
 
@@ -84,8 +133,14 @@ tables! {
             Spring { k: p.k.value, length: p.length.value, at: p.at.value, anchor: p.anchor.value }
         }
     RotorTable { spin: Triple<Momentum> } => |_, p| -> Rotor { Rotor { spin: p.spin.value } }
-    DragTable { c: Positive<Damping> } => |_, p| -> Drag { Drag { c: p.c.value } }
+    DragTable { c: Positive<Damping> }
+        => |body, p| -> Drag {
+            Drag { c: p.c.value, J: NonstandardInertia::from(body.J_d).to_inertia() }
+        }
     MagneticDampingTable { k: Positive<MagneticGain>, field: Triple<FluxDensity> }
-        => |_, p| -> MagneticDamping { MagneticDamping { k: p.k.value, field: p.field.value } }
+        => |body, p| -> MagneticDamping {
+            let J = NonstandardInertia::from(body.J_d).to_inertia();
+            MagneticDamping { k: p.k.value, field: p.field.value, J }
+        }
     TorqueTable { torque: Triple<quantity::Torque> } => |_, p| -> Torque { Torque { torque: p.torque.value } }
 }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::string::FromUtf8Error;
 
 /// What is wrong, and where.
 #[derive(Debug)]
@@ -17,6 +18,19 @@ pub(crate) struct Mistake {
 impl Mistake {
     pub(crate) fn unreadable(path: &Path, cause: &io::Error) -> Self {
         Self { path: path.to_owned(), place: None, message: format!("cannot be read: {cause}") }
+    }
+
+    pub(crate) fn too_large(path: &Path, most: u64) -> Self {
+        let message = format!("has more than {most} bytes, so it is no scene");
+        Self { path: path.to_owned(), place: None, message }
+    }
+
+    /// At the first byte that belongs to no character.
+    pub(crate) fn not_text(path: &Path, error: &FromUtf8Error) -> Self {
+        let (before, _) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
+        let before = String::from_utf8_lossy(before);
+        let place = Some(place(&before, before.len()));
+        Self { path: path.to_owned(), place, message: "isn't a text in UTF-8".to_owned() }
     }
 
     pub(crate) fn of_toml(path: &Path, text: &str, error: &toml::de::Error) -> Self {

@@ -100,7 +100,8 @@ impl<'de, Q: Quantity> Deserialize<'de> for Triple<Q> {
 impl<'de> Deserialize<'de> for Direction {
     fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
         let vector = Triple::<Number>::deserialize(source)?.value;
-        let unit = vector.try_normalize(0.0).filter(|unit| unit.iter().all(|x| x.is_finite()));
+        // By the largest first, as squares may be too large or too small for a number.
+        let unit = (vector / vector.amax()).try_normalize(0.5).filter(|unit| unit.iter().all(|x| x.is_finite()));
         unit.map(Self).ok_or_else(|| D::Error::custom("a direction can't be zero"))
     }
 }

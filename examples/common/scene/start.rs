@@ -1,61 +1,117 @@
 //! Where a motion starts: attitude and velocity.
 
+use std::fmt;
+
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 use super::quantity::{Angle, Number, Rate, Scalar, Triple};
+use super::refused::refused;
 
 /// The attitude, body to space, and the body velocity in rad/s.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(try_from = "StartTable")]
+#[derive(Clone, Copy)]
 pub(super) struct Start {
     pub(super) attitude: UnitQuaternion<f64>,
     pub(super) velocity: Vector3<f64>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StartTable {
+#[derive(Clone, Copy, Deserialize)]
+#[serde(field_identifier, rename_all = "snake_case")]
+enum Key {
     /// Precession, nutation and spin: the attitude `R_z(φ) R_x(θ) R_z(ψ)`.
-    euler: Option<Triple<Angle>>,
+    Euler,
     /// `[w, x, y, z]`, brought to length one.
-    quaternion: Option<Vec<Scalar<Number>>>,
+    Quaternion,
     /// Body frame.
-    velocity: Option<Triple<Rate>>,
+    Velocity,
     /// Rates of the Euler angles.
-    euler_rates: Option<Triple<Rate>>,
+    EulerRates,
 }
 
-impl TryFrom<StartTable> for Start {
-    type Error = String;
+#[derive(Clone, Copy)]
+enum Attitude {
+    Euler(Vector3<f64>),
+    Quaternion(UnitQuaternion<f64>),
+}
 
-    fn try_from(table: StartTable) -> Result<Self, String> {
-        let attitude = match (&table.euler, &table.quaternion) {
-            (Some(angles), None) => from_euler(&angles.value),
-            (None, Some(components)) => from_components(components)?,
-            _ => return Err("an attitude is given by either `euler` or `quaternion`".to_owned()),
+#[derive(Clone, Copy)]
+enum Velocity {
+    Body(Vector3<f64>),
+    EulerRates(Vector3<f64>),
+}
+
+const ATTITUDE: &str = "an attitude is given by either `euler` or `quaternion`";
+const VELOCITY: &str = "a velocity is given by either `velocity` or `euler_rates`";
+const RATES: &str = "`euler_rates` need the attitude by `euler`";
+
+impl<'de> Deserialize<'de> for Start {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_map(StartTable)
+    }
+}
+
+struct StartTable;
+
+/// By hand, so that a key that doesn't go with another is refused where it stands.
+impl<'de> Visitor<'de> for StartTable {
+    type Value = Start;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table with an attitude and a velocity")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Start, M::Error> {
+        let (mut attitude, mut velocity) = (None, None);
+        while let Some(key) = table.next_key()? {
+            match (key, attitude, velocity) {
+                (Key::Euler | Key::Quaternion, Some(_), _) => return refused(&mut table, ATTITUDE),
+                (Key::Velocity | Key::EulerRates, _, Some(_)) => return refused(&mut table, VELOCITY),
+                (Key::Quaternion, _, Some(Velocity::EulerRates(_)))
+                | (Key::EulerRates, Some(Attitude::Quaternion(_)), _) => return refused(&mut table, RATES),
+                (Key::Euler, ..) => attitude = Some(Attitude::Euler(table.next_value::<Triple<Angle>>()?.value)),
+                (Key::Quaternion, ..) => attitude = Some(Attitude::Quaternion(table.next_value::<Components>()?.0)),
+                (Key::Velocity, ..) => velocity = Some(Velocity::Body(table.next_value::<Triple<Rate>>()?.value)),
+                (Key::EulerRates, ..) => {
+                    velocity = Some(Velocity::EulerRates(table.next_value::<Triple<Rate>>()?.value));
+                }
+            }
+        }
+        let attitude = attitude.ok_or_else(|| M::Error::custom(ATTITUDE))?;
+        let velocity = match (velocity.ok_or_else(|| M::Error::custom(VELOCITY))?, attitude) {
+            (Velocity::Body(velocity), _) => velocity,
+            (Velocity::EulerRates(rates), Attitude::Euler(angles)) => body_velocity(&angles, &rates),
+            (Velocity::EulerRates(_), Attitude::Quaternion(_)) => return Err(M::Error::custom(RATES)),
         };
-        let velocity = match (table.velocity, table.euler_rates, table.euler) {
-            (Some(velocity), None, _) => velocity.value,
-            (None, Some(rates), Some(angles)) => body_velocity(&angles.value, &rates.value),
-            (None, Some(_), None) => return Err("`euler_rates` need the attitude by `euler`".to_owned()),
-            _ => return Err("a velocity is given by either `velocity` or `euler_rates`".to_owned()),
+        let attitude = match attitude {
+            Attitude::Euler(angles) => from_euler(&angles),
+            Attitude::Quaternion(quaternion) => quaternion,
         };
-        Ok(Self { attitude, velocity })
+        Ok(Start { attitude, velocity })
+    }
+}
+
+/// A quaternion of any length.
+struct Components(UnitQuaternion<f64>);
+
+impl<'de> Deserialize<'de> for Components {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        let components = Vec::<Scalar<Number>>::deserialize(source)?;
+        let [w, x, y, z] = components.as_slice() else {
+            let message = format!("`quaternion` has the four components w, x, y, z, found {}", components.len());
+            return Err(D::Error::custom(message));
+        };
+        // By the largest first, as squares may be too large or too small for a number.
+        let quaternion = Quaternion::new(w.value, x.value, y.value, z.value);
+        let scaled = quaternion / quaternion.coords.amax();
+        let unit = UnitQuaternion::try_new(scaled, 0.5).filter(|unit| unit.coords.iter().all(|x| x.is_finite()));
+        unit.map(Self).ok_or_else(|| D::Error::custom("`quaternion` can't be zero"))
     }
 }
 
 fn from_euler(angles: &Vector3<f64>) -> UnitQuaternion<f64> {
     let about_z = |angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
     about_z(angles.x) * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.y) * about_z(angles.z)
-}
-
-fn from_components(components: &[Scalar<Number>]) -> Result<UnitQuaternion<f64>, String> {
-    let [w, x, y, z] = components else {
-        return Err(format!("`quaternion` has the four components w, x, y, z, found {}", components.len()));
-    };
-    let quaternion = Quaternion::new(w.value, x.value, y.value, z.value);
-    UnitQuaternion::try_new(quaternion, f64::MIN_POSITIVE).ok_or_else(|| "`quaternion` can't be zero".to_owned())
 }
 
 /// `Ω = (RᵀR')^∨` of `R = R_z(φ) R_x(θ) R_z(ψ)`.

@@ -1,7 +1,10 @@
 //! P6: damping far stronger than the inertia.
 
+// The letters of the field.
+#![allow(non_snake_case)]
+
 use liestep::effects::{Drag, MagneticDamping, PrincipalBody};
-use liestep::{DiagonalNonstandardInertia, Effect, LieGroup as _, Regular, SO3, Stepper, force};
+use liestep::{DiagonalNonstandardInertia, Effect, LieGroup as _, NonstandardInertia, Regular, SO3, Stepper, force};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::curves::Curves;
@@ -17,7 +20,10 @@ struct OneSidedDrag {
 
 const H: f64 = 0.05;
 
-/// Whether the energy falls in every step until it underflows, and how often a component of the velocity changes sign.
+/// Below, in J, squares of Newton's unknown are no longer numbers.
+const NOTHING: f64 = 1e-280;
+
+/// Whether the energy falls in every step until nothing is left, and how often a component of the velocity changes sign.
 fn decay<L>(scene: L) -> Result<(bool, u32), Failure>
 where
     L: Effect<Scalar = f64, Group = SO3> + Regular,
@@ -29,7 +35,10 @@ where
         let (energy, velocity) = (stepper.energy(&state), stepper.velocity(&state));
         stepper.step(&mut state)?;
         let after = stepper.energy(&state);
-        falls &= after < energy || after == 0.0;
+        if after < NOTHING {
+            break;
+        }
+        falls &= after < energy;
         // The middle one is the largest, and no precession turns it round.
         flips += u32::from(stepper.velocity(&state).y * velocity.y < 0.0);
     }
@@ -39,6 +48,7 @@ where
 pub(crate) fn p6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5))?;
     let body = PrincipalBody { J_d: inertia };
+    let J = NonstandardInertia::from(inertia).to_inertia();
     let mut row = Row::new(
         "P6",
         "drag with c h up to 10⁴ J; damping alone",
@@ -46,7 +56,7 @@ pub(crate) fn p6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     );
     for ratio in [1.0, 10.0, 1e4] {
         let c = ratio * 3.0 / H;
-        let (falls, flips) = decay(body + Drag { c })?;
+        let (falls, flips) = decay(body + Drag { c, J })?;
         let (one_sided_falls, one_sided_flips) = decay(body + OneSidedDrag { c })?;
         row = row
             .holds(&format!("Drag, c h = {ratio} J: energy falls in every step"), falls)
@@ -57,9 +67,9 @@ pub(crate) fn p6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
             });
     }
 
-    let drag = Stepper::new(body + Drag { c: 0.05 }, H)?;
+    let drag = Stepper::new(body + Drag { c: 0.05, J }, H)?;
     let field = Vector3::new(0.0, 0.6, 0.8);
-    let magnetic = Stepper::new(body + MagneticDamping { k: 0.2, field }, H)?;
+    let magnetic = Stepper::new(body + MagneticDamping { k: 0.2, field, J }, H)?;
     let start = Vector3::new(2.0, 0.1, 0.1);
     let mut slowed = drag.start(SO3::identity(), start)?;
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));

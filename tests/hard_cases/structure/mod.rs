@@ -1,4 +1,5 @@
 mod contragredient;
+mod damping;
 mod digest;
 mod momentum_laws;
 mod poisson;

@@ -1,0 +1,76 @@
+//! Scenes and what is done with them, compiled alike into every program that counts their steps.
+
+use core::hint::black_box;
+use std::time::Instant;
+
+use liestep::{Regular, SO3, State, Stepper};
+use nalgebra::{UnitQuaternion, Vector3};
+
+const STEP: f64 = 0.01;
+/// Long enough to hide the clock, short enough that a disturbance spoils few batches.
+const BATCH: u32 = 20_000;
+const ROUNDS: usize = 100;
+
+/// What is done with each scene.
+pub(crate) trait Visit {
+    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L);
+}
+
+#[inline(never)]
+fn run<L: Regular<Scalar = f64, Group = SO3>>(stepper: &Stepper<L>, state: &mut State<SO3, L::Advected>, steps: u32) {
+    for _ in 0..steps {
+        stepper.step(state).expect("a solvable step");
+    }
+}
+
+/// The scene, with the tilt and the spin of the thesis' looping top.
+fn start<L: Regular<Scalar = f64, Group = SO3>>(scene: L) -> (Stepper<L>, State<SO3, L::Advected>) {
+    let stepper = Stepper::new(scene, STEP).expect("a usable step");
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+    let state = stepper.start(attitude, Vector3::new(0.5, 2.0, 12.0)).expect("a usable start");
+    (stepper, state)
+}
+
+/// Times every scene.
+pub(crate) struct Time;
+
+impl Visit for Time {
+    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L) {
+        let (stepper, first) = start(scene);
+        let mut times: Vec<f64> = (0..ROUNDS)
+            .map(|_| {
+                // From the beginning: a torque would wind the body up until no step can be made.
+                let mut state = first;
+                let start = Instant::now();
+                run(black_box(&stepper), black_box(&mut state), BATCH);
+                start.elapsed().as_secs_f64() * 1e9 / f64::from(BATCH)
+            })
+            .collect();
+        times.sort_by(f64::total_cmp);
+        println!("{name:<28}{:>8.1} ns a step", times[ROUNDS / 2]);
+    }
+}
+
+/// Runs one scene.
+pub(crate) struct Count<'a> {
+    wanted: &'a str,
+    steps: u32,
+    /// Whether there was such a scene.
+    pub(crate) found: bool,
+}
+
+impl<'a> Count<'a> {
+    pub(crate) fn new(wanted: &'a str, steps: u32) -> Self {
+        Self { wanted, steps, found: false }
+    }
+}
+
+impl Visit for Count<'_> {
+    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L) {
+        if name == self.wanted {
+            self.found = true;
+            let (stepper, mut state) = start(scene);
+            run(black_box(&stepper), black_box(&mut state), self.steps);
+        }
+    }
+}

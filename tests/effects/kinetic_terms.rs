@@ -1,0 +1,133 @@
+//! The bodies that a scene can choose from: each adds with the other effects, and is of its order.
+
+use crate::common::measure::{four_halvings, order, relative, steps_in};
+use crate::common::random::Random;
+use crate::common::reference::Motion;
+use crate::common::tops::inertia;
+use crate::declarations::{CayleyTop, LogTop};
+use liestep::effects::{
+    CayleyBody, Drag, FourthOrderBody, GeodesicBody, Gravity, PrincipalBody, RigidBody, Rotor, SixthOrderBody,
+};
+use liestep::{DiagonalNonstandardInertia, Inertia, LieGroup as _, Regular, SO3, State, Stepper};
+use nalgebra::{UnitQuaternion, Vector3};
+
+fn tensor() -> Inertia {
+    let axes = *Random::new(3).rotation().as_matrix();
+    let principal = nalgebra::Matrix3::from_diagonal(&Vector3::new(2.0, 3.0, 4.5));
+    Inertia::new(axes * principal * axes.transpose()).unwrap()
+}
+
+fn gravity() -> Gravity {
+    Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
+}
+
+fn moved<L: Regular<Scalar = f64, Group = SO3>>(scene: L, count: u32) -> State<SO3, L::Advected> {
+    let stepper = Stepper::new(scene, 0.01).unwrap();
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
+    let mut state = stepper.start(attitude, Vector3::new(0.5, -1.0, 3.0)).unwrap();
+    for _ in 0..count {
+        stepper.step(&mut state).unwrap();
+    }
+    state
+}
+
+/// How far the motion of the sum and that of the declaration in one piece are apart after 1000 steps.
+fn apart(sum: impl Regular<Scalar = f64, Group = SO3>, one: impl Regular<Scalar = f64, Group = SO3>) -> f64 {
+    let (sum, one) = (moved(sum, 1000), moved(one, 1000));
+    let attitude = (sum.attitude().as_matrix() - one.attitude().as_matrix()).norm();
+    attitude.max(relative(&sum.momentum(), &one.momentum()))
+}
+
+#[test]
+fn body_and_gravity_are_the_top() {
+    let (J, Gravity { m, g, rho, up }) = (tensor(), gravity());
+    let cayley = apart(CayleyBody { J } + gravity(), CayleyTop { J, weight: m * g, rho, up });
+    let geodesic = apart(gravity() + GeodesicBody { J }, LogTop { J, weight: m * g, rho, up });
+    println!("{cayley:e} {geodesic:e}");
+    assert!(cayley < 1e-11 && geodesic < 1e-11, "{cayley:e} {geodesic:e}");
+    // They are different methods, or the test would say nothing.
+    assert!(apart(CayleyBody { J }, GeodesicBody { J }) > 1e-6);
+}
+
+fn error<L: Regular<Scalar = f64, Group = SO3>>(scene: L, motion: &Motion, t: f64, h: f64) -> f64 {
+    let stepper = Stepper::new(scene, h).unwrap();
+    let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
+    for _ in 0..steps_in(t, h) {
+        stepper.step(&mut state).unwrap();
+    }
+    let (attitude, velocity) = motion.at(t);
+    relative(&state.attitude().matrix(), &attitude).hypot(relative(&stepper.velocity(&state), &velocity))
+}
+
+fn assert_order<L: Regular<Scalar = f64, Group = SO3>>(
+    motion: &Motion,
+    expected: f64,
+    (t, coarsest): (f64, f64),
+    scene: impl Fn(Inertia) -> L,
+) {
+    let errors = four_halvings(coarsest).map(|h| (h, error(scene(inertia(&motion.top)), motion, t, h)));
+    let order = order(&errors, 2e-14);
+    println!("order {order:.3}, errors {:.2e} to {:.2e}", errors[0].1, errors[4].1);
+    assert!((order - expected).abs() < 0.1, "order {order}, errors {errors:?}");
+}
+
+#[test]
+fn a_free_body_is_of_its_order() {
+    let motion = Motion::read("free_asymmetric_J123_intermediate");
+    assert_order(&motion, 2.0, (10.0, 1.0 / 20.0), |J| CayleyBody { J });
+    assert_order(&motion, 2.0, (10.0, 1.0 / 20.0), |J| GeodesicBody { J });
+    assert_order(&motion, 4.0, (10.0, 1.0 / 20.0), |J| FourthOrderBody { J });
+    let motion = Motion::read("free_axisymmetric_Jd221");
+    assert_order(&motion, 6.0, (10.0, 1.0 / 5.0), |J| SixthOrderBody { J });
+}
+
+/// A potential at the two ends of a step is of second order with any body.
+#[test]
+fn a_heavy_body_is_of_second_order() {
+    let motion = Motion::read("thesis_looping_A_Jd221");
+    let top = &motion.top;
+    let gravity = Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up };
+    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| CayleyBody { J } + gravity);
+    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| GeodesicBody { J } + gravity);
+    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| FourthOrderBody { J } + gravity);
+    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| SixthOrderBody { J } + gravity);
+}
+
+/// With a rotor and drag the Newton system is a sum; all bodies do the same in the limit of small steps.
+#[test]
+fn bodies_add_with_what_is_in_the_unknown() {
+    let J = tensor();
+    let (rotor, weight, drag) = (Rotor { spin: Vector3::new(0.4, -0.3, 0.2) }, gravity(), Drag { c: 0.3, J });
+    let expected = moved(RigidBody { J_d: J.to_nonstandard() } + rotor + weight + drag, 100).momentum();
+    let found = [
+        moved(CayleyBody { J } + rotor + weight + drag, 100).momentum(),
+        moved(GeodesicBody { J } + rotor + weight + drag, 100).momentum(),
+        moved(FourthOrderBody { J } + rotor + weight + drag, 100).momentum(),
+        moved(SixthOrderBody { J } + rotor + weight + drag, 100).momentum(),
+    ]
+    .map(|momentum| relative(&momentum, &expected));
+    println!("{found:?}");
+    assert!(found.iter().all(|&error| error < 2e-3), "{found:?}");
+}
+
+/// 115° a step about a principal axis, where (3.13) has no solution beyond 90°.
+#[test]
+fn a_spin_may_turn_by_more_than_a_quarter_a_step() {
+    fn turn<L: Regular<Scalar = f64, Group = SO3>>(scene: L) -> Option<f64> {
+        let stepper = Stepper::new(scene, 0.1).unwrap();
+        let mut state = stepper.start(SO3::identity(), Vector3::new(0.0, 0.0, 20.0)).unwrap();
+        stepper.step(&mut state).ok()?;
+        assert!((stepper.velocity(&state) - Vector3::new(0.0, 0.0, 20.0)).norm() < 1e-11);
+        Some(UnitQuaternion::from_matrix(&state.attitude().matrix()).angle())
+    }
+    let moments = Vector3::new(2.0, 3.0, 4.5);
+    let J = Inertia::from_principal_moments(moments).unwrap();
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(moments).unwrap();
+    assert_eq!(turn(PrincipalBody { J_d }), None);
+    // p = Jθ/h, and (2/h) J tan(θ/2) (1 + tan²(θ/2)) in Cayley coordinates.
+    let tangent = (0.5 * turn(CayleyBody { J }).unwrap()).tan();
+    assert!((2.0 * tangent * (1.0 + tangent * tangent) - 2.0).abs() < 1e-12, "{tangent}");
+    let turns = [turn(GeodesicBody { J }), turn(FourthOrderBody { J }), turn(SixthOrderBody { J })];
+    println!("{turns:?}");
+    assert!(turns.iter().all(|turn| turn.is_some_and(|turn| (turn - 2.0).abs() < 1e-12)), "{turns:?}");
+}

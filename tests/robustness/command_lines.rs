@@ -1,0 +1,79 @@
+//! Command lines that can't be meant, of examples: a message and an exit code, before anything is computed.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+/// The folder of the examples, once these are built.
+fn examples() -> &'static Path {
+    static EXAMPLES: OnceLock<PathBuf> = OnceLock::new();
+    EXAMPLES.get_or_init(|| {
+        let names = ["derive", "free-rigid-body", "heavy-top"];
+        let mut build = Command::new(env!("CARGO"));
+        build.args(["build", "--quiet"]).args(names.iter().flat_map(|name| ["--example", name]));
+        assert!(build.status().unwrap().success());
+        let test = std::env::current_exe().unwrap();
+        test.parent().and_then(Path::parent).unwrap().join("examples")
+    })
+}
+
+/// Runs an example in a folder where it may leave nothing behind.
+fn run(example: &str, arguments: &[&str]) -> Output {
+    let program = examples().join(format!("{example}{}", std::env::consts::EXE_SUFFIX));
+    Command::new(program).current_dir(env!("CARGO_TARGET_TMPDIR")).args(arguments).output().unwrap()
+}
+
+/// It is refused with this in its message, and neither with a panic nor after a report.
+#[track_caller]
+fn refused(example: &str, arguments: &[&str], message: &str) {
+    let output = run(example, arguments);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{arguments:?}: {:?} {text}", output.status);
+    assert!(text.starts_with("error: ") && text.contains(message), "{arguments:?}: {text}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+}
+
+#[test]
+fn steps_and_times() {
+    let nonsense = [
+        ("nan", "must be a finite number above zero"),
+        ("inf", "must be a finite number above zero"),
+        ("-0.01", "must be a finite number above zero"),
+        ("0", "must be a finite number above zero"),
+        ("1e400", "must be a finite number above zero"),
+        ("1e-400", "must be a finite number above zero"),
+        ("ten", "not a number; write seconds, as in 0.01"),
+        ("", "not a number; write seconds, as in 0.01"),
+        ("0,01", "not a number; write seconds, as in 0.01"),
+    ];
+    for example in ["heavy-top", "free-rigid-body"] {
+        for (value, message) in nonsense {
+            refused(example, &[&format!("--step={value}")], message);
+            refused(example, &[&format!("--time={value}")], message);
+        }
+        refused(example, &["--step", "1e-300", "--time", "1"], "take a larger step");
+        refused(example, &["--step", "10", "--time", "1"], "nothing would happen");
+        // No body turns by so much in a step.
+        refused(example, &["--step", "5", "--time", "10", "--out", "steps"], "no solution at the step");
+    }
+}
+
+/// A folder that is a file, below a file, or without a name.
+#[test]
+fn folders() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    for example in ["heavy-top", "free-rigid-body"] {
+        refused(example, &["--time=2", "--out", file], "cannot write to");
+        refused(example, &["--time=2", "--out", &format!("{file}/out")], "cannot write to");
+        refused(example, &["--time=2", "--out="], "a value is required");
+    }
+}
+
+#[test]
+fn words() {
+    refused("heavy-top", &["--case", "falling"], "invalid value 'falling'");
+    refused("heavy-top", &["--reading", "c"], "invalid value 'c'");
+    refused("heavy-top", &["--speed", "1"], "unexpected argument");
+    refused("free-rigid-body", &["flips"], "unexpected argument");
+    refused("derive", &["no-such-top"], "invalid value 'no-such-top'");
+}
