@@ -94,3 +94,83 @@ fn root(n: usize, k: usize) -> f64 {
     }
     x
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Coefficients;
+
+    /// Butcher's simplifying assumptions `B(2s)` and `C(s)`, from which order `2s` follows for a symplectic method; in
+    /// powers of `x = 2c − 1`, which are well conditioned, on `[−1, 1]`.
+    fn assert_order_conditions<const PAIRS: usize>() {
+        let coefficients = Coefficients::<PAIRS>::new();
+        let stages = 2 * PAIRS;
+        let nodes: [f64; PAIRS] = core::array::from_fn(|k| super::root(stages, k));
+        let (all_nodes, all_weights): (Vec<_>, Vec<_>) = [-1.0, 1.0]
+            .iter()
+            .flat_map(|side| (0..PAIRS).map(move |k| (-side * nodes[k], 2.0 * coefficients.weights[k])))
+            .unzip();
+        let integral = |power: usize, to: f64| {
+            let power = i32::try_from(power).unwrap() + 1;
+            (to.powi(power) - (-1.0_f64).powi(power)) / f64::from(power)
+        };
+        for power in 0..2 * stages {
+            let sum: f64 = all_nodes
+                .iter()
+                .zip(&all_weights)
+                .map(|(x, b): (&f64, &f64)| b * x.powi(power.try_into().unwrap()))
+                .sum();
+            assert!((sum - integral(power, 1.0)).abs() < 1e-15, "{PAIRS} pairs, B, x^{power}: {sum}");
+        }
+        // 1/2 + σ, of stages in the order of `all_nodes`.
+        let mu = |i: usize, j: usize| {
+            let (row, column) = (i % PAIRS, j % PAIRS);
+            let (even, odd) = (coefficients.even[column][row], coefficients.odd[column][row]);
+            let sign = |stage: usize| if stage < PAIRS { 1.0 } else { -1.0 };
+            0.5 + sign(j) * even + sign(i) * odd
+        };
+        for (i, x) in all_nodes.iter().enumerate() {
+            for power in 0..stages {
+                let terms =
+                    (0..stages).map(|j| all_weights[j] * mu(i, j) * all_nodes[j].powi(power.try_into().unwrap()));
+                let error = terms.sum::<f64>() - integral(power, *x);
+                assert!(error.abs() < 1e-15, "{PAIRS} pairs, C, stage {i}, x^{power}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn they_are_gauss_s() {
+        assert_order_conditions::<1>();
+        assert_order_conditions::<2>();
+        assert_order_conditions::<3>();
+        assert_order_conditions::<4>();
+        assert_order_conditions::<8>();
+    }
+
+    #[test]
+    fn two_stages_are_those_of_the_books() {
+        let coefficients = Coefficients::<1>::new();
+        assert!((coefficients.weights[0] - 0.5).abs() < 2e-16);
+        // a_12 = 1/4 − √3/6 and a_21 = 1/4 + √3/6.
+        assert!((coefficients.odd[0][0] + 3.0_f64.sqrt() / 6.0).abs() < 2e-16);
+    }
+
+    /// A polynomial of the degree that they determine is continued exactly.
+    #[test]
+    fn stages_are_continued_by_their_polynomial() {
+        let coefficients = Coefficients::<2>::new();
+        let nodes: [f64; 2] = core::array::from_fn(|k| super::root(4, k));
+        let cubic = |x: f64| 1.0 + x * (0.5 - x * (2.0 + x));
+        let values = |shift: f64| {
+            [1.0, -1.0].map(|side| core::array::from_fn(|k| coefficients.weights[k] * cubic(shift + side * nodes[k])))
+        };
+        let (from, expected): ([[f64; 2]; 2], [[f64; 2]; 2]) = (values(0.0), values(2.0));
+        for (to, expected) in expected.iter().enumerate() {
+            for (i, expected) in expected.iter().enumerate() {
+                let terms = (0..2).flat_map(|side| (0..2).map(move |k| (side, k)));
+                let found: f64 = terms.map(|(side, k)| coefficients.continuation[side][to][k][i] * from[side][k]).sum();
+                assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+            }
+        }
+    }
+}

@@ -46,47 +46,25 @@ impl<L: DiscreteLagrangian<Group = SO3, Scalar = f64>> Lift<L> {
 
     /// The rates of change.
     #[inline(always)]
-    pub(super) fn rate(&self, &[a, b, c, d, e, f, g, h]: &Lifted) -> Lifted {
-        let (m1, m2, m3) = (
-            a * f - e * b - (c * h - d * g),
-            a * g - e * c - (d * f - b * h),
-            a * h - e * d - (b * g - c * f),
+    pub(super) fn rate(&self, place: &Lifted) -> Lifted {
+        let [q @ .., e, f, g, h] = *place;
+        let (j, m) = (&self.half_velocity, twice_momentum(place));
+        // Written out: nalgebra's product, a column at a time, makes a step a twentieth longer.
+        let half_velocity = Vector3::new(
+            j.m11 * m.x + j.m12 * m.y + j.m13 * m.z - self.half_bias.x,
+            j.m21 * m.x + j.m22 * m.y + j.m23 * m.z - self.half_bias.y,
+            j.m31 * m.x + j.m32 * m.y + j.m33 * m.z - self.half_bias.z,
         );
-        let (j, s) = (&self.half_velocity, &self.half_bias);
-        let (x, y, z) = (
-            j.m11 * m1 + j.m12 * m2 + j.m13 * m3 - s.x,
-            j.m21 * m1 + j.m22 * m2 + j.m23 * m3 - s.y,
-            j.m31 * m1 + j.m32 * m2 + j.m33 * m3 - s.z,
-        );
-        let turned = [
-            -(b * x + c * y + d * z),
-            a * x + (c * z - d * y),
-            a * y + (d * x - b * z),
-            a * z + (b * y - c * x),
-            -(f * x + g * y + h * z),
-            e * x + (g * z - h * y),
-            e * y + (h * x - f * z),
-            e * z + (f * y - g * x),
-        ];
+        let [a, b, c, d] = times(&q, &half_velocity);
+        let [e, f, g, h] = times(&[e, f, g, h], &half_velocity);
         // Without a potential this isn't in the program.
         if !L::PARTS.kick_before {
-            return turned;
+            return [a, b, c, d, e, f, g, h];
         }
-        let scale = 2.0 / (a * a + b * b + c * c + d * d);
-        let w = self.spatial.seen_from(&SO3::from_matrix_unchecked(rotation(&[a, b, c, d], scale)));
-        let torque = L::kick_before(&self.torque, &w);
-        let (x, y, z) = (scale * torque.x, scale * torque.y, scale * torque.z);
-        let [q0, q1, q2, q3, p0, p1, p2, p3] = turned;
-        [
-            q0,
-            q1,
-            q2,
-            q3,
-            p0 - (b * x + c * y + d * z),
-            p1 + (a * x + (c * z - d * y)),
-            p2 + (a * y + (d * x - b * z)),
-            p3 + (a * z + (b * y - c * x)),
-        ]
+        let scale = 2.0 / length_squared(place);
+        let w = self.spatial.seen_from(&SO3::from_matrix_unchecked(rotation(&q, scale)));
+        let [r, s, t, u] = times(&q, &(L::kick_before(&self.torque, &w) * scale));
+        [a, b, c, d, e + r, f + s, g + t, h + u]
     }
 }
 
@@ -108,24 +86,29 @@ pub(super) fn rotation(&[a, b, c, d]: &[f64; 4], scale: f64) -> Matrix3<f64> {
 
 /// `q` and the momentum `2 q Π` of a unit quaternion and a body momentum.
 pub(super) fn lifted(&[a, b, c, d]: &[f64; 4], momentum: &Vector3<f64>) -> Lifted {
-    let (x, y, z) = (2.0 * momentum.x, 2.0 * momentum.y, 2.0 * momentum.z);
+    let [e, f, g, h] = times(&[a, b, c, d], &(momentum * 2.0));
+    [a, b, c, d, e, f, g, h]
+}
+
+/// `2 Π = Im(q̄ p)`.
+#[inline(always)]
+pub(super) fn twice_momentum(&[a, b, c, d, e, f, g, h]: &Lifted) -> Vector3<f64> {
+    Vector3::new(a * f - e * b - (c * h - d * g), a * g - e * c - (d * f - b * h), a * h - e * d - (b * g - c * f))
+}
+
+/// The product of a quaternion and an imaginary one.
+#[inline(always)]
+fn times(&[a, b, c, d]: &[f64; 4], v: &Vector3<f64>) -> [f64; 4] {
     [
-        a,
-        b,
-        c,
-        d,
-        -(b * x + c * y + d * z),
-        a * x + (c * z - d * y),
-        a * y + (d * x - b * z),
-        a * z + (b * y - c * x),
+        -(b * v.x + c * v.y + d * v.z),
+        a * v.x + (c * v.z - d * v.y),
+        a * v.y + (d * v.x - b * v.z),
+        a * v.z + (b * v.y - c * v.x),
     ]
 }
 
-/// `Π = ½ Im(q̄ p)`.
-pub(super) fn momentum(&[a, b, c, d, e, f, g, h]: &Lifted) -> Vector3<f64> {
-    Vector3::new(
-        a * f - e * b - (c * h - d * g),
-        a * g - e * c - (d * f - b * h),
-        a * h - e * d - (b * g - c * f),
-    ) * 0.5
+/// `|q|²`.
+#[inline(always)]
+pub(super) fn length_squared(&[a, b, c, d, ..]: &Lifted) -> f64 {
+    a * a + b * b + c * c + d * d
 }

@@ -6,20 +6,15 @@ use super::coefficients::Coefficients;
 use super::lift::Lifted;
 use crate::error::StepError;
 
-/// A number for each component and each pair of stages.
-type Half<const PAIRS: usize> = [[f64; PAIRS]; 8];
+/// A number for each component and each stage: for those of the first half of the step, then for their mirror images.
+pub(super) type Numbers<const PAIRS: usize> = [[[f64; PAIRS]; 2]; 8];
 
-/// The `L_j = h b_j f(Y_j)` of a step: those of the first half of the stages, and those of their mirror images.
+/// The `L_j = h b_j f(Y_j)` of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stages<const PAIRS: usize> {
-    first: Half<PAIRS>,
-    second: Half<PAIRS>,
-}
+pub(super) struct Stages<const PAIRS: usize>(Numbers<PAIRS>);
 
-/// Relative to the unknowns: a quarter of a unit in the last place.
-const SETTLED: f64 = 0.25 * f64::EPSILON;
-
-/// Changes as small as these may be rounding: the iteration has settled where they don't fall any more.
+/// Changes as small as these, relative to the unknowns, may be rounding: the iteration has settled where they don't fall
+/// any more.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Where each iteration takes at least a factor of two, which is at the edge of convergence, they are enough.
@@ -28,27 +23,26 @@ const MOST_ITERATIONS: u32 = 60;
 impl<const PAIRS: usize> Stages<PAIRS> {
     /// Stages at which all rates are the same.
     pub(super) fn constant(change: &Lifted, weights: &[f64; PAIRS]) -> Self {
-        let half = change.map(|change| weights.map(|weight| weight * change));
-        Self { first: half, second: half }
+        Self(change.map(|change| [weights.map(|weight| weight * change); 2]))
     }
 
     /// The polynomial through these, continued to the stages of the next step.
     #[inline(always)]
     pub(super) fn continued(&self, coefficients: &Coefficients<PAIRS>) -> Self {
-        let [[first_first, first_second], [second_first, second_second]] = &coefficients.continuation;
-        let mut next = Self { first: [[0.0; PAIRS]; 8], second: [[0.0; PAIRS]; 8] };
-        for component in 0..8 {
-            let (first, second) = (&self.first[component], &self.second[component]);
-            next.first[component] = plus(&applied(first_first, first), &applied(second_first, second));
-            next.second[component] = plus(&applied(first_second, first), &applied(second_second, second));
+        let [from_first, from_second] = &coefficients.continuation;
+        let mut next = [[[0.0; PAIRS]; 2]; 8];
+        for (next, [first, second]) in next.iter_mut().zip(&self.0) {
+            for half in 0..2 {
+                next[half] = plus(&applied(&from_first[half], first), &applied(&from_second[half], second));
+            }
         }
-        next
+        Self(next)
     }
 
     /// `Σ L`, component by component.
     #[inline(always)]
     pub(super) fn change(&self) -> Lifted {
-        core::array::from_fn(|component| total(&plus(&self.first[component], &self.second[component])))
+        self.0.map(|[first, second]| total(&plus(&first, &second)))
     }
 
     /// Iterates from these until they are the stages from `y + carry`; returns how often.
@@ -61,32 +55,38 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         &mut self,
         coefficients: &Coefficients<PAIRS>,
         (y, carry): (&Lifted, &Lifted),
-        weighted_rate: impl Fn(&Half<PAIRS>) -> Half<PAIRS>,
+        weighted_rates: impl Fn(&Numbers<PAIRS>) -> Numbers<PAIRS>,
     ) -> Result<u32, StepError> {
-        let mut before = f64::INFINITY;
+        let (mut before, mut last) = (0.0, false);
         for iteration in 1..=MOST_ITERATIONS {
-            let (mut first, mut second) = ([[0.0; PAIRS]; 8], [[0.0; PAIRS]; 8]);
+            let mut places = [[[0.0; PAIRS]; 2]; 8];
             for component in 0..8 {
-                let (one, other) = (&self.first[component], &self.second[component]);
-                let sum = plus(one, other);
+                let [first, second] = &self.0[component];
+                let sum = plus(first, second);
                 let middle = y[component] + (carry[component] + 0.5 * total(&sum));
-                let even = applied(&coefficients.even, &minus(one, other)).map(|even| middle + even);
+                let even = applied(&coefficients.even, &minus(first, second)).map(|even| middle + even);
                 let odd = applied(&coefficients.odd, &sum);
-                first[component] = plus(&even, &odd);
-                second[component] = minus(&even, &odd);
+                places[component] = [plus(&even, &odd), minus(&even, &odd)];
             }
-            let next = Self { first: weighted_rate(&first), second: weighted_rate(&second) };
+            let next = Self(weighted_rates(&places));
+            if last {
+                *self = next;
+                return Ok(iteration);
+            }
             let change = next.distance(self, y);
             *self = next;
-            if change <= SETTLED * SETTLED || (change <= ROUNDING * ROUNDING && change >= before) {
+            // What is kept is kept as well as the last change is small. Changes fall by nearly the same factor each time,
+            // so that this one's factor tells whether the next change is rounding; that iteration is still made.
+            last = change * change <= f64::EPSILON * f64::EPSILON * before;
+            if change <= ROUNDING * ROUNDING && change >= before {
                 return Ok(iteration);
             }
             before = change;
             if !change.is_finite() {
-                return Err(StepError::NotConverged { iterations: iteration, residual: change });
+                break;
             }
         }
-        Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual: before.sqrt() })
+        Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual: f64::sqrt(before) })
     }
 
     /// The difference, that of the quaternion's stages relative to one and that of its momentum's to the momentum, both
@@ -94,14 +94,14 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     #[inline(always)]
     fn distance(&self, other: &Self, y: &Lifted) -> f64 {
         let squared = |component: usize| {
-            let first = minus(&self.first[component], &other.first[component]);
-            let second = minus(&self.second[component], &other.second[component]);
+            let ([first, second], [before_first, before_second]) = (&self.0[component], &other.0[component]);
+            let (first, second) = (minus(first, before_first), minus(second, before_second));
             plus(&first.map(|x| x * x), &second.map(|x| x * x))
         };
         let block = |from: usize| total(&(from + 1..from + 4).fold(squared(from), |sum, k| plus(&sum, &squared(k))));
         let (quaternion, momentum) = (block(0), block(4));
         // A body at rest has no momentum before the step.
-        let size: f64 = (4..8).map(|k| y[k] * y[k] + self.first[k][0] * self.first[k][0]).sum();
+        let size: f64 = (4..8).map(|k| y[k] * y[k] + self.0[k][0][0] * self.0[k][0][0]).sum();
         if momentum == 0.0 { quaternion } else { quaternion + momentum / size }
     }
 }

@@ -2,10 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::lift::{Lifted, lifted, momentum, rotation};
+use super::lift::{Lifted, length_squared, lifted, rotation, twice_momentum};
 use super::stages::Stages;
 use crate::advected::Advected;
-use crate::groups::SO3;
+use crate::groups::{LieGroup as _, SO3};
 use crate::state::State;
 
 /// Attitude and momentum at one time as [`Gauss`](super::Gauss) integrates them.
@@ -25,13 +25,13 @@ impl<const PAIRS: usize> GaussState<PAIRS> {
     #[must_use]
     pub fn attitude(&self) -> SO3 {
         let [a, b, c, d, ..] = self.lifted;
-        SO3::from_matrix_unchecked(rotation(&[a, b, c, d], 2.0 / (a * a + b * b + c * c + d * d)))
+        SO3::from_matrix_unchecked(rotation(&[a, b, c, d], 2.0 / length_squared(&self.lifted)))
     }
 
     /// The momentum `Π`, body frame, kg m²/s.
     #[must_use]
     pub fn momentum(&self) -> Vector3<f64> {
-        momentum(&self.lifted)
+        twice_momentum(&self.lifted) * 0.5
     }
 
     /// The momentum in space, `R Π`; constant where nothing is advected.
@@ -46,11 +46,10 @@ impl<const PAIRS: usize> GaussState<PAIRS> {
         self.spatial_momentum().dot(direction)
     }
 
-    /// How far the length of the quaternion is from one.
+    /// `‖RᵀR − I‖`: the attitude is a rotation but for the rounding of its entries.
     #[must_use]
-    pub fn length_defect(&self) -> f64 {
-        let [a, b, c, d, ..] = self.lifted;
-        (a * a + b * b + c * c + d * d - 1.0).abs()
+    pub fn orthogonality_defect(&self) -> f64 {
+        self.attitude().defect()
     }
 
     /// The number of steps made.
