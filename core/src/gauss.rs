@@ -43,7 +43,7 @@ use nalgebra::Vector3;
 /// `2 PAIRS` right-hand sides, computed several at once in SIMD lanes. That takes some 13 iterations where a step turns the
 /// body by three quarters of a radian, 20 at one and a half, and doesn't converge much beyond. So a coarse result isn't
 /// cheap, and a better one costs little more: it is the cheapest Poisson map for an asymmetric top under gravity from an
-/// error of 10⁻⁶ on, over long times from the coarsest. `cargo run --release --example accuracy-cost` measures it.
+/// error of 10⁻⁴ on, over long times from the coarsest. `cargo run --release --example accuracy-cost` measures it.
 ///
 /// # Contract
 ///
