@@ -83,7 +83,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
             }
             before = change;
             if !change.is_finite() {
-                break;
+                return Err(StepError::NotConverged { iterations: iteration, residual: change });
             }
         }
         Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual: f64::sqrt(before) })
