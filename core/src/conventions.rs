@@ -138,6 +138,9 @@
 //! | \[BM02\] | S. Blanes, P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, Journal of Computational and Applied Mathematics 142, 2002 |
 //! | \[ML95\] | R. I. McLachlan, *Composition methods in the presence of small parameters*, BIT 35, 1995 |
 //! | \[BCF13\] | S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, *New families of symplectic splitting methods for numerical integration in dynamical astronomy*, Applied Numerical Mathematics 68, 2013 |
+//! | \[HLW06\] | E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, 2nd edition, Springer, 2006 |
+//! | \[HW96\] | E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd edition, Springer, 1996 |
+//! | \[AMM17\] | M. Antoñana, J. Makazaga, A. Murua, *Reducing and monitoring round-off error propagation for symplectic implicit Runge–Kutta schemes*, Numerical Algorithms 76, 2017 |
 //! | \[HV06\] | E. Hairer, G. Vilmart, *Preprocessed discrete Moser–Veselov algorithm for the full dynamics of the rigid body*, Journal of Physics A 39, 2006 |
 //!
 //! The Lagrangian (3.13) gives the integrator of \[LML05\], with the same momentum; the discrete Legendre transforms and

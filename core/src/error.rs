@@ -100,7 +100,7 @@ pub enum StepError {
         /// The largest step that this state allows, s.
         largest: f64,
     },
-    /// Newton's iteration didn't settle.
+    /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::Gauss).
     NotConverged {
         /// How many iterations were made.
         iterations: u32,
@@ -127,7 +127,7 @@ impl fmt::Display for StepError {
             ),
             Self::NotConverged { iterations, residual } => write!(
                 f,
-                "Newton's iteration did not settle in {iterations} iterations (last relative update {residual:e}); try a smaller step"
+                "the iteration did not settle in {iterations} iterations (last relative update {residual:e}); try a smaller step"
             ),
             Self::WrongBranch { determinant } => write!(
                 f,

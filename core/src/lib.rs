@@ -7,7 +7,7 @@
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
 //! direction: `scalar ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ←
-//! stepper`, and on it `{composition, preprocessed ← splitting} ← accuracy`.
+//! stepper`, and on it `{composition, preprocessed ← splitting ← {accuracy, gauss}}`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
@@ -32,6 +32,7 @@ mod error;
 mod flows;
 mod force;
 mod functions;
+mod gauss;
 mod inertia;
 mod kinetic;
 mod lagrangian;
@@ -66,6 +67,7 @@ pub use entries::Entries;
 pub use error::{SetupError, StepError};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use force::Force;
+pub use gauss::{Gauss, GaussState};
 pub use groups::{Generators, LieGroup, MatrixGroup, NotARotation, NotInGroup};
 pub use groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2};
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};

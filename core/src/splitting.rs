@@ -7,6 +7,7 @@ mod preprocessed;
 mod scheme;
 mod spin;
 
+pub(crate) use kick::torque;
 pub use kinetic::{DeclaredDrift, KineticFlow, SymmetricBody, SymmetricDrift, Turn};
 pub use preprocessed::{PreprocessedDrift, PreprocessedFlow};
 pub use scheme::{Flow, SplittingScheme};
@@ -118,7 +119,7 @@ where
         if !difference.simd_le(inertia.trace() * T::simd_default_epsilon() * real(64.0)).all() {
             return Err(SetupError::AnotherInertia { difference: reported(difference) });
         }
-        let torque = kick::torque(stepper.lagrangian())?;
+        let torque = torque(stepper.lagrangian())?;
         let share = |(flow, part): (Flow, f64)| -> Result<_, SetupError> {
             let time = h * real(part);
             Ok(match flow {

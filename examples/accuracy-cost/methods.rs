@@ -1,7 +1,7 @@
 //! The methods, ours and others', behind one way to run them.
 
 use liestep::{
-    Composition, CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedBody, PreprocessedFlow,
+    Composition, CompositionScheme, DiscreteLagrangian, Gauss, KineticFlow, PreprocessedBody, PreprocessedFlow,
     PreprocessedOrder, Regular, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
@@ -116,7 +116,43 @@ pub(crate) fn ours(scene: &Scene) -> Vec<Method> {
             methods.extend(splittings("K6", Family::Poisson, Scene::top, |scene| Some(scene.sixth_order_body())));
         }
     }
+    if scene.kind == Kind::Free {
+        methods.extend(gauss(Scene::free_body));
+    } else {
+        methods.extend(gauss(Scene::top));
+    }
     methods
+}
+
+/// Gauss collocation with several numbers of stages.
+fn gauss<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> [Method; 4]
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
+{
+    [
+        collocation::<L, 1>(lagrangian),
+        collocation::<L, 2>(lagrangian),
+        collocation::<L, 3>(lagrangian),
+        collocation::<L, 4>(lagrangian),
+    ]
+}
+
+fn collocation<L, const PAIRS: usize>(lagrangian: impl Fn(&Scene) -> L + 'static) -> Method
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
+{
+    let name = format!("Gauss, {} stages", 2 * PAIRS);
+    Method::new(name, Family::Poisson, Control::Step(2.0), move |scene, t, h| {
+        let (gauss, steps) = (Gauss::<L, PAIRS>::new(lagrangian(scene), h).ok()?, count(t, h));
+        let start = gauss.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+        Some(Box::new(move || {
+            let mut state = start;
+            for _ in 0..steps {
+                gauss.step(&mut state).ok()?;
+            }
+            Some((*state.attitude().as_matrix(), gauss.velocity(&state)))
+        }))
+    })
 }
 
 /// The free body with modified moments of inertia.

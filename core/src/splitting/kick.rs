@@ -16,7 +16,7 @@ use crate::scalar::{Real, real, reported};
 /// # Errors
 ///
 /// [`SetupError::NotSeparable`] where the Lagrangian isn't `K(F) − (h/2) (V(w) + V(F⁻¹·w))`.
-pub(super) fn torque<T, L>(lagrangian: &L) -> Result<L::Constants, SetupError>
+pub(crate) fn torque<T, L>(lagrangian: &L) -> Result<L::Constants, SetupError>
 where
     T: Real,
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,

@@ -1,0 +1,176 @@
+//! Gauss's coefficients, by pairs of stages that mirror each other.
+
+/// Coefficients of a collocation with `2 PAIRS` stages on the unit interval.
+///
+/// Stage `k` of the first half has the node `c_k < 1/2`, its mirror image `k̄` the node `1 − c_k`. With `L_j = h b_j f(Y_j)`
+/// a step is `Y_i = y + Σ (1/2 + σ_ij) L_j`, `y⁺ = y + Σ L_j`, where `σ` is skew and changes its sign when both stages are
+/// mirrored. So one matrix `β` says it all:
+///
+/// ```text
+/// Y_i, Y_ī = y + Σ L/2 − Σ_k β_ki (L_k − L_k̄) ± Σ_k β_ik (L_k + L_k̄)
+/// ```
+///
+/// In this form the method is symplectic and symmetric for any `β`, hence for rounded ones: the conditions
+/// `b_i a_ij + b_j a_ji = b_i b_j` and `a_ij + a_īj̄ = b_j` hold exactly.
+///
+/// # Source
+///
+/// \[HW96\], theorem IV.5.6: `σ_ij = Σ ξ_k (P̃_k(c_i) P̃_{k−1}(c_j) − P̃_{k−1}(c_i) P̃_k(c_j))` with the normalised shifted
+/// Legendre polynomials; in Legendre's own, `ξ_k` and the norms multiply to `1/2`. The form in `L` is that of \[AMM17\].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Coefficients<const PAIRS: usize> {
+    /// `b_k`, of both stages of a pair.
+    pub(super) weights: [f64; PAIRS],
+    /// `β`, by columns: `[k][i]` is `β_ik`.
+    pub(super) odd: [[f64; PAIRS]; PAIRS],
+    /// `−βᵀ`, by columns: `[k][i]` is `−β_ki`.
+    pub(super) even: [[f64; PAIRS]; PAIRS],
+    /// From the `L` of a step to the values at the next step's nodes of the polynomial through them, by columns: first
+    /// those from the first half, then those from the second; to the first and to the second half.
+    pub(super) continuation: [[[[f64; PAIRS]; PAIRS]; 2]; 2],
+}
+
+impl<const PAIRS: usize> Coefficients<PAIRS> {
+    pub(super) fn new() -> Self {
+        let stages = 2 * PAIRS;
+        let nodes: [f64; PAIRS] = core::array::from_fn(|k| root(stages, k));
+        let weights = nodes.map(|x| {
+            let (value, before) = legendre_pair(stages, x);
+            // b = 1/((1 − x²) P_s'(x)²), with (1 − x²) P_s' = s (P_{s−1} − x P_s).
+            let slope = index(stages) * (before - x * value);
+            (1.0 - x * x) / (slope * slope)
+        });
+        let beta = |i: usize, k: usize| -> f64 {
+            let terms = (1..stages).map(|m| {
+                let (odd, even) = if m % 2 == 1 { (m, m - 1) } else { (m - 1, m) };
+                let product = legendre(odd, nodes[i]) * legendre(even, nodes[k]);
+                if m % 2 == 1 { product } else { -product }
+            });
+            0.5 * terms.sum::<f64>()
+        };
+        let extrapolated = |from: f64, to: f64, weight: f64| -> f64 {
+            let terms = (0..stages).map(|m| index(2 * m + 1) * legendre(m, to + 2.0) * legendre(m, from));
+            weight * terms.sum::<f64>()
+        };
+        let sides = [1.0, -1.0];
+        Self {
+            weights,
+            odd: columns(beta),
+            even: columns(|i, k| -beta(k, i)),
+            continuation: sides
+                .map(|from| sides.map(|to| columns(|i, k| extrapolated(from * nodes[k], to * nodes[i], weights[i])))),
+        }
+    }
+}
+
+fn columns<const PAIRS: usize>(entry: impl Fn(usize, usize) -> f64) -> [[f64; PAIRS]; PAIRS] {
+    core::array::from_fn(|k| core::array::from_fn(|i| entry(i, k)))
+}
+
+#[allow(clippy::cast_precision_loss)] // a few dozen at most
+fn index(n: usize) -> f64 {
+    n as f64
+}
+
+/// `P_n(x)`.
+fn legendre(n: usize, x: f64) -> f64 {
+    legendre_pair(n, x).0
+}
+
+/// `P_n(x)` and `P_{n−1}(x)`, by Bonnet's recurrence; zero for the one before the first.
+fn legendre_pair(n: usize, x: f64) -> (f64, f64) {
+    (0..n).fold((1.0, 0.0), |(value, before), m| {
+        ((index(2 * m + 1) * x * value - index(m) * before) / index(m + 1), value)
+    })
+}
+
+/// The `k`th root of `P_n` from the left, in `(−1, 0)`, by Newton's iteration from Tricomi's estimate.
+fn root(n: usize, k: usize) -> f64 {
+    let mut x = -(core::f64::consts::PI * (index(k) + 0.75) / (index(n) + 0.5)).cos();
+    // It is right to three digits at the start, so four iterations are one more than needed.
+    for _ in 0..4 {
+        let (value, before) = legendre_pair(n, x);
+        x -= value * (1.0 - x * x) / (index(n) * (before - x * value));
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Coefficients;
+
+    /// Butcher's simplifying assumptions `B(2s)` and `C(s)`, from which order `2s` follows for a symplectic method; in
+    /// powers of `x = 2c − 1`, which are well conditioned, on `[−1, 1]`.
+    fn assert_order_conditions<const PAIRS: usize>() {
+        let coefficients = Coefficients::<PAIRS>::new();
+        let stages = 2 * PAIRS;
+        let nodes: [f64; PAIRS] = core::array::from_fn(|k| super::root(stages, k));
+        let (all_nodes, all_weights): (Vec<_>, Vec<_>) = [-1.0, 1.0]
+            .iter()
+            .flat_map(|side| (0..PAIRS).map(move |k| (-side * nodes[k], 2.0 * coefficients.weights[k])))
+            .unzip();
+        let integral = |power: usize, to: f64| {
+            let power = i32::try_from(power).unwrap() + 1;
+            (to.powi(power) - (-1.0_f64).powi(power)) / f64::from(power)
+        };
+        for power in 0..2 * stages {
+            let sum: f64 = all_nodes
+                .iter()
+                .zip(&all_weights)
+                .map(|(x, b): (&f64, &f64)| b * x.powi(power.try_into().unwrap()))
+                .sum();
+            assert!((sum - integral(power, 1.0)).abs() < 1e-15, "{PAIRS} pairs, B, x^{power}: {sum}");
+        }
+        // 1/2 + σ, of stages in the order of `all_nodes`.
+        let mu = |i: usize, j: usize| {
+            let (row, column) = (i % PAIRS, j % PAIRS);
+            let (even, odd) = (coefficients.even[column][row], coefficients.odd[column][row]);
+            let sign = |stage: usize| if stage < PAIRS { 1.0 } else { -1.0 };
+            0.5 + sign(j) * even + sign(i) * odd
+        };
+        for (i, x) in all_nodes.iter().enumerate() {
+            for power in 0..stages {
+                let terms =
+                    (0..stages).map(|j| all_weights[j] * mu(i, j) * all_nodes[j].powi(power.try_into().unwrap()));
+                let error = terms.sum::<f64>() - integral(power, *x);
+                assert!(error.abs() < 1e-15, "{PAIRS} pairs, C, stage {i}, x^{power}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn they_are_gauss_s() {
+        assert_order_conditions::<1>();
+        assert_order_conditions::<2>();
+        assert_order_conditions::<3>();
+        assert_order_conditions::<4>();
+        assert_order_conditions::<8>();
+    }
+
+    #[test]
+    fn two_stages_are_those_of_the_books() {
+        let coefficients = Coefficients::<1>::new();
+        assert!((coefficients.weights[0] - 0.5).abs() < 2e-16);
+        // a_12 = 1/4 − √3/6 and a_21 = 1/4 + √3/6.
+        assert!((coefficients.odd[0][0] + 3.0_f64.sqrt() / 6.0).abs() < 2e-16);
+    }
+
+    /// A polynomial of the degree that they determine is continued exactly.
+    #[test]
+    fn stages_are_continued_by_their_polynomial() {
+        let coefficients = Coefficients::<2>::new();
+        let nodes: [f64; 2] = core::array::from_fn(|k| super::root(4, k));
+        let cubic = |x: f64| 1.0 + x * (0.5 - x * (2.0 + x));
+        let values = |shift: f64| {
+            [1.0, -1.0].map(|side| core::array::from_fn(|k| coefficients.weights[k] * cubic(shift + side * nodes[k])))
+        };
+        let (from, expected): ([[f64; 2]; 2], [[f64; 2]; 2]) = (values(0.0), values(2.0));
+        for (to, expected) in expected.iter().enumerate() {
+            for (i, expected) in expected.iter().enumerate() {
+                let terms = (0..2).flat_map(|side| (0..2).map(move |k| (side, k)));
+                let found: f64 = terms.map(|(side, k)| coefficients.continuation[side][to][k][i] * from[side][k]).sum();
+                assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+            }
+        }
+    }
+}

@@ -1,0 +1,287 @@
+//! Gauss collocation in quaternion and momentum.
+
+use liestep::{
+    DiscreteLagrangian, Effect as _, Gauss, GaussState, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody,
+    SO3, SetupError, StepError, effects,
+};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::common::measure::relative;
+use crate::common::random::Random;
+use crate::common::reference::{Motion, looping};
+use crate::common::structure::poisson::{TOLERANCE, defect_of};
+use crate::common::tops::{FreeBody, FullTop, HeavyTop};
+use crate::convergence::{End, TOPS, assert_order, counts};
+use crate::declarations::{FourthOrderTop, LogTop};
+
+/// `L` of `PAIRS` pairs of stages after so many steps.
+fn run<L, const PAIRS: usize>(gauss: &Gauss<L, PAIRS>, mut state: GaussState<PAIRS>, steps: u32) -> GaussState<PAIRS>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+{
+    for _ in 0..steps {
+        gauss.step(&mut state).unwrap();
+    }
+    state
+}
+
+fn end<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> End {
+    let gauss = Gauss::<_, PAIRS>::new(motion.top.clone(), h).unwrap();
+    let state = run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), steps);
+    (state.attitude(), gauss.velocity(&state))
+}
+
+#[test]
+fn two_stages_are_of_order_4() {
+    for (motion, coarsest) in TOPS.into_iter().zip([1500, 800, 1500, 160]) {
+        assert_order(("2 stages", 4), (motion, 10.0), &counts(coarsest, 1.5, 5), end::<1>);
+    }
+}
+
+#[test]
+fn four_stages_are_of_order_8() {
+    for (motion, coarsest) in TOPS.into_iter().zip([240, 120, 260, 70]) {
+        assert_order(("4 stages", 8), (motion, 10.0), &counts(coarsest, 1.25, 5), end::<2>);
+    }
+}
+
+/// On the two tops that leave room for five points between steps so long that higher powers count and rounding.
+#[test]
+fn six_stages_are_of_order_12() {
+    for (motion, (coarsest, ratio)) in TOPS.into_iter().zip([(92, 1.07), (48, 1.1)]) {
+        assert_order(("6 stages", 12), (motion, 10.0), &counts(coarsest, ratio, 5), end::<3>);
+    }
+}
+
+/// Order 16 goes from the first step that can be solved to rounding before the error falls by its sixteenth power alone;
+/// the coefficients are tested beside their definition. Here: what remains at a step of some 50°.
+#[test]
+fn eight_stages_reach_rounding_in_long_steps() {
+    for (motion, steps) in TOPS.into_iter().zip([90, 70, 90, 44]) {
+        let motion = Motion::read(motion);
+        let (attitude, velocity) = motion.at(10.0);
+        let found = end::<4>(&motion, 10.0 / f64::from(steps), steps);
+        let error = relative(found.0.as_matrix(), &attitude).hypot(relative(&found.1, &velocity));
+        assert!(error < 2e-13, "{steps} steps: {error:e}");
+    }
+}
+
+/// The map of momentum and parameters. A parameter off the orbit of the declared one is that of another top, whose
+/// vertical it is.
+fn poisson_defect<const PAIRS: usize>(top: &HeavyTop, h: f64, momentum: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
+    let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
+        let gauss = Gauss::<_, PAIRS>::new(HeavyTop { up: *w, ..top.clone() }, h).unwrap();
+        let state = run(&gauss, gauss.start_with_momentum(SO3::identity(), *momentum).unwrap(), 1);
+        (state.momentum(), gauss.advected(&state))
+    };
+    defect_of::<HeavyTop, 3, 3>(step, momentum, w).0
+}
+
+#[test]
+fn p1_collocation_is_a_poisson_map() {
+    let mut random = Random::new(51);
+    for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
+        for h in [0.1, 0.3] {
+            let (momentum, w) = (random.vector() * 3.0, random.vector());
+            let defects = [
+                poisson_defect::<1>(&top, h, &momentum, &w),
+                poisson_defect::<2>(&top, h, &momentum, &w),
+                poisson_defect::<3>(&top, h, &momentum, &w),
+                poisson_defect::<4>(&top, h, &momentum, &w),
+            ];
+            println!("h = {h}: {defects:?}");
+            assert!(defects.iter().all(|defect| *defect < TOLERANCE), "h = {h}: {defects:?}");
+        }
+    }
+}
+
+/// The same collocation of `Π' = Π × Ω + τ`, `w' = w × Ω` itself has the same order and isn't Poisson: the test above can
+/// tell the two apart.
+#[test]
+fn p1_collocation_of_the_reduced_equations_is_not_poisson() {
+    let top = HeavyTop::asymmetric();
+    let inverse = top.inertia().try_inverse().unwrap();
+    let h = 0.3;
+    let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
+        let rate = |(momentum, w): (Vector3<f64>, Vector3<f64>)| {
+            let velocity = inverse * momentum;
+            (momentum.cross(&velocity) + w.cross(&top.rho) * (top.m * top.g), w.cross(&velocity))
+        };
+        // Two stages, by fixed-point iteration.
+        let off = 3.0_f64.sqrt() / 6.0;
+        let a = [[0.25, 0.25 - off], [0.25 + off, 0.25]];
+        let mut k = [rate((*momentum, *w)); 2];
+        for _ in 0..100 {
+            k = a.map(|[one, other]| {
+                rate((momentum + (k[0].0 * one + k[1].0 * other) * h, w + (k[0].1 * one + k[1].1 * other) * h))
+            });
+        }
+        (momentum + (k[0].0 + k[1].0) * (0.5 * h), w + (k[0].1 + k[1].1) * (0.5 * h))
+    };
+    let (momentum, w) = (Vector3::new(2.0, -1.0, 3.0), Vector3::new(0.6, 0.0, 0.8));
+    let (reduced, _) = defect_of::<HeavyTop, 3, 3>(step, &momentum, &w);
+    let lifted = poisson_defect::<1>(&top, h, &momentum, &w);
+    println!("reduced {reduced:.1e}, lifted {lifted:.1e}");
+    assert!(reduced > 1e-6 && lifted < TOLERANCE, "{reduced:e}, {lifted:e}");
+}
+
+/// A million steps.
+fn assert_kept<const PAIRS: usize>(motion: &Motion, h: f64) {
+    let gauss = Gauss::<_, PAIRS>::new(motion.top.clone(), h).unwrap();
+    let start = gauss.start(motion.attitude, motion.velocity).unwrap();
+    let vertical = start.momentum_along(&Vector3::z());
+    let (mut drift, mut state) = (0.0_f64, start);
+    for _ in 0..100 {
+        state = run(&gauss, state, 10_000);
+        drift = drift.max(((state.momentum_along(&Vector3::z()) - vertical) / vertical).abs());
+    }
+    let orthogonality = state.attitude().defect();
+    let parameter = (gauss.advected(&state).norm() - 1.0).abs();
+    println!("{} stages: vertical {drift:.1e}, orthogonality {orthogonality:.1e}, |w| {parameter:.1e}", 2 * PAIRS);
+    assert!(drift < 5e-13 && orthogonality < 2e-15 && parameter < 1e-15, "{drift:e}, {orthogonality:e}, {parameter:e}");
+    let d = motion.top.J_d.diagonal();
+    if d.x.to_bits() == d.y.to_bits() {
+        let spin = (state.momentum().z - start.momentum().z).abs() / start.momentum().z.abs();
+        assert!(spin < 5e-13, "spin {spin:e}");
+    }
+}
+
+#[test]
+fn a_million_steps_keep_the_momenta() {
+    assert_kept::<4>(&looping(), 0.04);
+    assert_kept::<4>(&Motion::read(TOPS[3]), 0.2);
+}
+
+#[test]
+fn steps_of_few_stages_keep_the_momenta() {
+    assert_kept::<2>(&Motion::read(TOPS[3]), 0.05);
+}
+
+/// The largest error of the energy in the first and the second half of so many steps, relative.
+fn energy_errors<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> [f64; 2] {
+    let gauss = Gauss::<_, PAIRS>::new(motion.top.clone(), h).unwrap();
+    let mut state = gauss.start(motion.attitude, motion.velocity).unwrap();
+    let energy = gauss.energy(&state);
+    [0.0; 2].map(|start: f64| {
+        (0..steps / 2).fold(start, |worst, _| {
+            gauss.step(&mut state).unwrap();
+            worst.max(((gauss.energy(&state) - energy) / energy).abs())
+        })
+    })
+}
+
+/// The energy isn't quadratic: at a long step it comes and goes, and its error is no larger in the second half of the time.
+#[test]
+fn the_energy_does_not_drift() {
+    let [first, second] = energy_errors::<2>(&looping(), 0.15, 200_000);
+    println!("energy {first:.1e}, then {second:.1e}");
+    assert!(first > 1e-9 && second < 1.1 * first && second < 1e-5, "{first:e}, {second:e}");
+}
+
+/// At a step that describes the motion to rounding the energy is kept to rounding, on a chaotic motion too.
+#[test]
+fn the_energy_is_kept_at_shorter_steps() {
+    for (name, h) in [(TOPS[0], 0.1), (TOPS[3], 0.1)] {
+        let [first, second] = energy_errors::<4>(&Motion::read(name), h, 20_000);
+        println!("{name}: energy {first:.1e}, then {second:.1e}");
+        assert!(first < 1e-13 && second < 2e-13, "{name}: {first:e}, {second:e}");
+    }
+}
+
+#[test]
+fn s5_negative_collocation_step_is_the_inverse_map() {
+    let mut random = Random::new(52);
+    for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
+        let [there, back] = [0.1, -0.1].map(|h| Gauss::<_, 4>::new(top.clone(), h).unwrap());
+        for _ in 0..10 {
+            let before = there.start(random.rotation(), random.vector() * 3.0).unwrap();
+            let after = run(&back, run(&there, before, 1), 1);
+            let turned = (after.attitude().as_matrix() - before.attitude().as_matrix()).norm();
+            assert!(turned < 2e-15, "{turned:e}");
+            assert!(relative(&after.momentum(), &before.momentum()) < 2e-15);
+        }
+    }
+}
+
+/// Gravity along a general direction, a full inertia tensor, a rotor and a spring: against the fourth order of two stages
+/// with steps a fiftieth as long.
+#[test]
+fn scenes_of_several_effects_are_integrated() {
+    let J_d = NonstandardInertia::new(Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.5, 0.3, -0.1, 0.3, 1.0)).unwrap();
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.1, 0.2, 0.3), up: Vector3::new(0.0, 0.6, 0.8) };
+    let spring = effects::Spring { k: 2.0, length: 0.5, at: Vector3::x(), anchor: Vector3::new(0.0, 2.0, 1.0) };
+    let scene = RigidBody { J_d } + gravity + spring + effects::Rotor { spin: Vector3::new(0.5, 0.0, 1.0) };
+    let mut random = Random::new(53);
+    let (attitude, velocity) = (random.rotation(), random.vector());
+    let coarse = Gauss::<_, 4>::new(scene, 0.1).unwrap();
+    let fine = Gauss::<_, 1>::new(scene, 0.002).unwrap();
+    let start = coarse.start(attitude, velocity).unwrap();
+    let few = run(&coarse, start, 20);
+    let many = run(&fine, fine.start(attitude, velocity).unwrap(), 1000);
+    let missed = (few.attitude().as_matrix() - many.attitude().as_matrix()).norm();
+    assert!(missed < 1e-10 && relative(&few.momentum(), &many.momentum()) < 1e-10, "{missed:e}");
+    assert!((coarse.energy(&few) - coarse.energy(&start)).abs() < 1e-11);
+}
+
+/// The macro's kinetic part is replaced, and axes are free to choose.
+#[test]
+fn only_the_continuous_limit_matters() {
+    let motion = looping();
+    let log: LogTop = motion.top.declared_as();
+    let full = FullTop::in_axes(&motion.top, &Matrix3::identity());
+    let (a, b) = (Gauss::<_, 4>::new(log, 0.05).unwrap(), Gauss::<_, 4>::new(full, 0.05).unwrap());
+    let [a, b] = [
+        run(&a, a.start(motion.attitude, motion.velocity).unwrap(), 100).momentum(),
+        run(&b, b.start(motion.attitude, motion.velocity).unwrap(), 100).momentum(),
+    ];
+    let expected = {
+        let gauss = Gauss::<_, 4>::new(motion.top.clone(), 0.05).unwrap();
+        run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), 100).momentum()
+    };
+    assert!(relative(&a, &expected) < 1e-12 && relative(&b, &expected) < 1e-12);
+}
+
+#[test]
+fn a_free_body_keeps_its_spatial_momentum() {
+    let gauss = Gauss::<_, 4>::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.3).unwrap();
+    let start = gauss.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02)).unwrap();
+    let state = run(&gauss, start, 10_000);
+    assert!(relative(&state.spatial_momentum(), &start.spatial_momentum()) < 2e-14);
+}
+
+#[test]
+fn a_copy_goes_on_with_the_same_bits() {
+    let motion = looping();
+    let gauss = Gauss::<_, 3>::new(motion.top.clone(), 0.05).unwrap();
+    let state = run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), 10);
+    assert_eq!(run(&gauss, state, 10), run(&gauss, state, 10));
+    assert_eq!(state.steps(), 10);
+}
+
+#[test]
+fn a_body_at_rest_begins_to_move_and_one_that_nothing_moves_stays() {
+    let gauss = Gauss::<_, 2>::new(HeavyTop::asymmetric(), 0.05).unwrap();
+    let state = run(&gauss, gauss.start(SO3::identity(), Vector3::zeros()).unwrap(), 1);
+    assert!(state.momentum().norm() > 0.1);
+    let free = Gauss::<_, 2>::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.05).unwrap();
+    let start = free.start(SO3::identity(), Vector3::zeros()).unwrap();
+    assert_eq!(run(&free, start, 3).attitude(), start.attitude());
+}
+
+#[test]
+fn a_step_too_long_is_an_error_and_leaves_the_state() {
+    let motion = looping();
+    let gauss = Gauss::<_, 4>::new(motion.top.clone(), 2.0).unwrap();
+    let mut state = gauss.start(motion.attitude, motion.velocity).unwrap();
+    let before = state;
+    let error = gauss.step(&mut state).unwrap_err();
+    assert!(matches!(error, StepError::NotConverged { .. }), "{error:?}");
+    assert_eq!(state, before);
+}
+
+#[test]
+fn a_lagrangian_whose_potential_is_not_apart_is_refused() {
+    let coupled: FourthOrderTop = HeavyTop::thesis().declared_as();
+    let error = Gauss::<_, 4>::new(coupled, 0.01).unwrap_err();
+    assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
+}
