@@ -13,6 +13,7 @@ mod declarations;
 mod composition;
 mod conditions;
 mod convergence;
+mod for_accuracy;
 mod gauss;
 mod higher_order;
 mod preprocessed;

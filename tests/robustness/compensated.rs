@@ -78,13 +78,16 @@ fn print(title: &str, growth: &[[f64; 3]]) {
     }
 }
 
-/// A walk of independent roundings has the exponent ½, a systematic one has 1. Of 24 motions a root mean square is known
-/// to a seventh, and so the exponent over four decades to some hundredths.
+/// The attitude is corrected beyond 16 roundings. A walk of independent roundings has the exponent ½, a systematic one
+/// has 1. Of 24 motions a root mean square is known to a seventh, and so the exponent over four decades to some hundredths.
 #[test]
 fn t3_rounding_grows_like_the_square_root_of_the_steps() {
     let plain = growth(0.01, 24, false);
     print("plain", &plain);
-    for exponent in exponents(&plain) {
+    for sizes in &plain {
+        assert!(sizes[0] < 16.0 * f64::EPSILON, "orthogonality: {:e}", sizes[0]);
+    }
+    for exponent in &exponents(&plain)[1..] {
         assert!((exponent - 0.5).abs() < 0.1, "the exponent {exponent}");
     }
 }
@@ -94,7 +97,8 @@ fn t3_rounding_grows_like_the_square_root_of_the_steps() {
 fn t3_compensated_sums_lose_a_tenth_at_common_steps() {
     let (plain, compensated) = (growth(0.01, 24, false), growth(0.01, 24, true));
     print("compensated", &compensated);
-    for k in 0..3 {
+    // Of the two Casimirs; the attitude is corrected in both.
+    for k in 1..3 {
         let (plain, compensated) = (plain[4][k], compensated[4][k]);
         assert!(compensated < 0.1 * plain, "size {k} after 10⁶ steps: {compensated:e} against {plain:e}");
     }
@@ -107,7 +111,7 @@ fn t3_compensated_sums_lose_nothing_at_small_steps() {
     print("compensated", &compensated);
     let [orthogonality, length, momentum] = compensated[4];
     assert!(orthogonality < 3e-16 && length < 4e-16 && momentum < 4e-16, "{:?}", compensated[4]);
-    assert!(plain[4].iter().zip(compensated[4]).all(|(plain, compensated)| compensated < 0.02 * plain));
+    assert!(length < 0.02 * plain[4][1] && momentum < 0.02 * plain[4][2], "plain: {:?}", plain[4]);
 }
 
 /// `h = 10⁻⁸` and a million steps: the momentum against a thousand steps of `10⁻⁵`, whose own error is below `10⁻¹¹ h²`.

@@ -1,11 +1,6 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
-// The letters of the field.
-#![allow(non_snake_case)]
-
-mod common;
-
-use common::reference::Motion;
+use crate::common::reference::Motion;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
     Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, Composition, CompositionScheme,
