@@ -192,9 +192,9 @@ where
             }
             next.count(1);
             if let Some(spin) = self.spin
-                && next.steps.is_multiple_of(CORRECTED_EVERY)
+                && next.steps.is_multiple_of(u64::from(CORRECTED_EVERY))
             {
-                spin::make_good(spin * next.momentum.z, CORRECTED_EVERY as f64, &mut next);
+                spin::make_good(spin * next.momentum.z, f64::from(CORRECTED_EVERY), &mut next);
             }
         }
         if !(Coordinates::is_finite(&next.momentum) && Advected::is_finite(&next.advected)) {

@@ -23,7 +23,7 @@ pub struct State<G: LieGroup, A: Advected<G>> {
 }
 
 /// So rarely that it costs nothing, so often that the defect stays at some roundings.
-pub(crate) const CORRECTED_EVERY: u64 = 256;
+pub(crate) const CORRECTED_EVERY: u32 = 256;
 
 impl<G: LieGroup, A: Advected<G>> State<G, A> {
     pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, coordinates: G::Vector) -> Self {
@@ -55,9 +55,9 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
     /// would leave the group in proportion to the number of steps.
     #[inline(always)]
     pub(crate) fn count(&mut self, steps: u64) {
-        let before = self.steps;
+        let (before, every) = (self.steps, u64::from(CORRECTED_EVERY));
         self.steps += steps;
-        if before / CORRECTED_EVERY != self.steps / CORRECTED_EVERY {
+        if before / every != self.steps / every {
             self.correct();
         }
     }

@@ -124,7 +124,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     #[inline(always)]
     fn advance(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
         if drift.about_axis.simd_eq(T::zero()).all() {
-            let ((a11, a21, a31), (a12, a22, a32), (a13, a23, a33)) = rotation(p, drift.about_momentum);
+            let [(a11, a21, a31), (a12, a22, a32), (a13, a23, a33)] = rotation(p, drift.about_momentum);
             let increment = Matrix3::new(a11, a12, a13, a21, a22, a23, a31, a32, a33);
             return Ok(Turn { increment, change: Vector3::repeat(T::zero()), iterations: 0 });
         }
@@ -134,7 +134,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         let (s, v) = (angle * sinc, -(angle * angle * versine));
         let change = Vector3::new(v * p.x - s * p.y, v * p.y + s * p.x, T::zero());
 
-        let (a1, a2, a3) = rotation(p, drift.about_momentum);
+        let [a1, a2, a3] = rotation(p, drift.about_momentum);
         // D = A + B + A B, where B turns by −θ about the third axis: B_11 = B_22 = v, B_12 = −B_21 = s.
         let turned_1 = (a1.0 * v - a2.0 * s, a1.1 * v - a2.1 * s, a1.2 * v - a2.2 * s);
         let turned_2 = (a1.0 * s + a2.0 * v, a1.1 * s + a2.1 * v, a1.2 * s + a2.2 * v);
@@ -150,7 +150,7 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
 
 /// `exp(t p̂) − I` by Rodrigues' formula, column by column.
 #[inline(always)]
-fn rotation<T: Real>(p: &Vector3<T>, t: T) -> ((T, T, T), (T, T, T), (T, T, T)) {
+fn rotation<T: Real>(p: &Vector3<T>, t: T) -> [(T, T, T); 3] {
     let (x, y, z) = (p.x * t, p.y * t, p.z * t);
     let (xx, yy) = (x * x, y * y);
     // Where `p_3` is constant the rounding of its square is the same at each step, and would make turns that lengthen
@@ -161,7 +161,7 @@ fn rotation<T: Real>(p: &Vector3<T>, t: T) -> ((T, T, T), (T, T, T), (T, T, T)) 
     let (ax, ay, az) = (first * x, first * y, first * z);
     let (xy, xz, yz) = (second * x * y, second * x * z, second * y * z);
     let (d1, d2, d3) = (second * (yy + zz), second * both, second * (xx + yy));
-    ((-d1, xy + az, xz - ay), (xy - az, -d2, yz + ax), (xz + ay, yz - ax, -d3))
+    [(-d1, xy + az, xz - ay), (xy - az, -d2, yz + ax), (xz + ay, yz - ax, -d3)]
 }
 
 /// The flow of a declared Lagrangian without potential: any of its structure, to its order.
