@@ -168,6 +168,9 @@ impl<L: DiscreteLagrangian> Composition<L> {
             iterations += step.iterations;
         }
         next.steps += 1;
+        if next.is_due() {
+            next.restore(&self.lagrangian().advected());
+        }
         *state = next;
         Ok(StepReport { iterations, remedy: None })
     }

@@ -102,6 +102,9 @@ impl<T: Real> PreprocessedBody<T> {
     pub fn step(&self, state: &mut State<SO3<T>, ()>) -> Result<StepReport, StepError> {
         if self.h == T::zero() {
             state.steps += 1;
+            if state.is_due() {
+                state.restore(&());
+            }
             return Ok(StepReport { iterations: 0, remedy: None });
         }
         let root = match self.modified.solve(self.h, &state.momentum, &state.guess) {

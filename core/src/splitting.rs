@@ -163,11 +163,14 @@ where
             }
             let last = if remaining == 0 { &self.outer } else { &self.joint };
             self.make(last, &mut next, &mut iterations)?;
+            next.steps += 1;
+            if next.is_due() {
+                next.restore(&self.lagrangian().advected());
+            }
         }
         if !(Coordinates::is_finite(&next.momentum) && Advected::is_finite(&next.advected)) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        next.steps += steps;
         *state = next;
         Ok(StepReport { iterations, remedy: None })
     }

@@ -1,12 +1,16 @@
 //! The state of a motion, and what can be read off it.
 
-use nalgebra::{SimdBool as _, Vector3};
+use nalgebra::{SimdBool as _, SimdValue as _, Vector3};
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
 use crate::groups::{LieGroup, SO3};
 use crate::retraction::Retraction;
-use crate::scalar::{Real, real};
+use crate::scalar::{Mask, Real, real};
+
+/// How many steps go by between two looks at what roundings have done. Of the worst of them, the same in every step, a
+/// thousand make no more than is let pass.
+const LOOKS: u64 = 1024;
 
 /// Attitude, momentum and advected parameters at one time.
 ///
@@ -44,6 +48,23 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         }
         self.coordinates = coordinates;
         self.steps += 1;
+    }
+
+    /// Whether it is time to look how far roundings have gone.
+    #[inline(always)]
+    pub(crate) fn is_due(&self) -> bool {
+        self.steps.is_multiple_of(LOOKS)
+    }
+
+    /// Puts the attitude back into the group, and what is advected to what it sees, where roundings have taken it far;
+    /// `spatial` is the value `a_0` of what is advected. Returns the lanes in which that was so, if there is one.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn restore(&mut self, spatial: &A) -> Option<Mask<G::Scalar>> {
+        let (attitude, far) = self.attitude.restored()?;
+        self.attitude = attitude;
+        self.advected = spatial.seen_from(&attitude).zip(&self.advected, &mut |seen, w| seen.select(far, w));
+        Some(far)
     }
 
     /// The attitude `g_i`, body to space.

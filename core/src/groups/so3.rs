@@ -2,10 +2,10 @@
 
 use core::fmt;
 
-use nalgebra::{Matrix3, RealField, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
-use crate::scalar::{Real, gathered, real};
+use crate::scalar::{Mask, Real, gathered, real};
 use crate::solvability::{self, TurningLimits};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
@@ -215,6 +215,17 @@ impl<T: Real> LieGroup for SO3<T> {
     fn defect(&self) -> T {
         let gram = self.0.transpose() * self.0 - Matrix3::identity();
         gram.norm_squared().simd_sqrt()
+    }
+
+    /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar decomposition,
+    /// `½ R (3 I − RᵀR)`, which squares the defect.
+    fn restored(&self) -> Option<(Self, Mask<T>)> {
+        let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
+        far.any().then(|| {
+            let gram = self.0.transpose() * self.0;
+            let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
+            (Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry))), far)
+        })
     }
 }
 
