@@ -14,8 +14,8 @@ use liestep::{
 };
 use nalgebra::Vector3;
 
-/// `4K/ω` of the motion below to 17 digits, s.
-const TWO_FLIPS: f64 = 19.001_635_511_000_249;
+/// `4K/ω` of the motion below to 16 digits, s.
+const TWO_FLIPS: f64 = 19.001_635_511_000_25;
 /// Points that a passage is interpolated from, half of them on either side.
 const POINTS: usize = 10;
 

@@ -32,6 +32,8 @@ struct Body<T: Real> {
     J_d: NonstandardInertia<T>,
 }
 
+type TopState = State<SO3<f32>, Vector3<f32>>;
+
 const EPSILON: f64 = f32::EPSILON as f64;
 
 fn vector<T: RealField + Copy>(vector: &Vector3<f64>) -> Vector3<T> {
@@ -45,7 +47,7 @@ fn double(vector: &Vector3<f32>) -> Vector3<f64> {
 /// The top of a motion, and where it starts.
 fn top<T: RealField + Copy>(motion: &Motion) -> Top<T> {
     Top {
-        J_d: DiagonalNonstandardInertia::new(vector(&motion.top.J_d.diagonal())).unwrap(),
+        J_d: DiagonalNonstandardInertia::new(vector(motion.top.J_d.diagonal())).unwrap(),
         m: convert(motion.top.m),
         g: convert(motion.top.g),
         rho: vector(&motion.top.rho),
@@ -57,7 +59,7 @@ fn attitude<T: RealField + Copy>(motion: &Motion) -> SO3<T> {
     SO3::from_matrix_unchecked(motion.attitude.matrix().map(|entry| convert(entry)))
 }
 
-fn started(motion: &Motion, h: f64) -> (Stepper<Top<f32>>, State<SO3<f32>, Vector3<f32>>) {
+fn started(motion: &Motion, h: f64) -> (Stepper<Top<f32>>, TopState) {
     let stepper = Stepper::new(top(motion), convert(h)).unwrap();
     let state = stepper.start(attitude(motion), vector(&motion.velocity)).unwrap();
     (stepper, state)
@@ -93,7 +95,7 @@ fn p8_a_million_steps_stay_on_the_group() {
     let vertical = state.momentum().dot(&state.advected());
     // In double precision, so that what is measured isn't the rounding of the measurement.
     let moments = stepper.lagrangian().inertia().diagonal().map(f64::from);
-    let energy = |state: &State<SO3<f32>, Vector3<f32>>| {
+    let energy = |state: &TopState| {
         let p = double(&state.momentum());
         0.5 * p.dot(&p.component_div(&moments)) + f64::from(stepper.lagrangian().potential(&state.advected()))
     };
