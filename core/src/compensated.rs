@@ -7,13 +7,14 @@
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
-use crate::effect::{Effect, Group, Vector};
+use crate::effect::{Effect, Group, Scalar, Vector};
 use crate::entries::{Entries, zero};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::scalar::{Real, real};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
+use nalgebra::SimdValue as _;
 
 /// A [`Stepper`] with compensated sums, by [`Stepper::compensated`].
 ///
@@ -144,7 +145,21 @@ impl<L: Effect> CompensatedStepper<L> {
         now.momentum = momentum.0;
         now.advected = advected.0;
         now.proceed::<L::Retraction>(solved.root.xi);
+        if now.is_due() {
+            self.restore(state);
+        }
         Ok(StepReport { iterations: solved.root.iterations, remedy: None })
+    }
+
+    /// What is carried belongs to the state before.
+    #[cold]
+    #[inline(never)]
+    fn restore(&self, CompensatedState { state, carry }: &mut CompensatedState<Group<L>, L::Advected>) {
+        if let Some(far) = state.restore(&self.stepper.lagrangian().advected()) {
+            let mut kept = |carry: Scalar<L>, nothing: Scalar<L>| nothing.select(far, carry);
+            carry.attitude = carry.attitude.zip(&zero(), &mut kept);
+            carry.advected = carry.advected.zip(&zero(), &mut kept);
+        }
     }
 }
 

@@ -167,7 +167,10 @@ impl<L: DiscreteLagrangian> Composition<L> {
             next.coordinates = step.coordinates;
             iterations += step.iterations;
         }
-        next.count(1);
+        next.steps += 1;
+        if next.is_due() {
+            next.restore(&self.lagrangian().advected());
+        }
         *state = next;
         Ok(StepReport { iterations, remedy: None })
     }

@@ -50,7 +50,7 @@ pub enum SetupError {
 impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Parameter { field, cause } => write!(f, "parameter `{field}` {cause}"),
+            Self::Parameter { field, cause } => write!(f, "parameter `{field}` {cause}; give it another value"),
             Self::InvalidStep { step } => {
                 write!(
                     f,
@@ -59,19 +59,22 @@ impl fmt::Display for SetupError {
             }
             Self::SingularKinetic { determinant } => write!(
                 f,
-                "the kinetic part is singular at the identity (determinant {determinant:e}): a momentum doesn't determine a velocity"
+                "the kinetic part is singular at the identity (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia"
             ),
-            Self::NonFinite { what } => write!(f, "the initial {what} is not finite"),
+            Self::NonFinite { what } => write!(f, "the initial {what} is not finite; give finite numbers"),
             Self::NotInGroup { defect } => {
-                write!(f, "the initial attitude is not in the group (defect {defect:e}); normalise it first")
+                write!(
+                    f,
+                    "the initial attitude is not in the group (defect {defect:e}, more than rounding); normalise it first"
+                )
             }
             Self::NotSeparable { defect } => write!(
                 f,
-                "the Lagrangian is not K(F) − (h/2) (V(w) + V(F⁻¹·w)) (defect {defect:e}), so it can't be split; compose it instead"
+                "the Lagrangian is not K(F) − (h/2) (V(w) + V(F⁻¹·w)) (defect {defect:e}, more than rounding), so it can't be split; compose it instead"
             ),
             Self::AnotherInertia { difference } => write!(
                 f,
-                "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}"
+                "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
             ),
             Self::AnotherPotential => {
                 write!(f, "one of the methods to choose from has another potential than the first")
@@ -120,10 +123,12 @@ pub enum StepError {
 impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NonFinite { what } => write!(f, "the {what} is not finite"),
+            Self::NonFinite { what } => {
+                write!(f, "the {what} is not finite; choose units in which the numbers are nearer to one")
+            }
             Self::BeyondSolvable { step, largest } => write!(
                 f,
-                "no solution at the step {step:e} s: the body would turn too far; the largest step from this state is {largest:e} s"
+                "no solution at the step {step:e} s: the body would turn too far; the largest step from this state is {largest:e} s; take a smaller one"
             ),
             Self::NotConverged { iterations, residual } => write!(
                 f,
@@ -131,7 +136,7 @@ impl fmt::Display for StepError {
             ),
             Self::WrongBranch { determinant } => write!(
                 f,
-                "the solution found doesn't continue the identity (Jacobian determinant {determinant:e}); try a smaller step"
+                "the solution found doesn't continue the identity (Jacobian determinant {determinant:e}: its sign or that of the trace is wrong); try a smaller step"
             ),
             Self::Singular => write!(f, "the Newton Jacobian is singular; try a smaller step"),
         }
@@ -139,3 +144,6 @@ impl fmt::Display for StepError {
 }
 
 impl core::error::Error for StepError {}
+
+#[cfg(test)]
+mod tests;

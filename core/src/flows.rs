@@ -12,7 +12,7 @@ use crate::newton::{Problem, Root, orientation, trusted_radius};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
 use crate::solvability::{Solvability, TurningLimits};
-use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The discrete advected Lie–Poisson flow `(μ_i, w_i) ↦ (μ_{i+1}, w_{i+1})`, \[RDAE, (2.8), (2.9)\].
 ///
@@ -23,8 +23,8 @@ pub struct DiscreteLiePoisson<L: Effect> {
     h: Scalar<L>,
     constants: L::Constants,
     orientation: Scalar<L>,
-    /// Of the Newton Jacobian, far beyond those of steps that have a solution.
-    largest_determinant: Scalar<L>,
+    /// The square of a right side far beyond those of steps that have a solution.
+    largest_target: Scalar<L>,
     trusted: Scalar<L>,
 }
 
@@ -81,16 +81,17 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         }
         let constants = lagrangian.constants(h);
         let orientation = orientation(h, <Group<L> as LieGroup>::DIMENSION);
-        let at_rest = determinant_at_rest(&lagrangian, &constants);
+        let (at_rest, trace) = jacobian_at_rest(&lagrangian, &constants);
         // With an extreme `h` the Newton system can't be solved in this scalar.
         let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        let largest_determinant = at_rest.simd_abs() * real(DETERMINANT_RATIO);
+        let largest = trace * real(RATIO) / Scalar::<L>::simd_default_epsilon();
+        let largest_target = largest * largest;
         let is_dear = L::JACOBIAN_IS_DEAR && h != real(0.0);
         let trusted = if is_dear { trusted_radius(&lagrangian, &constants, h) } else { real(0.0) };
-        Ok(Self { lagrangian, h, constants, orientation, largest_determinant, trusted })
+        Ok(Self { lagrangian, h, constants, orientation, largest_target, trusted })
     }
 
     /// The declared Lagrangian.
@@ -167,7 +168,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         guess: &Vector<L>,
     ) -> Result<Solved<L>, StepError> {
         let problem = self.problem(momentum, advected);
-        let root = match problem.solve_directly(guess, self.largest_determinant) {
+        let root = match problem.solve_directly(guess, self.largest_target) {
             Some(root) => root,
             None => self.solve_carefully(momentum, advected, guess)?,
         };
@@ -340,14 +341,14 @@ pub fn reconstruct<G: LieGroup>(g: &G, f: &G) -> G {
     g.advance(&f.increment())
 }
 
-/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. While that is `10¹²` times larger
-/// its rounding doesn't reach the former, and the determinant is then about as many times larger.
-const DETERMINANT_RATIO: f64 = 1e12;
+/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times the
+/// former, `10¹²` times in `f64`, the rounding of the latter doesn't reach it.
+const RATIO: f64 = 1.0 / 4096.0;
 
-/// The determinant of the Newton system for a body at rest.
-fn determinant_at_rest<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
+/// Determinant and trace of the Newton system for a body at rest.
+fn jacobian_at_rest<L: Effect>(lagrangian: &L, constants: &L::Constants) -> (Scalar<L>, Scalar<L>) {
     let zero = Vector::<L>::zero();
     let terms = L::step_terms(constants, &zero, &lagrangian.advected());
     let (_, jacobian) = L::newton_system(constants, &terms, &zero);
-    Vector::<L>::solve(&jacobian, &zero).1
+    (Vector::<L>::solve(&jacobian, &zero).1, Vector::<L>::trace(&jacobian))
 }

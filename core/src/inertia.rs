@@ -48,13 +48,16 @@ pub enum InertiaError {
 impl fmt::Display for InertiaError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFinite => write!(f, "the inertia has an entry that is not finite"),
+            Self::NotFinite => write!(f, "the inertia has an entry that is not finite; give finite numbers"),
             Self::NotSymmetric { defect } => {
-                write!(f, "the inertia is not symmetric: two entries differ by {defect:e}")
+                write!(
+                    f,
+                    "the inertia is not symmetric: two entries differ by {defect:e}, more than rounding; give it symmetric"
+                )
             }
             Self::TriangleInequality { smallest } => write!(
                 f,
-                "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others"
+                "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given"
             ),
             Self::Singular { smallest } => write!(
                 f,

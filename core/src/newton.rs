@@ -85,8 +85,8 @@ pub(crate) struct Problem<'a, L: Effect> {
 impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
-    /// What it returns is what [`solve`](Self::solve) returns. A determinant above `largest` is doubtful: where the right
-    /// side is so large that the Jacobian is lost in its rounding, an update may vanish far from any solution.
+    /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is doubtful:
+    /// the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
     /// Nothing here is lent to a function that isn't inlined, so that all of it can stay in registers; that is a sixth
     /// of the time of a step.
@@ -103,7 +103,7 @@ impl<L: Effect> Problem<'_, L> {
             lanes.advance(&update, det, &update);
             if lanes.settled.all() {
                 let xi = lanes.xi;
-                let usual = self.is_oriented(lanes.det) & (lanes.det * self.orientation).simd_lt(largest);
+                let usual = self.is_oriented(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
                 if !usual.all() || !L::Retraction::is_near_identity(&xi).all() {
                     return None;
                 }

@@ -101,7 +101,7 @@ impl<T: Real> PreprocessedBody<T> {
     #[inline]
     pub fn step(&self, state: &mut State<SO3<T>, ()>) -> Result<StepReport, StepError> {
         if self.h == T::zero() {
-            state.count(1);
+            state.steps += 1;
             return Ok(StepReport { iterations: 0, remedy: None });
         }
         let root = match self.modified.solve(self.h, &state.momentum, &state.guess) {
@@ -117,7 +117,10 @@ impl<T: Real> PreprocessedBody<T> {
             state.guess += root.xi - state.coordinates;
         }
         state.coordinates = root.xi;
-        state.count(1);
+        state.steps += 1;
+        if state.is_due() {
+            state.restore(&());
+        }
         Ok(StepReport { iterations: root.iterations, remedy: None })
     }
 

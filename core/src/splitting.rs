@@ -20,7 +20,7 @@ use crate::groups::{LieGroup as _, SO3};
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
 use crate::scalar::{Real, real, reported};
-use crate::state::{CORRECTED_EVERY, State};
+use crate::state::{LOOKS, State};
 use crate::stepper::{StepReport, Stepper};
 use nalgebra::{SimdBool as _, Vector3};
 
@@ -190,11 +190,12 @@ where
             if let Some(spin) = self.spin {
                 spin::turn(spin * next.momentum.z, &mut next);
             }
-            next.count(1);
-            if let Some(spin) = self.spin
-                && next.steps.is_multiple_of(u64::from(CORRECTED_EVERY))
-            {
-                spin::make_good(spin * next.momentum.z, f64::from(CORRECTED_EVERY), &mut next);
+            next.steps += 1;
+            if next.is_due() {
+                if let Some(spin) = self.spin {
+                    spin::make_good(spin * next.momentum.z, LOOKS, &mut next);
+                }
+                next.restore(&self.lagrangian().advected());
             }
         }
         if !(Coordinates::is_finite(&next.momentum) && Advected::is_finite(&next.advected)) {

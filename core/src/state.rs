@@ -1,12 +1,16 @@
 //! The state of a motion, and what can be read off it.
 
-use nalgebra::{SimdBool as _, Vector3};
+use nalgebra::{SimdBool as _, SimdValue as _, Vector3};
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
 use crate::groups::{LieGroup, SO3};
 use crate::retraction::Retraction;
-use crate::scalar::{Real, real};
+use crate::scalar::{Mask, Real, real};
+
+/// How many steps go by between two looks at what roundings have done. Of the worst of them, the same in every step, a
+/// thousand make no more than is let pass.
+pub(crate) const LOOKS: u32 = 1024;
 
 /// Attitude, momentum and advected parameters at one time.
 ///
@@ -21,9 +25,6 @@ pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) guess: G::Vector,
     pub(crate) steps: u64,
 }
-
-/// So rarely that it costs nothing, so often that the defect stays at some roundings.
-pub(crate) const CORRECTED_EVERY: u32 = 256;
 
 impl<G: LieGroup, A: Advected<G>> State<G, A> {
     pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, coordinates: G::Vector) -> Self {
@@ -46,27 +47,24 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
             self.guess = coordinates.select(far, self.guess);
         }
         self.coordinates = coordinates;
-        self.count(1);
+        self.steps += 1;
     }
 
-    /// Counts steps, of which the attitude has been made, and now and then corrects it.
-    ///
-    /// The rounding of an increment is the same wherever the increment is: in a motion that repeats itself the attitude
-    /// would leave the group in proportion to the number of steps.
+    /// Whether it is time to look how far roundings have gone.
     #[inline(always)]
-    pub(crate) fn count(&mut self, steps: u64) {
-        let (before, every) = (self.steps, u64::from(CORRECTED_EVERY));
-        self.steps += steps;
-        if before / every != self.steps / every {
-            self.correct();
-        }
+    pub(crate) fn is_due(&self) -> bool {
+        self.steps.is_multiple_of(u64::from(LOOKS))
     }
 
-    /// Apart, so that the steps themselves stay short.
+    /// Puts the attitude back into the group, and what is advected to what it sees, where roundings have taken it far;
+    /// `spatial` is the value `a_0` of what is advected. Returns the lanes in which that was so, if there is one.
     #[cold]
     #[inline(never)]
-    fn correct(&mut self) {
-        self.attitude = self.attitude.corrected();
+    pub(crate) fn restore(&mut self, spatial: &A) -> Option<Mask<G::Scalar>> {
+        let (attitude, far) = self.attitude.restored()?;
+        self.attitude = attitude;
+        self.advected = spatial.seen_from(&attitude).zip(&self.advected, &mut |seen, w| seen.select(far, w));
+        Some(far)
     }
 
     /// The attitude `g_i`, body to space.

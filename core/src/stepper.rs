@@ -175,6 +175,9 @@ impl<L: Effect> Stepper<L> {
         state.momentum = step.momentum;
         state.advected = step.advected;
         state.proceed::<L::Retraction>(step.coordinates);
+        if state.is_due() {
+            state.restore(&self.lagrangian().advected());
+        }
         Ok(StepReport { iterations: step.iterations, remedy: None })
     }
 

@@ -146,7 +146,7 @@ fn mistakes_have_places() {
         error: top.toml:9:18: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
         error: top.toml:9:7: invalid type: floating point `1.0`, expected a sequence
         error: top.toml:10:6: a direction can't be zero
-        error: top.toml:4:11: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others
+        error: top.toml:4:11: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given
         error: top.toml:4:11: a body has either `moments` (of inertia) or `J_d` (nonstandard)
         error: top.toml:16:14: `quaternion` has the four components w, x, y, z, found 3
         error: top.toml:16:14: `quaternion` can't be zero

@@ -39,15 +39,19 @@ const DECADES: [u64; 5] = [100, 1_000, 10_000, 100_000, 1_000_000];
 
 /// For each decade of steps the sizes of the defects over a number of motions.
 fn growth(h: f64, motions: u64, compensated: bool) -> Vec<[f64; 3]> {
+    growth_over(DECADES, h, motions, compensated)
+}
+
+fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Vec<[f64; 3]> {
     let mut random = Random::new(6);
     let stepper = Stepper::new(HeavyTop::asymmetric(), h).unwrap();
-    let mut found = vec![Vec::new(); DECADES.len()];
+    let mut found = vec![Vec::new(); decades.len()];
     for _ in 0..motions {
         let start = stepper.start(random.rotation(), random.vector() * 4.0).unwrap();
         let vertical = start.momentum().dot(&start.advected());
         let (mut plain, mut kept, carrying) = (start, CompensatedState::from(start), stepper.clone().compensated());
         let mut done = 0;
-        for (decade, steps) in DECADES.into_iter().enumerate() {
+        for (decade, steps) in decades.into_iter().enumerate() {
             for _ in done..steps {
                 if compensated {
                     carrying.step(&mut kept).unwrap();
@@ -66,29 +70,48 @@ fn growth(h: f64, motions: u64, compensated: bool) -> Vec<[f64; 3]> {
 #[allow(clippy::cast_precision_loss)] // a million
 fn exponents(growth: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
+        // Four decades, whichever they are.
         let points: Vec<_> = DECADES.iter().zip(growth).map(|(n, sizes)| ((*n as f64).ln(), sizes[k].ln())).collect();
         slope(&points)
     })
 }
 
 fn print(title: &str, growth: &[[f64; 3]]) {
+    print_over(DECADES, title, growth);
+}
+
+fn print_over(decades: [u64; 5], title: &str, growth: &[[f64; 3]]) {
     println!("{title}: ‖RRᵀ − I‖, |w|², p·w grow like N to the {:.2?}", exponents(growth));
-    for (steps, sizes) in DECADES.iter().zip(growth) {
+    for (steps, sizes) in decades.iter().zip(growth) {
         println!("{steps:>9} steps {:9.1e} {:9.1e} {:9.1e}", sizes[0], sizes[1], sizes[2]);
     }
 }
 
-/// The attitude is corrected beyond 16 roundings. A walk of independent roundings has the exponent ½, a systematic one
-/// has 1. Of 24 motions a root mean square is known to a seventh, and so the exponent over four decades to some hundredths.
+/// A walk of independent roundings has the exponent ½, a systematic one has 1. Of 24 motions a root mean square is known
+/// to a seventh, and so the exponent over four decades to some hundredths.
 #[test]
 fn t3_rounding_grows_like_the_square_root_of_the_steps() {
     let plain = growth(0.01, 24, false);
     print("plain", &plain);
-    for sizes in &plain {
-        assert!(sizes[0] < 16.0 * f64::EPSILON, "orthogonality: {:e}", sizes[0]);
-    }
-    for exponent in &exponents(&plain)[1..] {
+    for exponent in exponents(&plain) {
         assert!((exponent - 0.5).abs() < 0.1, "the exponent {exponent}");
+    }
+}
+
+/// Four motions, so the exponents are known to a tenth only. The attitude is put back where it has gone some 10⁻¹³ from
+/// the group, and `w` with it; `p·w` walks on.
+#[test]
+#[ignore = "eight hundred million steps"]
+fn t3_rounding_up_to_a_hundred_million_steps() {
+    let decades = [10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+    for (title, compensated) in [("plain", false), ("compensated", true)] {
+        let growth = growth_over(decades, 0.01, 4, compensated);
+        print_over(decades, title, &growth);
+        let exponent = exponents(&growth)[2];
+        assert!((exponent - 0.5).abs() < 0.2, "{title}: the exponent of p·w is {exponent}");
+        for sizes in &growth {
+            assert!(sizes[0] <= 2e-12 && sizes[1] <= 3e-12 && sizes[2] <= 3e-12, "{title}: {sizes:?}");
+        }
     }
 }
 
@@ -97,8 +120,7 @@ fn t3_rounding_grows_like_the_square_root_of_the_steps() {
 fn t3_compensated_sums_lose_a_tenth_at_common_steps() {
     let (plain, compensated) = (growth(0.01, 24, false), growth(0.01, 24, true));
     print("compensated", &compensated);
-    // Of the two Casimirs; the attitude is corrected in both.
-    for k in 1..3 {
+    for k in 0..3 {
         let (plain, compensated) = (plain[4][k], compensated[4][k]);
         assert!(compensated < 0.1 * plain, "size {k} after 10⁶ steps: {compensated:e} against {plain:e}");
     }
@@ -111,7 +133,7 @@ fn t3_compensated_sums_lose_nothing_at_small_steps() {
     print("compensated", &compensated);
     let [orthogonality, length, momentum] = compensated[4];
     assert!(orthogonality < 3e-16 && length < 4e-16 && momentum < 4e-16, "{:?}", compensated[4]);
-    assert!(length < 0.02 * plain[4][1] && momentum < 0.02 * plain[4][2], "plain: {:?}", plain[4]);
+    assert!(plain[4].iter().zip(compensated[4]).all(|(plain, compensated)| compensated < 0.02 * plain));
 }
 
 /// `h = 10⁻⁸` and a million steps: the momentum against a thousand steps of `10⁻⁵`, whose own error is below `10⁻¹¹ h²`.

@@ -5,8 +5,11 @@ use crate::common::reference::{Motion, looping};
 use crate::common::tops::{FreeBody, FullTop, HeavyTop, moments};
 use crate::declarations::CayleyTop;
 use liestep::effects::{Gravity, RigidBody};
-use liestep::{DiscreteLiePoisson, LieGroup as _, NonstandardInertia, Regular, SO3, Solvability, StepError, Stepper};
-use nalgebra::Vector3;
+use liestep::{
+    DiagonalNonstandardInertia, DiscreteLiePoisson, LieGroup as _, NonstandardInertia, Regular, SO3, Solvability,
+    StepError, Stepper,
+};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// Steps and directions all around the two bounds: the sure ones have a solution under 90°, the impossible ones none.
 fn assert_bounds_hold<L>(lagrangian: &L, seed: u64)
@@ -116,4 +119,26 @@ fn s1_the_largest_step_of_extreme_momenta() {
         let flow = DiscreteLiePoisson::new(top.clone(), largest).unwrap();
         assert!(flow.step(&momentum, &Vector3::z(), &Vector3::zeros()).is_ok(), "10^{exponent}: {largest:e}");
     }
+}
+
+/// A weight so large that the Jacobian is lost in its rounding, with numbers whose products cancel to the last digit: an
+/// update then vanishes far from any solution, and the determinant looks like any other.
+#[test]
+fn s1_a_lost_jacobian_is_no_solution() {
+    let size = 7.477_080_264_543_605e20;
+    let J_d = DiagonalNonstandardInertia::new(Vector3::new(2.0, size, size)).unwrap();
+    let (weight, rho) = (3.033_333_333_333_333, Vector3::repeat(size));
+    let top = HeavyTop { J_d, m: weight, g: 3.689_588_068_472_114e19, rho, up: rho };
+    let stepper = Stepper::new(top, 1.0).unwrap();
+    // Half a turn about the first axis, but for rounding.
+    let attitude = UnitQuaternion::from_quaternion(Quaternion::new(
+        2.0,
+        -5.467_417_454_560_923e120,
+        7.477_078_768_755_388e20,
+        4.180_769_147_311_568e-178,
+    ));
+    let momentum = Vector3::new(4.180_672_277_983_657_4e-178, 7.477_079_692_797_558e20, 4.476_409_895_220_184_4e20);
+    let mut state = stepper.start_with_momentum(attitude, momentum).unwrap();
+    assert_eq!(stepper.solvability(&state), Solvability::Impossible);
+    assert!(matches!(stepper.step(&mut state), Err(StepError::BeyondSolvable { .. })));
 }

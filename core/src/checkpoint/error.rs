@@ -90,21 +90,30 @@ impl fmt::Display for CheckpointError {
                 write!(f, "the checkpoint has no compensation terms; resume it with the plain `Stepper`")
             }
             Self::WrongSize { what, found, expected } => {
-                write!(f, "the checkpoint's {what} has {found} numbers instead of {expected}; the file is damaged")
+                write!(
+                    f,
+                    "the checkpoint's {what} has {found} numbers instead of {expected}; take another file, this one is damaged"
+                )
             }
             Self::NonFinite { what } => {
-                write!(f, "the checkpoint's {what} has a number that is not finite; the file is damaged")
+                write!(
+                    f,
+                    "the checkpoint's {what} has a number that is not finite; take another file, this one is damaged"
+                )
             }
             Self::NotInGroup { defect } => {
-                write!(f, "the checkpoint's attitude is not in the group (defect {defect:e}); the file is damaged")
+                write!(
+                    f,
+                    "the checkpoint's attitude is not in the group (defect {defect:e}); take another file, this one is damaged"
+                )
             }
             Self::NotAdvected { distance } => write!(
                 f,
-                "the checkpoint's advected parameters differ by {distance:e} from what its attitude sees; the file is damaged"
+                "the checkpoint's advected parameters differ by {distance:e} from what its attitude sees; take another file, this one is damaged"
             ),
             Self::Altered => write!(
                 f,
-                "the checkpoint's numbers don't fit its digest: the file is damaged, or was read by a parser that rounds (serde_json needs its feature `float_roundtrip`)"
+                "the checkpoint's numbers don't fit its digest: the file is damaged, or was read by a parser that rounds; take another, or a parser that keeps every bit (serde_json with its feature `float_roundtrip`)"
             ),
         }
     }

@@ -4,7 +4,8 @@
 //!
 //! In the transport form a step is `(μ, w) ↦ (Ad*_F (μ + δl_d/δw ⋄ w), F⁻¹·w)`: the coadjoint action of an element of
 //! the semidirect product of `G` and `V`. What that action leaves alone is exact, whatever Lagrangian is declared.
-//! "Exact" means up to rounding, which is not systematic and grows like the square root of the number of steps.
+//! "Exact" means up to rounding, which grows like the square root of the number of steps. Only a body that turns steadily
+//! rounds in the same way step by step; its attitude, and what it sees, are put back where that has taken them far.
 //!
 //! | quantity | conserved | for |
 //! |---|---|---|

@@ -53,7 +53,7 @@ use core::fmt::Debug;
 
 use crate::coordinates::Coordinates;
 use crate::entries::{Entries, sum};
-use crate::scalar::Real;
+use crate::scalar::{Mask, Real};
 use crate::solvability::TurningLimits;
 
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
@@ -139,14 +139,16 @@ pub trait LieGroup: Copy + Debug + PartialEq {
         None
     }
 
-    /// The element, brought back towards the group where rounding has led it away by more than a few digits; as it is
-    /// on groups without such a correction.
-    #[inline]
-    #[must_use]
-    fn corrected(&self) -> Self {
-        *self
-    }
-
     /// How far the matrix is from satisfying the relation of the group; zero on it.
     fn defect(&self) -> Self::Scalar;
+
+    /// The nearest element of the group, if roundings have taken the matrix far from it, and the lanes in which they
+    /// have; nothing where they haven't, or where no way back is known, which is the default.
+    ///
+    /// Roundings at random take an attitude about `ε √N` away in `N` steps, and that isn't far. A body that turns
+    /// steadily makes the same increment, with the same rounding, step by step, and that grows like `N`.
+    #[must_use]
+    fn restored(&self) -> Option<(Self, Mask<Self::Scalar>)> {
+        None
+    }
 }

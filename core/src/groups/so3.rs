@@ -5,7 +5,7 @@ use core::fmt;
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
-use crate::scalar::{Real, gathered, real};
+use crate::scalar::{Mask, Real, gathered, real};
 use crate::solvability::{self, TurningLimits};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
@@ -211,23 +211,21 @@ impl<T: Real> LieGroup for SO3<T> {
         solvability::of_rotations(unknown, inertia)
     }
 
-    /// One step of Newton's iteration for the polar factor, `R (3 I − RᵀR)/2`, where the defect is beyond 16 roundings:
-    /// what is right to rounding is left as it is, to the bit.
-    #[inline]
-    fn corrected(&self) -> Self {
-        let gram = self.0.transpose() * self.0 - Matrix3::identity();
-        let far = gram.norm_squared().simd_gt((T::simd_default_epsilon() * real(16.0)).simd_powi(2));
-        if !far.any() {
-            return *self;
-        }
-        let corrected = self.0 - self.0 * gram * real::<T>(0.5);
-        Self(corrected.zip_map(&self.0, |corrected, entry| corrected.select(far, entry)))
-    }
-
     /// `‖RᵀR − I‖` in the Frobenius norm.
     fn defect(&self) -> T {
         let gram = self.0.transpose() * self.0 - Matrix3::identity();
         gram.norm_squared().simd_sqrt()
+    }
+
+    /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar decomposition,
+    /// `½ R (3 I − RᵀR)`, which squares the defect.
+    fn restored(&self) -> Option<(Self, Mask<T>)> {
+        let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
+        far.any().then(|| {
+            let gram = self.0.transpose() * self.0;
+            let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
+            (Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry))), far)
+        })
     }
 }
 

@@ -49,12 +49,12 @@ fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
 /// Makes good what so many turns by one angle have added to lengths across the axis, or taken from them.
 #[cold]
 #[inline(never)]
-pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: f64, state: &mut State<SO3<T>, A>) {
+pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, state: &mut State<SO3<T>, A>) {
     let (s, v) = sine_and_versine(angle);
     let ((ss, ss_rest), (vv, vv_rest)) = (square(s), square(v));
     // s² + (1 + v)² − 1, of which the large parts cancel without rounding.
     let excess = ((ss + v + v) + vv) + (ss_rest + vv_rest);
-    move_by(&diagonal_block(-excess * real(0.5 * turns), T::zero()), state);
+    move_by(&diagonal_block(-excess * real(0.5 * f64::from(turns)), T::zero()), state);
 }
 
 #[inline(always)]

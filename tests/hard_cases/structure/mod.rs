@@ -3,4 +3,7 @@ mod damping;
 mod digest;
 mod momentum_laws;
 mod poisson;
+mod single_precision;
+mod steady_turns;
+mod stopping_rule;
 mod two_flows;

@@ -1,3 +1,4 @@
+mod chaotic;
 mod long_run;
 mod modified_hamiltonian;
 mod no_gravity;

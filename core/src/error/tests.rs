@@ -1,0 +1,129 @@
+//! Every error names its cause, what was measured, the limit where there is one, and what to do.
+//!
+//! A variant that isn't listed here doesn't compile: the matches are without a wildcard.
+
+use super::{SetupError, StepError};
+use crate::groups::{NotARotation, NotInGroup};
+use crate::inertia::InertiaError;
+
+/// What a user can do begins with one of these.
+const ADVICE: [&str; 12] =
+    ["build", "check", "choose", "compose", "give", "normalise", "pass", "project", "resume", "take", "try", "write"];
+
+/// The message has each of the parts, and a last clause that says what to do.
+fn assert_says(message: &str, parts: &[&str]) {
+    println!("{message}");
+    for part in parts {
+        assert!(message.contains(part), "no {part:?} in {message:?}");
+    }
+    let (_, advice) = message.rsplit_once("; ").unwrap_or_else(|| panic!("no advice in {message:?}"));
+    assert!(ADVICE.iter().any(|verb| advice.starts_with(verb)), "{message:?} doesn't say what to do");
+}
+
+#[test]
+fn setup_errors() {
+    let errors = [
+        SetupError::Parameter { field: "rho", cause: "is not finite" },
+        SetupError::InvalidStep { step: 1e-300 },
+        SetupError::SingularKinetic { determinant: 1e-30 },
+        SetupError::NonFinite { what: "velocity" },
+        SetupError::NotInGroup { defect: 0.125 },
+        SetupError::NotSeparable { defect: 0.25 },
+        SetupError::AnotherInertia { difference: 0.5 },
+    ];
+    for error in errors {
+        let parts: &[&str] = match error {
+            SetupError::Parameter { .. } => &["`rho`", "is not finite"],
+            SetupError::InvalidStep { .. } => &["the step", "1e-300 s"],
+            SetupError::SingularKinetic { .. } => &["kinetic part", "singular", "1e-30"],
+            SetupError::NonFinite { .. } => &["velocity", "not finite"],
+            SetupError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "more than rounding"],
+            SetupError::NotSeparable { .. } => &["K(F) − (h/2) (V(w) + V(F⁻¹·w))", "2.5e-1", "more than rounding"],
+            SetupError::AnotherInertia { .. } => &["another body", "5e-1"],
+        };
+        assert_says(&error.to_string(), parts);
+    }
+}
+
+#[test]
+fn step_errors() {
+    let errors = [
+        StepError::NonFinite { what: "momentum" },
+        StepError::BeyondSolvable { step: 0.125, largest: 0.0815 },
+        StepError::NotConverged { iterations: 60, residual: 0.5 },
+        StepError::WrongBranch { determinant: -0.25 },
+        StepError::Singular,
+    ];
+    for error in errors {
+        let parts: &[&str] = match error {
+            StepError::NonFinite { .. } => &["momentum", "not finite"],
+            StepError::BeyondSolvable { .. } => &["no solution", "1.25e-1 s", "largest step", "8.15e-2 s"],
+            StepError::NotConverged { .. } => &["Newton", "60 iterations", "5e-1"],
+            StepError::WrongBranch { .. } => &["continue the identity", "-2.5e-1", "sign"],
+            StepError::Singular => &["Jacobian", "singular"],
+        };
+        assert_says(&error.to_string(), parts);
+    }
+}
+
+#[test]
+fn inertia_errors() {
+    let errors = [
+        InertiaError::NotFinite,
+        InertiaError::NotSymmetric { defect: 0.125 },
+        InertiaError::TriangleInequality { smallest: -0.25 },
+        InertiaError::Singular { smallest: 1e-30 },
+        InertiaError::OutOfRange { trace: 1e200 },
+    ];
+    for error in errors {
+        let parts: &[&str] = match error {
+            InertiaError::NotFinite => &["inertia", "not finite"],
+            InertiaError::NotSymmetric { .. } => &["not symmetric", "1.25e-1", "more than rounding"],
+            InertiaError::TriangleInequality { .. } => &["no body", "-2.5e-1", "exceeds the sum of the others"],
+            InertiaError::Singular { .. } => &["singular", "1e-30"],
+            InertiaError::OutOfRange { .. } => &["trace", "1e200", "out of range"],
+        };
+        assert_says(&error.to_string(), parts);
+    }
+}
+
+#[test]
+fn matrices_that_are_not_in_a_group() {
+    let error = NotARotation { defect: 0.125, determinant: -1.0 };
+    assert_says(&error.to_string(), &["not a rotation", "1.25e-1", "det R = -1"]);
+    assert_says(&NotInGroup { defect: 0.25 }.to_string(), &["not in the group", "2.5e-1"]);
+}
+
+#[cfg(feature = "serde")]
+#[test]
+fn checkpoint_errors() {
+    use crate::checkpoint::CheckpointError;
+    let errors = [
+        CheckpointError::AnotherFormat { found: 7, known: 1 },
+        CheckpointError::AnotherScene,
+        CheckpointError::AnotherParameter { field: "rho", stored: 0.5, own: 0.25 },
+        CheckpointError::AnotherStep { stored: 0.5, own: 0.25 },
+        CheckpointError::AnotherSummation { compensated: true },
+        CheckpointError::AnotherSummation { compensated: false },
+        CheckpointError::WrongSize { what: "momentum", found: 2, expected: 3 },
+        CheckpointError::NonFinite { what: "guess" },
+        CheckpointError::NotInGroup { defect: 0.125 },
+        CheckpointError::NotAdvected { distance: 0.125 },
+        CheckpointError::Altered,
+    ];
+    for error in errors {
+        let parts: &[&str] = match error {
+            CheckpointError::AnotherFormat { .. } => &["format 7", "reads 1"],
+            CheckpointError::AnotherScene => &["another scene"],
+            CheckpointError::AnotherParameter { .. } => &["`rho`", "5e-1 in the checkpoint", "2.5e-1 here"],
+            CheckpointError::AnotherStep { .. } => &["step", "5e-1 s in the checkpoint", "2.5e-1 s here"],
+            CheckpointError::AnotherSummation { .. } => &["compensat"],
+            CheckpointError::WrongSize { .. } => &["momentum", "2 numbers instead of 3", "damaged"],
+            CheckpointError::NonFinite { .. } => &["guess", "not finite", "damaged"],
+            CheckpointError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "damaged"],
+            CheckpointError::NotAdvected { .. } => &["advected", "1.25e-1", "damaged"],
+            CheckpointError::Altered => &["digest", "damaged", "float_roundtrip"],
+        };
+        assert_says(&error.to_string(), parts);
+    }
+}

@@ -1,0 +1,119 @@
+//! Dzhanibekov's body, `J = (1, 2, 3)` turning about its middle axis: two flips bring the body momentum back to where it
+//! was. Their time is `4K(k)/ω` with
+//!
+//! ```text
+//! ω² = (J_3 − J_2)(|p|² − 2H J_1)/(J_1 J_2 J_3),      k² = (J_2 − J_1)(2H J_3 − |p|²)/((J_3 − J_2)(|p|² − 2H J_1))
+//! ```
+
+use crate::common::measure::{four_halvings, order};
+use crate::common::tops::FreeBody;
+use crate::declarations::SixthOrderBody;
+use liestep::{
+    Composition, CompositionScheme, DiagonalNonstandardInertia, Inertia, LieGroup as _, PreprocessedBody,
+    PreprocessedOrder, SO3, Stepper,
+};
+use nalgebra::Vector3;
+
+/// `4K/ω` of the motion below to 16 digits, s.
+const TWO_FLIPS: f64 = 19.001_635_511_000_25;
+/// Points that a passage is interpolated from, half of them on either side.
+const POINTS: usize = 10;
+
+fn moments() -> Vector3<f64> {
+    Vector3::new(1.0, 2.0, 3.0)
+}
+
+fn velocity() -> Vector3<f64> {
+    Vector3::new(0.01, 2.0, 0.02)
+}
+
+/// When a monotone function passes zero, from its values at the times `0, 1, …`: Neville's interpolation of the time as a
+/// function of the value. Near the passage `p_2` is a hyperbolic tangent, and the remainder is below rounding for steps
+/// up to 0.02 s.
+#[allow(clippy::cast_precision_loss)] // ten points
+fn passage(values: &[f64]) -> f64 {
+    let mut times: Vec<f64> = (0..values.len()).map(|k| k as f64).collect();
+    for span in 1..values.len() {
+        for k in 0..values.len() - span {
+            let (low, high) = (values[k], values[k + span]);
+            times[k] = (high * times[k] - low * times[k + 1]) / (high - low);
+        }
+    }
+    times[0]
+}
+
+/// The time of two flips: from one passage of the second component through zero to the next but one. `next` makes a step
+/// and returns that component.
+#[allow(clippy::cast_precision_loss)] // some thousand steps
+fn two_flips(h: f64, mut next: impl FnMut() -> f64) -> f64 {
+    let mut values = vec![next()];
+    let mut passages = Vec::new();
+    while passages.len() < 3 {
+        values.push(next());
+        assert!((values.len() as f64) * h < 3.0 * TWO_FLIPS, "no passages");
+        let (start, end) = (values.len().saturating_sub(POINTS), values.len());
+        if end >= POINTS && values[start + POINTS / 2 - 1] * values[start + POINTS / 2] < 0.0 {
+            passages.push(h * (start as f64 + passage(&values[start..end])));
+        }
+    }
+    passages[2] - passages[0]
+}
+
+fn relative_error(h: f64, next: impl FnMut() -> f64) -> f64 {
+    two_flips(h, next) / TWO_FLIPS - 1.0
+}
+
+#[test]
+fn b7_the_time_of_two_flips_at_second_order() {
+    let errors = four_halvings(0.02).map(|h| {
+        let stepper = Stepper::new(FreeBody::with_moments(moments().into()), h).unwrap();
+        let mut state = stepper.start(SO3::identity(), velocity()).unwrap();
+        let error = relative_error(h, || {
+            stepper.step(&mut state).unwrap();
+            state.momentum().y
+        });
+        (h, error.abs())
+    });
+    let order = order(&errors, 1e-11);
+    println!("order {order:.4}, {errors:?}");
+    assert!((order - 2.0).abs() < 0.05, "order {order}, {errors:?}");
+}
+
+#[test]
+fn b7_the_time_of_two_flips_of_the_sixth_order_body() {
+    let stepper =
+        Stepper::new(SixthOrderBody { J: Inertia::from_principal_moments(moments()).unwrap() }, 0.01).unwrap();
+    let mut state = stepper.start(SO3::identity(), velocity()).unwrap();
+    let error = relative_error(0.01, || {
+        stepper.step(&mut state).unwrap();
+        state.momentum().y
+    });
+    println!("relative error {error:e}");
+    assert!(error.abs() < 1e-12, "{error:e}");
+}
+
+#[test]
+fn b7_the_time_of_two_flips_of_a_composition() {
+    let body = FreeBody::with_moments(moments().into());
+    let composed = Composition::new(body, 0.02, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
+    let mut state = composed.start(SO3::identity(), velocity()).unwrap();
+    let error = relative_error(0.02, || {
+        composed.step(&mut state).unwrap();
+        state.momentum().y
+    });
+    println!("relative error {error:e}");
+    assert!(error.abs() < 1e-12, "{error:e}");
+}
+
+#[test]
+fn b7_the_time_of_two_flips_of_the_preprocessed_body() {
+    let body = DiagonalNonstandardInertia::from_principal_moments(moments()).unwrap();
+    let stepper = PreprocessedBody::new(body, 0.01, PreprocessedOrder::Ten).unwrap();
+    let mut state = stepper.start(SO3::identity(), velocity()).unwrap();
+    let error = relative_error(0.01, || {
+        stepper.step(&mut state).unwrap();
+        state.momentum().y
+    });
+    println!("relative error {error:e}");
+    assert!(error.abs() < 1e-12, "{error:e}");
+}
