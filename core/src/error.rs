@@ -77,7 +77,10 @@ impl fmt::Display for SetupError {
                 "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
             ),
             Self::AnotherPotential => {
-                write!(f, "one of the methods to choose from has another potential than the first")
+                write!(
+                    f,
+                    "one of the methods to choose from has another potential than the first; build all of them from one scene"
+                )
             }
         }
     }

@@ -49,7 +49,7 @@ impl fmt::Display for AccuracyError {
             }
             Self::Unreachable { tolerance, floor } => write!(
                 f,
-                "the tolerance {tolerance:e} is below what rounding leaves at the horizon: about {floor:.0e} can be reached"
+                "the tolerance {tolerance:e} is below what rounding leaves at the horizon: about {floor:.0e} can be reached; choose a larger one or a nearer horizon"
             ),
             Self::TooManySteps { steps } => {
                 write!(f, "about {steps:.0e} steps would be needed; choose a larger tolerance or a nearer horizon")

@@ -30,6 +30,7 @@ fn setup_errors() {
         SetupError::NotInGroup { defect: 0.125 },
         SetupError::NotSeparable { defect: 0.25 },
         SetupError::AnotherInertia { difference: 0.5 },
+        SetupError::AnotherPotential,
     ];
     for error in errors {
         let parts: &[&str] = match error {
@@ -40,6 +41,7 @@ fn setup_errors() {
             SetupError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "more than rounding"],
             SetupError::NotSeparable { .. } => &["K(F) − (h/2) (V(w) + V(F⁻¹·w))", "2.5e-1", "more than rounding"],
             SetupError::AnotherInertia { .. } => &["another body", "5e-1"],
+            SetupError::AnotherPotential => &["another potential"],
         };
         assert_says(&error.to_string(), parts);
     }
@@ -58,7 +60,7 @@ fn step_errors() {
         let parts: &[&str] = match error {
             StepError::NonFinite { .. } => &["momentum", "not finite"],
             StepError::BeyondSolvable { .. } => &["no solution", "1.25e-1 s", "largest step", "8.15e-2 s"],
-            StepError::NotConverged { .. } => &["Newton", "60 iterations", "5e-1"],
+            StepError::NotConverged { .. } => &["the iteration", "60 iterations", "5e-1"],
             StepError::WrongBranch { .. } => &["continue the identity", "-2.5e-1", "sign"],
             StepError::Singular => &["Jacobian", "singular"],
         };
