@@ -52,8 +52,10 @@ fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
 pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, state: &mut State<SO3<T>, A>) {
     let (s, v) = sine_and_versine(angle);
     let ((ss, ss_rest), (vv, vv_rest)) = (square(s), square(v));
-    // s² + (1 + v)² − 1, of which the large parts cancel without rounding.
-    let excess = ((ss + v + v) + vv) + (ss_rest + vv_rest);
+    // s² + (1 + v)² − 1, of which the large parts cancel.
+    let (twice, lost) = two_sum(ss, v + v);
+    let (small, lost_again) = two_sum(twice, vv);
+    let excess = small + ((lost + lost_again) + (ss_rest + vv_rest));
     move_by(&diagonal_block(-excess * real(0.5 * f64::from(turns)), T::zero()), state);
 }
 
@@ -64,6 +66,13 @@ fn move_by<T: Real, A: Advected<SO3<T>>>(increment: &Matrix3<T>, state: &mut Sta
     let change = SO3::adjoint_transpose_increment(increment, &state.momentum);
     // The third component isn't even added to.
     state.momentum += Vector3::new(change.x, change.y, T::zero());
+}
+
+/// `a + b` rounded and what the rounding left behind, by Knuth's sum.
+fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
 fn diagonal_block<T: Real>(diagonal: T, s: T) -> Matrix3<T> {
