@@ -1,6 +1,7 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
 use crate::common::reference::Motion;
+use crate::declarations::FourthOrderTop;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
     Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, Composition, CompositionScheme,
@@ -246,6 +247,18 @@ fn the_report_names_the_choice_and_its_neighbours() {
     assert!(text.starts_with(&format!("1e-6 at t = 10 s: {}, ", choice.chosen().name)), "{text}");
 }
 
+/// A run whose error leaves room for longer steps, which have no solution, is chosen as it is.
+#[test]
+fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
+    let motion = Motion::read("chaotic_asymmetric_top");
+    let accuracy = Accuracy { tolerance: 0.1, horizon: 30.0 };
+    let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    // A search that goes on to a finer reference takes thousands of runs.
+    assert!(stepper.choice().trials < 300.0, "{}", stepper.choice());
+    // It has room indeed.
+    assert!(stepper.choice().error < 0.2 * 0.05, "{}", stepper.choice());
+}
+
 #[test]
 fn questions_without_an_answer() {
     let motion = Motion::read("thesis_looping_A_Jd221");
@@ -297,6 +310,9 @@ fn candidates_of_another_scene_are_refused() {
     let mut longer = motion.top.clone();
     longer.rho *= 1.01;
     assert_eq!(ask(all(&motion).and_gauss(longer)), AccuracyError::Setup(SetupError::AnotherPotential));
+    let coupled: FourthOrderTop = motion.top.declared_as();
+    let refusal = ask(all(&motion).and_gauss(coupled));
+    assert!(matches!(refusal, AccuracyError::Setup(SetupError::NotSeparable { .. })), "{refusal}");
     let mut rounder = motion.top.clone();
     rounder.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap();
     let refusal = ask(all(&motion).and_gauss(rounder));
