@@ -5,7 +5,8 @@
 //! takes; trial by trial the search follows the method that looks cheapest, by the operations that its steps make and
 //! by no clock, so that the same question has the same answer everywhere. Growth of errors along the motion, steps too
 //! long to be solved and orders that coarse steps haven't got yet are in these measurements; nothing is extrapolated in the end: the
-//! step is taken from a run whose error has been measured against a finer one.
+//! step is taken from a run whose error has been measured against a finer one. Where the potential can be split off,
+//! [`Gauss`](crate::Gauss) collocation may be among the methods ([`Candidates::and_gauss`]).
 
 mod candidates;
 mod choice;

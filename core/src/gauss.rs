@@ -1,4 +1,7 @@
 //! Gauss collocation in the quaternion and its momentum: the cheapest Poisson map for high accuracy.
+//!
+//! [`Candidates::and_gauss`](crate::Candidates::and_gauss) makes it one of the methods to be chosen by accuracy, and then
+//! finds the step.
 
 mod coefficients;
 mod lift;
@@ -162,6 +165,11 @@ where
         momentum: Vector3<f64>,
     ) -> Result<GaussState<PAIRS>, SetupError> {
         self.stepper.start_with_momentum(attitude, momentum).map(Into::into)
+    }
+
+    /// A step of the same Lagrangian by its own solve: what starts motions and reads states off.
+    pub(crate) fn stepper(&self) -> &Stepper<L> {
+        &self.stepper
     }
 
     /// The declared Lagrangian.

@@ -80,11 +80,14 @@ impl Question {
         );
         let candidates = match SymmetricBody::new(&scene.inertia()) {
             Ok(body) => candidates.and_splittings("exact", scene.top(), body),
-            Err(_) => candidates.and_splittings("K6", scene.top(), scene.sixth_order_body()).and_splittings(
-                "preprocessed",
-                scene.top(),
-                PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten),
-            ),
+            Err(_) => candidates
+                .and_gauss(scene.top())
+                .and_splittings("K6", scene.top(), scene.sixth_order_body())
+                .and_splittings(
+                    "preprocessed",
+                    scene.top(),
+                    PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten),
+                ),
         };
         Self { ask: asking(candidates, start, velocity), fixed }
     }

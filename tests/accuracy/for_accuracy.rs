@@ -1,6 +1,7 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
 use crate::common::reference::Motion;
+use crate::declarations::FourthOrderTop;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
     Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, Composition, CompositionScheme,
@@ -40,7 +41,11 @@ fn all(motion: &Motion) -> Candidates<SO3, Vector3<f64>> {
     let candidates = Candidates::of(top.clone(), 2);
     match SymmetricBody::new(&NonstandardInertia::from(J_d).to_inertia()) {
         Ok(body) => candidates.and_splittings("exact", top, body),
-        Err(_) => candidates.and_splittings("preprocessed", top, PreprocessedFlow::new(J_d, PreprocessedOrder::Ten)),
+        Err(_) => candidates.and_gauss(top.clone()).and_splittings(
+            "preprocessed",
+            top,
+            PreprocessedFlow::new(J_d, PreprocessedOrder::Ten),
+        ),
     }
 }
 
@@ -207,6 +212,29 @@ fn the_same_question_has_the_same_answer() {
     assert!((state.attitude().as_matrix() - end(&one).0).norm() < 1e-12);
 }
 
+/// Where no flow of the free body is exact and much is asked for, collocation has the cheapest steps.
+#[test]
+fn gauss_collocation_is_chosen_for_the_chaotic_top() {
+    let motion = Motion::read("chaotic_asymmetric_top");
+    let accuracy = Accuracy { tolerance: 1e-9, horizon: 10.0 };
+    let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    let choice = stepper.choice();
+    assert!(choice.chosen().name.starts_with("Gauss, "), "{choice}");
+    let reached = error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0);
+    assert!(reached <= 1e-9 && reached > 1e-11, "{reached:e}\n{choice}");
+    // Its state can be stepped by hand, and what is read off it is that of the scene.
+    let mut state = stepper.start();
+    let (energy, vertical) = (stepper.energy(&state), state.momentum_along(&motion.top.up));
+    while state.steps() < choice.steps {
+        stepper.step(&mut state).unwrap();
+    }
+    assert!((state.attitude().as_matrix() - end(&stepper).0).norm() < 1e-10);
+    assert!((stepper.energy(&state) - energy).abs() < 1e-8 * energy.abs());
+    assert!((state.momentum_along(&motion.top.up) - vertical).abs() < 1e-13 * state.momentum().norm());
+    let parameters = state.attitude().as_matrix().transpose() * motion.top.up;
+    assert!((state.advected() - parameters).norm() < 1e-15);
+}
+
 #[test]
 fn the_report_names_the_choice_and_its_neighbours() {
     let motion = Motion::read("thesis_cuspidal_A_Jd221");
@@ -217,6 +245,18 @@ fn the_report_names_the_choice_and_its_neighbours() {
     assert!(choice.nearby[0] < 1.0 && choice.nearby[1] > 1.0, "{:?}", choice.nearby);
     assert!(choice.offers().iter().all(|offer| offer.cost > 0.5 && text.contains(&offer.name)), "{text}");
     assert!(text.starts_with(&format!("1e-6 at t = 10 s: {}, ", choice.chosen().name)), "{text}");
+}
+
+/// A run whose error leaves room for longer steps, which have no solution, is chosen as it is.
+#[test]
+fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
+    let motion = Motion::read("chaotic_asymmetric_top");
+    let accuracy = Accuracy { tolerance: 0.1, horizon: 30.0 };
+    let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
+    // A search that goes on to a finer reference takes thousands of runs.
+    assert!(stepper.choice().trials < 300.0, "{}", stepper.choice());
+    // It has room indeed.
+    assert!(stepper.choice().error < 0.2 * 0.05, "{}", stepper.choice());
 }
 
 #[test]
@@ -266,5 +306,15 @@ fn candidates_of_another_scene_are_refused() {
     assert_eq!(refusal, AccuracyError::Setup(SetupError::AnotherPotential));
     let rounder = SymmetricBody::new(&Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap()).unwrap();
     let refusal = ask(all(&motion).and_splittings("rounder", motion.top.clone(), rounder));
+    assert!(matches!(refusal, AccuracyError::Setup(SetupError::AnotherInertia { .. })), "{refusal}");
+    let mut longer = motion.top.clone();
+    longer.rho *= 1.01;
+    assert_eq!(ask(all(&motion).and_gauss(longer)), AccuracyError::Setup(SetupError::AnotherPotential));
+    let coupled: FourthOrderTop = motion.top.declared_as();
+    let refusal = ask(all(&motion).and_gauss(coupled));
+    assert!(matches!(refusal, AccuracyError::Setup(SetupError::NotSeparable { .. })), "{refusal}");
+    let mut rounder = motion.top.clone();
+    rounder.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap();
+    let refusal = ask(all(&motion).and_gauss(rounder));
     assert!(matches!(refusal, AccuracyError::Setup(SetupError::AnotherInertia { .. })), "{refusal}");
 }

@@ -9,6 +9,7 @@ use crate::advected::Advected;
 use crate::composition::{Composition, CompositionScheme};
 use crate::effect::{Effect, Group, Scalar, Vector};
 use crate::error::SetupError;
+use crate::gauss::Gauss;
 use crate::groups::{LieGroup, SO3};
 use crate::inertia::DiagonalNonstandardInertia;
 use crate::kinetic::Regular;
@@ -34,7 +35,7 @@ type Make<G, A> = Box<dyn Fn(f64) -> Result<Box<dyn Method<G, A>>, SetupError>>;
 /// The methods that [`Stepper::for_accuracy`] chooses from, with more than a scene alone can tell.
 ///
 /// Every self-adjoint scene has its own step and its symmetric compositions. Added to them are splittings, where the
-/// potential can be split off and the free body's motion is known; other declarations of the same scene, of higher order; and
+/// potential can be split off and the free body's motion is known; Gauss collocation, where it can be split off; other declarations of the same scene, of higher order; and
 /// for a free body the preprocessed step.
 ///
 /// # Examples
@@ -188,6 +189,33 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
             });
         }
         self
+    }
+
+    /// [`Gauss`] collocation with 4, 6 and 8 stages of a declaration of the same scene; any will do, as only inertia and
+    /// potential matter.
+    #[must_use]
+    #[allow(clippy::needless_pass_by_value)] // as `Gauss::new`
+    pub fn and_gauss<L>(mut self, scene: L) -> Self
+    where
+        L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = A> + Regular + Clone + 'static,
+    {
+        self.compare(&scene);
+        self.methods.extend([collocation::<L, 2>(&scene), collocation::<L, 3>(&scene), collocation::<L, 4>(&scene)]);
+        self
+    }
+}
+
+fn collocation<L, const PAIRS: usize>(scene: &L) -> Candidate<SO3, L::Advected>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: 'static> + Regular + Clone + 'static,
+{
+    let (scene, stages) = (scene.clone(), count(2 * PAIRS));
+    Candidate {
+        name: format!("Gauss, {stages} stages"),
+        order: 2 * stages,
+        stages,
+        least: super::method::least_of_collocation::<L, PAIRS>(),
+        make: Box::new(move |h| Ok(Box::new(Gauss::<L, PAIRS>::new(scene.clone(), h)?))),
     }
 }
 

@@ -169,7 +169,8 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
 
     /// The highest order that may show.
     fn most(&self) -> f64 {
-        (f64::from(self.candidate.order) + BEYOND_THE_ORDER).min(HIGHEST_ORDER)
+        let promised = f64::from(self.candidate.order);
+        (promised + BEYOND_THE_ORDER).min(HIGHEST_ORDER).max(promised)
     }
 
     /// What an error takes, rather too little than too much where trials haven't come so far.

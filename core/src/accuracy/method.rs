@@ -4,6 +4,7 @@ use crate::advected::Advected;
 use crate::composition::Composition;
 use crate::effect::{Effect, Group, Vector};
 use crate::error::{SetupError, StepError};
+use crate::gauss::{Gauss, GaussState};
 use crate::groups::{LieGroup, SO3};
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
@@ -18,6 +19,16 @@ const OF_A_STAGE: f64 = 150.0;
 /// Besides the Newton system, an iteration solves it and looks whether it has settled. These wait for each other, as the
 /// products of matrices don't.
 const OF_AN_ITERATION: f64 = 90.0;
+
+/// An iteration of collocation makes so many at each of its stages: for the rates of quaternion and momentum, for the
+/// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count as
+/// one, here and below.
+const OF_RATES: f64 = 75.0;
+const OF_PARAMETERS: f64 = 35.0;
+const OF_A_SUM: f64 = 10.0;
+/// Besides its iterations, a step of collocation makes so many, and so many for each pair of pairs in its guess.
+const OF_AN_UPDATE: f64 = 50.0;
+const OF_A_GUESS: f64 = 32.0;
 
 /// An integrator of a fixed step.
 pub(super) trait Method<G: LieGroup, A: Advected<G>> {
@@ -156,6 +167,71 @@ impl Method<SO3, ()> for PreprocessedBody {
     fn energy(&self, state: &State<SO3, ()>) -> f64 {
         self.energy(state)
     }
+}
+
+/// From state to state: what collocation keeps besides attitude and momentum lasts for one call.
+///
+/// So [`advance`](Method::advance) iterates from the stages of the step before, and [`step`](Method::step), which has none,
+/// somewhat longer to the same stages.
+impl<L, const PAIRS: usize> Method<SO3, L::Advected> for Gauss<L, PAIRS>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+{
+    fn start(&self, attitude: SO3, velocity: nalgebra::Vector3<f64>) -> Result<State<SO3, L::Advected>, SetupError> {
+        self.stepper().start(attitude, velocity)
+    }
+
+    fn advance(&self, state: &mut State<SO3, L::Advected>, steps: u64) -> Result<f64, StepError> {
+        let (mut lifted, mut iterations) = (GaussState::from(*state), 0);
+        for _ in 0..steps {
+            iterations += u64::from(self.step(&mut lifted)?.iterations);
+        }
+        *state = lowered(self, &lifted, state);
+        Ok(collocation::<L, PAIRS>(steps, iterations))
+    }
+
+    fn step(&self, state: &mut State<SO3, L::Advected>) -> Result<crate::StepReport, StepError> {
+        let mut lifted = GaussState::from(*state);
+        let report = self.step(&mut lifted)?;
+        *state = lowered(self, &lifted, state);
+        Ok(report)
+    }
+
+    fn velocity(&self, state: &State<SO3, L::Advected>) -> nalgebra::Vector3<f64> {
+        self.stepper().velocity(state)
+    }
+
+    fn energy(&self, state: &State<SO3, L::Advected>) -> f64 {
+        self.stepper().energy(state)
+    }
+}
+
+/// The state of this attitude and momentum. The increment that no solve has made is left as at the start.
+fn lowered<L, const PAIRS: usize>(
+    gauss: &Gauss<L, PAIRS>,
+    lifted: &GaussState<PAIRS>,
+    start: &State<SO3, L::Advected>,
+) -> State<SO3, L::Advected>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+{
+    let (attitude, momentum, steps) = (lifted.attitude(), lifted.momentum(), lifted.steps());
+    State { attitude, momentum, advected: gauss.advected(lifted), steps, ..*start }
+}
+
+/// So many steps of collocation with so many iterations in all.
+#[allow(clippy::cast_precision_loss)] // an estimate
+fn collocation<L: DiscreteLagrangian, const PAIRS: usize>(steps: u64, iterations: u64) -> f64 {
+    let pairs = PAIRS as f64;
+    // Half of both kicks, and half of that in lanes.
+    let torque = if L::PARTS.kick_before { OF_PARAMETERS + 0.25 * f64::from(L::OPERATIONS.step) } else { 0.0 };
+    let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
+    steps as f64 * (OF_AN_UPDATE + OF_A_GUESS * pairs * pairs) + iterations as f64 * iteration
+}
+
+/// What a step of collocation makes at least, unless nothing but rounding changes from step to step.
+pub(super) fn least_of_collocation<L: DiscreteLagrangian, const PAIRS: usize>() -> f64 {
+    collocation::<L, PAIRS>(1, 3)
 }
 
 /// What a solve makes at least; with one iteration none is known to have settled.

@@ -108,7 +108,8 @@ fn settle<G: LieGroup<Scalar = f64>, A: Advected<G>>(
     let mut steps = ladder.estimate(AIM * tolerance).steps.ceil();
     let mut best: Option<Run> = None;
     while steps < finest {
-        let (error, cost) = ladder.verify(start, steps)?;
+        // A step that has no solution is too long.
+        let (error, cost) = ladder.verify(start, steps).unwrap_or((f64::INFINITY, f64::INFINITY));
         if error > ACCEPTED * tolerance {
             if best.is_some() {
                 break;
