@@ -3,9 +3,9 @@
 //! Every method is tried on the very motion, from its start to the horizon, with one step, two, four and so on. Two
 //! neighbouring trials show the error of the coarser (Richardson), and its fall from trial to trial what a given error
 //! takes; trial by trial the search follows the method that looks cheapest, by the operations that its steps make and
-//! by no clock, so that the same question has the same answer everywhere. Growth of errors along the motion, steps too
-//! long to be solved and orders that coarse steps haven't got yet are in these measurements; nothing is extrapolated in the end: the
-//! step is taken from a run whose error has been measured against a finer one. Where the potential can be split off,
+//! by no clock, so that the same question has the same answer each time on one platform. Growth of errors along the motion, steps too
+//! long to be solved and orders that coarse steps haven't got yet are in these measurements; in the end the step is
+//! taken from a run whose error has been measured against a finer one, and of that one only the own error is extrapolated. Where the potential can be split off,
 //! [`Gauss`](crate::Gauss) collocation may be among the methods ([`Candidates::and_gauss`]).
 
 mod candidates;
@@ -44,7 +44,7 @@ use method::Method;
 /// attitude wrong by the angle `θ`, about `0.8 θ`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// The largest error at the horizon. One above 0.05 is taken as 0.05.
+    /// The largest error at the horizon, up to 0.05: what is larger isn't an error but another motion.
     pub tolerance: f64,
     /// The time `T` from the start, s.
     pub horizon: f64,
@@ -53,7 +53,7 @@ pub struct Accuracy {
 impl Accuracy {
     fn validate(self) -> Result<(), AccuracyError> {
         let Self { tolerance, horizon } = self;
-        if !(tolerance > 0.0 && tolerance.is_finite()) {
+        if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
             return Err(AccuracyError::Tolerance { tolerance });
         }
         if !(horizon > 0.0 && horizon.is_finite()) {

@@ -43,6 +43,8 @@ pub enum SetupError {
         /// The largest difference of two entries, kg m².
         difference: f64,
     },
+    /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
+    AnotherBias,
     /// One of the candidates for an accuracy is another scene than the first.
     AnotherPotential,
 }
@@ -75,6 +77,10 @@ impl fmt::Display for SetupError {
             Self::AnotherInertia { difference } => write!(
                 f,
                 "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
+            ),
+            Self::AnotherBias => write!(
+                f,
+                "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them"
             ),
             Self::AnotherPotential => {
                 write!(

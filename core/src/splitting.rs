@@ -1,6 +1,7 @@
 //! Kinetic-potential splittings: the free body's motion and the potential's kicks by turns.
 
 mod angle;
+mod bias;
 mod kick;
 mod kinetic;
 mod preprocessed;
@@ -119,6 +120,9 @@ where
         if !difference.simd_le(inertia.trace() * T::simd_default_epsilon() * real(64.0)).all() {
             return Err(SetupError::AnotherInertia { difference: reported(difference) });
         }
+        if !bias::is_shared(stepper.lagrangian(), &kinetic) {
+            return Err(SetupError::AnotherBias);
+        }
         let torque = torque(stepper.lagrangian())?;
         let share = |(flow, part): (Flow, f64)| -> Result<_, SetupError> {
             let time = h * real(part);
@@ -144,16 +148,16 @@ where
     /// A potential that is symmetric about the third body axis commutes with rotations about it, and so does what else a
     /// symmetric body does; `p_3` is constant.
     fn take_spin(&mut self) {
+        let (mut outer, mut joint, mut inner) = (self.outer.clone(), self.joint.clone(), self.inner.clone());
         let mut spin = T::zero();
-        let shares = self.inner.iter_mut().map(|share| (share, 1.0));
-        let ends = [(&mut self.outer, 2.0), (&mut self.joint, 0.0)];
-        for (share, times) in shares.chain(ends) {
+        let shares = inner.iter_mut().map(|share| (share, 1.0));
+        for (share, times) in shares.chain([(&mut outer, 2.0), (&mut joint, 0.0)]) {
             if let Share::Drift(drift) = share {
                 let Some(taken) = K::take_spin(drift) else { return };
                 spin += taken * real(times);
             }
         }
-        self.spin = Some(spin);
+        (self.outer, self.joint, self.inner, self.spin) = (outer, joint, inner, Some(spin));
     }
 
     /// One step. On an error the state is unchanged.

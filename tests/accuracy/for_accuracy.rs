@@ -1,6 +1,7 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
 use crate::common::reference::Motion;
+use crate::common::tops::HeavyTop;
 use crate::declarations::FourthOrderTop;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
@@ -251,7 +252,7 @@ fn the_report_names_the_choice_and_its_neighbours() {
 #[test]
 fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
     let motion = Motion::read("chaotic_asymmetric_top");
-    let accuracy = Accuracy { tolerance: 0.1, horizon: 30.0 };
+    let accuracy = Accuracy { tolerance: 0.05, horizon: 30.0 };
     let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
     // A search that goes on to a finer reference takes thousands of runs.
     assert!(stepper.choice().trials < 300.0, "{}", stepper.choice());
@@ -266,7 +267,7 @@ fn questions_without_an_answer() {
         let accuracy = Accuracy { tolerance, horizon };
         Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity).unwrap_err()
     };
-    for tolerance in [0.0, -1e-6, f64::NAN, f64::INFINITY] {
+    for tolerance in [0.0, -1e-6, 0.06, f64::NAN, f64::INFINITY] {
         assert!(matches!(ask(tolerance, 1.0), AccuracyError::Tolerance { .. }), "{tolerance}");
     }
     for horizon in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -307,6 +308,14 @@ fn candidates_of_another_scene_are_refused() {
     let rounder = SymmetricBody::new(&Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap()).unwrap();
     let refusal = ask(all(&motion).and_splittings("rounder", motion.top.clone(), rounder));
     assert!(matches!(refusal, AccuracyError::Setup(SetupError::AnotherInertia { .. })), "{refusal}");
+    let leaning = HeavyTop { up: Vector3::new(0.6, 0.0, 0.8), ..motion.top.clone() };
+    let refusal = ask(all(&motion).and_declared("leaning", leaning, 2));
+    assert_eq!(refusal, AccuracyError::Setup(SetupError::AnotherPotential));
+    let spun = |speed: f64| motion.top.clone() + Rotor { spin: Vector3::z() * speed };
+    let candidates = Candidates::of(spun(1.0), 2).and_declared("faster", spun(1.1), 2);
+    let accuracy = Accuracy { tolerance: 1e-6, horizon: 1.0 };
+    let refusal = candidates.for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap_err();
+    assert_eq!(refusal, AccuracyError::Setup(SetupError::AnotherBias));
     let mut longer = motion.top.clone();
     longer.rho *= 1.01;
     assert_eq!(ask(all(&motion).and_gauss(longer)), AccuracyError::Setup(SetupError::AnotherPotential));

@@ -1,5 +1,6 @@
 //! Kinetic-potential splittings.
 
+use liestep::effects::Rotor;
 use liestep::{
     CompositionScheme, DiagonalNonstandardInertia, Effect, Flow, Inertia, KineticFlow, LieGroup as _, PreprocessedFlow,
     PreprocessedOrder, SO3, SetupError, Splitting, SplittingScheme, Stepper, SymmetricBody,
@@ -298,6 +299,15 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
     let coupled: FourthOrderTop = top.declared_as();
     let error = Splitting::new(coupled, symmetric(&top), 0.01, SplittingScheme::STRANG).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
+}
+
+/// Nothing of a rotor is in the flow of a body without one.
+#[test]
+fn a_rotor_that_the_flow_does_not_have_is_refused() {
+    let top = HeavyTop::thesis();
+    let scene = top.clone() + Rotor { spin: Vector3::new(0.0, 0.0, 0.5) };
+    let error = Splitting::new(scene, symmetric(&top), 0.01, SplittingScheme::STRANG).unwrap_err();
+    assert_eq!(error, SetupError::AnotherBias);
 }
 
 /// The kinetic part of the declared Lagrangian doesn't matter, as it is replaced.

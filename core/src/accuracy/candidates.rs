@@ -35,8 +35,8 @@ type Make<G, A> = Box<dyn Fn(f64) -> Result<Box<dyn Method<G, A>>, SetupError>>;
 /// The methods that [`Stepper::for_accuracy`] chooses from, with more than a scene alone can tell.
 ///
 /// Every self-adjoint scene has its own step and its symmetric compositions. Added to them are splittings, where the
-/// potential can be split off and the free body's motion is known; Gauss collocation, where it can be split off; other declarations of the same scene, of higher order; and
-/// for a free body the preprocessed step.
+/// potential can be split off and the free body's motion is known; Gauss collocation, where it can be split off; other
+/// declarations of the same scene, of higher order; and for a free body the preprocessed step.
 ///
 /// # Examples
 ///
@@ -59,8 +59,7 @@ pub struct Candidates<G: LieGroup, A: Advected<G>> {
     methods: Vec<Candidate<G, A>>,
     /// Of the first scene: what others must agree with.
     inertia: Vec<f64>,
-    potential: Box<dyn Fn(&A) -> f64>,
-    samples: Vec<A>,
+    seen: Vec<Seen>,
     mistake: Option<SetupError>,
 }
 
@@ -75,10 +74,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     where
         L: DiscreteLagrangian<Scalar = f64, Group = G, Advected = A> + Regular + Clone + 'static,
     {
-        let samples = samples(&scene);
-        let (inertia, known) = (inertia(&scene), scene.clone());
-        let potential = Box::new(move |w: &A| known.potential(w));
-        let empty = Self { methods: Vec::new(), inertia, potential, samples, mistake: None };
+        let empty = Self { methods: Vec::new(), inertia: inertia(&scene), seen: seen(&scene), mistake: None };
         empty.and_steps_of("", &scene, order)
     }
 
@@ -123,18 +119,24 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     where
         L: Effect<Scalar = f64, Group = G, Advected = A>,
     {
-        let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * a.abs().max(b.abs());
-        let trace = self.inertia.iter().map(|entry| entry.abs()).sum::<f64>();
-        let differences = self.inertia.iter().zip(inertia(scene)).map(|(a, b)| (a - b).abs());
-        let difference = differences.fold(0.0, f64::max);
-        if difference > 1e-9 * trace {
+        let size = self.inertia.iter().map(|entry| entry.abs()).sum::<f64>();
+        let difference = apart(&self.inertia, &inertia(scene));
+        if difference > SAME * size {
             self.mistake.get_or_insert(SetupError::AnotherInertia { difference });
         }
+        let seen = seen(scene);
         // A potential is given but for a constant.
-        let of = |w: &A| (self.potential)(w) - (self.potential)(&self.samples[0]);
-        let other = |w: &A| scene.potential(w) - scene.potential(&self.samples[0]);
-        if !self.samples.iter().all(|w| close(of(w), other(w))) {
+        let potentials = |places: &[Seen]| places.iter().map(|place| place.potential - places[0].potential).collect();
+        let (own, other): (Vec<_>, Vec<_>) = (potentials(&self.seen), potentials(&seen));
+        let largest = self.seen.iter().chain(&seen).map(|place| place.potential.abs()).fold(0.0, f64::max);
+        if apart(&own, &other) > SAME * largest {
             self.mistake.get_or_insert(SetupError::AnotherPotential);
+        }
+        for (own, other) in self.seen.iter().zip(&seen) {
+            let largest = own.bias.iter().chain(&other.bias).map(|entry| entry.abs()).fold(0.0, f64::max);
+            if apart(&own.bias, &other.bias) > SAME * largest {
+                self.mistake.get_or_insert(SetupError::AnotherBias);
+            }
         }
     }
 
@@ -272,11 +274,33 @@ fn inertia<L: Effect<Scalar = f64>>(scene: &L) -> Vec<f64> {
     entries
 }
 
-/// The advected parameters as seen from some places.
-fn samples<L: Effect<Scalar = f64>>(scene: &L) -> Vec<L::Advected> {
+/// Up to this part scenes are one scene.
+const SAME: f64 = 1e-9;
+
+/// What a scene is at one place, by its own parameters.
+struct Seen {
+    /// J
+    potential: f64,
+    /// The momentum at rest.
+    bias: Vec<f64>,
+}
+
+/// At places enough to tell the potentials of a body apart.
+fn seen<L: Effect<Scalar = f64>>(scene: &L) -> Vec<Seen> {
     use crate::coordinates::Coordinates as _;
     let dimension = <Group<L> as LieGroup>::DIMENSION;
     let turned = (0..dimension).map(|k| L::Retraction::retract(&(Vector::<L>::axis(k) * 0.7)));
     let places = core::iter::once(Group::<L>::identity()).chain(turned);
-    places.map(|place| scene.advected().seen_from(&place)).collect()
+    let look = |place| {
+        let w = scene.advected().seen_from(&place);
+        let mut bias = Vec::new();
+        crate::entries::Entries::each(&scene.momentum_bias(&w), &mut |entry| bias.push(entry));
+        Seen { potential: scene.potential(&w), bias }
+    };
+    places.map(look).collect()
+}
+
+/// The largest difference.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

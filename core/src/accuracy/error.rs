@@ -8,7 +8,7 @@ use crate::error::{SetupError, StepError};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AccuracyError {
-    /// The tolerance isn't a number above zero.
+    /// The tolerance isn't a number above zero, or so large that it would be another motion.
     Tolerance {
         /// What was asked for.
         tolerance: f64,
@@ -34,7 +34,7 @@ pub enum AccuracyError {
     },
     /// The scene or the start can't be used.
     Setup(SetupError),
-    /// No method gets to the horizon, with however short a step; the last of their errors.
+    /// A method doesn't get to the horizon, with however short a step, and no other does for the accuracy.
     Step(StepError),
 }
 
@@ -42,7 +42,7 @@ impl fmt::Display for AccuracyError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Tolerance { tolerance } => {
-                write!(f, "the tolerance {tolerance:e} can't be used; choose a number between 0 and 1")
+                write!(f, "the tolerance {tolerance:e} can't be used; choose one above 0 and up to 0.05")
             }
             Self::Horizon { horizon } => {
                 write!(f, "the horizon {horizon:e} s can't be used; choose a finite time above zero")

@@ -134,7 +134,11 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         };
         let least = steps * self.candidate.least;
         let (cost, end) = match run() {
-            Some(Ok((cost, end))) => (cost, Some(end).filter(is_finite)),
+            Some(Ok((cost, end))) => {
+                // Shorter steps had a solution.
+                self.failure = None;
+                (cost, Some(end).filter(is_finite))
+            }
             Some(Err(error)) => {
                 self.failure = Some(error);
                 (least, None)
@@ -201,7 +205,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         let points = self.points();
         let [.., last] = points.as_slice() else { return false };
         let (order, _) = self.orders(&points);
-        points.len() >= 2 && last.error * (-order).exp2() <= 0.25 * tolerance
+        points.len() >= 2 && last.error / (order.exp2() - 1.0) <= 0.25 * tolerance
     }
 
     /// The order that can be relied on.

@@ -3,7 +3,7 @@
 use super::Accuracy;
 use super::Candidate;
 use super::error::AccuracyError;
-use super::ladder::{AIM, Estimate, LARGEST_ERROR, Ladder, Start};
+use super::ladder::{AIM, Estimate, Ladder, Start};
 use crate::advected::Advected;
 use crate::groups::LieGroup;
 
@@ -53,8 +53,7 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
     accuracy: Accuracy,
     start: &Start<G>,
 ) -> Result<Found, AccuracyError> {
-    // What is larger isn't an error but another motion.
-    let tolerance = accuracy.tolerance.min(LARGEST_ERROR);
+    let tolerance = accuracy.tolerance;
     let aim = AIM * tolerance;
     let mut ladders: Vec<_> = candidates.iter().map(Ladder::new).collect();
     let mut open: Vec<usize> = (0..ladders.len()).collect();

@@ -10,7 +10,7 @@ use crate::{Inertia, SO3, force};
 /// is `−k |B × Ω|²`, so a turn about the field isn't damped, and the momentum along it is conserved.
 ///
 /// With the field `(b + Fᵀb)/2` of the middle of a step at both of its ends that momentum is conserved to rounding, and
-/// the energy of a free body falls in every step. The gain is `k/√(1 + y²)` with `y = (h/2) k |B|² tr J⁻¹`: of second order
+/// the energy of a free body with the kinetic term of (3.13) never rises. The gain is `k/√(1 + y²)` with `y = (h/2) k |B|² tr J⁻¹`: of second order
 /// where the step resolves the damping, and too little to turn a spin over where it doesn't.
 #[force(
     group = SO3,
@@ -19,7 +19,7 @@ use crate::{Inertia, SO3, force};
         let y = 0.5 * h * k * b.norm_squared() * inverse(J).trace();
         let after = F.transpose() * b;
         let turn = vee(F);
-        // B × (turn × B) for the middle field B = (b + Fᵀb)/2, which has the same part along the turn as b.
+        // Twice B × (turn × B) for the middle field B = (b + Fᵀb)/2, which has the same part along the turn as b.
         let across = turn * (b.norm_squared() + b.dot(&after)) - (b + after) * b.dot(&turn);
         -0.25 * k / (1.0 + y * y).sqrt() * across.dot(&(eta + eta_next))
     },

@@ -30,6 +30,7 @@ fn setup_errors() {
         SetupError::NotInGroup { defect: 0.125 },
         SetupError::NotSeparable { defect: 0.25 },
         SetupError::AnotherInertia { difference: 0.5 },
+        SetupError::AnotherBias,
         SetupError::AnotherPotential,
     ];
     for error in errors {
@@ -41,6 +42,7 @@ fn setup_errors() {
             SetupError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "more than rounding"],
             SetupError::NotSeparable { .. } => &["K(F) − (h/2) (V(w) + V(F⁻¹·w))", "2.5e-1", "more than rounding"],
             SetupError::AnotherInertia { .. } => &["another body", "5e-1"],
+            SetupError::AnotherBias => &["momentum at rest", "rotors"],
             SetupError::AnotherPotential => &["another potential"],
         };
         assert_says(&error.to_string(), parts);

@@ -72,8 +72,9 @@ const fn coefficients(first: usize) -> [f64; 8] {
 /// `a²` rounded and what the rounding left behind, by Dekker's product.
 #[inline(always)]
 pub(super) fn square<T: Real>(a: T) -> (T, T) {
-    // Half of the digits of a double; where a scalar has fewer, the rest is zero and nothing is made good.
-    let split = a * real(134_217_729.0);
+    // Half of the digits: of 53 or of 24.
+    let single = T::simd_default_epsilon().simd_gt(real(1e-10)).any();
+    let split = a * real(if single { 4_097.0 } else { 134_217_729.0 });
     let high = split - (split - a);
     let low = a - high;
     let product = a * a;

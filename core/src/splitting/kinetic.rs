@@ -17,13 +17,18 @@ use crate::scalar::{Real, real, reported};
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
 pub trait KineticFlow<T: Real> {
     /// The flow over one share of the step, its constants folded.
-    type Drift;
+    type Drift: Clone;
 
     /// How much arithmetic the flow over one share is.
     const OPERATIONS: Operations = Operations::UNCOUNTED;
 
     /// The inertia `J` of the body, kg m².
     fn inertia(&self) -> Matrix3<T>;
+
+    /// The momentum `s` at rest, `p = JΩ + s`, kg m²/s: that of rotors in the body, which most bodies haven't got.
+    fn momentum_bias(&self) -> Vector3<T> {
+        Vector3::repeat(T::zero())
+    }
 
     /// The flow over the time `h`, s.
     ///
@@ -177,6 +182,10 @@ where
 
     fn inertia(&self) -> Matrix3<T> {
         Effect::inertia(self)
+    }
+
+    fn momentum_bias(&self) -> Vector3<T> {
+        Effect::momentum_bias(self, &())
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {

@@ -1,0 +1,26 @@
+//! Whether the kinetic flow has the rotors of the Lagrangian whose kinetic part it replaces.
+
+use nalgebra::SimdBool as _;
+
+use super::kinetic::KineticFlow;
+use crate::advected::Advected as _;
+use crate::groups::SO3;
+use crate::lagrangian::DiscreteLagrangian;
+use crate::retraction::{CayleyRetraction, Retraction as _};
+use crate::scalar::{Real, real};
+
+/// Compares `s` in `p = JΩ + s` at two attitudes, as a declared one may depend on what is advected.
+pub(super) fn is_shared<T, L, K>(lagrangian: &L, kinetic: &K) -> bool
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+    K: KineticFlow<T>,
+{
+    let of_flow = kinetic.momentum_bias();
+    [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5]].iter().all(|xi| {
+        let attitude = CayleyRetraction::retract(&nalgebra::Vector3::from(*xi).map(real::<T>));
+        let declared = lagrangian.momentum_bias(&lagrangian.advected().seen_from(&attitude));
+        let allowed = (declared.norm_squared() + of_flow.norm_squared()) * real(1e-24);
+        (declared - of_flow).norm_squared().simd_le(allowed).all()
+    })
+}
