@@ -77,7 +77,7 @@ where
     /// order 4, 6, 8 or 10, with the step that is just short enough for the motion from this attitude (body to space)
     /// and body velocity.
     ///
-    /// The choice takes trial runs to the horizon, which cost together several times what the run does;
+    /// The choice takes trial runs to the horizon, which cost together some twenty to a hundred times what the run does;
     /// [`Choice::trials`] says how much. The step is then fixed: energy and momenta are kept as by any fixed step, and the
     /// same question gives the same bits. [`Candidates`] chooses from more methods, where a scene allows them.
     ///
