@@ -67,7 +67,9 @@ pub(crate) fn picture(file: &SceneFile, run: &Run) -> Drawn<String> {
     let (picture, samples) = (&file.picture, run.samples.as_slice());
     render((1200, 640), |area| {
         let (header, body) = area.split_vertically(px(64));
-        let subtitle = format!("{}, h = {} s", file.sum(), run.step);
+        // A step that was chosen for an accuracy has more digits than anyone reads.
+        let step = format!("{:.4e}", run.step).parse().unwrap_or(run.step);
+        let subtitle = format!("{}, h = {step} s", file.sum());
         heading(&header, &file.title, &subtitle)?;
         let (left, right) = body.split_horizontally(px(520));
         picture.draw_path(&left, samples)?;
