@@ -110,7 +110,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotSeparable`] and [`SetupError::AnotherInertia`] where that isn't so; otherwise as
+    /// [`SetupError::NotSeparable`], [`SetupError::AnotherInertia`] and [`SetupError::AnotherBias`] where that isn't so;
+    /// otherwise as
     /// [`DiscreteLiePoisson::new`](crate::DiscreteLiePoisson::new).
     pub fn new(lagrangian: L, kinetic: K, h: T, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let stepper = Stepper::new(lagrangian, h)?;
