@@ -301,7 +301,7 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }
 
-/// `p_3` is constant, but its square isn't rounded in the same way at each step: that would lengthen `w` by 2e-13 here.
+/// `p_3` is constant, but its square isn't rounded in the same way at each step: that would change `|w|²` by 9e-14 here.
 #[test]
 fn the_exact_flow_keeps_lengths() {
     let motion = looping();
