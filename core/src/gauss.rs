@@ -20,6 +20,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
+use crate::machine::{Work, at_best};
 use crate::splitting::torque;
 
 use crate::stepper::{StepReport, Stepper};
@@ -121,6 +122,11 @@ where
     /// isn't finite.
     #[inline]
     pub fn step(&self, state: &mut GaussState<PAIRS>) -> Result<StepReport, StepError> {
+        at_best(Step(self, state))
+    }
+
+    #[inline(always)]
+    fn step_as_compiled(&self, state: &mut GaussState<PAIRS>) -> Result<StepReport, StepError> {
         let (y, carry) = (&state.lifted, &state.carry);
         let mut stages = match &state.stages {
             Some(stages) => stages.continued(&self.coefficients),
@@ -200,6 +206,24 @@ where
     #[must_use]
     pub fn energy(&self, state: &GaussState<PAIRS>) -> f64 {
         energy(self.lagrangian(), &state.momentum(), &self.advected(state))
+    }
+}
+
+/// A step of this state.
+struct Step<'a, L: DiscreteLagrangian<Group = SO3, Scalar = f64>, const PAIRS: usize>(
+    &'a Gauss<L, PAIRS>,
+    &'a mut GaussState<PAIRS>,
+);
+
+impl<L, const PAIRS: usize> Work for Step<'_, L, PAIRS>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+{
+    type Output = Result<StepReport, StepError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.0.step_as_compiled(self.1)
     }
 }
 
