@@ -8,12 +8,13 @@ use crate::flows::DiscreteLiePoisson;
 use crate::groups::{LieGroup, SO3};
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
+use crate::machine::{Work, at_best};
 use crate::remedy::Remedy;
 use crate::scalar::{real, reported};
 use crate::solvability::Solvability;
 use crate::state::State;
 use crate::symmetry::{AxiallyInvariant, LeftInvariant};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,6 +171,11 @@ impl<L: Effect> Stepper<L> {
     /// isn't finite.
     #[inline]
     pub fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
+        if Scalar::<L>::LANES > 1 { at_best(Step(self, state)) } else { self.step_as_compiled(state) }
+    }
+
+    #[inline(always)]
+    fn step_as_compiled(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
         let step = self.flow.step(&state.momentum, &state.advected, &state.guess)?;
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
@@ -299,5 +305,17 @@ impl<L: Effect> Stepper<L> {
     #[must_use]
     pub fn max_step(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
         self.flow.max_step(&state.momentum, &state.advected)
+    }
+}
+
+/// A step of this state.
+struct Step<'a, L: Effect>(&'a Stepper<L>, &'a mut State<Group<L>, L::Advected>);
+
+impl<L: Effect> Work for Step<'_, L> {
+    type Output = Result<StepReport, StepError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.0.step_as_compiled(self.1)
     }
 }
