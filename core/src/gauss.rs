@@ -11,8 +11,8 @@ mod state;
 pub use state::GaussState;
 
 use coefficients::Coefficients;
-use lift::{Lift, Lifted, length_squared};
-use stages::Stages;
+use lift::{Lift, Lifted, each, length_squared};
+use stages::{Stages, WeightedRates};
 
 use crate::advected::Advected as _;
 use crate::effect::{energy, velocity_of_momentum};
@@ -132,17 +132,7 @@ where
             Some(stages) => stages.continued(&self.coefficients),
             None => Stages::constant(&self.lift.rate(y), &self.weights[0]),
         };
-        let iterations = stages.solve(&self.coefficients, (y, carry), |places| {
-            let mut rates = [[[0.0; PAIRS]; 2]; 8];
-            // One loop over all stages, of which the compiler makes lanes; for four stages that is worth a third.
-            for stage in 0..2 * PAIRS {
-                let rate = self.lift.rate(&core::array::from_fn(|component| places[component].as_flattened()[stage]));
-                for component in 0..8 {
-                    rates[component].as_flattened_mut()[stage] = self.weights.as_flattened()[stage] * rate[component];
-                }
-            }
-            rates
-        })?;
+        let iterations = stages.solve(&self.coefficients, (y, carry), self)?;
         let (next, left) = compensated(y, &stages.change(), carry);
         if !next.iter().all(|component| component.is_finite()) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -206,6 +196,17 @@ where
     #[must_use]
     pub fn energy(&self, state: &GaussState<PAIRS>) -> f64 {
         energy(self.lagrangian(), &state.momentum(), &self.advected(state))
+    }
+}
+
+impl<L, const PAIRS: usize> WeightedRates for Gauss<L, PAIRS>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3>,
+{
+    #[inline(always)]
+    fn weighted_rate(&self, stage: usize, place: &Lifted) -> Lifted {
+        let (weight, rate) = (self.weights.as_flattened()[stage], self.lift.rate(place));
+        each(|component| weight * rate[component])
     }
 }
 
