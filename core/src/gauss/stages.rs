@@ -109,7 +109,8 @@ impl<const PAIRS: usize> Stages<PAIRS> {
             quaternion.as_flattened_mut()[stage] = (squared[0] + squared[1]) + (squared[2] + squared[3]);
             momentum.as_flattened_mut()[stage] = (squared[4] + squared[5]) + (squared[6] + squared[7]);
         }
-        let [quaternion, momentum] = [quaternion, momentum].map(|[first, second]| total(&plus(&first, &second)));
+        let quaternion = total(&plus(&quaternion[0], &quaternion[1]));
+        let momentum = total(&plus(&momentum[0], &momentum[1]));
         // A body at rest has no momentum before the step.
         let size: f64 = (4..8).map(|k| y[k] * y[k] + next[k][0][0] * next[k][0][0]).sum();
         let change = if momentum == 0.0 { quaternion } else { quaternion + momentum / size };
@@ -183,5 +184,9 @@ fn minus<const PAIRS: usize>(a: &[f64; PAIRS], b: &[f64; PAIRS]) -> [f64; PAIRS]
 
 #[inline(always)]
 fn total<const PAIRS: usize>(x: &[f64; PAIRS]) -> f64 {
-    x.iter().sum()
+    let mut sum = x[0];
+    for k in 1..PAIRS {
+        sum += x[k];
+    }
+    sum
 }
