@@ -184,9 +184,5 @@ fn minus<const PAIRS: usize>(a: &[f64; PAIRS], b: &[f64; PAIRS]) -> [f64; PAIRS]
 
 #[inline(always)]
 fn total<const PAIRS: usize>(x: &[f64; PAIRS]) -> f64 {
-    let mut sum = x[0];
-    for k in 1..PAIRS {
-        sum += x[k];
-    }
-    sum
+    x.iter().sum()
 }
