@@ -84,7 +84,15 @@ where
 /// `Aᵀ v`, unrolled.
 #[inline(always)]
 fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
-    SVector::from_fn(|i, _| (1..N).fold(a[(0, i)] * v[0], |sum, j| sum + a[(j, i)] * v[j]))
+    let mut product = SVector::zeros();
+    for i in 0..N {
+        let mut sum = a[(0, i)] * v[0];
+        for j in 1..N {
+            sum += a[(j, i)] * v[j];
+        }
+        product[i] = sum;
+    }
+    product
 }
 
 macro_rules! tuple {

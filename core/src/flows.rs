@@ -49,6 +49,13 @@ pub(crate) struct Stepped<L: Effect> {
     pub(crate) far: Mask<Scalar<L>>,
 }
 
+impl<L: Effect> Stepped<L> {
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.step.momentum.is_finite() && self.step.advected.is_finite()
+    }
+}
+
 /// A momentum equation and its solution.
 pub(crate) struct Solved<L: Effect> {
     /// `a = μ + kick_before(w)`.
@@ -157,26 +164,62 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         half_guess: &Vector<L>,
     ) -> Result<Stepped<L>, StepError> {
-        let Solved { a, root: Root { half, increment, iterations, far } } =
-            self.solve(momentum, advected, half_guess)?;
+        match self.step_directly(momentum, advected, half_guess) {
+            Some(stepped) => Ok(stepped),
+            None => self.step_carefully(momentum, advected, half_guess),
+        }
+    }
+
+    /// The step, if nothing about it is doubtful.
+    #[inline(always)]
+    pub(crate) fn step_directly(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        half_guess: &Vector<L>,
+    ) -> Option<Stepped<L>> {
+        let problem = self.problem(momentum, advected);
+        let root = problem.solve_directly(half_guess, self.largest_target)?;
+        let stepped = self.moved(momentum, advected, &problem.a, &root);
+        stepped.is_finite().then_some(stepped)
+    }
+
+    /// The step, or why there is none.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn step_carefully(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        half_guess: &Vector<L>,
+    ) -> Result<Stepped<L>, StepError> {
+        if self.h == real(0.0) {
+            return Ok(Self::stand_still(momentum, advected));
+        }
+        let root = self.solve_carefully(momentum, advected, half_guess)?;
+        let stepped = self.moved(momentum, advected, &kicked::<L>(&self.constants, momentum, advected), &root);
+        if stepped.is_finite() {
+            Ok(stepped)
+        } else {
+            Err(StepError::NonFinite { what: "momentum after the step" })
+        }
+    }
+
+    /// By `F` from `(μ, w)`, with `a = μ + kick_before(w)`.
+    #[inline(always)]
+    fn moved(&self, momentum: &Vector<L>, advected: &L::Advected, a: &Vector<L>, root: &Root<L>) -> Stepped<L> {
+        let Root { half, increment, iterations, far } = *root;
         let next = advected.advect(&increment);
-        let mut change = Group::<L>::adjoint_transpose_increment(&increment, &a);
+        let mut change = Group::<L>::adjoint_transpose_increment(&increment, a);
         if L::PARTS.kick_before {
-            change = change + (a - *momentum);
+            change = change + (*a - *momentum);
         }
         if L::PARTS.kick_after {
             change = change + L::kick_after(&self.constants, &increment, &next);
         }
-        let before = momentum;
-        let momentum = *before + change;
-        if momentum.is_finite() && next.is_finite() {
-            let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
-            Ok(Stepped { step, half, far })
-        } else if self.h == real(0.0) {
-            Ok(Self::stand_still(before, advected))
-        } else {
-            Err(StepError::NonFinite { what: "momentum after the step" })
-        }
+        let momentum = *momentum + change;
+        let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
+        Stepped { step, half, far }
     }
 
     /// `F` of the step from `(μ, w)`; the guess is of half the coordinates.
@@ -234,9 +277,6 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         half_guess: &Vector<L>,
     ) -> Result<Root<L>, StepError> {
-        if self.h == real(0.0) {
-            return Ok(Root::at(&Vector::<L>::zero(), 0));
-        }
         let is_finite = momentum.is_finite() && advected.is_finite();
         if is_finite && self.solvability(momentum, advected) == Solvability::Impossible {
             let largest = reported(self.max_step(momentum, advected));

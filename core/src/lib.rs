@@ -36,6 +36,7 @@ mod gauss;
 mod inertia;
 mod kinetic;
 mod lagrangian;
+mod machine;
 mod newton;
 mod operations;
 mod preprocessed;

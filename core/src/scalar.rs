@@ -14,7 +14,7 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 ///
 /// # Lanes
 ///
-/// With a scalar of several lanes, such as `WideF64x4` of the crate simba, one stepper moves as many bodies at once.
+/// With a scalar of several lanes, such as `AutoF64x8` of the crate simba, one stepper moves as many bodies at once.
 /// Values of all lanes are made from arrays of the lanes' values, inertias and attitudes too, and read by
 /// [`SimdValue::extract`]:
 ///
@@ -25,8 +25,10 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// - The group is [`SO3`](crate::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::MatrixGroup) inverts matrices by
 ///   pivots and asks for `RealField`, of which lanes aren't one.
 ///
-/// How much faster that is depends on the registers of the target: two `f64` on x86-64 unless the compiler is told
-/// more, as by `-C target-cpu=native`. `cargo bench --bench ensemble` measures it.
+/// [`Stepper::step`](crate::Stepper::step) finds out which vector instructions the machine has and takes them, so a program
+/// needn't be compiled for one machine. That is for lanes which are arrays, such as `AutoF64x8`: the `Wide` types of simba
+/// take those instructions that the program is compiled for, two `f64` a register on x86-64 unless the compiler is told
+/// more, as by `-C target-cpu=native`. `cargo bench --bench ensemble` measures both.
 pub trait Real: SimdRealField + Copy {}
 
 impl<T: SimdRealField + Copy> Real for T {}

@@ -8,12 +8,13 @@ use crate::flows::{DiscreteLiePoisson, Stepped};
 use crate::groups::{LieGroup, SO3};
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
+use crate::machine::{Work, at_best};
 use crate::remedy::Remedy;
 use crate::scalar::{real, reported};
 use crate::solvability::Solvability;
 use crate::state::State;
 use crate::symmetry::{AxiallyInvariant, LeftInvariant};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,12 +172,34 @@ impl<L: Effect> Stepper<L> {
     /// isn't finite.
     #[inline]
     pub fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        let Stepped { step, half, far } = self.flow.step_from(&state.momentum, &state.advected, &state.half_guess)?;
+        if Scalar::<L>::LANES > 1 { at_best(Step(self, state)) } else { self.step_as_compiled(state) }
+    }
+
+    #[inline(always)]
+    fn step_as_compiled(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
+        match self.flow.step_directly(&state.momentum, &state.advected, &state.half_guess) {
+            Some(stepped) => Ok(self.taken(state, &stepped)),
+            None => self.step_carefully(state),
+        }
+    }
+
+    /// What is rare, to its end: if it came back to the common way, that would have to keep in memory what it has in
+    /// registers.
+    #[cold]
+    #[inline(never)]
+    fn step_carefully(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
+        let stepped = self.flow.step_carefully(&state.momentum, &state.advected, &state.half_guess)?;
+        Ok(self.taken(state, &stepped))
+    }
+
+    #[inline(always)]
+    fn taken(&self, state: &mut State<Group<L>, L::Advected>, stepped: &Stepped<L>) -> StepReport {
+        let Stepped { step, half, far } = stepped;
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
-        state.proceed(half, far, || self.lagrangian().advected());
-        Ok(StepReport { iterations: step.iterations, remedy: None })
+        state.proceed(*half, *far, || self.lagrangian().advected());
+        StepReport { iterations: step.iterations, remedy: None }
     }
 
     /// The states after each step from here on; after an error, nothing more.
@@ -297,5 +320,17 @@ impl<L: Effect> Stepper<L> {
     #[must_use]
     pub fn max_step(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
         self.flow.max_step(&state.momentum, &state.advected)
+    }
+}
+
+/// A step of this state.
+struct Step<'a, L: Effect>(&'a Stepper<L>, &'a mut State<Group<L>, L::Advected>);
+
+impl<L: Effect> Work for Step<'_, L> {
+    type Output = Result<StepReport, StepError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.0.step_as_compiled(self.1)
     }
 }

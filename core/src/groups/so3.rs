@@ -199,7 +199,15 @@ impl<T: Real> LieGroup for SO3<T> {
 
     #[inline(always)]
     fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
-        self.0 * increment
+        // Of the product of matrices, which isn't always inlined, lanes would have the target's common instructions.
+        let mut product = Matrix3::zeros();
+        for column in 0..3 {
+            for row in 0..3 {
+                let term = |k: usize| self.0[(row, k)] * increment[(k, column)];
+                product[(row, column)] = term(0) + term(1) + term(2);
+            }
+        }
+        product
     }
 
     #[inline(always)]
