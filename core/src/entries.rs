@@ -24,8 +24,13 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
         SMatrix::<T, C, R>::from_fn(|_, _| next()).transpose()
     }
 
+    #[inline(always)]
     fn each(&self, visit: &mut impl FnMut(T)) {
-        self.row_iter().for_each(|row| row.iter().for_each(|&entry| visit(entry)));
+        for row in 0..R {
+            for column in 0..C {
+                visit(self[(row, column)]);
+            }
+        }
     }
 
     #[inline(always)]
@@ -37,6 +42,7 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
 impl<T> Entries<T> for () {
     fn from_entries(_: &mut impl FnMut() -> T) -> Self {}
 
+    #[inline(always)]
     fn each(&self, _: &mut impl FnMut(T)) {}
 
     fn zip(&self, (): &Self, _: &mut impl FnMut(T, T) -> T) -> Self {}
@@ -49,6 +55,7 @@ macro_rules! tuple {
                 ($($name::from_entries(next),)+)
             }
 
+            #[inline(always)]
             fn each(&self, visit: &mut impl FnMut(S)) {
                 $(self.$index.each(visit);)+
             }

@@ -4,6 +4,7 @@ use crate::advected::Advected;
 use crate::bisection::{largest_fraction, six_digits};
 use crate::coordinates::Coordinates as _;
 use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
+use crate::entries::Entries as _;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
@@ -50,9 +51,13 @@ pub(crate) struct Stepped<L: Effect> {
 }
 
 impl<L: Effect> Stepped<L> {
+    /// The sum of all that the step has made.
     #[inline(always)]
-    fn is_finite(&self) -> bool {
-        self.step.momentum.is_finite() && self.step.advected.is_finite()
+    fn total(&self) -> Scalar<L> {
+        let mut total = real(0.0);
+        self.step.momentum.each(&mut |entry| total += entry);
+        self.step.advected.each(&mut |entry| total += entry);
+        total
     }
 }
 
@@ -181,7 +186,8 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         let problem = self.problem(momentum, advected);
         let root = problem.solve_directly(half_guess, self.largest_target)?;
         let stepped = self.moved(momentum, advected, &problem.a, &root);
-        stepped.is_finite().then_some(stepped)
+        // A finite sum has finite terms. Where it isn't, it may have overflowed.
+        is_finite(stepped.total()).then_some(stepped)
     }
 
     /// The step, or why there is none.
@@ -198,7 +204,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         }
         let root = self.solve_carefully(momentum, advected, half_guess)?;
         let stepped = self.moved(momentum, advected, &kicked::<L>(&self.constants, momentum, advected), &root);
-        if stepped.is_finite() {
+        if stepped.step.momentum.is_finite() && stepped.step.advected.is_finite() {
             Ok(stepped)
         } else {
             Err(StepError::NonFinite { what: "momentum after the step" })
