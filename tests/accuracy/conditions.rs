@@ -77,14 +77,7 @@ fn by_degree(scheme: &CompositionScheme, highest: u32) -> Vec<f64> {
 
 #[test]
 fn compositions_satisfy_their_order_conditions() {
-    for scheme in [
-        CompositionScheme::SUZUKI_4,
-        CompositionScheme::SUZUKI_6,
-        CompositionScheme::SUZUKI_8,
-        CompositionScheme::KAHAN_LI_6,
-        CompositionScheme::KAHAN_LI_8,
-        CompositionScheme::SOFRONIOU_SPALETTA_10,
-    ] {
+    for scheme in CompositionScheme::ALL {
         let deviations = by_degree(&scheme, scheme.order() + 1);
         let (beyond, within) = deviations.split_last().unwrap();
         let worst = within.iter().fold(0.0_f64, |worst, deviation| worst.max(*deviation));

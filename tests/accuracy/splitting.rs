@@ -17,18 +17,6 @@ use crate::declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBod
 use crate::many_digits::heavy_top::Top;
 use crate::many_digits::{self, DoubleDouble};
 
-const SCHEMES: [SplittingScheme; 9] = [
-    SplittingScheme::KAHAN_LI_8,
-    SplittingScheme::SOFRONIOU_SPALETTA_10,
-    SplittingScheme::STRANG,
-    SplittingScheme::NYSTROM_6,
-    SplittingScheme::NYSTROM_11,
-    SplittingScheme::NYSTROM_14,
-    SplittingScheme::NEAR_INTEGRABLE_4_2,
-    SplittingScheme::NEAR_INTEGRABLE_8_6_4,
-    SplittingScheme::NEAR_INTEGRABLE_10_6_4,
-];
-
 fn symmetric(top: &HeavyTop) -> SymmetricBody {
     SymmetricBody::new(&inertia(top)).unwrap()
 }
@@ -182,7 +170,7 @@ fn strang_with_the_flow_of_3_13_is_3_13() {
 #[test]
 fn many_steps_are_single_steps() {
     let motion = looping();
-    for scheme in SCHEMES {
+    for scheme in SplittingScheme::ALL {
         let splitting = Splitting::new(motion.top.clone(), symmetric(&motion.top), 0.05, scheme).unwrap();
         let mut many = splitting.start(motion.attitude, motion.velocity).unwrap();
         let mut single = many;
@@ -198,7 +186,7 @@ fn many_steps_are_single_steps() {
 
 fn assert_poisson<K: KineticFlow<f64>>(top: &HeavyTop, kinetic: impl Fn() -> K, name: &str) {
     let mut random = Random::new(31);
-    for scheme in SCHEMES {
+    for scheme in SplittingScheme::ALL {
         for h in [0.1, 0.3] {
             let (momentum, w) = (random.vector() * 3.0, random.vector());
             // A parameter off the orbit of the declared one is that of another top, whose vertical it is.
@@ -271,7 +259,7 @@ fn preprocessed_flows_keep_the_order() {
 #[test]
 fn s5_negative_split_step_is_the_inverse_map() {
     let mut random = Random::new(32);
-    for scheme in SCHEMES {
+    for scheme in SplittingScheme::ALL {
         let top = HeavyTop::thesis();
         let [there, back] = [0.1, -0.1].map(|h| Splitting::new(top.clone(), symmetric(&top), h, scheme).unwrap());
         for _ in 0..10 {
@@ -289,7 +277,7 @@ fn s5_negative_split_step_is_the_inverse_map() {
 #[test]
 fn splittings_keep_the_momenta() {
     let motion = looping();
-    for scheme in SCHEMES {
+    for scheme in SplittingScheme::ALL {
         let splitting = Splitting::new(motion.top.clone(), symmetric(&motion.top), 0.05, scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
         let (vertical, spin) = (state.momentum_along(&Vector3::z()), state.momentum().z);
