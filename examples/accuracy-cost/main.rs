@@ -21,6 +21,8 @@
 mod common;
 #[path = "../common/newton_tolerance/mod.rs"]
 mod newton_tolerance;
+#[path = "../common/top_equations.rs"]
+mod top_equations;
 
 mod asked;
 mod figure;

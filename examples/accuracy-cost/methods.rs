@@ -5,7 +5,7 @@ use liestep::{
     PreprocessedOrder, Regular, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
-use crate::rivals::{Equations, dop853, library, rk4};
+use crate::rivals::{Equations, dop853, library};
 use crate::scenes::{End, Kind, Scene};
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
@@ -235,7 +235,7 @@ fn rivals() -> [Method; 4] {
             Some(Box::new(move || {
                 let mut y = start;
                 for _ in 0..steps {
-                    y = rk4::step(&equations, h, &y);
+                    y = equations.rk4_step(h, &y);
                 }
                 Some(equations.end(&y))
             }))

@@ -91,11 +91,11 @@ fn attitude(q: &(DoubleDouble, Vector)) -> Matrix {
     of_quaternion(q.0 / length, &q.1.map(|component| component / length))
 }
 
-/// `q' = ½ q Ω`, `p' = ½ p Ω + 2 q τ(w)/|q|²` with `Ω = J⁻¹ Π` and `w = R(q)ᵀ e₃`.
+/// `q' = ½ q Ω`, `p' = ½ p Ω + 2 q τ(w)/|q|²` with `Ω = J⁻¹ Π` and `w = R(q)ᵀ a_0`.
 fn rate(motion: &Motion, place: &Place) -> Place {
     let [q, p] = place;
     let half: Vector = motion.velocity_of(&momentum(place)) * long(0.5);
-    let torque = motion.torque(&(attitude(q).transpose() * Vector::z()));
+    let torque = motion.torque(&(attitude(q).transpose() * motion.up));
     let kick = times(q, &(torque * (long(2.0) / squared(q))));
     let (real, imaginary) = times(p, &half);
     [times(q, &half), (real + kick.0, imaginary + kick.1)]

@@ -13,13 +13,13 @@ pub(crate) struct Top<'a> {
     pub(crate) attitude: Matrix,
     pub(crate) momentum: Vector,
     /// The vertical as the body sees it.
-    w: Vector,
+    pub(crate) w: Vector,
 }
 
 impl<'a> Top<'a> {
     /// At the start of a motion.
     pub(crate) fn at_start_of(motion: &'a Motion) -> Self {
-        let w = motion.attitude.transpose() * Vector::z();
+        let w = motion.attitude.transpose() * motion.up;
         Self { motion, attitude: motion.attitude, momentum: motion.momentum(), w }
     }
 

@@ -13,6 +13,7 @@ pub(crate) mod collocation;
 pub(crate) mod heavy_top;
 pub(crate) mod motion;
 mod number;
+mod poisson;
 
 pub(crate) use number::{DoubleDouble, long};
 

@@ -14,6 +14,8 @@ pub(crate) struct Motion {
     pub(crate) moments: Vector,
     /// `m g ρ`, N m.
     pub(crate) lever: Vector,
+    /// The vertical, in space.
+    pub(crate) up: Vector,
     pub(crate) attitude: Matrix,
     pub(crate) velocity: Vector,
     states: Vec<(f64, Matrix, Vector)>,
@@ -52,6 +54,7 @@ impl Motion {
             nonstandard: moments.map(|moment| moments.sum() * long(0.5) - moment),
             moments,
             lever: vector(&data["rho"]).map(parameter) * weight,
+            up: Vector::z(),
             attitude: attitude(start),
             velocity: vector(&start["Omega"]),
             states: states.map(|state| (time(&state["t"]), attitude(state), vector(&state["Omega"]))).collect(),
