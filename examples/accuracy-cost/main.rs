@@ -19,6 +19,7 @@
 #[allow(dead_code, unused_imports)]
 #[path = "../common/mod.rs"]
 mod common;
+#[allow(dead_code)]
 #[path = "../common/newton_tolerance/mod.rs"]
 mod newton_tolerance;
 #[path = "../common/top_equations.rs"]

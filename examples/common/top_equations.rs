@@ -58,7 +58,7 @@ impl Equations {
 
 /// The quaternion brought back to unit length.
 #[inline(always)]
-pub(crate) fn normalised([a, b, c, d, p1, p2, p3]: State) -> State {
+fn normalised([a, b, c, d, p1, p2, p3]: State) -> State {
     let scale = 1.0 / (a * a + b * b + c * c + d * d).sqrt();
     [a * scale, b * scale, c * scale, d * scale, p1, p2, p3]
 }

@@ -1,6 +1,6 @@
 //! Long runs: defects of the group and of the Casimirs while they grow.
 
-use liestep::{Effect, LieGroup as _, SO3, State};
+use liestep::{LieGroup as _, SO3, State};
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use crate::measure::{float, greater};

@@ -4,7 +4,7 @@ use liestep::SO3;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::scenes::Scene;
-pub(crate) use crate::top_equations::{Equations, State, normalised};
+pub(crate) use crate::top_equations::{Equations, State};
 
 impl Equations {
     pub(crate) fn of(scene: &Scene) -> Self {
