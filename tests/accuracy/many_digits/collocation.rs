@@ -120,9 +120,9 @@ fn step(tableau: &Tableau, motion: &Motion, h: DoubleDouble, place: &Place) -> P
             .iter()
             .map(|row| rate(motion, &row.iter().zip(&rates).fold(*place, |at, (a, rate)| sum(&at, rate, h * *a))))
             .collect();
-        let change = rates.iter().zip(&next).map(|(old, new)| distance(old, new)).fold(0.0, f64::max);
+        let has_settled = rates.iter().zip(&next).all(|(old, new)| distance(old, new) < 1e-28);
         rates = next;
-        if change < 1e-28 {
+        if has_settled {
             let all = tableau.weights.iter().zip(&rates);
             return all.fold(*place, |at, (weight, rate)| sum(&at, rate, h * *weight));
         }

@@ -65,5 +65,5 @@ pub(crate) fn assert_order(
     println!("{name}, {motion}: order {order:.3}, errors {}", listed.join(" "));
     println!("    the library: {apart:.1e} apart where the error is {missed:.1e}");
     assert!((order - f64::from(expected)).abs() < 0.1, "{name}, {motion}: order {order}, errors {errors:?}");
-    assert!(apart < 0.1 * missed, "{name}, {motion}: the library is {apart:e} apart, the error {missed:e}");
+    assert!(apart < 0.2 * missed, "{name}, {motion}: the library is {apart:e} apart, the error {missed:e}");
 }
