@@ -9,6 +9,7 @@ mod scheme;
 mod spin;
 
 pub(crate) use kick::torque;
+pub(crate) use kinetic::inverse_inertia;
 pub use kinetic::{DeclaredDrift, KineticFlow, SymmetricBody, SymmetricDrift, Turn};
 pub use preprocessed::{PreprocessedDrift, PreprocessedFlow};
 pub use scheme::{Flow, SplittingScheme};
@@ -254,6 +255,11 @@ where
         momentum: Vector3<T>,
     ) -> Result<State<SO3<T>, L::Advected>, SetupError> {
         self.stepper.start_with_momentum(attitude, momentum)
+    }
+
+    /// Whether the drifts' rotations about the third body axis are made at once, after the others of a step.
+    pub(crate) fn has_spin_apart(&self) -> bool {
+        self.spin.is_some()
     }
 
     /// The declared Lagrangian.

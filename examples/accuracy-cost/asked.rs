@@ -118,6 +118,7 @@ fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, 
                     .filter_map(|(method, runs)| Some((method.name.as_str(), cost_of(runs, tolerance)?)))
                     .min_by(|a, b| a.1.total_cmp(&b.1));
                 let Some((end, cost)) = timed(&answer.run, effort.repeated.max(Duration::from_millis(5))) else {
+                    rows.push(row.into_iter().chain([answer.name, "a step failed".to_owned()]).collect());
                     continue;
                 };
                 row.extend([answer.name.clone(), number(answer.step), number(error(&end, exact)), microseconds(cost)]);

@@ -25,11 +25,14 @@ pub(crate) struct Lost {
     pub(crate) orthogonality: f64,
 }
 
-/// A method, its step in s, and what it lost after ever more steps.
+/// A method, its step in s, and what it lost after ever more steps; of one that failed, after those that it made.
 pub(crate) struct Kept {
     pub(crate) name: String,
     pub(crate) family: Family,
-    step: f64,
+    /// None where no step reached the error that sets it.
+    step: Option<f64>,
+    /// The number of steps that it should have made and didn't.
+    failed: Option<f64>,
     pub(crate) lost: Vec<Lost>,
 }
 
@@ -46,14 +49,18 @@ pub(crate) fn kept(scene: &Scene, methods: &[Method], measured: &[Measured], mos
         *i == 0 || rival || cheapest.contains(&Some(*i))
     });
     chosen
-        .filter_map(|(i, method)| {
-            let step = longest(&measured[i].runs)?;
-            let ends = decades(most).map(|steps| {
-                let end = (method.prepare)(scene, steps * step, step)?()?;
-                Some(lost(scene, steps, &end))
-            });
-            let lost = ends.collect::<Option<Vec<_>>>()?;
-            Some(Kept { name: method.name.clone(), family: method.family, step, lost })
+        .map(|(i, method)| {
+            let step = longest(&measured[i].runs);
+            let (mut losses, mut failed) = (Vec::new(), None);
+            for steps in decades(most) {
+                let run = step.and_then(|step| (method.prepare)(scene, steps * step, step));
+                let Some(end) = run.and_then(|run| run()) else {
+                    failed = Some(steps);
+                    break;
+                };
+                losses.push(lost(scene, steps, &end));
+            }
+            Kept { name: method.name.clone(), family: method.family, step, failed, lost: losses }
         })
         .collect()
 }
@@ -90,11 +97,18 @@ pub(crate) fn table(methods: &[Kept]) -> String {
     let steps = methods.iter().filter_map(|kept| kept.lost.last()).map(|lost| lost.steps).fold(0.0, f64::max);
     let heading = [&format!("after {steps:.0e} steps"), "h, s", "energy", "vertical momentum", "‖RᵀR − I‖"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
-    for Kept { name, step, lost, .. } in methods {
-        if let Some(last) = lost.last() {
-            let values = [*step, last.energy, last.vertical, last.orthogonality].map(number);
-            rows.push(core::iter::once(name.clone()).chain(values).collect());
+    for Kept { name, step, failed, lost, .. } in methods {
+        let mut row = vec![name.clone()];
+        match (step, failed, lost.last()) {
+            (None, ..) => row.push(format!("no step reaches {ERROR:.0e}")),
+            (Some(step), Some(steps), _) => row.extend([number(*step), format!("a step of {steps:.0e} failed")]),
+            (Some(step), None, last) => {
+                let lost = last.map(|last| [last.energy, last.vertical, last.orthogonality].map(number));
+                row.push(number(*step));
+                row.extend(lost.into_iter().flatten());
+            }
         }
+        rows.push(row);
     }
     aligned(&rows)
 }

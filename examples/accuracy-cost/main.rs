@@ -9,8 +9,8 @@
 //! Each method integrates each scene for 10 s and for 100 s with shorter and shorter steps. The error is that of the
 //! attitude and the body velocity at the end, against references to 25 digits and more; the cost is the time of one
 //! processor for the run, constants folded and nothing printed. The tables say which of our methods is the cheapest for
-//! an error, how its time compares with that of the fastest rival, and what a million steps leave of the invariants. The
-//! rivals integrate unit quaternion and momentum. `with_heyoka.py` runs a Taylor integrator on the same scenes.
+//! an error, how its time compares with that of the fastest rival, what a million steps leave of the invariants, and what of
+//! them is lost where Newton's iteration stops early. The rivals integrate unit quaternion and momentum. `with_heyoka.py` runs a Taylor integrator on the same scenes.
 //!
 //! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
 //! fixed choice; the column `trials` says how many such runs the choice itself took.
@@ -19,12 +19,18 @@
 #[allow(dead_code, unused_imports)]
 #[path = "../common/mod.rs"]
 mod common;
+#[allow(dead_code)]
+#[path = "../common/newton_tolerance/mod.rs"]
+mod newton_tolerance;
+#[path = "../common/top_equations.rs"]
+mod top_equations;
 
 mod asked;
 mod figure;
 mod invariants;
 mod measure;
 mod methods;
+mod newton;
 mod others;
 mod report;
 mod rivals;
@@ -77,6 +83,9 @@ fn main() -> ExitCode {
 /// How long each scene is integrated, s.
 const TIMES: [f64; 2] = [10.0, 100.0];
 
+/// The scene that the table of Newton's tolerance is made with.
+const TOLERANCE_SCENE: &str = "looping";
+
 fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let effort = |t: f64| {
         if arguments.quick {
@@ -120,6 +129,12 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
                 let methods = invariants::kept(scene, &methods, &measured, most);
                 let _ = write!(text, "{}\n\n", invariants::table(&methods));
                 kept.push((scene.name, methods));
+                if scene.short == TOLERANCE_SCENE {
+                    let steps = u64::from(most);
+                    let lines = newton::measure(scene, steps)?;
+                    let _ = write!(text, "{}\n\n", newton::table(scene, steps, &lines));
+                    output.write("newton-tolerance.csv", &newton::csv(&lines))?;
+                }
             }
             results.push((title, measured));
         }

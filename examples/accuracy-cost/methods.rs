@@ -5,7 +5,7 @@ use liestep::{
     PreprocessedOrder, Regular, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
-use crate::rivals::{Equations, dop853, library, rk4};
+use crate::rivals::{Equations, dop853, library};
 use crate::scenes::{End, Kind, Scene};
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
@@ -77,14 +77,6 @@ fn count(t: f64, h: f64) -> u64 {
     (t / h).round() as u64
 }
 
-/// The compositions of a method of order 2.
-pub(crate) const OF_ORDER_2: [CompositionScheme; 4] = [
-    CompositionScheme::SUZUKI_4,
-    CompositionScheme::KAHAN_LI_6,
-    CompositionScheme::KAHAN_LI_8,
-    CompositionScheme::SOFRONIOU_SPALETTA_10,
-];
-
 /// All the methods that a scene allows.
 pub(crate) fn all(scene: &Scene) -> Vec<Method> {
     ours(scene).into_iter().chain(rivals()).collect()
@@ -94,13 +86,13 @@ pub(crate) fn all(scene: &Scene) -> Vec<Method> {
 pub(crate) fn ours(scene: &Scene) -> Vec<Method> {
     let mut methods = Vec::new();
     if scene.kind == Kind::Free {
-        methods.extend(declared("(3.13)", Scene::free_body, OF_ORDER_2));
-        methods.extend(declared("K4", Scene::fourth_order_body, [CompositionScheme::SUZUKI_6]));
-        methods.extend(declared("K6", Scene::sixth_order_body, [CompositionScheme::SUZUKI_8]));
+        methods.extend(declared("(3.13)", Scene::free_body, 2));
+        methods.extend(declared("K4", Scene::fourth_order_body, 4));
+        methods.extend(declared("K6", Scene::sixth_order_body, 6));
     } else {
-        methods.extend(declared("(3.13)", Scene::top, OF_ORDER_2));
-        methods.extend(declared("L4", Scene::fourth_order_top, [CompositionScheme::SUZUKI_6]));
-        methods.extend(declared("L6", Scene::sixth_order_top, [CompositionScheme::SUZUKI_8]));
+        methods.extend(declared("(3.13)", Scene::top, 2));
+        methods.extend(declared("L4", Scene::fourth_order_top, 4));
+        methods.extend(declared("L6", Scene::sixth_order_top, 6));
     }
     match scene.kind {
         Kind::Free => methods.extend(preprocessed()),
@@ -184,17 +176,6 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
     K: KineticFlow<f64> + 'static,
 {
-    let schemes = [
-        SplittingScheme::STRANG,
-        SplittingScheme::NEAR_INTEGRABLE_4_2,
-        SplittingScheme::NEAR_INTEGRABLE_8_6_4,
-        SplittingScheme::NEAR_INTEGRABLE_10_6_4,
-        SplittingScheme::NYSTROM_6,
-        SplittingScheme::NYSTROM_11,
-        SplittingScheme::NYSTROM_14,
-        SplittingScheme::KAHAN_LI_8,
-        SplittingScheme::SOFRONIOU_SPALETTA_10,
-    ];
     let method = |scheme: SplittingScheme| {
         Method::new(format!("{name}, {}", scheme.name()), family, Control::Step(5.0), move |scene, t, h| {
             let (splitting, steps) = (Splitting::new(lagrangian(scene), kinetic(scene)?, h, scheme).ok()?, count(t, h));
@@ -206,14 +187,14 @@ where
             }))
         })
     };
-    schemes.map(method).into()
+    SplittingScheme::ALL.map(method).into()
 }
 
-/// The step of a declared Lagrangian, and its compositions.
-pub(crate) fn declared<L, const N: usize>(
+/// The step of a declared Lagrangian of this order, and its compositions.
+pub(crate) fn declared<L>(
     name: &'static str,
     lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
-    schemes: [CompositionScheme; N],
+    order: u32,
 ) -> Vec<Method>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
@@ -229,6 +210,7 @@ where
             Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
         }))
     });
+    let schemes = CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == order);
     let composed = schemes.map(|scheme| {
         let name = format!("{name}, {}", scheme.name());
         Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
@@ -253,7 +235,7 @@ fn rivals() -> [Method; 4] {
             Some(Box::new(move || {
                 let mut y = start;
                 for _ in 0..steps {
-                    y = rk4::step(&equations, h, &y);
+                    y = equations.rk4_step(h, &y);
                 }
                 Some(equations.end(&y))
             }))

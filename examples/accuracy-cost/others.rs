@@ -54,7 +54,7 @@ where
     let states: Result<Vec<_>, Box<dyn Error>> =
         [10.0, 100.0].iter().map(|t| Ok((*t, reference(scene, attitude, velocity, *t)?))).collect();
     let J_d = body.J_d;
-    let mut fixed = methods::declared("(3.13)", move |_| scene, methods::OF_ORDER_2);
+    let mut fixed = methods::declared("(3.13)", move |_| scene, 2);
     let candidates = Candidates::of(scene, 2);
     let candidates = if let Ok(symmetric) = SymmetricBody::new(&NonstandardInertia::from(J_d).to_inertia()) {
         fixed.extend(methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(symmetric)));

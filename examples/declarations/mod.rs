@@ -7,7 +7,6 @@
 
 mod cayley_top;
 mod elastic_flow;
-mod fourth_order_body;
 mod fourth_order_top;
 mod free_body;
 mod heavy_top;
@@ -16,7 +15,6 @@ mod log_trace_top;
 mod magnet;
 mod orbiting_body;
 mod satellite;
-mod sixth_order_body;
 mod sixth_order_top;
 mod spring;
 mod tethered_plate;
@@ -25,7 +23,6 @@ mod underwater_body;
 
 pub use cayley_top::CayleyTop;
 pub use elastic_flow::ElasticFlow;
-pub use fourth_order_body::FourthOrderBody;
 pub use fourth_order_top::FourthOrderTop;
 pub use free_body::FreeBody;
 pub use heavy_top::{FullTop, HeavyTop};
@@ -34,9 +31,11 @@ pub use log_trace_top::LogTraceTop;
 pub use magnet::Magnet;
 pub use orbiting_body::OrbitingBody;
 pub use satellite::Satellite;
-pub use sixth_order_body::SixthOrderBody;
 pub use sixth_order_top::SixthOrderTop;
 pub use spring::Spring;
 pub use tethered_plate::TetheredPlate;
 pub use tops::Top;
 pub use underwater_body::UnderwaterBody;
+
+// The library declares these itself.
+pub use liestep::effects::{FourthOrderBody, SixthOrderBody};

@@ -23,6 +23,8 @@ mod free_body;
 #[allow(dead_code, unused_imports)]
 #[path = "../common/heavy_top/mod.rs"]
 mod heavy_top;
+#[path = "../common/newton_tolerance/mod.rs"]
+mod newton_tolerance;
 
 mod closed;
 mod curves;
@@ -34,7 +36,6 @@ mod report;
 mod rivals;
 mod row;
 mod rows;
-mod tolerance;
 mod walk;
 
 use std::path::PathBuf;

@@ -1,4 +1,6 @@
 //! How far a map of momentum and vertical is from a Poisson map of the semidirect product.
+//!
+//! With the closed form of the tensor on SO(3), where the tests take it from the brackets of any group.
 
 use liestep::laws::samples::derivative;
 use nalgebra::{Matrix6, Vector3, Vector6};

@@ -1,6 +1,6 @@
 //! Long runs: defects of the group and of the Casimirs while they grow.
 
-use liestep::{Effect, LieGroup as _, SO3, State};
+use liestep::{LieGroup as _, SO3, State};
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use crate::measure::{float, greater};
@@ -140,13 +140,3 @@ impl Walk {
 
 /// Farther than this no walk goes.
 pub(crate) const FARTHEST: f64 = 4.0;
-
-/// The energy of a declared scene at a momentum and a parameter, J: that of its continuous limit without a bias.
-pub(crate) fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
-    lagrangian: &L,
-    momentum: &Vector3<f64>,
-    w: &Vector3<f64>,
-) -> f64 {
-    let rates = lagrangian.inertia().lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
-    0.5 * rates.dot(momentum) + lagrangian.potential(w)
-}

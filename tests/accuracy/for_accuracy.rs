@@ -3,7 +3,7 @@
 use crate::common::reference::Motion;
 use crate::common::tops::HeavyTop;
 use crate::declarations::FourthOrderTop;
-use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
+use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
     Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, Composition, CompositionScheme,
     DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _, NonstandardInertia, PreprocessedFlow,
@@ -292,6 +292,26 @@ fn a_tolerance_below_rounding_is_refused_with_the_floor() {
     assert!(floor > 1e-15 && floor < 1e-11, "{floor}");
     let stepper = ask(4.0 * floor).unwrap();
     assert!(error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0) <= 4.0 * floor);
+}
+
+/// A spin of more than a turn in the shortest step that is tried, each of which has a solution: no two trials agree, and
+/// rounding has no part in that. (No composition is of a method of order 8, so that one method is tried.)
+#[test]
+fn steps_too_long_for_the_motion_are_not_taken_for_rounding() {
+    let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 1.0, 1.0)).unwrap() };
+    let accuracy = Accuracy { tolerance: 1e-3, horizon: 1000.0 };
+    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), Vector3::z() * 1e5).unwrap_err();
+    assert!(matches!(refusal, AccuracyError::TooManySteps { steps } if steps > 1e6), "{refusal}");
+}
+
+/// In so short a time the steps that the accuracy takes are too short for a double.
+#[test]
+fn a_set_up_that_fails_for_shorter_steps_is_the_error() {
+    let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap() };
+    let (horizon, velocity) = (1e-98, Vector3::new(0.3e98, 0.5e98, 0.8e98));
+    let accuracy = Accuracy { tolerance: 1e-12, horizon };
+    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
+    assert!(matches!(refusal, AccuracyError::Setup(SetupError::InvalidStep { .. })), "{refusal}");
 }
 
 #[test]

@@ -13,6 +13,8 @@ use crate::common::structure::poisson::{TOLERANCE, defect_of};
 use crate::common::tops::{FreeBody, FullTop, HeavyTop};
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::declarations::{FourthOrderTop, LogTop};
+use crate::many_digits;
+use crate::many_digits::collocation::{self, Tableau};
 
 /// `L` of `PAIRS` pairs of stages after so many steps.
 fn run<L, const PAIRS: usize>(gauss: &Gauss<L, PAIRS>, mut state: GaussState<PAIRS>, steps: u32) -> GaussState<PAIRS>
@@ -45,16 +47,33 @@ fn four_stages_are_of_order_8() {
     }
 }
 
-/// On the two tops that leave room for five points between steps so long that higher powers count and rounding.
-#[test]
-fn six_stages_are_of_order_12() {
-    for (motion, (coarsest, ratio)) in TOPS.into_iter().zip([(92, 1.07), (48, 1.1)]) {
-        assert_order(("6 stages", 12), (motion, 10.0), &counts(coarsest, ratio, 5), end::<3>);
+/// In long numbers: in a double orders as high as these go from the first step that can be solved to rounding before the
+/// error falls by its first power alone.
+fn assert_order_of_long_collocation<const PAIRS: usize>(numbers: [(u32, u32); 4]) {
+    let tableau = Tableau::new(2 * PAIRS);
+    let order = u32::try_from(4 * PAIRS).unwrap();
+    for (motion, (compared, coarsest)) in TOPS.into_iter().zip(numbers) {
+        many_digits::assert_order(
+            (&format!("{} stages", 2 * PAIRS), order),
+            (motion, 10.0),
+            (compared, &counts(coarsest, 1.2, 5)),
+            |motion, h, steps| collocation::end(&tableau, motion, h, steps),
+            end::<PAIRS>,
+        );
     }
 }
 
-/// Order 16 goes from the first step that can be solved to rounding before the error falls by its sixteenth power alone;
-/// the coefficients are tested beside their definition. Here: what remains at a step of some 50°.
+#[test]
+fn six_stages_are_of_order_12() {
+    assert_order_of_long_collocation::<3>([(60, 110), (50, 80), (60, 110), (40, 70)]);
+}
+
+#[test]
+fn eight_stages_are_of_order_16() {
+    assert_order_of_long_collocation::<4>([(50, 110), (36, 80), (50, 110), (32, 70)]);
+}
+
+/// What remains at a step of some 50°.
 #[test]
 fn eight_stages_reach_rounding_in_long_steps() {
     for (motion, steps) in TOPS.into_iter().zip([90, 70, 90, 44]) {

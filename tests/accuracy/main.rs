@@ -16,5 +16,6 @@ mod convergence;
 mod for_accuracy;
 mod gauss;
 mod higher_order;
+mod many_digits;
 mod preprocessed;
 mod splitting;

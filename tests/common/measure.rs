@@ -1,7 +1,6 @@
 //! Distances and orders.
 
-use core::ops::{Add, Mul, Sub};
-
+pub use liestep::laws::samples::derivative;
 use nalgebra::{Dim, Matrix, RawStorage};
 
 /// `|a − b| / |b|` in the Euclidean (Frobenius) norm.
@@ -41,13 +40,4 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small positive numbers
 pub fn steps_in(t: f64, h: f64) -> u64 {
     (t / h).round() as u64
-}
-
-/// `f'(0)` from six values at a spacing of 10⁻³.
-///
-/// The remainder is of the order of 10⁻¹⁸ by the seventh derivative, rounding of 10⁻¹³ by the size of `f`.
-pub fn derivative<V: Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>>(f: impl Fn(f64) -> V) -> V {
-    let d = 1e-3;
-    let odd = |k: f64| f(k * d) - f(-k * d);
-    (odd(1.0) * 45.0 - odd(2.0) * 9.0 + odd(3.0)) * (1.0 / (60.0 * d))
 }

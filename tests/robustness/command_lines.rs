@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 fn examples() -> &'static Path {
     static EXAMPLES: OnceLock<PathBuf> = OnceLock::new();
     EXAMPLES.get_or_init(|| {
-        let names = ["derive", "free-rigid-body", "heavy-top"];
+        let names = ["accuracy-cost", "derive", "free-rigid-body", "hard-cases", "heavy-top"];
         let mut build = Command::new(env!("CARGO"));
         build.args(["build", "--quiet"]).args(names.iter().flat_map(|name| ["--example", name]));
         assert!(build.status().unwrap().success());
@@ -67,6 +67,11 @@ fn folders() {
         refused(example, &["--time=2", "--out", &format!("{file}/out")], "cannot write to");
         refused(example, &["--time=2", "--out="], "a value is required");
     }
+    for example in ["accuracy-cost", "hard-cases"] {
+        refused(example, &["--out", file], "cannot write to");
+        refused(example, &["--out", &format!("{file}/out")], "cannot write to");
+        refused(example, &["--out="], "a value is required");
+    }
 }
 
 #[test]
@@ -75,5 +80,12 @@ fn words() {
     refused("heavy-top", &["--reading", "c"], "invalid value 'c'");
     refused("heavy-top", &["--speed", "1"], "unexpected argument");
     refused("free-rigid-body", &["flips"], "unexpected argument");
+    refused("accuracy-cost", &["--scene", "falling"], "no scene is called falling");
+    refused("accuracy-cost", &["--scene="], "no scene is called");
+    refused("accuracy-cost", &["--quick=1"], "unexpected value");
+    refused("accuracy-cost", &["looping"], "unexpected argument");
+    refused("hard-cases", &["--row", "Z9"], "--row is one of S1");
+    refused("hard-cases", &["--row="], "--row is one of S1");
+    refused("hard-cases", &["--short"], "unexpected argument");
     refused("derive", &["no-such-top"], "invalid value 'no-such-top'");
 }

@@ -102,7 +102,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
             least: solve,
             make: Box::new(move |h| Ok(Box::new(Stepper::new(alone.clone(), h)?))),
         });
-        for scheme in COMPOSITIONS.into_iter().filter(|scheme| scheme.base() == order) {
+        for scheme in CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == order) {
             let (scene, stages) = (scene.clone(), count(scheme.stages().count()));
             self.methods.push(Candidate {
                 name: format!("{prefix}{}", scheme.name()),
@@ -180,13 +180,13 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
         K: KineticFlow<f64> + Clone + 'static,
     {
         self.compare(&scene);
-        for scheme in SPLITTINGS {
+        for scheme in SplittingScheme::ALL {
             let (scene, kinetic, stages) = (scene.clone(), kinetic.clone(), count(scheme.drifts()));
             self.methods.push(Candidate {
                 name: format!("{name}, {}", scheme.name()),
                 order: scheme.order(),
                 stages,
-                least: f64::from(stages) * super::method::least(K::OPERATIONS),
+                least: f64::from(stages) * super::method::least_of_a_drift::<K>(),
                 make: Box::new(move |h| Ok(Box::new(Splitting::new(scene.clone(), kinetic.clone(), h, scheme)?))),
             });
         }
@@ -239,27 +239,6 @@ impl Candidates<SO3, ()> {
         self
     }
 }
-
-const COMPOSITIONS: [CompositionScheme; 6] = [
-    CompositionScheme::SUZUKI_4,
-    CompositionScheme::KAHAN_LI_6,
-    CompositionScheme::KAHAN_LI_8,
-    CompositionScheme::SOFRONIOU_SPALETTA_10,
-    CompositionScheme::SUZUKI_6,
-    CompositionScheme::SUZUKI_8,
-];
-
-const SPLITTINGS: [SplittingScheme; 9] = [
-    SplittingScheme::STRANG,
-    SplittingScheme::NEAR_INTEGRABLE_4_2,
-    SplittingScheme::NEAR_INTEGRABLE_8_6_4,
-    SplittingScheme::NEAR_INTEGRABLE_10_6_4,
-    SplittingScheme::NYSTROM_6,
-    SplittingScheme::NYSTROM_11,
-    SplittingScheme::NYSTROM_14,
-    SplittingScheme::KAHAN_LI_8,
-    SplittingScheme::SOFRONIOU_SPALETTA_10,
-];
 
 fn count(stages: usize) -> u32 {
     u32::try_from(stages).unwrap_or(u32::MAX)

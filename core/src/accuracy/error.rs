@@ -32,7 +32,7 @@ pub enum AccuracyError {
         /// How many the cheapest one would make, or has made in vain.
         steps: f64,
     },
-    /// The scene or the start can't be used.
+    /// The scene or the start can't be used, or a step short enough can't.
     Setup(SetupError),
     /// A method doesn't get to the horizon, with however short a step, and no other does for the accuracy.
     Step(StepError),

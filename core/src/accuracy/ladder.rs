@@ -1,10 +1,10 @@
 //! The trial runs of one method, each with twice the steps of the one before, and what they say about its error.
 
+use super::error::AccuracyError;
 use super::{Accuracy, Candidate};
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
 use crate::entries::Entries;
-use crate::error::StepError;
 use crate::groups::LieGroup;
 
 /// Attitude and velocity.
@@ -44,7 +44,7 @@ struct Trial<G: LieGroup> {
     steps: f64,
     /// Operations.
     cost: f64,
-    /// None where a step had no solution.
+    /// None where there is no such step, or one had no solution.
     end: Option<End<G>>,
 }
 
@@ -82,7 +82,7 @@ pub(super) struct Ladder<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> {
     trials: Vec<Trial<G>>,
     /// How far each trial ended from the next.
     differences: Vec<Option<f64>>,
-    pub(super) failure: Option<StepError>,
+    pub(super) failure: Option<AccuracyError>,
     /// Operations of all its trials.
     pub(super) spent: f64,
 }
@@ -124,26 +124,23 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number, far below the largest
     fn run(&mut self, start: &Start<G>, steps: f64) -> Trial<G> {
-        let run = || {
-            let method = (self.candidate.make)(start.horizon / steps).ok()?;
-            let mut state = method.start(start.attitude, start.velocity).ok()?;
-            Some(method.advance(&mut state, steps as u64).map(|cost| {
-                let end = End { attitude: state.attitude(), velocity: method.velocity(&state) };
-                (cost, end)
-            }))
+        let run = || -> Result<_, AccuracyError> {
+            let method = (self.candidate.make)(start.horizon / steps)?;
+            let mut state = method.start(start.attitude, start.velocity)?;
+            let cost = method.advance(&mut state, steps as u64).map_err(AccuracyError::Step)?;
+            Ok((cost, End { attitude: state.attitude(), velocity: method.velocity(&state) }))
         };
         let least = steps * self.candidate.least;
         let (cost, end) = match run() {
-            Some(Ok((cost, end))) => {
+            Ok((cost, end)) => {
                 // Shorter steps had a solution.
                 self.failure = None;
                 (cost, Some(end).filter(is_finite))
             }
-            Some(Err(error)) => {
+            Err(error) => {
                 self.failure = Some(error);
                 (least, None)
             }
-            None => (least, None),
         };
         self.spent += cost;
         Trial { steps, cost, end }

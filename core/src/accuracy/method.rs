@@ -112,6 +112,12 @@ where
     }
 }
 
+/// What is left of a drift whose spin has been taken out.
+fn without_spin<K: KineticFlow<f64>>() -> Operations {
+    let Operations { step, iteration } = K::OPERATIONS;
+    Operations { step: step - K::OPERATIONS_OF_SPIN, iteration }
+}
+
 impl<L, K> Method<SO3, L::Advected> for Splitting<L, K>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
@@ -126,8 +132,13 @@ where
         // The iterations change little from step to step, and those of the last are reported.
         let iterations = u64::from(self.advance(state, steps)?.iterations);
         let (drifts, kicks) = (self.scheme().drifts() as u64, self.scheme().kicks() as u64);
-        let kick = 0.5 * f64::from(<L as Effect>::OPERATIONS.step);
-        Ok(solves(K::OPERATIONS, steps * drifts, steps * iterations) + (steps * kicks) as f64 * kick)
+        let kicks = (steps * kicks) as f64 * 0.5 * f64::from(<L as Effect>::OPERATIONS.step);
+        let (drift, turn) = if self.has_spin_apart() {
+            (without_spin::<K>(), OF_A_STAGE + f64::from(K::OPERATIONS_OF_SPIN))
+        } else {
+            (K::OPERATIONS, 0.0)
+        };
+        Ok(solves(drift, steps * drifts, steps * iterations) + kicks + steps as f64 * turn)
     }
 
     fn step(&self, state: &mut State<SO3, L::Advected>) -> Result<crate::StepReport, StepError> {
@@ -232,6 +243,11 @@ fn collocation<L: DiscreteLagrangian, const PAIRS: usize>(steps: u64, iterations
 /// What a step of collocation makes at least, unless nothing but rounding changes from step to step.
 pub(super) fn least_of_collocation<L: DiscreteLagrangian, const PAIRS: usize>() -> f64 {
     collocation::<L, PAIRS>(1, 3)
+}
+
+/// What a drift makes at least.
+pub(super) fn least_of_a_drift<K: KineticFlow<f64>>() -> f64 {
+    least(without_spin::<K>())
 }
 
 /// What a solve makes at least; with one iteration none is known to have settled.

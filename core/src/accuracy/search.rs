@@ -77,7 +77,9 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
             limit = limit.min(BEYOND_THE_FLOOR * cost);
         } else if ladder.next_steps() * f64::from(ladder.candidate.stages) > most {
             refused.steps = refused.steps.max(estimate.steps);
-            refused.in_vain = refused.in_vain.or(ladder.last_difference().filter(|_| estimate.is_bound));
+            // Trials that don't agree may have steps too long all the same; it is rounding if that alone parts them.
+            let in_vain = ladder.last_difference().filter(|_| estimate.is_bound && refused.in_vain.is_none());
+            refused.in_vain = refused.in_vain.or(in_vain.filter(|_| ladder.least_tolerance(start) > tolerance));
         } else {
             ladder.extend(start);
             continue;
@@ -129,7 +131,7 @@ fn settle<G: LieGroup<Scalar = f64>, A: Advected<G>>(
 /// What was found of methods that would need too many steps.
 struct Refused {
     steps: f64,
-    /// How far the runs of one ended from each other, however short the steps.
+    /// How far the runs of one ended from each other, however short the steps, where that is what rounding leaves.
     in_vain: Option<f64>,
     /// The least tolerance that differences which have stopped falling show to be reached.
     floor: f64,
@@ -148,7 +150,7 @@ impl Refused {
             return AccuracyError::Unreachable { tolerance, floor };
         }
         match ladders.into_iter().find_map(|ladder| ladder.failure) {
-            Some(cause) => AccuracyError::Step(cause),
+            Some(cause) => cause,
             None => AccuracyError::TooManySteps { steps: self.steps },
         }
     }

@@ -93,6 +93,16 @@ impl CompositionScheme {
         ],
     );
 
+    /// All of these, each for the order that its [`base`](Self::base) is.
+    pub const ALL: [Self; 6] = [
+        Self::SUZUKI_4,
+        Self::KAHAN_LI_6,
+        Self::KAHAN_LI_8,
+        Self::SOFRONIOU_SPALETTA_10,
+        Self::SUZUKI_6,
+        Self::SUZUKI_8,
+    ];
+
     /// Other coefficients: the first half of them and the middle one, the order that they have, and the (even) order that
     /// the composed method must have for that.
     ///

@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::advected::Advected as _;
-use crate::coordinates::Coordinates as _;
 use crate::effect::velocity_of_momentum;
 use crate::groups::SO3;
 use crate::lagrangian::DiscreteLagrangian;
+use crate::splitting::inverse_inertia;
 
 /// The quaternion `q`, scalar part first, and its momentum `p`.
 pub(super) type Lifted = [f64; 8];
@@ -41,9 +41,7 @@ impl<L: DiscreteLagrangian<Group = SO3, Scalar = f64>> Lift<L> {
     /// Of a Lagrangian that can be split, with the constants of its torque.
     pub(super) fn new(lagrangian: &L, torque: L::Constants) -> Self {
         let spatial = lagrangian.advected();
-        let inertia = lagrangian.inertia();
-        let column = |k: usize| Vector3::solve(&inertia, &Matrix3::identity().column(k).into_owned()).0;
-        let inverse = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+        let inverse = inverse_inertia(lagrangian);
         let half_bias = velocity_of_momentum(lagrangian, &Vector3::zeros(), &spatial) * -0.5;
         // J⁻¹ is symmetric, but for the rounding of its columns, which would make of H another function.
         let half_velocity = (inverse + inverse.transpose()) * 0.125;

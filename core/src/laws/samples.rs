@@ -1,5 +1,7 @@
 //! Where the laws are tried, and how two sides are compared.
 
+use core::ops::{Add, Mul, Sub};
+
 use nalgebra::{SMatrix, SVector};
 
 use crate::Entries;
@@ -89,10 +91,10 @@ pub fn condition<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(f: &G)
 /// `f'(0)` from six values at a spacing of 10⁻³.
 ///
 /// The remainder is of the order of 10⁻¹⁸ by the seventh derivative, rounding of 10⁻¹³ by the size of `f`.
-pub fn derivative<const R: usize, const C: usize>(f: impl Fn(f64) -> SMatrix<f64, R, C>) -> SMatrix<f64, R, C> {
+pub fn derivative<V: Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>>(f: impl Fn(f64) -> V) -> V {
     let d = 1e-3;
     let odd = |k: f64| f(k * d) - f(-k * d);
-    (odd(1.0) * 45.0 - odd(2.0) * 9.0 + odd(3.0)) / (60.0 * d)
+    (odd(1.0) * 45.0 - odd(2.0) * 9.0 + odd(3.0)) * (1.0 / (60.0 * d))
 }
 
 /// What some products of small matrices leave, for a scale of one.

@@ -22,6 +22,9 @@ pub trait KineticFlow<T: Real> {
     /// How much arithmetic the flow over one share is.
     const OPERATIONS: Operations = Operations::UNCOUNTED;
 
+    /// How much of that [`take_spin`](Self::take_spin) takes out.
+    const OPERATIONS_OF_SPIN: u32 = 0;
+
     /// The inertia `J` of the body, kg m².
     fn inertia(&self) -> Matrix3<T>;
 
@@ -106,8 +109,10 @@ pub struct SymmetricDrift<T> {
 impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     type Drift = SymmetricDrift<T>;
 
-    // Two pairs of rotation coefficients among them; nothing is solved.
-    const OPERATIONS: Operations = Operations { step: 130, iteration: 0 };
+    // A rotation is 62, 30 of them for its two coefficients; nothing is solved.
+    const OPERATIONS: Operations = Operations { step: 131, iteration: 0 };
+    // The other rotation's sine and cosine, its product with the first and what it does to the momentum.
+    const OPERATIONS_OF_SPIN: u32 = 69;
 
     fn inertia(&self) -> Matrix3<T> {
         Matrix3::from_diagonal(&Vector3::new(self.transverse, self.transverse, self.axial))
@@ -176,9 +181,9 @@ where
 {
     type Drift = DeclaredDrift<L>;
 
-    // And a guess.
+    // And a guess, 49, and the difference of the momenta.
     const OPERATIONS: Operations =
-        Operations { step: L::OPERATIONS.step.saturating_add(40), iteration: L::OPERATIONS.iteration };
+        Operations { step: L::OPERATIONS.step.saturating_add(52), iteration: L::OPERATIONS.iteration };
 
     fn inertia(&self) -> Matrix3<T> {
         Effect::inertia(self)
@@ -189,9 +194,7 @@ where
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
-        let inertia = Effect::inertia(self);
-        let column = |k: usize| Vector3::solve(&inertia, &Matrix3::identity().column(k).into_owned()).0;
-        let inverse = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+        let inverse = inverse_inertia(self);
         Ok(DeclaredDrift { flow: DiscreteLiePoisson::new(self.clone(), h)?, inverse })
     }
 
@@ -204,6 +207,15 @@ where
         let Stepped { step, .. } = drift.flow.step_from(momentum, &(), &half_guess)?;
         Ok(Turn { increment: step.increment, change: step.momentum - momentum, iterations: step.iterations })
     }
+}
+
+/// `J⁻¹`, symmetric but for the rounding of its columns.
+pub(crate) fn inverse_inertia<T: Real, L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>>(
+    lagrangian: &L,
+) -> Matrix3<T> {
+    let inertia = lagrangian.inertia();
+    let column = |k: usize| Vector3::solve(&inertia, &Matrix3::identity().column(k).into_owned()).0;
+    Matrix3::from_columns(&[column(0), column(1), column(2)])
 }
 
 /// A declared flow, and the inverse inertia that its guesses are made with.

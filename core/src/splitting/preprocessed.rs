@@ -41,8 +41,9 @@ pub struct PreprocessedDrift<T> {
 impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
     type Drift = PreprocessedDrift<T>;
 
-    // The series and their moments, which the solve waits for.
-    const OPERATIONS: Operations = Operations { step: 150, iteration: 40 };
+    // The series to order ten, 120, and their moments, which the solve waits for; a guess, and what becomes of the momentum.
+    const OPERATIONS: Operations =
+        Operations { step: 195, iteration: <FreeBody<T> as crate::effect::Effect>::OPERATIONS.iteration };
 
     fn inertia(&self) -> Matrix3<T> {
         let d = self.inertia.diagonal();

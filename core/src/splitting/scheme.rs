@@ -156,6 +156,19 @@ impl SplittingScheme {
         ],
     );
 
+    /// All of these.
+    pub const ALL: [Self; 9] = [
+        Self::STRANG,
+        Self::NEAR_INTEGRABLE_4_2,
+        Self::NEAR_INTEGRABLE_8_6_4,
+        Self::NEAR_INTEGRABLE_10_6_4,
+        Self::NYSTROM_6,
+        Self::NYSTROM_11,
+        Self::NYSTROM_14,
+        Self::KAHAN_LI_8,
+        Self::SOFRONIOU_SPALETTA_10,
+    ];
+
     /// Other coefficients: drifts and kicks by turns, from the first to the middle one.
     ///
     /// # Panics

@@ -3,6 +3,5 @@
 pub(crate) mod dop853;
 mod equations;
 pub(crate) mod library;
-pub(crate) mod rk4;
 
 pub(crate) use equations::Equations;

@@ -4,25 +4,12 @@ use liestep::Stepper;
 
 use crate::common::plot::{BLUE, ORANGE};
 use crate::curves::{Curve, Curves};
-use crate::measure::{Tenths, float};
 use crate::motion::Motion;
+use crate::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
 use crate::rivals::GREY;
 use crate::row::{Effort, Failure, Row, short};
-use crate::tolerance::{Form, Guess, Left, run};
 
 const H: f64 = 0.01;
-
-/// The drift of the library's own step.
-fn of_the_library(motion: &Motion, steps: u64) -> Result<(f64, f64), Failure> {
-    let stepper = Stepper::new(motion.top.clone(), H)?;
-    let mut state = stepper.start(motion.attitude, motion.velocity)?;
-    let (start, mut energies, mut iterations) = (stepper.energy(&state), Tenths::new(steps), 0);
-    for step in 1..=steps {
-        iterations += u64::from(stepper.step(&mut state)?.iterations);
-        energies.after(step, || stepper.energy(&state) - start);
-    }
-    Ok((energies.drift() / start, float(iterations) / float(steps)))
-}
 
 fn told(name: &str, exponent: i32, left: &Left) -> String {
     format!(
@@ -40,7 +27,7 @@ pub(crate) fn p4(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let stepper = Stepper::new(motion.top.clone(), H)?;
     let state = stepper.start(motion.attitude, motion.velocity)?;
     let start = (state.momentum(), state.advected());
-    let (drift, iterations) = of_the_library(&motion, steps)?;
+    let Left { energy: drift, iterations, .. } = by_the_library(&stepper, state, steps)?;
     let mut row = Row::new(
         "P4",
         "Newton's tolerance against the energy's drift, looping top, h = 0.01, a million steps",
@@ -51,7 +38,7 @@ pub(crate) fn p4(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         [("from the last increment", Guess::Last, ORANGE), ("extrapolated", Guess::Extrapolated, BLUE)]
     {
         let mut points = Vec::new();
-        for exponent in [-12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 0] {
+        for exponent in EXPONENTS {
             let left = run(&motion.top, H, start, (guess, 10.0_f64.powi(exponent)), Form::Transport, steps);
             points.push((f64::from(exponent), left.energy));
             // One iteration more or less is what makes the difference.

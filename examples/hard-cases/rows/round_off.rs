@@ -18,8 +18,9 @@ use crate::curves::{Curve, Curves};
 use crate::declarations::HeavyTop;
 use crate::measure::{Tenths, float};
 use crate::motion::Motion;
+use crate::newton_tolerance::energy;
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::{FARTHEST, TopState, Walk, energy};
+use crate::walk::{FARTHEST, TopState, Walk};
 
 /// Steps and looks.
 fn walk(

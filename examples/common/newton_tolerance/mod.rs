@@ -1,13 +1,20 @@
-//! The step with a Newton iteration that stops where it is told to.
+//! The step with a Newton iteration that stops where it is told to, and what that costs.
 //!
 //! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by a
 //! loop of a few lines.
 
-use liestep::{Advected, Coordinates as _, DiscreteLagrangian, LieGroup as _, Retraction as _, SO3};
+pub(crate) mod tenths;
+
+use liestep::{
+    Advected, Coordinates as _, DiscreteLagrangian, Effect, LieGroup as _, Retraction as _, SO3, State, StepError,
+    Stepper,
+};
 use nalgebra::Vector3;
 
-use crate::measure::{Tenths, float, greater};
-use crate::walk::energy;
+use tenths::{Tenths, float, greater};
+
+/// The tolerances of the table, as powers of ten.
+pub(crate) const EXPONENTS: [i32; 11] = [-12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 0];
 
 /// Where the iteration starts.
 #[derive(Clone, Copy, PartialEq)]
@@ -28,6 +35,7 @@ pub(crate) enum Form {
 }
 
 /// What is left of a run.
+#[derive(Default)]
 pub(crate) struct Left {
     /// Of the energy's mean, between the first and the last tenth of the run, relative.
     pub(crate) energy: f64,
@@ -56,7 +64,7 @@ where
 {
     let constants = lagrangian.constants(h);
     let (energy_before, vertical, axial) = (energy(lagrangian, &momentum, &w), momentum.dot(&w), momentum.z);
-    let mut left = Left { energy: 0.0, vertical: 0.0, axial: 0.0, iterations: 0.0 };
+    let mut left = Left::default();
     let mut energies = Tenths::new(steps);
     let (mut before, mut last) = (Vector3::zeros(), Vector3::zeros());
     let mut spent = 0;
@@ -91,4 +99,38 @@ where
     left.energy = energies.drift() / energy_before.abs();
     left.iterations = float(spent) / float(steps);
     left
+}
+
+/// So many steps of the library's own.
+pub(crate) fn by_the_library<L>(
+    stepper: &Stepper<L>,
+    mut state: State<SO3, Vector3<f64>>,
+    steps: u64,
+) -> Result<Left, StepError>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+{
+    let momenta = |state: &State<SO3, Vector3<f64>>| (state.momentum().dot(&state.advected()), state.momentum().z);
+    let (start, (vertical, axial)) = (stepper.energy(&state), momenta(&state));
+    let (mut left, mut energies, mut iterations) = (Left::default(), Tenths::new(steps), 0);
+    for step in 1..=steps {
+        iterations += u64::from(stepper.step(&mut state)?.iterations);
+        energies.after(step, || stepper.energy(&state) - start);
+        let now = momenta(&state);
+        left.vertical = greater(left.vertical, (now.0 / vertical - 1.0).abs());
+        left.axial = greater(left.axial, (now.1 / axial - 1.0).abs());
+    }
+    left.energy = energies.drift() / start.abs();
+    left.iterations = float(iterations) / float(steps);
+    Ok(left)
+}
+
+/// The energy of a declared scene at a momentum and a parameter, J: that of its continuous limit without a bias.
+pub(crate) fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
+    lagrangian: &L,
+    momentum: &Vector3<f64>,
+    w: &Vector3<f64>,
+) -> f64 {
+    let rates = lagrangian.inertia().lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
+    0.5 * rates.dot(momentum) + lagrangian.potential(w)
 }

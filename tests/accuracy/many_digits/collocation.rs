@@ -1,0 +1,143 @@
+//! Gauss collocation in the plain form of its tableau.
+//!
+//! The library has it in sums and differences over pairs of stages, solved from the stages of the step before; here the
+//! nodes, weights and `a_ij` are those of the definition and the stages are found from nothing.
+
+use nalgebra::Vector3;
+use num_traits::{One as _, Zero as _};
+
+use super::heavy_top::of_quaternion;
+use super::motion::Motion;
+use super::{DoubleDouble, Matrix, Vector, long};
+
+/// Nodes, weights and `a_ij = ∫₀^{c_i} ℓ_j` on the unit interval.
+pub(crate) struct Tableau {
+    weights: Vec<DoubleDouble>,
+    a: Vec<Vec<DoubleDouble>>,
+}
+
+fn index(n: usize) -> DoubleDouble {
+    long(u32::try_from(n).unwrap().into())
+}
+
+/// `P_n(x)` and its derivative, in `[−1, 1]`.
+fn legendre(n: usize, x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+    let (mut value, mut before) = (DoubleDouble::one(), DoubleDouble::zero());
+    for m in 0..n {
+        (value, before) = ((index(2 * m + 1) * x * value - index(m) * before) / index(m + 1), value);
+    }
+    (value, index(n) * (before - x * value) / (DoubleDouble::one() - x * x))
+}
+
+/// Coefficients of the product of a polynomial and `x − root`, from the constant one on.
+fn times_root(polynomial: &[DoubleDouble], root: DoubleDouble) -> Vec<DoubleDouble> {
+    let zero = DoubleDouble::zero();
+    let shifted = core::iter::once(zero).chain(polynomial.iter().copied());
+    let same = polynomial.iter().copied().chain([zero]);
+    shifted.zip(same).map(|(shifted, same)| shifted - root * same).collect()
+}
+
+impl Tableau {
+    pub(crate) fn new(stages: usize) -> Self {
+        let (half, one) = (long(0.5), DoubleDouble::one());
+        let nodes: Vec<_> = (0..stages)
+            .map(|k| {
+                let angle = core::f64::consts::PI * (index(k).rounded() + 0.75) / (index(stages).rounded() + 0.5);
+                let mut x = long(-angle.cos());
+                for _ in 0..6 {
+                    let (value, slope) = legendre(stages, x);
+                    x -= value / slope;
+                }
+                (x + one) * half
+            })
+            .collect();
+        // ∫₀ᶜ of the polynomial that is one at a node and zero at the others.
+        let integral = |j: usize, to: DoubleDouble| {
+            let others = (0..stages).filter(|k| *k != j);
+            let numerator = others.clone().fold(vec![one], |polynomial, k| times_root(&polynomial, nodes[k]));
+            let denominator = others.fold(one, |product, k| product * (nodes[j] - nodes[k]));
+            let terms = numerator.iter().enumerate().rev();
+            terms.fold(DoubleDouble::zero(), |sum, (power, c)| (sum + *c / index(power + 1)) * to) / denominator
+        };
+        let row = |to: DoubleDouble| (0..stages).map(|j| integral(j, to)).collect::<Vec<_>>();
+        Self { weights: row(one), a: nodes.iter().map(|node| row(*node)).collect() }
+    }
+}
+
+/// Quaternion and conjugate momentum, each a real and an imaginary part.
+type Place = [(DoubleDouble, Vector); 2];
+
+fn sum(a: &Place, b: &Place, factor: DoubleDouble) -> Place {
+    core::array::from_fn(|k| (a[k].0 + b[k].0 * factor, a[k].1 + b[k].1 * factor))
+}
+
+/// The product of a quaternion and an imaginary one.
+fn times((real, imaginary): &(DoubleDouble, Vector), v: &Vector) -> (DoubleDouble, Vector) {
+    (-imaginary.dot(v), v * *real + imaginary.cross(v))
+}
+
+/// `Π = ½ Im(q̄ p)`
+fn momentum([q, p]: &Place) -> Vector {
+    (p.1 * q.0 - q.1 * p.0 - q.1.cross(&p.1)) * long(0.5)
+}
+
+fn squared(q: &(DoubleDouble, Vector)) -> DoubleDouble {
+    q.0 * q.0 + q.1.dot(&q.1)
+}
+
+/// The attitude of `q/|q|`.
+fn attitude(q: &(DoubleDouble, Vector)) -> Matrix {
+    let length = squared(q).sqrt();
+    of_quaternion(q.0 / length, &q.1.map(|component| component / length))
+}
+
+/// `q' = ½ q Ω`, `p' = ½ p Ω + 2 q τ(w)/|q|²` with `Ω = J⁻¹ Π` and `w = R(q)ᵀ a_0`.
+fn rate(motion: &Motion, place: &Place) -> Place {
+    let [q, p] = place;
+    let half: Vector = motion.velocity_of(&momentum(place)) * long(0.5);
+    let torque = motion.torque(&(attitude(q).transpose() * motion.up));
+    let kick = times(q, &(torque * (long(2.0) / squared(q))));
+    let (real, imaginary) = times(p, &half);
+    [times(q, &half), (real + kick.0, imaginary + kick.1)]
+}
+
+/// Attitude and body velocity after so many steps.
+pub(crate) fn end(tableau: &Tableau, motion: &Motion, h: DoubleDouble, steps: u32) -> (Matrix, Vector) {
+    let q = quaternion(&motion.attitude);
+    let mut place = [q, times(&q, &(motion.momentum() * long(2.0)))];
+    for _ in 0..steps {
+        place = step(tableau, motion, h, &place);
+    }
+    (attitude(&place[0]), motion.velocity_of(&momentum(&place)))
+}
+
+/// Fixed-point iteration until the last digit.
+fn step(tableau: &Tableau, motion: &Motion, h: DoubleDouble, place: &Place) -> Place {
+    let mut rates = vec![rate(motion, place); tableau.weights.len()];
+    for _ in 0..200 {
+        let next: Vec<_> = tableau
+            .a
+            .iter()
+            .map(|row| rate(motion, &row.iter().zip(&rates).fold(*place, |at, (a, rate)| sum(&at, rate, h * *a))))
+            .collect();
+        let has_settled = rates.iter().zip(&next).all(|(old, new)| distance(old, new) < 1e-28);
+        rates = next;
+        if has_settled {
+            let all = tableau.weights.iter().zip(&rates);
+            return all.fold(*place, |at, (weight, rate)| sum(&at, rate, h * *weight));
+        }
+    }
+    panic!("the stages don't converge");
+}
+
+fn distance(a: &Place, b: &Place) -> f64 {
+    let of = |k: usize| (a[k].0 - b[k].0).rounded().hypot((a[k].1 - b[k].1).map(DoubleDouble::rounded).norm());
+    of(0).max(of(1))
+}
+
+/// The quaternion of a rotation by less than half a turn.
+fn quaternion(r: &Matrix) -> (DoubleDouble, Vector) {
+    let real = (DoubleDouble::one() + r.trace()).sqrt() * long(0.5);
+    let skew = Vector3::new(r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
+    (real, skew.map(|component| component / (real * long(4.0))))
+}

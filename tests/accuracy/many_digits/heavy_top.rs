@@ -1,0 +1,107 @@
+//! The steps and flows of a heavy top that compositions and splittings are made of.
+
+use nalgebra::{Matrix3, Vector3};
+use num_traits::{One as _, Zero as _};
+
+use super::motion::Motion;
+use super::{DoubleDouble, Matrix, Vector, hat, long};
+
+/// A top on its way.
+#[derive(Clone)]
+pub(crate) struct Top<'a> {
+    motion: &'a Motion,
+    pub(crate) attitude: Matrix,
+    pub(crate) momentum: Vector,
+    /// The vertical as the body sees it.
+    pub(crate) w: Vector,
+}
+
+impl<'a> Top<'a> {
+    /// At the start of a motion.
+    pub(crate) fn at_start_of(motion: &'a Motion) -> Self {
+        let w = motion.attitude.transpose() * motion.up;
+        Self { motion, attitude: motion.attitude, momentum: motion.momentum(), w }
+    }
+
+    pub(crate) fn velocity(&self) -> Vector {
+        self.motion.velocity_of(&self.momentum)
+    }
+
+    /// A step of (3.13): half a kick, the turn that satisfies (3.17), half a kick.
+    pub(crate) fn step(&mut self, h: DoubleDouble) {
+        self.kick(h * long(0.5));
+        let turn = self.turn(&(self.momentum * h));
+        self.move_by(&turn);
+        self.kick(h * long(0.5));
+    }
+
+    /// The potential's flow.
+    pub(crate) fn kick(&mut self, time: DoubleDouble) {
+        self.momentum += self.motion.torque(&self.w) * time;
+    }
+
+    /// The free body's flow where it is symmetric, `F = exp(h p/J_1) exp(−h (1/J_1 − 1/J_3) p_3 E_3)`.
+    pub(crate) fn drift(&mut self, time: DoubleDouble) {
+        let (j1, j3) = (self.motion.moments.x, self.motion.moments.z);
+        assert_eq!(j1, self.motion.moments.y, "the body isn't symmetric");
+        let about_axis = self.momentum.z * (DoubleDouble::one() / j3 - DoubleDouble::one() / j1);
+        let turn = rotation(&(self.momentum * (time / j1))) * rotation(&(Vector::z() * (about_axis * time)));
+        self.move_by(&turn);
+    }
+
+    fn move_by(&mut self, turn: &Matrix) {
+        self.attitude *= turn;
+        self.momentum = turn.transpose() * self.momentum;
+        self.w = turn.transpose() * self.w;
+    }
+
+    /// `F` with `(F J_d − J_d Fᵀ)^∨ = b`, by Newton's iteration for the imaginary part of its quaternion.
+    ///
+    /// Its Jacobian is a double's, so an iteration gains sixteen digits at most.
+    fn turn(&self, b: &Vector) -> Matrix {
+        let nonstandard = Matrix::from_diagonal(&self.motion.nonstandard);
+        let inertia = Matrix3::from_diagonal(&self.motion.moments.map(DoubleDouble::rounded));
+        let mut q = Vector::zeros();
+        for _ in 0..20 {
+            let real = (DoubleDouble::one() - q.dot(&q)).sqrt();
+            let turn = of_quaternion(real, &q);
+            let moved = turn * nonstandard;
+            let skew = moved - moved.transpose();
+            let residual = Vector3::new(skew.m32, skew.m13, skew.m21) - b;
+            let (s, v) = (real.rounded(), q.map(DoubleDouble::rounded));
+            let jv = inertia * v;
+            let slope = (inertia * s - jv * v.transpose() / s + v.cross_matrix() * inertia - jv.cross_matrix()) * 2.0;
+            let inverse = slope.try_inverse().expect("a step that can be solved").map(DoubleDouble::from);
+            let update = inverse * residual;
+            q -= update;
+            let size = |v: &Vector| v.map(DoubleDouble::rounded).norm();
+            if size(&update) <= 1e-24 * size(&q) {
+                // The next update would be below the last digit.
+                return of_quaternion((DoubleDouble::one() - q.dot(&q)).sqrt(), &q);
+            }
+        }
+        panic!("no solution for {b:?}");
+    }
+}
+
+/// The rotation of a unit quaternion.
+pub(crate) fn of_quaternion(real: DoubleDouble, imaginary: &Vector) -> Matrix {
+    let hat = hat(imaginary);
+    Matrix::identity() + (hat * real + hat * hat) * long(2.0)
+}
+
+/// `exp(v̂)` by its series, `Σ (−q)ᵏ (v̂/(2k + 1)! + v̂²/(2k + 2)!)` with `q = |v|²`.
+fn rotation(v: &Vector) -> Matrix {
+    let (hat, q) = (hat(v), v.dot(v));
+    let (mut odd, mut even) = (DoubleDouble::zero(), DoubleDouble::zero());
+    let mut term = DoubleDouble::one();
+    let mut next = 2.0;
+    while term.rounded().abs() > 1e-40 {
+        odd += term;
+        term = term / long(next);
+        even += term;
+        term = -term * q / long(next + 1.0);
+        next += 2.0;
+    }
+    Matrix::identity() + hat * odd + hat * hat * even
+}

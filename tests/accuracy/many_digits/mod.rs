@@ -1,0 +1,69 @@
+//! The methods of high order once more, in plain arithmetic of 32 digits.
+//!
+//! In a double the error of a method of order 10 and more falls by its first power alone only where rounding already
+//! shows. Here the same maps are written down from their equations in unevaluated sums of two doubles, where there are
+//! sixteen digits more, and each is compared with the library's at the steps that a double has the digits for. So what is
+//! measured here is the order of what the library does, and none of its code is in it.
+//!
+//! The library itself can't run on such a scalar in these tests: nalgebra's real fields have unsafe functions to be
+//! implemented, and there is no unsafe code here.
+
+pub(crate) mod coefficients;
+pub(crate) mod collocation;
+pub(crate) mod heavy_top;
+pub(crate) mod motion;
+mod number;
+mod poisson;
+
+pub(crate) use number::{DoubleDouble, long};
+
+use crate::common::measure::{order, relative};
+use crate::convergence::End;
+use motion::Motion;
+
+/// Three of them.
+pub(crate) type Vector = nalgebra::Vector3<DoubleDouble>;
+/// Three by three of them.
+pub(crate) type Matrix = nalgebra::Matrix3<DoubleDouble>;
+
+/// `v̂`, which nalgebra has for fields only.
+fn hat(v: &Vector) -> Matrix {
+    Matrix::from_fn(|i, j| match (i + 3 - j) % 3 {
+        0 => long(0.0),
+        1 => v[3 - i - j],
+        _ => -v[3 - i - j],
+    })
+}
+
+/// Attitude and body velocity.
+pub(crate) type LongEnd = (Matrix, Vector);
+
+/// Above what some ten thousand stages lose to rounding here.
+const PLATEAU: f64 = 1e-24;
+
+/// As [`crate::convergence::assert_order`]; and after fewer steps, `compared`, so few that what they miss is more than
+/// rounding, the library has come to the same place.
+pub(crate) fn assert_order(
+    (name, expected): (&str, u32),
+    (motion, t): (&str, f64),
+    (compared, counts): (u32, &[u32]),
+    run: impl Fn(&Motion, DoubleDouble, u32) -> LongEnd,
+    library: impl Fn(&crate::common::reference::Motion, f64, u32) -> End,
+) {
+    let read = Motion::read(motion);
+    let after = |steps: u32| {
+        let (attitude, velocity) = run(&read, long(t) / long(steps.into()), steps);
+        (read.error(t, &attitude, &velocity), attitude, velocity)
+    };
+    let errors: Vec<_> = counts.iter().map(|&steps| (t / f64::from(steps), after(steps).0)).collect();
+    let order = order(&errors, PLATEAU);
+    let (missed, attitude, velocity) = after(compared);
+    let found = library(&crate::common::reference::Motion::read(motion), t / f64::from(compared), compared);
+    let apart = relative(found.0.as_matrix(), &attitude.map(DoubleDouble::rounded))
+        .hypot(relative(&found.1, &velocity.map(DoubleDouble::rounded)));
+    let listed: Vec<_> = errors.iter().map(|(_, error)| format!("{error:.1e}")).collect();
+    println!("{name}, {motion}: order {order:.3}, errors {}", listed.join(" "));
+    println!("    the library: {apart:.1e} apart where the error is {missed:.1e}");
+    assert!((order - f64::from(expected)).abs() < 0.1, "{name}, {motion}: order {order}, errors {errors:?}");
+    assert!(apart < 0.2 * missed, "{name}, {motion}: the library is {apart:e} apart, the error {missed:e}");
+}
