@@ -140,7 +140,8 @@ fn cramer_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, b: &SVector<T, D
     let c13 = m(1, 2) * m(2, 3) - m(1, 3) * m(2, 2);
     let c23 = m(1, 3) * m(2, 1) - m(1, 1) * m(2, 3);
     let c33 = m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1);
-    let det = m(1, 1) * c11 + m(1, 2) * c21 + m(1, 3) * c31;
+    // By the first column: that is the shorter code.
+    let det = m(1, 1) * c11 + m(2, 1) * c12 + m(3, 1) * c13;
     let inverse = T::one() / det;
     let mut z = SVector::zeros();
     z[0] = (c11 * b[0] + c12 * b[1] + c13 * b[2]) * inverse;
