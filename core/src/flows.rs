@@ -8,7 +8,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
-use crate::newton::{Problem, Root, trusted_radius};
+use crate::newton::{Kick, Problem, Root, trusted_radius};
 use crate::retraction::Retraction;
 use crate::scalar::{Mask, is_finite, real, reported};
 use crate::solvability::{Solvability, TurningLimits};
@@ -155,7 +155,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         half_guess: &Vector<L>,
     ) -> Result<Stepped<L>, StepError> {
-        let Solved { a, root: Root { half, increment, iterations, far } } =
+        let Solved { a, root: Root { half, increment, iterations, far, kick } } =
             self.solve(momentum, advected, half_guess)?;
         let next = advected.advect(&increment);
         let mut change = Group::<L>::adjoint_transpose_increment(&increment, &a);
@@ -163,7 +163,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             change = change + (a - *momentum);
         }
         if L::PARTS.kick_after {
-            change = change + L::kick_after(&self.constants, &increment, &next);
+            change = change + self.kick_after(&increment, &next, &kick);
         }
         let before = momentum;
         let momentum = *before + change;
@@ -175,6 +175,20 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         } else {
             Err(StepError::NonFinite { what: "momentum after the step" })
         }
+    }
+
+    /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
+    #[inline(always)]
+    fn kick_after(&self, increment: &Matrix<L>, next: &L::Advected, kick: &Kick<L>) -> Vector<L> {
+        let direct = || L::kick_after(&self.constants, increment, next);
+        if !L::JACOBIAN_IS_DEAR || !kick.found.any() {
+            return direct();
+        }
+        let mut found = kick.value + Group::<L>::adjoint_transpose_increment(increment, &kick.value);
+        if let Some(beside) = L::kick_beside(&self.constants, increment, next) {
+            found = found + beside;
+        }
+        if kick.found.all() { found } else { found.select(kick.found, direct()) }
     }
 
     /// `F` of the step from `(μ, w)`; the guess is of half the coordinates.
@@ -195,11 +209,17 @@ impl<L: Effect> DiscreteLiePoisson<L> {
 
     /// Both kicks of a step from `w` to `next`.
     #[inline(always)]
-    pub(crate) fn kicks(&self, w: &L::Advected, increment: &Matrix<L>, next: &L::Advected) -> Vector<L> {
+    pub(crate) fn kicks(
+        &self,
+        w: &L::Advected,
+        increment: &Matrix<L>,
+        next: &L::Advected,
+        kick: &Kick<L>,
+    ) -> Vector<L> {
         match (L::PARTS.kick_before, L::PARTS.kick_after) {
-            (true, true) => L::kick_before(&self.constants, w) + L::kick_after(&self.constants, increment, next),
+            (true, true) => L::kick_before(&self.constants, w) + self.kick_after(increment, next, kick),
             (true, false) => L::kick_before(&self.constants, w),
-            (false, true) => L::kick_after(&self.constants, increment, next),
+            (false, true) => self.kick_after(increment, next, kick),
             (false, false) => Vector::<L>::zero(),
         }
     }
@@ -218,7 +238,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
 
     #[cold]
     fn stand_still(momentum: &Vector<L>, advected: &L::Advected) -> Stepped<L> {
-        let Root { half, increment, iterations, far } = Root::<L>::at(&Vector::<L>::zero(), 0);
+        let Root { half, increment, iterations, far, .. } = Root::<L>::at(&Vector::<L>::zero(), 0);
         let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
         Stepped { step, half, far }
     }
