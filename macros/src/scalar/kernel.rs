@@ -45,7 +45,7 @@ const FREE_BODY: usize = 1_000;
 impl Kernel {
     /// Whether the Jacobian costs so much more than the residual that a solve does better with the free body's.
     ///
-    /// At common steps it takes three to five residuals then, instead of two or three systems.
+    /// At common steps it takes two to five residuals then, instead of two or three systems.
     pub(crate) fn jacobian_is_dear(&self) -> bool {
         let Some(taken) = self.candidates.first() else { return false };
         let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
