@@ -22,8 +22,8 @@ pub struct DiscreteLiePoisson<L: Effect> {
     lagrangian: L,
     h: Scalar<L>,
     constants: L::Constants,
-    /// Far beyond those of steps that have a solution.
-    largest_determinant: Scalar<L>,
+    /// The square of a right side far beyond those of steps that have a solution.
+    largest_target: Scalar<L>,
     trusted: Scalar<L>,
 }
 
@@ -86,17 +86,19 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
         }
         let constants = lagrangian.constants(h);
-        let at_rest = determinant_at_rest(&lagrangian, &constants);
-        // With an extreme `h` the Newton system can't be solved in this scalar.
+        let (at_rest, trace) = jacobian_at_rest(&lagrangian, &constants);
+        // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
+        let at_rest = (0..<Group<L> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
         let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
         // Without a step there is nothing to solve, which the careful solve sees to.
-        let largest_determinant = if h == real(0.0) { h } else { at_rest.simd_abs() * real(GREATEST) };
+        let largest = trace / h * real(2.0 * RATIO) / Scalar::<L>::simd_default_epsilon();
+        let largest_target = if h == real(0.0) { h } else { largest * largest };
         let is_dear = L::JACOBIAN_IS_DEAR && h != real(0.0);
         let trusted = if is_dear { trusted_radius(&lagrangian, &constants) } else { real(0.0) };
-        Ok(Self { lagrangian, h, constants, largest_determinant, trusted })
+        Ok(Self { lagrangian, h, constants, largest_target, trusted })
     }
 
     /// The declared Lagrangian.
@@ -200,7 +202,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         half_guess: &Vector<L>,
     ) -> Result<Solved<L>, StepError> {
         let problem = self.problem(momentum, advected);
-        let root = match problem.solve_directly(half_guess, self.largest_determinant) {
+        let root = match problem.solve_directly(half_guess, self.largest_target) {
             Some(root) => root,
             None => self.solve_carefully(momentum, advected, half_guess)?,
         };
@@ -381,15 +383,14 @@ pub fn reconstruct<G: LieGroup>(g: &G, f: &G) -> G {
     g.advance(&f.increment())
 }
 
-/// At a solution the determinant is of the size of that at rest: for (3.13) up to 90° at most twice that. Where it is greater by
-/// this factor, it comes from the right side, which enters by a matrix of rank one; rounding, which would lose the rest of
-/// the Jacobian beside a right side some `10⁸` times as large, hasn't yet.
-const GREATEST: f64 = 1_048_576.0;
+/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times the
+/// former, `10¹²` times in `f64`, the rounding of the latter doesn't reach it.
+const RATIO: f64 = 1.0 / 4096.0;
 
-/// Determinant of the Newton system for a body at rest.
-fn determinant_at_rest<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
+/// Determinant and trace of the Newton system for a body at rest.
+fn jacobian_at_rest<L: Effect>(lagrangian: &L, constants: &L::Constants) -> (Scalar<L>, Scalar<L>) {
     let zero = Vector::<L>::zero();
     let terms = L::step_terms(constants, &zero, &lagrangian.advected());
     let (_, jacobian) = L::newton_system(constants, &terms, &zero);
-    Vector::<L>::solve(&jacobian, &zero).1
+    (Vector::<L>::solve(&jacobian, &zero).1, Vector::<L>::trace(&jacobian))
 }

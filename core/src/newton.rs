@@ -115,8 +115,8 @@ pub(crate) struct Problem<'a, L: Effect> {
 impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
-    /// What it returns is what [`solve`](Self::solve) returns. A determinant above `largest` is doubtful: the right side is
-    /// so large then that the Jacobian is lost in its rounding, and an update may vanish far from any solution.
+    /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is doubtful:
+    /// the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
     /// Nothing here is lent to a function that isn't inlined, so that all of it can stay in registers; that is a sixth
     /// of the time of a step.
@@ -133,7 +133,7 @@ impl<L: Effect> Problem<'_, L> {
             lanes.advance(&update, det, &update);
             if lanes.settled.all() {
                 let half = lanes.half;
-                let usual = is_positive(lanes.det) & lanes.det.simd_lt(largest);
+                let usual = is_positive(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
                 // Most are nearer than they have to be.
                 let far = far::<L>(&half);
                 if !usual.all() || far.any() && !L::Retraction::is_half_near_identity(&half).all() {

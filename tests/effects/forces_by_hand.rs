@@ -54,7 +54,7 @@ impl Effect for Drag {
 
     /// `∂/∂E_j` of `(c − e) s`.
     fn momentum_jacobian(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Matrix3<f64> {
-        let Coefficients { both, end } = self.constants(h);
+        let Coefficients { both, end, .. } = self.constants(h);
         let moved = |j: usize| skew(&(Vector3::ith(j, 1.0).cross_matrix() * f)) * (both - end);
         Matrix3::from_columns(&[moved(0), moved(1), moved(2)])
     }
