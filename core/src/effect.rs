@@ -185,6 +185,7 @@ pub trait Effect {
     /// What of [`kick_after`](Self::kick_after) isn't in the `k` of [`newton_residual`](Self::newton_residual): that of
     /// the other terms of a sum.
     #[inline(always)]
+    #[must_use]
     fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
         None
     }
