@@ -20,12 +20,12 @@ use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
 use crate::entries::Entries;
 use crate::groups::LieGroup;
 use crate::scalar::{Real, real, reported};
-use crate::state::State;
+use crate::state::{History, State};
 use crate::stepper::Stepper;
 use fingerprint::{Fingerprint, Parameters};
 
 /// What the numbers below mean; another layout has another number.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// A scalar that is stored by its bits: `f64` or `f32`.
 pub trait Stored: Real + PartialOrd + Serialize + for<'de> Deserialize<'de> {
@@ -66,6 +66,9 @@ pub struct Checkpoint<T> {
     advected: Vec<T>,
     coordinates: Vec<T>,
     guess: Vec<T>,
+    /// How many increments the guess is made of, and their differences; where nothing is dear, none.
+    increments: u64,
+    differences: Vec<T>,
     /// What a compensated stepper carries for attitude, momentum and advected parameters; otherwise nothing.
     carry: Vec<T>,
     /// Of everything above.
@@ -88,6 +91,7 @@ impl<T: Stored> Checkpoint<T> {
         digest.number(self.scene.value());
         digest.number(self.step_size.bits());
         digest.number(self.steps);
+        digest.number(self.increments);
         for (_, numbers) in self.lists() {
             digest.number(numbers.len() as u64);
             for number in numbers {
@@ -97,7 +101,7 @@ impl<T: Stored> Checkpoint<T> {
         digest
     }
 
-    fn lists(&self) -> [(&'static str, &Vec<T>); 7] {
+    fn lists(&self) -> [(&'static str, &Vec<T>); 8] {
         [
             ("parameters", &self.parameters),
             ("attitude", &self.attitude),
@@ -105,6 +109,7 @@ impl<T: Stored> Checkpoint<T> {
             ("advected", &self.advected),
             ("coordinates", &self.coordinates),
             ("guess", &self.guess),
+            ("differences", &self.differences),
             ("carry", &self.carry),
         ]
     }
@@ -167,6 +172,7 @@ fn written<L: Effect<Scalar: Stored>>(
     carry: Vec<Scalar<L>>,
 ) -> Checkpoint<Scalar<L>> {
     let own = Parameters::of(stepper.lagrangian());
+    let (increments, differences) = state.history.parts();
     let mut checkpoint = Checkpoint {
         format: FORMAT,
         scene: own.scene,
@@ -178,6 +184,8 @@ fn written<L: Effect<Scalar: Stored>>(
         advected: list(&state.advected),
         coordinates: list(&(state.half + state.half)),
         guess: list(&(state.half_guess + state.half_guess)),
+        increments: increments as u64,
+        differences: differences.iter().flat_map(list).collect(),
         carry,
         digest: Fingerprint::default(),
     };
@@ -191,12 +199,14 @@ fn read<L: Effect<Scalar: Stored>>(
 ) -> Result<State<Group<L>, L::Advected>, CheckpointError> {
     belongs(stepper, checkpoint)?;
     let attitude = Group::<L>::from_matrix_unchecked(unlisted("attitude", &checkpoint.attitude)?);
+    let history = remembered::<L>(checkpoint)?;
     let state = State {
         attitude,
         momentum: unlisted("momentum", &checkpoint.momentum)?,
         advected: unlisted::<_, L::Advected>("advected", &checkpoint.advected)?,
         half: unlisted::<_, Vector<L>>("coordinates", &checkpoint.coordinates)? * real(0.5),
         half_guess: unlisted::<_, Vector<L>>("guess", &checkpoint.guess)? * real(0.5),
+        history,
         steps: checkpoint.steps,
     };
     // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
@@ -217,6 +227,23 @@ fn read<L: Effect<Scalar: Stored>>(
         return Err(CheckpointError::NotAdvected { distance: reported(squared.simd_sqrt()) });
     }
     Ok(state)
+}
+
+/// What the guess is made of.
+fn remembered<L: Effect<Scalar: Stored>>(
+    checkpoint: &Checkpoint<Scalar<L>>,
+) -> Result<History<Vector<L>>, CheckpointError> {
+    let what = "differences";
+    let size = <Group<L> as LieGroup>::DIMENSION;
+    let differences: Result<Vec<Vector<L>>, _> =
+        checkpoint.differences.chunks(size).map(|chunk| unlisted(what, chunk)).collect();
+    let increments = usize::try_from(checkpoint.increments).unwrap_or(usize::MAX);
+    let expected = size * increments.saturating_sub(1);
+    History::of(increments, &differences?).ok_or(CheckpointError::WrongSize {
+        what,
+        found: checkpoint.differences.len(),
+        expected,
+    })
 }
 
 /// The checkpoint is of this scene, with these parameters and this step.

@@ -134,7 +134,7 @@ impl<L: Effect> CompensatedStepper<L> {
         let advected = sum(&now.advected, &now.advected.change(increment), &carry.advected);
         // The kicks are added for themselves: in `a` they are rounded to the digits of the momentum.
         let change = Group::<L>::adjoint_transpose_increment(increment, &solved.a)
-            + flow.kicks(&now.advected, increment, &advected.0);
+            + flow.kicks(&now.advected, increment, &advected.0, &solved.root.kick);
         let momentum = sum(&now.momentum, &change, &carry.momentum);
         if !momentum.0.is_finite() || !advected.0.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -144,9 +144,13 @@ impl<L: Effect> CompensatedStepper<L> {
         now.attitude = Group::<L>::from_matrix_unchecked(attitude.0);
         now.momentum = momentum.0;
         now.advected = advected.0;
-        let root = &solved.root;
+        let (root, last) = (&solved.root, now.half);
         // What is carried belongs to the state before.
-        if let Some(far) = now.proceed(root.half, root.far, || self.stepper.lagrangian().advected()) {
+        let restored = now.proceed(root.half, root.far, || self.stepper.lagrangian().advected());
+        if L::JACOBIAN_IS_DEAR {
+            now.look_back(last, root.far);
+        }
+        if let Some(far) = restored {
             let mut kept = |carry: Scalar<L>, nothing: Scalar<L>| nothing.select(far, carry);
             carry.attitude = carry.attitude.zip(&zero(), &mut kept);
             carry.advected = carry.advected.zip(&zero(), &mut kept);

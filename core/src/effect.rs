@@ -170,10 +170,24 @@ pub trait Effect {
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
 
-    /// The residual of [`newton_system`](Self::newton_system) alone.
+    /// The residual of [`newton_system`](Self::newton_system) alone; with it, where one gradient of `l_d` gives both, the
+    /// part `k` of the diamond that depends on `F`, which stands for [`kick_after`](Self::kick_after) then:
+    /// `Ad*_F k = kick_after(F, w⁺)`.
     #[inline(always)]
-    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
-        Self::newton_system(constants, terms, half).0
+    fn newton_residual(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Option<Vector<Self>>) {
+        (Self::newton_system(constants, terms, half).0, None)
+    }
+
+    /// What of [`kick_after`](Self::kick_after) isn't in the `k` of [`newton_residual`](Self::newton_residual): that of
+    /// the other terms of a sum.
+    #[inline(always)]
+    #[must_use]
+    fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
+        None
     }
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, written in the new `w⁺`; `increment` is `F − I`.

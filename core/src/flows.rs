@@ -9,7 +9,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
-use crate::newton::{Problem, Root, trusted_radius};
+use crate::newton::{Kick, Problem, Root, trusted_radius};
 use crate::retraction::Retraction;
 use crate::scalar::{Mask, is_finite, real, reported};
 use crate::solvability::{Solvability, TurningLimits};
@@ -214,18 +214,32 @@ impl<L: Effect> DiscreteLiePoisson<L> {
     /// By `F` from `(μ, w)`, with `a = μ + kick_before(w)`.
     #[inline(always)]
     fn moved(&self, momentum: &Vector<L>, advected: &L::Advected, a: &Vector<L>, root: &Root<L>) -> Stepped<L> {
-        let Root { half, increment, iterations, far } = *root;
+        let Root { half, increment, iterations, far, ref kick } = *root;
         let next = advected.advect(&increment);
         let mut change = Group::<L>::adjoint_transpose_increment(&increment, a);
         if L::PARTS.kick_before {
             change = change + (*a - *momentum);
         }
         if L::PARTS.kick_after {
-            change = change + L::kick_after(&self.constants, &increment, &next);
+            change = change + self.kick_after(&increment, &next, kick);
         }
         let momentum = *momentum + change;
         let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
         Stepped { step, half, far }
+    }
+
+    /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
+    #[inline(always)]
+    fn kick_after(&self, increment: &Matrix<L>, next: &L::Advected, kick: &Kick<L>) -> Vector<L> {
+        let direct = || L::kick_after(&self.constants, increment, next);
+        if !L::JACOBIAN_IS_DEAR || !kick.found.any() {
+            return direct();
+        }
+        let mut found = kick.value + Group::<L>::adjoint_transpose_increment(increment, &kick.value);
+        if let Some(beside) = L::kick_beside(&self.constants, increment, next) {
+            found = found + beside;
+        }
+        if kick.found.all() { found } else { found.select(kick.found, direct()) }
     }
 
     /// `F` of the step from `(μ, w)`; the guess is of half the coordinates.
@@ -246,11 +260,17 @@ impl<L: Effect> DiscreteLiePoisson<L> {
 
     /// Both kicks of a step from `w` to `next`.
     #[inline(always)]
-    pub(crate) fn kicks(&self, w: &L::Advected, increment: &Matrix<L>, next: &L::Advected) -> Vector<L> {
+    pub(crate) fn kicks(
+        &self,
+        w: &L::Advected,
+        increment: &Matrix<L>,
+        next: &L::Advected,
+        kick: &Kick<L>,
+    ) -> Vector<L> {
         match (L::PARTS.kick_before, L::PARTS.kick_after) {
-            (true, true) => L::kick_before(&self.constants, w) + L::kick_after(&self.constants, increment, next),
+            (true, true) => L::kick_before(&self.constants, w) + self.kick_after(increment, next, kick),
             (true, false) => L::kick_before(&self.constants, w),
-            (false, true) => L::kick_after(&self.constants, increment, next),
+            (false, true) => self.kick_after(increment, next, kick),
             (false, false) => Vector::<L>::zero(),
         }
     }
@@ -269,7 +289,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
 
     #[cold]
     fn stand_still(momentum: &Vector<L>, advected: &L::Advected) -> Stepped<L> {
-        let Root { half, increment, iterations, far } = Root::<L>::at(&Vector::<L>::zero(), 0);
+        let Root { half, increment, iterations, far, .. } = Root::<L>::at(&Vector::<L>::zero(), 0);
         let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
         Stepped { step, half, far }
     }

@@ -37,12 +37,33 @@ pub(crate) struct Root<L: Effect> {
     pub(crate) iterations: u32,
     /// The lanes that 3/2 of `half` would take out of where a solution is surely the wanted one.
     pub(crate) far: Mask<Scalar<L>>,
+    pub(crate) kick: Kick<L>,
+}
+
+/// The `k` of [`newton_residual`](Effect::newton_residual) that a solve has come by.
+#[derive(Clone, Copy)]
+pub(crate) struct Kick<L: Effect> {
+    pub(crate) value: Vector<L>,
+    /// The lanes in which it is that of the solution, to its rounding.
+    pub(crate) found: Mask<Scalar<L>>,
+}
+
+impl<L: Effect> Kick<L> {
+    #[inline(always)]
+    fn none() -> Self {
+        Self { value: Vector::<L>::zero(), found: nowhere::<Scalar<L>>() }
+    }
 }
 
 impl<L: Effect> Root<L> {
     pub(crate) fn at(half: &Vector<L>, iterations: u32) -> Self {
         let increment = L::Retraction::increment_of_half(half);
-        Self { half: *half, increment, iterations, far: far::<L>(half) }
+        Self { half: *half, increment, iterations, far: far::<L>(half), kick: Kick::none() }
+    }
+
+    fn of(lanes: &Lanes<L>, iterations: u32) -> Self {
+        let Kick { value, found } = lanes.kick;
+        Self { kick: Kick { value, found }, ..Self::at(&lanes.half, iterations) }
     }
 }
 
@@ -52,12 +73,13 @@ struct Lanes<L: Effect> {
     /// Of the Jacobian at the iterate before `half`.
     det: Scalar<L>,
     settled: Mask<Scalar<L>>,
+    kick: Kick<L>,
 }
 
 impl<L: Effect> Lanes<L> {
     #[inline(always)]
     fn starting_at(half: &Vector<L>) -> Self {
-        Self { half: *half, det: real(0.0), settled: nowhere::<Scalar<L>>() }
+        Self { half: *half, det: real(0.0), settled: nowhere::<Scalar<L>>(), kick: Kick::none() }
     }
 
     /// Takes `part` of the update in the lanes that haven't settled.
@@ -74,6 +96,7 @@ impl<L: Effect> Lanes<L> {
     fn keeping(mut self, accepted: Mask<Scalar<L>>, start: &Vector<L>) -> Self {
         self.half = self.half.select(accepted, *start);
         self.settled = accepted;
+        self.kick.found = self.kick.found & accepted;
         self
     }
 }
@@ -102,7 +125,7 @@ impl<L: Effect> Problem<'_, L> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
         if Self::goes_by_secants() {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
-            return lanes.settled.all().then(|| Root::at(&lanes.half, iterations));
+            return lanes.settled.all().then(|| Root::of(&lanes, iterations));
         }
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 0..MAX_ITERATIONS {
@@ -117,7 +140,7 @@ impl<L: Effect> Problem<'_, L> {
                     return None;
                 }
                 let increment = L::Retraction::increment_of_half(&half);
-                return Some(Root { half, increment, iterations: iteration + 1, far });
+                return Some(Root { half, increment, iterations: iteration + 1, far, kick: Kick::none() });
             }
         }
         None
@@ -133,13 +156,13 @@ impl<L: Effect> Problem<'_, L> {
         let (warm, iterations) = self.iterate(&terms, start);
         let accepted = self.accepted(&terms, &warm);
         if accepted.all() {
-            return Ok(Root::at(&warm.half, spent + iterations));
+            return Ok(Root::of(&warm, spent + iterations));
         }
         let (identity, spent) = (Vector::<L>::zero(), spent + MAX_ITERATIONS);
         let (cold, iterations) = self.iterate(&terms, warm.keeping(accepted, &identity));
         let accepted = self.accepted(&terms, &cold);
         if accepted.all() {
-            return Ok(Root::at(&cold.half, spent + iterations));
+            return Ok(Root::of(&cold, spent + iterations));
         }
         let (damped, iterations) = self.iterate_damped(&terms, cold.keeping(accepted, &identity));
         self.conclude(&terms, &damped, iterations).map(|mut root| {
@@ -230,7 +253,7 @@ impl<L: Effect> Problem<'_, L> {
     fn conclude(&self, terms: &L::StepTerms, lanes: &Lanes<L>, iterations: u32) -> Result<Root<L>, StepError> {
         let accepted = self.accepted(terms, lanes);
         if accepted.all() {
-            return Ok(Root::at(&lanes.half, iterations));
+            return Ok(Root::of(lanes, iterations));
         }
         if lanes.settled.all() {
             return Err(StepError::WrongBranch { determinant: reported(lanes.det) });

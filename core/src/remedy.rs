@@ -7,7 +7,7 @@ use crate::effect::{Effect, Group, Scalar};
 use crate::error::{SetupError, StepError};
 use crate::kinetic::Regular;
 use crate::scalar::real;
-use crate::state::State;
+use crate::state::{History, State};
 use crate::stepper::{StepReport, Stepper};
 
 /// What was done in the place of a step that has no solution.
@@ -139,13 +139,14 @@ fn substepped<L: Regular + Clone>(
     let (whole, part) = (real::<Scalar<L>>(f64::from(parts)), real::<Scalar<L>>(1.0 / f64::from(parts)));
     let small = Stepper::new(stepper.lagrangian().clone(), stepper.step_size() / whole).ok()?;
     // The history is that of the whole step, so these begin as a motion of their own.
-    let mut moved = State { half_guess: state.half_guess * part, half: state.half * part, steps: 0, ..*state };
+    let (half_guess, half, history) = (state.half_guess * part, state.half * part, History::new());
+    let mut moved = State { half_guess, half, history, steps: 0, ..*state };
     let mut iterations = 0;
     for _ in 0..parts {
         iterations += small.step(&mut moved).ok()?.iterations;
     }
     let half = moved.half * whole;
-    let state = State { half_guess: half, half, steps: state.steps + 1, ..moved };
+    let state = State { half_guess: half, half, history, steps: state.steps + 1, ..moved };
     Some(Moved { state, iterations })
 }
 

@@ -1,5 +1,9 @@
 //! The state of a motion, and what can be read off it.
 
+mod history;
+
+pub(crate) use history::History;
+
 use nalgebra::{SimdBool as _, SimdValue as _, Vector3};
 
 use crate::advected::Advected;
@@ -13,8 +17,8 @@ pub(crate) const LOOKS: u32 = 1024;
 
 /// Attitude, momentum and advected parameters at one time.
 ///
-/// The coordinates of the last increment, halved, and a guess of the next ones are kept for the next solve. They are part of the
-/// state, so that a copy continues with the same bits.
+/// The coordinates of the last increment, halved, and a guess of the next ones are kept for the next solve, with what the guess
+/// is made of. They are part of the state, so that a copy continues with the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) attitude: G,
@@ -24,12 +28,14 @@ pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) half: G::Vector,
     /// A guess of half the next ones.
     pub(crate) half_guess: G::Vector,
+    /// Where an evaluation is dear; elsewhere it stays empty.
+    pub(crate) history: History<G::Vector>,
     pub(crate) steps: u64,
 }
 
 impl<G: LieGroup, A: Advected<G>> State<G, A> {
     pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, half: G::Vector) -> Self {
-        Self { attitude, momentum, advected, half, half_guess: half, steps: 0 }
+        Self { attitude, momentum, advected, half, half_guess: half, history: History::new(), steps: 0 }
     }
 
     /// Counts the step with half these coordinates, and guesses those of the next; `far` are the lanes in which they are
@@ -54,6 +60,13 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         let restored = if self.is_due() { self.look(&spatial()) } else { None };
         self.steps += 1;
         restored
+    }
+
+    /// A better guess, by all increments so far: `last` was the one before. It takes some dozens of additions.
+    #[inline(always)]
+    pub(crate) fn look_back(&mut self, last: G::Vector, far: Mask<G::Scalar>) {
+        let guess = self.history.next(last, self.half);
+        self.half_guess = if far.any() { self.half.select(far, guess) } else { guess };
     }
 
     /// What is done after the first step, and after many more.

@@ -198,7 +198,11 @@ impl<L: Effect> Stepper<L> {
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
+        let last = state.half;
         state.proceed(*half, *far, || self.lagrangian().advected());
+        if L::JACOBIAN_IS_DEAR {
+            state.look_back(last, *far);
+        }
         StepReport { iterations: step.iterations, remedy: None }
     }
 

@@ -185,11 +185,34 @@ where
     }
 
     #[inline(always)]
-    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
+    fn newton_residual(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Option<Vector<Self>>) {
         match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => Self::newton_system(constants, terms, half).0,
+            (true, true) => (Self::newton_system(constants, terms, half).0, None),
             (true, false) => A::newton_residual(&constants.0, &terms.0, half),
             (false, _) => B::newton_residual(&constants.1, &terms.1, half),
+        }
+    }
+
+    #[inline(always)]
+    fn kick_beside(
+        constants: &Self::Constants,
+        increment: &Matrix<Self>,
+        next: &Self::Advected,
+    ) -> Option<Vector<Self>> {
+        let (beside, other) = if A::PARTS.unknown {
+            let other = || B::kick_after(&constants.1, increment, &next.1);
+            (A::kick_beside(&constants.0, increment, &next.0), B::PARTS.kick_after.then(other))
+        } else {
+            let other = || A::kick_after(&constants.0, increment, &next.0);
+            (B::kick_beside(&constants.1, increment, &next.1), A::PARTS.kick_after.then(other))
+        };
+        match (beside, other) {
+            (Some(beside), Some(other)) => Some(beside + other),
+            (beside, other) => beside.or(other),
         }
     }
 

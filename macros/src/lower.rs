@@ -161,6 +161,12 @@ impl Lowering<'_> {
     fn bound(&mut self, name: &str, value: Expression) -> Expression {
         let is_small = value.len() <= 1 && value.size() <= 2;
         let Some(lets) = self.lets.as_mut().filter(|_| !is_small) else { return value };
+        // One symbol for equal values and for opposite ones, so that they share a multiplier too.
+        let opposite = value.clone().scaled(-Rational::ONE);
+        if let Some(known) = lets.iter().find(|one| one.value == value || one.value == opposite) {
+            let sign = if known.value == value { Rational::ONE } else { -Rational::ONE };
+            return Expression::symbol(known.symbol, &self.symbols).scaled(sign);
+        }
         let structure = match value.shape() {
             (rows, columns) if rows == columns && rows > 1 && value.transpose(&self.symbols) == value => {
                 Structure::Symmetric
@@ -181,6 +187,9 @@ impl Lowering<'_> {
             return expression;
         }
         let Some(lets) = self.lets.as_mut() else { return expression };
+        if let Some(same) = lets.iter().find(|one| one.value == expression) {
+            return Expression::symbol(same.symbol, &self.symbols);
+        }
         let name = value.to_f64().to_string();
         let symbol = self.symbols.add(name, (1, 1), Structure::General, Stage::Construction);
         lets.push(Let { symbol, value: expression });
@@ -189,21 +198,51 @@ impl Lowering<'_> {
 
     /// Two factors of a product. The action of a sum of matrices on a vector is cheaper term by term.
     fn factors(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<(Expression, Expression), Failure> {
-        let acts = matches!((a.shape, b.shape), (Shape::Matrix(_, 2..), Shape::Matrix(_, 1)));
-        let left = if acts { self.expression(a)? } else { self.factor(a)? };
+        let left = if acts(a, b) { self.expression(a)? } else { self.factor(a)? };
         Ok((left, self.factor(b)?))
     }
 
     /// A sum that is about to be multiplied: where `let`s stay closed, a product of sums isn't multiplied out either.
     fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
         let value = self.expression(tree)?;
-        if value.len() < 2 {
-            return Ok(value);
-        }
-        let number = self.lets.as_ref().map_or(0, |lets| lets.len() + 1);
-        let closed = self.bound(&format!("t{number}"), value);
+        Ok(if value.len() < 2 { value } else { self.closed(tree, value) })
+    }
+
+    /// A value that a derivative goes through as one.
+    fn closed(&mut self, tree: &Rc<Tree>, value: Expression) -> Expression {
+        let closed = self.unnamed(value);
         self.known.insert(Rc::as_ptr(tree), closed.clone());
-        Ok(closed)
+        closed
+    }
+
+    /// The symbol of a `let` without a name, where `let`s stay closed.
+    fn unnamed(&mut self, value: Expression) -> Expression {
+        let number = self.lets.as_ref().map_or(0, |lets| lets.len() + 1);
+        self.bound(&format!("t{number}"), value)
+    }
+
+    /// A sum of matrices applied to a vector, as `exp(v)` is: factor by factor, each image closed. Multiplied out, the
+    /// derivative of a product of two matrices would have two products for each of its terms.
+    fn image(&mut self, matrix: &Rc<Tree>, vector: &Expression) -> Result<Expression, Failure> {
+        Ok(match &matrix.kind {
+            Kind::Identity => vector.clone(),
+            Kind::Add(a, b) => self.image(a, vector)?.plus(self.image(b, vector)?),
+            Kind::Subtract(a, b) => self.image(a, vector)?.minus(self.image(b, vector)?),
+            Kind::Multiply(a, b) if a.shape == Shape::Scalar => {
+                let factor = self.factor(a)?;
+                let image = self.image(b, vector)?;
+                self.product(matrix, &factor, &image)?
+            }
+            Kind::Multiply(a, b) => {
+                let inner = self.image(b, vector)?;
+                self.image(a, &inner)?
+            }
+            _ => {
+                let factor = self.expression(matrix)?;
+                let image = self.product(matrix, &factor, vector)?;
+                self.unnamed(image)
+            }
+        })
     }
 
     fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
@@ -235,6 +274,10 @@ impl Lowering<'_> {
             Kind::Negate(a) => self.expression(a)?.scaled(-Rational::ONE),
             Kind::Add(a, b) => self.expression(a)?.plus(self.expression(b)?),
             Kind::Subtract(a, b) => self.expression(a)?.minus(self.expression(b)?),
+            Kind::Multiply(a, b) if self.lets.is_some() && acts(a, b) && matches!(a.kind, Kind::Add(..)) => {
+                let vector = self.factor(b)?;
+                self.image(a, &vector)?
+            }
             Kind::Multiply(a, b) => {
                 let (left, right) = self.factors(a, b)?;
                 self.product(tree, &left, &right)?
@@ -265,7 +308,13 @@ impl Lowering<'_> {
                 }
                 base.power(*exponent, &self.symbols)
             }
-            Kind::Apply(function, a) => Expression::function(*function, self.factor(a)?),
+            Kind::Apply(function, a) => {
+                // Alone, however small, as the derivative is a function of it too.
+                let argument = self.expression(a)?;
+                let argument = self.closed(a, argument);
+                let value = Expression::function(*function, argument);
+                self.closed(tree, value)
+            }
             Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
             Kind::Inverse(a) => match &a.kind {
                 Kind::Name(name) => match self.names.get(name) {
@@ -295,6 +344,11 @@ impl Lowering<'_> {
         }
         Ok(left.times(right, &self.symbols))
     }
+}
+
+/// Whether a product is that of a matrix and a vector.
+fn acts(a: &Tree, b: &Tree) -> bool {
+    matches!((a.shape, b.shape), (Shape::Matrix(_, 2..), Shape::Matrix(_, 1)))
 }
 
 fn ambient(shape: Shape) -> (usize, usize) {

@@ -184,17 +184,19 @@ where
         SYSTEMS.set(SYSTEMS.get() + 1);
         let f = L::Retraction::retract(&(half + half)).matrix();
         let jacobian = constants.1.momentum_jacobian(&f, &terms.1, constants.2) * L::Retraction::tangent_of_half(half);
-        (Self::newton_residual(constants, terms, half), jacobian * (constants.2 * nalgebra::convert::<f64, T>(0.5)))
+        (Self::newton_residual(constants, terms, half).0, jacobian * (constants.2 * nalgebra::convert::<f64, T>(0.5)))
     }
 
     fn newton_residual(
         (constants, lagrangian, h): &Self::Constants,
         (a, w): &Self::StepTerms,
         half: &Vector3<T>,
-    ) -> Vector3<T> {
+    ) -> (Vector3<T>, Option<Vector3<T>>) {
         let f = L::Retraction::retract(&(half + half)).matrix();
-        (lagrangian.legendre_minus(&f, w, *h) + L::kick_before(constants, w) - *a)
-            * (*h * nalgebra::convert::<f64, T>(0.5))
+        let kick_before = L::kick_before(constants, w);
+        let residual = lagrangian.legendre_minus(&f, w, *h) + kick_before - *a;
+        let moved = lagrangian.diamond(&f, w, *h) - kick_before;
+        (residual * (*h * nalgebra::convert::<f64, T>(0.5)), Some(moved))
     }
 
     fn kick_after((constants, ..): &Self::Constants, increment: &Matrix3<T>, next: &Self::Advected) -> Vector3<T> {

@@ -4,6 +4,7 @@
 use crate::common::random::Random;
 use crate::common::reference::looping;
 use crate::common::tops::{FreeBody, HeavyTop};
+use crate::declarations::SixthOrderTop;
 use liestep::{Checkpoint, CheckpointError, Effect, LieGroup as _, SO3, Scalar, Stepper, Stored};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -48,6 +49,8 @@ fn p7_save_and_resume_at_random_steps() {
         let stepper = Stepper::new(motion.top.clone(), h).unwrap();
         assert_resumes(&stepper, stepper.start(motion.attitude, motion.velocity).unwrap(), 7);
     }
+    let sixth = Stepper::new(motion.top.declared_as::<SixthOrderTop>(), 0.01).unwrap();
+    assert_resumes(&sixth, sixth.start(motion.attitude, motion.velocity).unwrap(), 9);
     let body = Stepper::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.01).unwrap();
     assert_resumes(&body, body.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02)).unwrap(), 8);
 }
@@ -138,7 +141,7 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
         refused(|value| value["attitude"] = json!(vec![0.5; 1000])),
         CheckpointError::WrongSize { what: "attitude", found: 1000, expected: 9 }
     );
-    assert_eq!(refused(|value| value["format"] = json!(2)), CheckpointError::AnotherFormat { found: 2, known: 1 });
+    assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 2 });
     let scaled = refused(|value| value["attitude"][4] = json!(0.5));
     assert!(matches!(scaled, CheckpointError::NotInGroup { defect } if defect > 1e-3), "{scaled}");
     let elsewhere = refused(|value| value["advected"] = json!([0.0, 0.0, 1.0]));

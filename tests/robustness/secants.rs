@@ -6,8 +6,8 @@ use crate::common::random::Random;
 use crate::common::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use crate::declarations::{self, FourthOrderTop, SixthOrderTop};
 use liestep::{
-    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia, Real,
-    Regular, SO3, StepError, Stepper, lagrangian,
+    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia,
+    LieGroup as _, Real, Regular, SO3, StepError, Stepper, lagrangian,
 };
 use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
 use num_dual::Dual64;
@@ -79,13 +79,17 @@ fn the_residual_alone_is_the_systems() {
     let constants = top.constants(h);
     let mut random = Random::new(1);
     for _ in 0..100 {
-        let terms = SixthOrderTop::step_terms(&constants, &random.vector(), &random.direction());
+        let w = random.direction();
+        let terms = SixthOrderTop::step_terms(&constants, &random.vector(), &w);
         let xi = random.vector();
-        let alone = SixthOrderTop::newton_residual(&constants, &terms, &xi);
+        let (alone, moved) = SixthOrderTop::newton_residual(&constants, &terms, &xi);
         let (residual, jacobian) = SixthOrderTop::newton_system(&constants, &terms, &xi);
         assert!((alone - residual).norm() <= 1e-13 * residual.norm());
-        let along = derivative(|s| SixthOrderTop::newton_residual(&constants, &terms, &(xi + Vector3::x() * s)));
+        let along = derivative(|s| SixthOrderTop::newton_residual(&constants, &terms, &(xi + Vector3::x() * s)).0);
         assert!((along - jacobian.column(0)).norm() < 1e-9 * jacobian.norm());
+        let f = <CayleyRetraction as liestep::Retraction<SO3>>::retract(&(xi + xi));
+        let after = SixthOrderTop::kick_after(&constants, &f.increment(), &(f.matrix().transpose() * w));
+        assert!((f.adjoint_transpose(&moved.unwrap()) - after).norm() < 1e-13 * after.norm());
     }
 }
 

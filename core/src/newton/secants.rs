@@ -17,6 +17,11 @@
 //! Updates of some roundings of `ξ` are made of roundings, and their ratios mean nothing; after two such there is
 //! nothing more to gain.
 //!
+//! # The kick
+//!
+//! The last gradient, before the last update, also gives the diamond. Where that update would change it by less than a
+//! part of the momentum's rounding, at the rate of the update before, no gradient is evaluated for the diamond alone.
+//!
 //! # The branch
 //!
 //! Without a Jacobian there is no determinant to look at. In its place stand two findings, and where one is missing the
@@ -142,11 +147,16 @@ impl<L: Effect> Problem<'_, L> {
         let mut doubtful = !in_ball(guess);
         let mut iterations = 0;
         while updates.count < MAX_UPDATES && !(lanes.settled | doubtful).all() {
-            let residual = L::newton_residual(self.constants, terms, &lanes.half);
+            let (residual, kick) = L::newton_residual(self.constants, terms, &lanes.half);
             let update = updates.corrected(Vector::<L>::solve(&model, &(residual * real(-1.0))).0);
             let next = lanes.half + update;
-            let verdict = updates.record(update, &next);
             let resting = lanes.settled | doubtful;
+            if let Some(kick) = kick {
+                let found = self.has_settled(&(kick - lanes.kick.value), &update, &updates);
+                lanes.kick.value = lanes.kick.value.select(resting, kick);
+                lanes.kick.found = (lanes.kick.found & resting) | (found & !resting);
+            }
+            let verdict = updates.record(update, &next);
             lanes.half = lanes.half.select(resting, next);
             lanes.settled = lanes.settled | (verdict.settled & !resting);
             doubtful = doubtful | (verdict.doubtful & !resting);
@@ -155,5 +165,14 @@ impl<L: Effect> Problem<'_, L> {
         lanes.det = real(1.0);
         lanes.settled = lanes.settled & !doubtful & in_ball(&lanes.half);
         (lanes, iterations)
+    }
+
+    /// Whether the kick before the update is that after it, when the last update has changed it so much.
+    #[inline(always)]
+    fn has_settled(&self, change: &Vector<L>, update: &Vector<L>, updates: &Updates<L>) -> Mask<Scalar<L>> {
+        let Some(last) = updates.count.checked_sub(1) else { return nowhere::<Scalar<L>>() };
+        let tolerance = Scalar::<L>::simd_default_epsilon() * real(MISSING);
+        let missing = change.dot(change) * update.dot(update);
+        missing.simd_le(updates.lengths[last] * (self.a.dot(&self.a) * (tolerance * tolerance)))
     }
 }

@@ -70,6 +70,7 @@ pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result
         limit: Limit { has_kinetic: false, slope: none(), inertia: none(), bias: none(), potential: none() },
         kick_before: parts.kick_before,
         unknown: transport::in_small_increment(&context, &parts.unknown),
+        moved: None,
         kick_after: parts.kick_after.plus(after),
         half_step: context.half_step(),
         cleared,

@@ -99,6 +99,8 @@ pub(crate) struct Derived {
     /// The part of `μ` with `F`, written in `D = F − I`: its constants cancel exactly, so that a small step keeps its
     /// digits.
     pub(crate) unknown: Expression,
+    /// The rest of the diamond, in `F` and `w`; of a force, which has more after the step, nothing.
+    pub(crate) moved: Option<Expression>,
     /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`.
     pub(crate) kick_after: Expression,
     /// `h/2`, by which the Newton system is multiplied: it has no `1/h` then.
@@ -171,6 +173,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         limit,
         kick_before: parts.kick_before,
         unknown,
+        moved: Some(parts.moved),
         kick_after: parts.kick_after,
         previous: transport::previous(&context),
         half_step: context.half_step(),

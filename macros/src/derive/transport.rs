@@ -17,6 +17,8 @@ use crate::symbolic::{Expression, Stage, SymbolId, degree, stage_of_monomial};
 pub(super) struct Parts {
     pub(super) kick_before: Expression,
     pub(super) unknown: Expression,
+    /// The part of the diamond with `F`.
+    pub(super) moved: Expression,
     pub(super) kick_after: Expression,
 }
 
@@ -31,7 +33,8 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
     let turned = context.product(&context.product(&f, &direction), &inverse);
     let mut map = BTreeMap::from([(context.directions.first, turned)]);
     map.extend(previous(context));
-    Parts { kick_before, unknown, kick_after: context.substituted(&moved, &map) }
+    let kick_after = context.substituted(&moved, &map);
+    Parts { kick_before, unknown, moved, kick_after }
 }
 
 /// `w = F·w⁺`.

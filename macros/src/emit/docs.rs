@@ -106,8 +106,8 @@ pub(super) fn derivation(
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
     before_the_solve.arithmetic += kernel.residual.len();
     let alone = if kernel.jacobian_is_dear() {
-        let residual = count(&kernel.graph, &kernel.residual, Some(Stage::Iteration));
-        format!("; the residual alone, with which a solve begins: {residual}")
+        let gradient = count(&kernel.graph, &kernel.gradient(), Some(Stage::Iteration));
+        format!("; residual and diamond without it, with which a solve begins: {gradient}")
     } else {
         String::new()
     };

@@ -20,9 +20,12 @@ pub(super) struct Stages {
 pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::docs::Equation]) -> Stages {
     let graph = &kernel.graph;
     let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
-    let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &system, &kernel.kick_after].concat();
+    // The moved part of the diamond is emitted only with a residual alone.
+    let moved: &[NodeId] = if kernel.jacobian_is_dear() { &kernel.moved } else { &[] };
+    let solved = [system.as_slice(), moved].concat();
+    let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after].concat();
     let constants = boundary(graph, &everything, Stage::Construction);
-    let step_terms = boundary(graph, &system, Stage::Step);
+    let step_terms = boundary(graph, &solved, Stage::Step);
     let (span, root) = (Span::mixed_site(), &emitter.header.root);
     let (vector, square, scalar) = (emitter.header.vector(), emitter.header.square(), &emitter.header.scalar);
     let matrix = emitter.header.matrix();
@@ -141,18 +144,25 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
 /// The residual for itself, where the solve can do without the Jacobian.
 fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::Given) -> TokenStream {
     let (span, root, vector) = (Span::mixed_site(), &emitter.header.root, emitter.header.vector());
-    let (lets, values) = emitter.statements(&kernel.graph, &kernel.residual, from_terms);
-    let value = emitter.assembled(Form::Vector, &values);
+    let gradient = kernel.gradient();
+    let (lets, values) = emitter.statements(&kernel.graph, &gradient, from_terms);
+    let (residual, moved) = values.split_at(kernel.residual.len());
+    let (residual, moved) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Vector, moved));
     let when = "an iteration without the Jacobian";
-    let documentation = super::docs::stage(&kernel.graph, &kernel.residual, Stage::Iteration, when);
+    let documentation = super::docs::stage(&kernel.graph, &gradient, Stage::Iteration, when);
+    let option = quote_spanned!(span=> #root::__private::core::option::Option);
     quote_spanned! {span=>
         const JACOBIAN_IS_DEAR: #root::__private::core::primitive::bool = true;
 
         #[doc = #documentation]
         #[inline(always)]
-        fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &#vector) -> #vector {
+        fn newton_residual(
+            constants: &Self::Constants,
+            terms: &Self::StepTerms,
+            half: &#vector,
+        ) -> (#vector, #option<#vector>) {
             #lets
-            #value
+            (#residual, #option::Some(#moved))
         }
     }
 }

@@ -28,6 +28,8 @@ pub(crate) struct Kernel {
     pub(crate) residual: Vec<NodeId>,
     pub(crate) jacobian: Vec<NodeId>,
     pub(crate) kick_after: Vec<NodeId>,
+    /// The part of the diamond with `F`, where the system is that in `F` rebuilt from `y`; `kick_after` is `Ad*_F` of it.
+    pub(crate) moved: Vec<NodeId>,
     /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
     /// Cayley coordinates.
     pub(crate) in_increment: bool,
@@ -43,23 +45,33 @@ const FREE_BODY: usize = 1_000;
 impl Kernel {
     /// Whether the Jacobian costs so much more than the residual that a solve does better with the free body's.
     ///
-    /// At common steps it takes three to five residuals then, instead of two or three systems.
+    /// At common steps it takes two to five residuals then, instead of two or three systems.
     pub(crate) fn jacobian_is_dear(&self) -> bool {
         let Some(taken) = self.candidates.first() else { return false };
         let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
         let jacobian = taken.operations.cost().saturating_sub(residual);
-        !self.in_increment && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
+        !self.moved.is_empty() && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
     }
 
     /// Of a step without the solve and of an iteration, as `Effect::OPERATIONS` has them.
     pub(crate) fn operations(&self) -> [u32; 2] {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
-        let step = count(&self.graph, &before, Some(Stage::Step))
-            + count(&self.graph, &self.kick_after, Some(Stage::Step))
-            + count(&self.graph, &self.kick_after, Some(Stage::Iteration));
-        let outputs = if self.jacobian_is_dear() { &self.residual } else { &before };
-        let iteration = count(&self.graph, outputs, Some(Stage::Iteration));
+        let mut step = count(&self.graph, &before, Some(Stage::Step));
+        let mut outputs = before;
+        if self.jacobian_is_dear() {
+            outputs = self.gradient();
+        } else {
+            step = step
+                + count(&self.graph, &self.kick_after, Some(Stage::Step))
+                + count(&self.graph, &self.kick_after, Some(Stage::Iteration));
+        }
+        let iteration = count(&self.graph, &outputs, Some(Stage::Iteration));
         [step, iteration].map(|operations| u32::try_from(operations.cost() / 2).unwrap_or(u32::MAX))
+    }
+
+    /// The residual and the moved part of the diamond.
+    pub(crate) fn gradient(&self) -> Vec<NodeId> {
+        [self.residual.as_slice(), &self.moved].concat()
     }
 
     /// What a step of two Newton iterations costs.
@@ -128,11 +140,14 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
         found.push((Candidate { name, operations, denominators }, outputs));
     };
     let in_increment = !derived.group.is_so3;
+    let mut moved = Vec::new();
     if in_increment {
-        let outputs = system(&mut graph, derived, &increment);
+        let given = with_lets(&mut graph, derived, increment);
+        let outputs = system(&mut graph, derived, &given);
         add(&graph, "in F", 0, outputs);
     } else {
-        let (retracted, opaque) = retracted(&mut graph, derived);
+        let (retracted, diamond, opaque) = retracted(&mut graph, derived);
+        moved = diamond;
         add(&graph, "F rebuilt from y", 0, retracted.clone());
         if derived.closed.is_empty()
             && let Some(outputs) = expanded(&mut graph, &retracted, &opaque)
@@ -155,6 +170,7 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
         residual: residual.to_vec(),
         jacobian: jacobian.to_vec(),
         kick_after,
+        moved,
         in_increment,
         denominators: found.first().map_or(0, |(candidate, _)| candidate.denominators),
         candidates: found.into_iter().map(|(candidate, _)| candidate).collect(),
@@ -190,9 +206,8 @@ fn by_increment(
     BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
 }
 
-/// `(h/2) (U(F) − a)` and its derivatives along `E_j`, with `F` and `D` given.
+/// `(h/2) (U(F) − a)` and its derivatives along `E_j`, with `F`, `D` and the `let`s given.
 fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
-    let given = &with_lets(graph, derived, given.clone());
     let target = target(graph, derived);
     let (mut outputs, jacobian) = if derived.closed.is_empty() {
         let scaled = |expression: &Expression| derived.half_step.clone().times(expression, &derived.symbols);
@@ -263,7 +278,10 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
 }
 
 /// `(h/2) (U(F) − a)` with `F = cay(2y)`, and its Jacobian `(h/2) ∂U/∂E_j · T_j`, with the tangent `T` in `y`.
-fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, BTreeSet<NodeId>) {
+///
+/// With them the part of the diamond that depends on `F`, if it is asked for, and the nodes that are left as they are when
+/// the system is multiplied out.
+fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);
     let d = denominator(graph, &y);
     let two = graph.constant(Rational::integer(2));
@@ -294,6 +312,8 @@ fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, BTreeSet<Nod
     });
     let opaque: BTreeSet<NodeId> =
         given.values().chain([&tangent]).flat_map(|entries| entries.all().to_vec()).collect();
+    let given = with_lets(graph, derived, given);
+    let moved = derived.moved.as_ref().map(|moved| components(graph, derived, &given, moved)).unwrap_or_default();
     let mut outputs = system(graph, derived, &given);
     let jacobian = outputs.split_off(3);
     for row in 0..3 {
@@ -303,5 +323,5 @@ fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, BTreeSet<Nod
             outputs.push(graph.sum(&terms));
         }
     }
-    (outputs, opaque)
+    (outputs, moved, opaque)
 }

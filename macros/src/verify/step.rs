@@ -124,6 +124,14 @@ impl Step<'_> {
         };
         let size = 1.0 + target.iter().chain(&after).chain(left).map(|x| x.abs()).sum::<f64>();
         let defect: Vec<f64> = turned.iter().zip(&after).zip(left).map(|((x, y), z)| x + y - z).collect();
+        if !is_small(&defect, ROUNDING * size) {
+            return true;
+        }
+        // What the gradient gives beside the residual is the same before Ad*_F.
+        let moved = evaluated(&self.kernel.graph, &self.kernel.moved, &inputs);
+        let carried = adjoint_transpose(&self.derived.group, &sample.increment, &sample.inverse, &moved);
+        let carried = carried.filter(|_| !moved.is_empty()).unwrap_or_else(|| after.clone());
+        let defect: Vec<f64> = carried.iter().zip(&after).map(|(x, y)| x - y).collect();
         !is_small(&defect, ROUNDING * size)
     }
 }

@@ -114,6 +114,14 @@ fn a_wrong_step_is_named() {
             assert_eq!(flipped(at, false), Err("Newton residual"));
             assert_eq!(flipped(at, true), Err("Newton Jacobian of the step"));
         }
+        // Off SO(3) there is none.
+        for at in 0..kernel(&declared.derived).moved.len() {
+            let moved = declared.after_in_kernel(|kernel| {
+                let negative = kernel.graph.negate(kernel.moved[at]);
+                kernel.moved[at] = negative;
+            });
+            assert_eq!(moved, Err("transported momentum"));
+        }
         // A negative multiple of the system has the same solution, but not the same branch.
         let negative = declared.after_in_kernel(|kernel| {
             for output in kernel.residual.iter_mut().chain(&mut kernel.jacobian) {
