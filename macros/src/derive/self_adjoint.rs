@@ -11,7 +11,9 @@ use crate::symbolic::{Expression, Rational};
 pub(crate) enum SelfAdjointness {
     /// The normal forms are equal.
     Symbolic,
-    /// The values are equal at all sample points, to rounding.
+    /// The values are equal at random points of a finite field, where nothing is rounded.
+    Exact,
+    /// The values are equal at all sample points, to rounding, and the field doesn't say.
     Numeric,
     /// The values differ, but not where all vectors are points with one for their last coordinate, which no type
     /// promises.
@@ -24,7 +26,7 @@ pub(crate) enum SelfAdjointness {
 
 impl SelfAdjointness {
     pub(crate) fn is_found(self) -> bool {
-        matches!(self, Self::Symbolic | Self::Numeric)
+        matches!(self, Self::Symbolic | Self::Exact | Self::Numeric)
     }
 }
 

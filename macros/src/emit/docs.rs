@@ -165,6 +165,11 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
 fn adjoint(found: SelfAdjointness) -> String {
     let (sign, how, consequence) = match found {
         SelfAdjointness::Symbolic => ("=", "by the normal forms", "even order; a step of −h undoes a step of h"),
+        SelfAdjointness::Exact => (
+            "=",
+            "at random points of the field of 2⁶¹ − 1 elements, by chance with a probability below 2⁻⁵⁰",
+            "even order; a step of −h undoes a step of h",
+        ),
         SelfAdjointness::Numeric => {
             ("=", "at random points, to rounding", "even order; a step of −h undoes a step of h")
         }

@@ -1,4 +1,4 @@
-//! Self-adjointness by numbers: the normal form doesn't know every relation of a group.
+//! Self-adjointness by values: the normal form doesn't know every relation of a group.
 
 use std::rc::Rc;
 
@@ -15,11 +15,16 @@ pub(super) fn self_adjointness(
     samples: &[Sample],
     tree: &Rc<Tree>,
     defect: &Expression,
+    exact: impl FnOnce() -> Option<bool>,
 ) -> Result<SelfAdjointness, &'static str> {
     match (is_equal(samples, tree), defect.is_zero()) {
         (None, _) => Ok(SelfAdjointness::Unknown),
         (Some(true), true) => Ok(SelfAdjointness::Symbolic),
-        (Some(true), false) => Ok(SelfAdjointness::Numeric),
+        (Some(true), false) => Ok(match exact() {
+            Some(true) => SelfAdjointness::Exact,
+            Some(false) => SelfAdjointness::No,
+            None => SelfAdjointness::Numeric,
+        }),
         (Some(false), true) => Err("adjoint"),
         (Some(false), false) => {
             let points: Vec<Sample> = samples.iter().filter_map(Sample::with_points).collect();
