@@ -3,8 +3,9 @@
 pub use core;
 pub use nalgebra;
 
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
+use crate::advected::homogeneous;
 use crate::entries::Entries as _;
 pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::scalar::real;
@@ -120,6 +121,31 @@ advected_parameter!(
     CovariantTensor SMatrix<T, N, N>,
     MixedTensor SMatrix<T, N, N>
 );
+
+macro_rules! point_parameter {
+    ($($dimension:literal in $size:literal),+) => {
+        $(impl<T: Real> Parameter for Point<T, $dimension> {
+            type Value = SVector<T, $size>;
+            type Scalar = T;
+
+            #[inline(always)]
+            fn value(&self) -> SVector<T, $size> {
+                homogeneous(self)
+            }
+
+            fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
+                self.each(&mut |entry| visitor.parameter(field, entry));
+            }
+
+            fn is_finite(&self) -> bool {
+                Parameter::is_finite(&self.coords)
+            }
+        })+
+    };
+}
+
+// The expression computes with homogeneous coordinates.
+point_parameter!(1 in 2, 2 in 3, 3 in 4);
 
 impl<K: Generators<N, D>, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     /// Whether an expansion has the generators of this group, by rows.

@@ -65,6 +65,9 @@ pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors
         errors.push(Span::call_site(), message);
     }
     let (fields, unreadable) = fields(&item, errors);
+    if errors.is_empty() {
+        points(&fields, &structure, errors);
+    }
     let scalar = scalar(&item, errors);
     let advected = advected(&arguments.advected, &fields, &unreadable, structure.size, errors);
     let has_names = matches!(item.fields, Fields::Named(_));
@@ -204,6 +207,7 @@ fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     Some(match name.as_str() {
         "f64" | "f32" => FieldKind::Scalar,
         "Vector2" | "Vector3" | "Vector4" => FieldKind::Vector(digit(&name)?),
+        "Point1" | "Point2" | "Point3" => FieldKind::Point(digit(&name)? + 1),
         "Matrix2" | "Matrix3" | "Matrix4" => FieldKind::Matrix(digit(&name)?),
         "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
         "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
@@ -272,6 +276,26 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
+/// Points belong to the space that the group acts on.
+fn points(fields: &[(Field, Span)], group: &crate::group::Group, errors: &mut Errors) {
+    for (field, span) in fields {
+        let FieldKind::Point(rows) = field.kind else { continue };
+        let name = field.name.unraw();
+        if !group.is_affine() {
+            errors.push(
+                *span,
+                format!("`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{}<f64>", group.size),
+            );
+        } else if rows != group.size {
+            let (found, wanted) = (rows - 1, group.size - 1);
+            errors.push(
+                *span,
+                format!("`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: use Point{wanted}<f64>"),
+            );
+        }
+    }
+}
+
 fn advected(
     pairs: &[(Ident, Ident)],
     fields: &[(Field, Span)],
@@ -299,6 +323,7 @@ fn advected(
         }
         if let Some((found, span)) = index.and_then(|index| fields.get(index))
             && !found.kind.is_carried_by(size)
+            && !matches!(found.kind, FieldKind::Point(_))
         {
             let shape = found.kind.shape().describe();
             let message = if found.kind.is_wrapped() {

@@ -130,8 +130,11 @@ impl<'a> Sample<'a> {
             inputs.extend(self.values.get(name).map(|value| (*symbol, value.clone())));
         }
         let identity = Value::identity(f.rows);
+        let (inverse, directions) = (f.inverse(), &self.derived.directions);
         inputs.insert(self.derived.increment(), f.clone());
-        inputs.insert(self.derived.directions.small, f.zip(&identity, |x, y| x - y));
+        inputs.insert(directions.small, f.zip(&identity, |x, y| x - y));
+        inputs.insert(directions.small_inverse, inverse.zip(&identity, |x, y| x - y));
+        inputs.insert(directions.inverse, inverse);
         inputs
     }
 
@@ -215,6 +218,7 @@ fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Valu
     let entries: Vec<T> = (0..rows * columns).map(|_| two * number() - T::ONE).collect();
     let any = Value { rows, columns, entries };
     match kind {
+        FieldKind::Point(_) => Value::new(rows, 1, |row, _| if row + 1 < rows { any.at(row, 0) } else { T::ONE }),
         FieldKind::SymmetricInertia => any.times(&any.transpose()),
         FieldKind::DiagonalInertia => Value::diagonal(rows, |row| T::ONE + any.at(row, row)),
         _ => any,

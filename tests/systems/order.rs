@@ -4,7 +4,7 @@
 #![allow(non_snake_case)]
 
 use liestep::{LieGroup as _, SL2, Stepper};
-use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3};
 
 use crate::common::measure::{four_halvings, order, relative, steps_in};
 use crate::common::structure::System;
@@ -129,7 +129,7 @@ fn orbiting_body() {
     inertia.fixed_view_mut::<3, 3>(0, 3).copy_from(&first.cross_matrix());
     inertia.fixed_view_mut::<3, 3>(3, 0).copy_from(&-first.cross_matrix());
     assert_second_order(&body, inertia, samples::in_orbit(), |g| {
-        let distance = |p: Vector4<f64>| (g * p - body.centre.0).norm();
+        let distance = |p: Point3<f64>| (g.transform_point(&p) - body.centre).norm();
         -body.GM * (body.m1 / distance(body.p1) + body.m2 / distance(body.p2))
     });
 }
@@ -180,7 +180,7 @@ fn tethered_plate() {
     let (first, second) = (J[(0, 2)], J[(1, 2)]);
     let inertia = Matrix3::new(J[(0, 0)] + J[(1, 1)], -second, first, -second, m, 0.0, first, 0.0, m);
     assert_second_order(&body, inertia, samples::on_se2(), |g| {
-        0.5 * body.k * ((g * body.p - body.anchor.0).norm() - body.length).powi(2)
+        0.5 * body.k * ((g.transform_point(&body.p) - body.anchor).norm() - body.length).powi(2)
     });
 }
 

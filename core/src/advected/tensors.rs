@@ -12,7 +12,7 @@ use crate::scalar::{Real, is_finite};
 
 /// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
 ///
-/// On SE(3) with `N = 4` a point `(p, 1)` or a direction `(d, 0)`.
+/// On SE(3) with `N = 4` for example a direction `(d, 0)`. A point is better declared as one, by nalgebra's `Point3`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContravariantVector<T, const N: usize>(pub SVector<T, N>);
 

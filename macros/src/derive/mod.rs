@@ -53,6 +53,8 @@ pub(crate) struct Directions {
     pub(crate) small: SymbolId,
     /// `F⁻¹`.
     pub(crate) inverse: SymbolId,
+    /// `D⁻ = F⁻¹ − I`.
+    pub(crate) small_inverse: SymbolId,
     /// The coordinates `ξ` of `F = cay(ξ)`.
     pub(crate) coordinates: SymbolId,
     /// `4 + |ξ|²`, the denominator of the Cayley map.
@@ -232,6 +234,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         second: algebra(symbols, "E_j"),
         target: column(symbols, "a", dimension, Stage::Step),
         small: symbols.add("D", (size, size), Structure::General, Stage::Iteration),
+        small_inverse: symbols.add("D⁻", (size, size), Structure::General, Stage::Iteration),
         coordinates: column(symbols, "ξ", dimension, Stage::Iteration),
         denominator: symbols.add("(4 + |ξ|²)", (1, 1), Structure::General, Stage::Iteration),
         coordinate_direction: column(symbols, "δξ", dimension, Stage::Construction),
@@ -243,7 +246,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
             .map(|&(w, variance)| {
                 let name = format!("{}⁺", symbols.get(w).name);
                 let columns = if variance.is_tensor() { size } else { 1 };
-                symbols.add(name, (size, columns), Structure::General, Stage::Step)
+                symbols.add(name, (size, columns), symbols.get(w).structure, Stage::Step)
             })
             .collect(),
     }

@@ -175,7 +175,7 @@ fn adjoint(found: SelfAdjointness) -> String {
         }
         SelfAdjointness::ForPoints => (
             "≠",
-            "equal, at random points, if all vectors have 1 for their last coordinate, which no type promises",
+            "equal, at random points, if all vectors have 1 for their last coordinate, as the types of points promise",
             "with such vectors even order, and a step of −h undoes a step of h",
         ),
         SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),

@@ -43,8 +43,11 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
-        let is_wrapped = declaration.advected_kind(index).is_wrapped();
-        let value = if is_wrapped { quote_spanned!(span=> #part.0) } else { part };
+        let value = match declaration.advected_kind(index) {
+            FieldKind::Advected(..) => quote_spanned!(span=> #part.0),
+            FieldKind::Point(_) => quote_spanned!(span=> #root::__private::Parameter::value(&#part)),
+            _ => part,
+        };
         bind(&parameter.name.unraw().to_string(), value);
     }
     for field in &declaration.fields {

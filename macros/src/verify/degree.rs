@@ -27,10 +27,7 @@ impl Degree {
     }
 
     fn times(self, other: Self) -> Self {
-        Self::new(
-            self.numerator.saturating_add(other.numerator),
-            self.denominator.saturating_add(other.denominator),
-        )
+        Self::new(self.numerator.saturating_add(other.numerator), self.denominator.saturating_add(other.denominator))
     }
 
     fn reciprocal(self) -> Self {
@@ -111,11 +108,15 @@ impl Degrees {
                 Degree::new(1, 1)
             }
             // The adjugate over the determinant.
+            Kind::Inverse(a) if matches!(a.kind, Kind::Name(Name::Increment)) => self.increment,
             Kind::Inverse(a) => {
-                let (degree, rows) = (self.of(a), match a.shape {
-                    Shape::Matrix(rows, _) => u64::try_from(rows).unwrap_or(u64::MAX),
-                    Shape::Scalar => 1,
-                });
+                let (degree, rows) = (
+                    self.of(a),
+                    match a.shape {
+                        Shape::Matrix(rows, _) => u64::try_from(rows).unwrap_or(u64::MAX),
+                        Shape::Scalar => 1,
+                    },
+                );
                 let minor = degree.numerator.saturating_mul(rows.saturating_sub(1));
                 Degree::new(minor.saturating_add(degree.denominator), degree.numerator.saturating_mul(rows))
             }

@@ -7,13 +7,7 @@ use crate::symbolic::{Function, Rational};
 
 /// Numbers with the operations of the declared syntax.
 pub(super) trait Number:
-    Copy
-    + Debug
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     const ZERO: Self;
     const ONE: Self;

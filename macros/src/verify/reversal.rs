@@ -46,8 +46,7 @@ impl Sample<'_> {
     /// On a group of affine maps, the same with one for the last coordinate of all vectors.
     fn with_points(&self) -> Option<Self> {
         let group = &self.derived.group;
-        let last_row = group.size * (group.size - 1);
-        if group.generators.iter().any(|generator| generator.iter().skip(last_row).any(|entry| !entry.is_zero())) {
+        if !group.is_affine() {
             return None;
         }
         let mut sample = self.clone();

@@ -150,15 +150,21 @@ fn adjoints() {
 /// Isometries keep the distance of points, not of vectors with different last coordinates.
 #[test]
 fn tethers_between_points() {
-    let plate = |tether: &str| {
+    let plate = |tether: &str, [point, anchor]: [&str; 2]| {
         let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * {tether}");
         let arguments = format!("group = SE2, advected(a = anchor), l_d = {l_d}");
-        let item = "struct Plate { J: Matrix3<f64>, p: Vector3<f64>, anchor: ContravariantVector<f64, 3> }";
-        Declared::new(&arguments, item).verified()
+        let item = format!("struct Plate {{ J: Matrix3<f64>, p: {point}, anchor: {anchor} }}");
+        Declared::new(&arguments, &item).verified()
     };
     let both = "((a - p).norm_squared() + (a - F * p).norm_squared())";
-    assert_eq!(plate(both), Ok(SelfAdjointness::ForPoints));
-    assert_eq!(plate("(a - p).norm_squared()"), Ok(SelfAdjointness::No));
+    let [points, vectors] = [["Point2<f64>"; 2], ["Vector3<f64>", "ContravariantVector<f64, 3>"]];
+    assert_eq!(plate(both, points), Ok(SelfAdjointness::Exact));
+    assert_eq!(plate(both, vectors), Ok(SelfAdjointness::ForPoints));
+    for types in [points, vectors, [points[0], vectors[1]]] {
+        assert_eq!(plate("(a - p).norm_squared()", types), Ok(SelfAdjointness::No));
+    }
+    // Both have to be points.
+    assert_eq!(plate(both, [points[0], vectors[1]]), Ok(SelfAdjointness::ForPoints));
 }
 
 #[test]
@@ -196,7 +202,8 @@ fn adjoints_to_rounding() {
     assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(0, 0)]) / h"), Ok(SelfAdjointness::Numeric));
     assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(1, 1)]) / h"), Ok(SelfAdjointness::No));
     // ln x² = 2 ln x isn't a relation of just any function.
-    let l_d = "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + h * F[(0, 3)] * (k.powi(2).ln() - 2.0 * k.ln())";
+    let l_d =
+        "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + h * F[(0, 3)] * (k.powi(2).ln() - 2.0 * k.ln())";
     let declared = Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }");
     assert_eq!(declared.verified(), Ok(SelfAdjointness::Numeric));
 }

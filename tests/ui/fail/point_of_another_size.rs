@@ -1,0 +1,14 @@
+use liestep::{SE3, lagrangian};
+use nalgebra::{Matrix4, Point2, Vector4};
+
+#[lagrangian(
+    group = SE3,
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k.dot(&(F * p)),
+)]
+struct Body {
+    J: Matrix4<f64>,
+    k: Vector4<f64>,
+    p: Point2<f64>,
+}
+
+fn main() {}
