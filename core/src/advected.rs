@@ -23,6 +23,7 @@ mod points;
 mod tensors;
 
 pub(crate) use points::homogeneous;
+pub use tensors::inverse_increment;
 pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 
 use nalgebra::{SMatrix, SVector};

@@ -5,13 +5,21 @@ pub use nalgebra;
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
+use crate::LieGroup;
 use crate::advected::homogeneous;
+pub use crate::advected::inverse_increment;
 use crate::entries::Entries as _;
 pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::scalar::real;
 pub use crate::scene::SceneVisitor;
 use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};
+
+/// `F⁻¹` of a group element.
+#[inline]
+pub fn inverse_of<G: LieGroup>(element: G::Matrix) -> G::Matrix {
+    G::from_matrix_unchecked(element).inverse().matrix()
+}
 
 /// A field of a declared Lagrangian: its value for the declared expression, and whether it can be used.
 pub trait Parameter {

@@ -16,7 +16,7 @@ use nalgebra::{Matrix4, Vector4};
     l_d = {
         let d = F - I;
         let before = d * origin;
-        let after = F.transpose() * before;
+        let after = inverse(F) * before;
         let rotation = (d * J * d.transpose()).trace() / (2.0 * h);
         let translation = (before.dot(&(M * before)) + after.dot(&(M * after))) / (4.0 * h);
         rotation + translation - 0.5 * h * w.dot(&(weight + F * weight))

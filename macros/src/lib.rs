@@ -39,7 +39,7 @@ mod verify;
 /// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
 /// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and four functions: `vee(A)`, the vector of
 /// `½ (A − Aᵀ)`; `log(F)`, the rotation vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a
-/// field. A large Lagrangian is best written with `let`s: what isn't cheaper multiplied out is differentiated through
+/// field or of `F`. A large Lagrangian is best written with `let`s: what isn't cheaper multiplied out is differentiated through
 /// them, by multipliers.
 ///
 /// The fields are `f64`, `Vector3<f64>`, `Point3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,

@@ -28,8 +28,8 @@ pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
-/// `E = −F⁻¹D`.
-fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
+/// `F⁻¹ − I = −F⁻¹D`.
+pub fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
 where
     G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
 {

@@ -35,6 +35,9 @@ impl Emitter<'_> {
         if input.symbol == directions.small {
             return entry(&quote_spanned!(span=> increment), input);
         }
+        if input.symbol == directions.small_inverse {
+            return entry(&quote_spanned!(span=> inverse_increment), input);
+        }
         if input.symbol == directions.inverse {
             return entry(&quote_spanned!(span=> inverse), input);
         }

@@ -182,17 +182,33 @@ fn by_increment(
 ) -> Given {
     let size = derived.group.size;
     let small = Entries::new(size, size, |row, column| entry(graph, row, column));
+    let f = plus_identity(graph, &small);
+    BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
+}
+
+/// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
+fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+    let (size, directions) = (derived.group.size, &derived.directions);
+    let small = Entries::new(size, size, |row, column| {
+        graph.input(Input { symbol: directions.small_inverse, row, column }, Stage::Iteration)
+    });
+    let inverse = plus_identity(graph, &small);
+    given.extend([(directions.small_inverse, small), (directions.inverse, inverse)]);
+    given
+}
+
+fn plus_identity(graph: &mut Graph, small: &Entries) -> Entries {
     let one = graph.one();
-    let f = Entries::new(size, size, |row, column| {
+    Entries::new(small.rows, small.columns, |row, column| {
         let entry = small.at(row, column);
         if row == column { graph.add(entry, one) } else { entry }
-    });
-    BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
+    })
 }
 
 /// `U(F) − a` and `∂U_k` along `E_j`, with `F` and `D` given.
 fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
-    let given = &with_lets(graph, derived, given.clone());
+    let given = with_inverse(graph, derived, given.clone());
+    let given = &with_lets(graph, derived, given);
     let symbol = derived.directions.target;
     let unknown = components(graph, derived, given, &derived.unknown);
     let mut outputs: Vec<NodeId> = unknown

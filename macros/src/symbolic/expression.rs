@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::functions::Function;
 use super::rational::Rational;
-use super::symbols::{Stage, Structure, SymbolId, Symbols};
+use super::symbols::{Stage, SymbolId, Symbols};
 use super::word::{self, Factor};
 
 /// Larger ones are on their way to where exponents saturate.

@@ -24,6 +24,7 @@ pub(crate) enum Structure {
 }
 
 impl Structure {
+    /// Whether `Sᵀ = S`.
     pub(crate) fn is_symmetric(self) -> bool {
         matches!(self, Self::Symmetric | Self::Diagonal)
     }

@@ -182,6 +182,23 @@ fn added_mass_has_to_be_symmetrised() {
     assert_eq!(body(&format!("0.5 * ({inertial} + {turned})")), Ok(SelfAdjointness::Exact));
 }
 
+/// On all groups an inverse is one, and a word with it is varied, reversed and taken to the limit.
+#[test]
+fn inverses() {
+    let body = |group: &str, size: usize, other: &str| {
+        let square = |d: &str| format!("(({d}) * J * ({d}).transpose()).trace()");
+        let l_d = format!("({} + {}) / h", square("F - I"), square(other));
+        Declared::new(&format!("group = {group}, l_d = {l_d}"), &format!("struct Body {{ J: Matrix{size}<f64> }}"))
+    };
+    for (group, size) in [("SE2", 3), ("SL2", 2), ("Heisenberg", 3), ("SO3", 3), ("R1", 2)] {
+        let both = body(group, size, "I - inverse(F)");
+        assert_eq!(both.verified(), Ok(SelfAdjointness::Symbolic), "{group}");
+        assert_eq!(both.kinetic_part(), KineticPart::Regular, "{group}");
+        let skewed = body(group, size, "J - J * inverse(F)").verified();
+        assert_eq!(skewed, Ok(SelfAdjointness::No), "{group}");
+    }
+}
+
 /// What rounding hides, the finite field sees.
 #[test]
 fn small_terms_count() {
