@@ -6,8 +6,8 @@ use nalgebra::SVector;
 use crate::common::measure::{four_halvings, order, relative, steps_in};
 use crate::common::structure::System;
 use crate::continuous::{Body, Phase};
-use crate::order::PLATEAU;
-use crate::samples::Start;
+use crate::order::{PLATEAU, kirchhoff, orbit, tether};
+use crate::samples::{self, Start};
 
 const TIME: f64 = 1.0;
 /// `1/(2 − 2^⅓)` and what three stages leave for the middle one.
@@ -38,7 +38,7 @@ where
     })
 }
 
-pub(crate) fn assert_fourth_order<L, const N: usize, const D: usize>(
+fn assert_fourth_order<L, const N: usize, const D: usize>(
     system: &L,
     body: &Body<N, D>,
     start: Start<L::Group, D>,
@@ -52,4 +52,25 @@ pub(crate) fn assert_fourth_order<L, const N: usize, const D: usize>(
         println!("{}: order {order:.4}, errors {:.2e} to {:.2e}", scheme.name(), errors[0].1, errors[4].1);
         assert!((order - 4.0).abs() < 0.1, "{}: order {order}, errors {errors:?}", scheme.name());
     }
+}
+
+#[test]
+fn orbiting_body() {
+    let body = samples::orbiting_body();
+    let (inertia, potential) = orbit(&body);
+    assert_fourth_order(&body, &Body { inertia, potential: &potential }, samples::in_orbit(), 1.0 / 20.0);
+}
+
+#[test]
+fn underwater_body() {
+    let body = samples::underwater_body();
+    let (inertia, potential) = kirchhoff(&body);
+    assert_fourth_order(&body, &Body { inertia, potential: &potential }, samples::on_se3(), 1.0 / 20.0);
+}
+
+#[test]
+fn tethered_plate() {
+    let body = samples::tethered_plate();
+    let (inertia, potential) = tether(&body);
+    assert_fourth_order(&body, &Body { inertia, potential: &potential }, samples::on_se2(), 1.0 / 20.0);
 }
