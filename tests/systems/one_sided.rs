@@ -5,7 +5,7 @@
 #![allow(non_snake_case)]
 
 use liestep::{CovariantTensor, DiscreteLagrangian, LieGroup as _, SE3, SL2, lagrangian};
-use nalgebra::{Matrix2, Matrix3, Matrix4, Vector3, Vector4};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
 
 use crate::common::measure::order;
 use crate::common::structure::reversal;
@@ -28,7 +28,7 @@ use crate::samples;
 struct OneSidedUnderwaterBody {
     J: Matrix4<f64>,
     M: Matrix4<f64>,
-    origin: Vector4<f64>,
+    origin: Point3<f64>,
     weight: Vector4<f64>,
     height: Vector4<f64>,
 }

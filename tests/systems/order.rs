@@ -165,7 +165,7 @@ fn underwater_body() {
 
 /// The velocity of the centre `c` is `v + Ω × c = v − ĉ Ω`, and `½ Ω·𝕀Ω` and `½ v_c·M v_c` add.
 pub(crate) fn kirchhoff(body: &UnderwaterBody) -> (SMatrix<f64, 6, 6>, impl Fn(&Matrix4<f64>) -> f64 + use<>) {
-    let centre: Vector3<f64> = body.origin.fixed_rows::<3>(0).into_owned();
+    let centre = body.origin.coords;
     let mut velocity_of_centre = SMatrix::<f64, 3, 6>::zeros();
     velocity_of_centre.fixed_view_mut::<3, 3>(0, 0).copy_from(&-centre.cross_matrix());
     velocity_of_centre.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());

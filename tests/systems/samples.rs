@@ -151,7 +151,7 @@ pub fn underwater_body() -> UnderwaterBody {
     UnderwaterBody {
         J: Matrix4::from_diagonal(&Vector4::new(1.2, 0.8, 0.5, 0.0)),
         M: Matrix4::from_diagonal(&Vector4::new(1.0, 1.8, 3.0, 0.0)),
-        origin: Vector4::new(0.1, 0.0, -0.2, 1.0),
+        origin: Point3::new(0.1, 0.0, -0.2),
         weight: Vector4::new(0.2, -0.1, -1.5, 0.6),
         height: Vector4::z(),
     }
