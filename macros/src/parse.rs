@@ -184,7 +184,7 @@ fn fields(item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<St
             unreadable.push(name.unraw().to_string());
             errors.push_over(
                 &field.ty,
-                "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Matrix3<f64>, NonstandardInertia, \
+                "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Point3<f64>, Matrix3<f64>, NonstandardInertia, \
                  DiagonalNonstandardInertia or Inertia (or the same with the struct's type parameter)",
             );
         }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::{KineticPart, kinetic_part, verify};
+use super::{KineticPart, degree, kinetic_part, verify};
 use crate::ast::{Declaration, Tree};
 use crate::choose::{Chosen, cheapest};
 use crate::derive::{Derived, SelfAdjointness};
@@ -21,14 +21,18 @@ struct Declared {
     derived: Derived,
 }
 
+fn checked(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
+    let mut errors = Errors::default();
+    let item = syn::parse_str(item).expect("a struct");
+    let declaration = parse::parse(crate::ast::Role::Lagrangian, arguments.parse().expect("tokens"), item, &mut errors);
+    let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
+    (declaration, tree)
+}
+
 impl Declared {
     fn new(arguments: &str, item: &str) -> Self {
-        let mut errors = Errors::default();
-        let item = syn::parse_str(item).expect("a struct");
-        let declaration =
-            parse::parse(crate::ast::Role::Lagrangian, arguments.parse().expect("tokens"), item, &mut errors);
-        let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
-        let candidates = lower(&declaration, &tree, &mut errors).expect("small");
+        let (declaration, tree) = checked(arguments, item);
+        let candidates = lower(&declaration, &tree, &mut Errors::default()).expect("small");
         let Chosen { lowered, derived, .. } = cheapest(candidates).unwrap_or_else(|_| panic!("nothing to derive"));
         Self { declaration, tree, lowered, derived }
     }
@@ -208,6 +212,25 @@ fn small_terms_count() {
     };
     assert_eq!(body("F.trace()"), Ok(SelfAdjointness::Exact));
     assert_eq!(body("F[(0, 3)]"), Ok(SelfAdjointness::No));
+}
+
+/// By hand: a field counts as 2, `F` on a group of dimension one as 2/2.
+#[test]
+fn degrees() {
+    let of = |l_d: &str| {
+        let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
+        degree::coincidences(&tree, declaration.structure.dimension())
+    };
+    // k F²/h is (2 + 4)/(4 + 2).
+    assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 12);
+    // Over a common denominator: (2 + 2)/2, and (4 + 4)/(4 + 4).
+    assert_eq!(of("k + F[(0, 1)]"), 6);
+    assert_eq!(of("k * F[(0, 1)] / h + F[(0, 1)].powi(2)"), 8 + 8);
+    // One function, whose argument has four values on the two sides with their negatives.
+    assert_eq!(of("(k + F[(0, 1)]).sin()"), 2 + 16 * 6);
+    // A tower of powers is too high for three points to decide.
+    let tower = (1..12).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<String>();
+    assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x11 }}")) > 1 << 40);
 }
 
 /// Where the field doesn't say, rounded values do.

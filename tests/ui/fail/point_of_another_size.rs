@@ -1,13 +1,12 @@
 use liestep::{SE3, lagrangian};
-use nalgebra::{Matrix4, Point2, Vector4};
+use nalgebra::{Matrix4, Point2};
 
 #[lagrangian(
     group = SE3,
-    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k.dot(&(F * p)),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * p[0] * F[(0, 3)],
 )]
 struct Body {
     J: Matrix4<f64>,
-    k: Vector4<f64>,
     p: Point2<f64>,
 }
 
