@@ -284,13 +284,19 @@ fn points(fields: &[(Field, Span)], group: &crate::group::Group, errors: &mut Er
         if !group.is_affine() {
             errors.push(
                 *span,
-                format!("`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{}<f64>", group.size),
+                format!(
+                    "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{}<f64>",
+                    group.size
+                ),
             );
         } else if rows != group.size {
             let (found, wanted) = (rows - 1, group.size - 1);
             errors.push(
                 *span,
-                format!("`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: use Point{wanted}<f64>"),
+                format!(
+                    "`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: \
+                     use Point{wanted}<f64>"
+                ),
             );
         }
     }

@@ -167,7 +167,7 @@ fn adjoint(found: SelfAdjointness) -> String {
         SelfAdjointness::Symbolic => ("=", "by the normal forms", "even order; a step of −h undoes a step of h"),
         SelfAdjointness::Exact => (
             "=",
-            "at random points of the field of 2⁶¹ − 1 elements, by chance with a probability below 2⁻⁵⁰",
+            "at random points of the field of 2⁶¹ − 1 elements, wrong with a probability below 2⁻⁵⁰",
             "even order; a step of −h undoes a step of h",
         ),
         SelfAdjointness::Numeric => {
