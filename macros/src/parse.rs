@@ -64,9 +64,9 @@ pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors
         };
         errors.push(Span::call_site(), message);
     }
-    let (fields, unreadable) = fields(&item, errors);
+    let (mut fields, unreadable) = fields(&item, errors);
     if errors.is_empty() {
-        points(&fields, &structure, errors);
+        points(&mut fields, &structure, errors);
     }
     let scalar = scalar(&item, errors);
     let advected = advected(&arguments.advected, &fields, &unreadable, structure.size, errors);
@@ -276,29 +276,26 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
-/// Points belong to the space that the group acts on.
-fn points(fields: &[(Field, Span)], group: &crate::group::Group, errors: &mut Errors) {
+/// Points belong to the space that the group acts on; after a mistake they are taken for vectors of that space.
+fn points(fields: &mut [(Field, Span)], group: &crate::group::Group, errors: &mut Errors) {
     for (field, span) in fields {
         let FieldKind::Point(rows) = field.kind else { continue };
-        let name = field.name.unraw();
-        if !group.is_affine() {
-            errors.push(
-                *span,
-                format!(
-                    "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{}<f64>",
-                    group.size
-                ),
-            );
-        } else if rows != group.size {
-            let (found, wanted) = (rows - 1, group.size - 1);
-            errors.push(
-                *span,
-                format!(
-                    "`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: \
-                     use Point{wanted}<f64>"
-                ),
-            );
-        }
+        let (name, size) = (field.name.unraw(), group.size);
+        let message = if !group.is_affine() {
+            format!(
+                "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{size}<f64>"
+            )
+        } else if rows != size {
+            let (found, wanted) = (rows - 1, size - 1);
+            format!(
+                "`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: use \
+                 Point{wanted}<f64>"
+            )
+        } else {
+            continue;
+        };
+        errors.push(*span, message);
+        field.kind = FieldKind::Vector(size);
     }
 }
 

@@ -82,6 +82,7 @@ impl Mul for Residue {
 impl Div for Residue {
     type Output = Self;
 
+    #[allow(clippy::suspicious_arithmetic_impl)] // a quotient is a product with a reciprocal
     fn div(self, other: Self) -> Self {
         self * other.reciprocal()
     }

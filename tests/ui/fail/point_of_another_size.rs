@@ -3,7 +3,7 @@ use nalgebra::{Matrix4, Point2};
 
 #[lagrangian(
     group = SE3,
-    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * p[0] * F[(0, 3)],
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * (F * p)[0],
 )]
 struct Body {
     J: Matrix4<f64>,

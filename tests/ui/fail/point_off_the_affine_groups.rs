@@ -4,7 +4,7 @@ use nalgebra::Point3;
 #[lagrangian(
     group = SO3,
     advected(c = centre),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * c.norm_squared(),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * c.dot(&(F * c)),
 )]
 struct Body {
     J_d: NonstandardInertia,
