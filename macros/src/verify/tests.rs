@@ -231,7 +231,7 @@ fn degrees() {
     // One function, whose argument has four values on the two sides with their negatives.
     assert_eq!(of("(k + F[(0, 1)]).sin()"), 2 + 16 * 6);
     // A tower of powers is too high for three points to decide.
-    let tower = (1..12).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<String>();
+    let tower = (1..12).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<Vec<_>>().concat();
     assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x11 }}")) > 1 << 40);
 }
 
