@@ -176,8 +176,8 @@ fn written<L: Effect<Scalar: Stored>>(
         attitude: list(&state.attitude.matrix()),
         momentum: list(&state.momentum),
         advected: list(&state.advected),
-        coordinates: list(&state.coordinates),
-        guess: list(&state.guess),
+        coordinates: list(&(state.half + state.half)),
+        guess: list(&(state.half_guess + state.half_guess)),
         carry,
         digest: Fingerprint::default(),
     };
@@ -195,8 +195,8 @@ fn read<L: Effect<Scalar: Stored>>(
         attitude,
         momentum: unlisted("momentum", &checkpoint.momentum)?,
         advected: unlisted::<_, L::Advected>("advected", &checkpoint.advected)?,
-        coordinates: unlisted("coordinates", &checkpoint.coordinates)?,
-        guess: unlisted("guess", &checkpoint.guess)?,
+        half: unlisted::<_, Vector<L>>("coordinates", &checkpoint.coordinates)? * real(0.5),
+        half_guess: unlisted::<_, Vector<L>>("guess", &checkpoint.guess)? * real(0.5),
         steps: checkpoint.steps,
     };
     // Far more than rounding makes in any number of steps, far less than what isn't an attitude.

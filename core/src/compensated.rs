@@ -11,7 +11,7 @@ use crate::effect::{Effect, Group, Scalar, Vector};
 use crate::entries::{Entries, zero};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
-use crate::scalar::{Real, real};
+use crate::scalar::{Real, nowhere, real};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
 use nalgebra::SimdValue as _;
@@ -126,10 +126,10 @@ impl<L: Effect> CompensatedStepper<L> {
         let CompensatedState { state: now, carry } = state;
         let flow = self.stepper.flow();
         if flow.step_size() == real(0.0) {
-            now.proceed::<L::Retraction>(zero());
+            now.proceed(zero(), nowhere::<Scalar<L>>(), || self.stepper.lagrangian().advected());
             return Ok(StepReport { iterations: 0, remedy: None });
         }
-        let solved = flow.solve(&now.momentum, &now.advected, &now.guess)?;
+        let solved = flow.solve(&now.momentum, &now.advected, &now.half_guess)?;
         let increment = &solved.root.increment;
         let advected = sum(&now.advected, &now.advected.change(increment), &carry.advected);
         // The kicks are added for themselves: in `a` they are rounded to the digits of the momentum.
@@ -144,22 +144,14 @@ impl<L: Effect> CompensatedStepper<L> {
         now.attitude = Group::<L>::from_matrix_unchecked(attitude.0);
         now.momentum = momentum.0;
         now.advected = advected.0;
-        now.proceed::<L::Retraction>(solved.root.xi);
-        if now.is_due() {
-            self.restore(state);
-        }
-        Ok(StepReport { iterations: solved.root.iterations, remedy: None })
-    }
-
-    /// What is carried belongs to the state before.
-    #[cold]
-    #[inline(never)]
-    fn restore(&self, CompensatedState { state, carry }: &mut CompensatedState<Group<L>, L::Advected>) {
-        if let Some(far) = state.restore(&self.stepper.lagrangian().advected()) {
+        let root = &solved.root;
+        // What is carried belongs to the state before.
+        if let Some(far) = now.proceed(root.half, root.far, || self.stepper.lagrangian().advected()) {
             let mut kept = |carry: Scalar<L>, nothing: Scalar<L>| nothing.select(far, carry);
             carry.attitude = carry.attitude.zip(&zero(), &mut kept);
             carry.advected = carry.advected.zip(&zero(), &mut kept);
         }
+        Ok(StepReport { iterations: solved.root.iterations, remedy: None })
     }
 }
 

@@ -5,13 +5,14 @@ mod scheme;
 pub use scheme::CompositionScheme;
 
 use crate::bisection::{largest_fraction, six_digits};
+use crate::coordinates::Coordinates;
 use crate::effect::{Group, Scalar, Vector};
 use crate::error::{SetupError, StepError};
+use crate::flows::Stepped;
 use crate::groups::LieGroup as _;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
-use crate::retraction::Retraction as _;
-use crate::scalar::{real, reported};
+use crate::scalar::{Mask, real, reported};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
 use nalgebra::SimdBool as _;
@@ -138,7 +139,7 @@ impl<L: DiscreteLagrangian + Regular + Clone> Composition<L> {
         let solvable = |fraction: f64| {
             let part = Self::new(self.lagrangian().clone(), self.h * real(fraction), self.scheme);
             // The guess is that of another step.
-            let mut copy = State { guess: state.guess * real(fraction), ..*state };
+            let mut copy = State { half_guess: state.half_guess * real(fraction), ..*state };
             part.is_ok_and(|part| part.all_stages(&mut copy).is_ok())
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))
@@ -159,12 +160,13 @@ impl<L: DiscreteLagrangian> Composition<L> {
         let mut next = *state;
         let mut iterations = 0;
         for stage in &self.stages {
-            let step = self.steppers[stage.stepper].flow().step(&next.momentum, &next.advected, &next.guess)?;
+            let flow = self.steppers[stage.stepper].flow();
+            let Stepped { step, half, far } = flow.step_from(&next.momentum, &next.advected, &next.half_guess)?;
             next.attitude = next.attitude.advance(&step.increment);
             next.momentum = step.momentum;
             next.advected = step.advected;
-            next.guess = stage.guess::<L>(&step.coordinates, &next.coordinates);
-            next.coordinates = step.coordinates;
+            next.half_guess = stage.half_guess(half, far, next.half);
+            next.half = half;
             iterations += step.iterations;
         }
         next.steps += 1;
@@ -260,14 +262,9 @@ impl<T: crate::Real> Stage<T> {
     }
 
     #[inline(always)]
-    fn guess<L: DiscreteLagrangian<Scalar = T>>(&self, last: &Vector<L>, earlier: &Vector<L>) -> Vector<L> {
-        // Near the fold coordinates change too fast for a straight line; a factor of 3/2 keeps well away from it.
-        let far = !L::Retraction::is_near_identity(&(*last * real(1.5)));
-        let guess = *last * self.last + *earlier * self.earlier;
-        if far.any() {
-            use crate::coordinates::Coordinates as _;
-            return (*last * self.scale).select(far, guess);
-        }
-        guess
+    fn half_guess<V: Coordinates<T>>(&self, last: V, far: Mask<T>, earlier: V) -> V {
+        let guess = last * self.last + earlier * self.earlier;
+        // Near the fold coordinates change too fast for a straight line.
+        if far.any() { (last * self.scale).select(far, guess) } else { guess }
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
-use nalgebra::{SMatrix, SVector, SimdBool as _};
+use nalgebra::{SMatrix, SVector};
 
 use crate::entries::Entries;
 use crate::scalar::{Mask, Real};
@@ -84,8 +84,8 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 
     #[inline(always)]
     fn is_finite(&self) -> bool {
-        // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
-        sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
+        // A finite sum has finite terms. Where it isn't, it may have overflowed.
+        crate::scalar::is_finite(sum::<T, D>(|k| self[k])) || are_all_finite(self)
     }
 
     #[inline(always)]
@@ -175,4 +175,10 @@ fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>, mut z: SVector<T,
         z[k] /= a[(k, k)];
     }
     (z, det)
+}
+
+/// Zero times an infinity or a NaN is NaN.
+#[cold]
+fn are_all_finite<T: Real, const D: usize>(v: &SVector<T, D>) -> bool {
+    v.iter().all(|&component| crate::scalar::is_finite(component))
 }

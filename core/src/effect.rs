@@ -61,7 +61,7 @@ impl Parts {
 ///
 /// ```text
 /// a  = μ + kick_before(w)                      the part of (2.7) without F moves to the other side
-/// solve   U(F, w) = a     for F = τ(ξ)         newton_system, up to a positive factor
+/// solve   U(F, w) = a     for F = τ(2y)        newton_system, up to a factor
 /// w⁺ = F⁻¹ · w                                 (2.9)
 /// μ⁺ = Ad*_F a + kick_after(F, w⁺)             (2.9), in the transport form μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)
 /// g⁺ = g F                                     (2.10)
@@ -159,18 +159,21 @@ pub trait Effect {
     /// What one solve needs of `a = μ + kick_before(w)` and `w`.
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms;
 
-    /// `(4 + |ξ|²)ⁿ (U(τ(ξ), w) − a)` with `n` = [`DENOMINATORS`](Self::DENOMINATORS), and its derivative with respect
-    /// to `ξ`.
+    /// `(h/2) (1 + |y|²)ⁿ (U(τ(2y), w) − a)` with `n` = [`DENOMINATORS`](Self::DENOMINATORS), and its derivative with
+    /// respect to `y`, half the coordinates of `F`.
+    ///
+    /// In this form the derivative at rest is the inertia, whatever the step and its sign, and for (3.13) the moments of
+    /// inertia are the only constants in it.
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
-        xi: &Vector<Self>,
+        half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
 
     /// The residual of [`newton_system`](Self::newton_system) alone.
     #[inline(always)]
-    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &Vector<Self>) -> Vector<Self> {
-        Self::newton_system(constants, terms, xi).0
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
+        Self::newton_system(constants, terms, half).0
     }
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, written in the new `w⁺`; `increment` is `F − I`.

@@ -8,9 +8,9 @@ use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
-use crate::newton::{Problem, Root, orientation, trusted_radius};
+use crate::newton::{Problem, Root, trusted_radius};
 use crate::retraction::Retraction;
-use crate::scalar::{is_finite, real, reported};
+use crate::scalar::{Mask, is_finite, real, reported};
 use crate::solvability::{Solvability, TurningLimits};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
@@ -22,7 +22,6 @@ pub struct DiscreteLiePoisson<L: Effect> {
     lagrangian: L,
     h: Scalar<L>,
     constants: L::Constants,
-    orientation: Scalar<L>,
     /// The square of a right side far beyond those of steps that have a solution.
     largest_target: Scalar<L>,
     trusted: Scalar<L>,
@@ -41,6 +40,13 @@ pub struct Increment<L: Effect> {
     pub advected: L::Advected,
     /// Newton iterations, counted as in [`StepReport`](crate::StepReport).
     pub iterations: u32,
+}
+
+/// A step, with what its successor needs of the [`Root`].
+pub(crate) struct Stepped<L: Effect> {
+    pub(crate) step: Increment<L>,
+    pub(crate) half: Vector<L>,
+    pub(crate) far: Mask<Scalar<L>>,
 }
 
 /// A momentum equation and its solution.
@@ -80,18 +86,19 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
         }
         let constants = lagrangian.constants(h);
-        let orientation = orientation(h, <Group<L> as LieGroup>::DIMENSION);
         let (at_rest, trace) = jacobian_at_rest(&lagrangian, &constants);
-        // With an extreme `h` the Newton system can't be solved in this scalar.
+        // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
+        let at_rest = (0..<Group<L> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
         let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        let largest = trace * real(RATIO) / Scalar::<L>::simd_default_epsilon();
-        let largest_target = largest * largest;
+        // Without a step there is nothing to solve, which the careful solve sees to.
+        let largest = trace / h * real(2.0 * RATIO) / Scalar::<L>::simd_default_epsilon();
+        let largest_target = if h == real(0.0) { h } else { largest * largest };
         let is_dear = L::JACOBIAN_IS_DEAR && h != real(0.0);
-        let trusted = if is_dear { trusted_radius(&lagrangian, &constants, h) } else { real(0.0) };
-        Ok(Self { lagrangian, h, constants, orientation, largest_target, trusted })
+        let trusted = if is_dear { trusted_radius(&lagrangian, &constants) } else { real(0.0) };
+        Ok(Self { lagrangian, h, constants, largest_target, trusted })
     }
 
     /// The declared Lagrangian.
@@ -123,7 +130,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         }
         let problem = self.problem(momentum, advected);
         let terms = L::step_terms(&self.constants, &problem.a, advected);
-        problem.attempt(&terms, guess).map(|root| Group::<L>::from_increment(&root.increment))
+        problem.attempt(&terms, &(*guess * real(0.5))).map(|root| Group::<L>::from_increment(&root.increment))
     }
 
     /// One step from `(μ, w)`; `guess` are coordinates near those of `F`, zero if nothing is known.
@@ -139,10 +146,19 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         guess: &Vector<L>,
     ) -> Result<Increment<L>, StepError> {
-        if self.h == real(0.0) {
-            return Ok(Self::stand_still(momentum, advected));
-        }
-        let Solved { a, root: Root { xi, increment, iterations } } = self.solve(momentum, advected, guess)?;
+        self.step_from(momentum, advected, &(*guess * real(0.5))).map(|stepped| stepped.step)
+    }
+
+    /// As [`step`](Self::step), from half the guess.
+    #[inline(always)]
+    pub(crate) fn step_from(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        half_guess: &Vector<L>,
+    ) -> Result<Stepped<L>, StepError> {
+        let Solved { a, root: Root { half, increment, iterations, far } } =
+            self.solve(momentum, advected, half_guess)?;
         let next = advected.advect(&increment);
         let mut change = Group::<L>::adjoint_transpose_increment(&increment, &a);
         if L::PARTS.kick_before {
@@ -151,26 +167,30 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         if L::PARTS.kick_after {
             change = change + L::kick_after(&self.constants, &increment, &next);
         }
-        let momentum = *momentum + change;
+        let before = momentum;
+        let momentum = *before + change;
         if momentum.is_finite() && next.is_finite() {
-            Ok(Increment { coordinates: xi, increment, momentum, advected: next, iterations })
+            let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
+            Ok(Stepped { step, half, far })
+        } else if self.h == real(0.0) {
+            Ok(Self::stand_still(before, advected))
         } else {
             Err(StepError::NonFinite { what: "momentum after the step" })
         }
     }
 
-    /// `F` of the step from `(μ, w)`.
+    /// `F` of the step from `(μ, w)`; the guess is of half the coordinates.
     #[inline(always)]
     pub(crate) fn solve(
         &self,
         momentum: &Vector<L>,
         advected: &L::Advected,
-        guess: &Vector<L>,
+        half_guess: &Vector<L>,
     ) -> Result<Solved<L>, StepError> {
         let problem = self.problem(momentum, advected);
-        let root = match problem.solve_directly(guess, self.largest_target) {
+        let root = match problem.solve_directly(half_guess, self.largest_target) {
             Some(root) => root,
-            None => self.solve_carefully(momentum, advected, guess)?,
+            None => self.solve_carefully(momentum, advected, half_guess)?,
         };
         Ok(Solved { a: problem.a, root })
     }
@@ -194,16 +214,15 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             a: kicked::<L>(&self.constants, momentum, w),
             w,
             h: self.h,
-            orientation: self.orientation,
             trusted: self.trusted,
         }
     }
 
     #[cold]
-    fn stand_still(momentum: &Vector<L>, advected: &L::Advected) -> Increment<L> {
-        let coordinates = Vector::<L>::zero();
-        let increment = L::Retraction::increment(&coordinates);
-        Increment { coordinates, increment, momentum: *momentum, advected: *advected, iterations: 0 }
+    fn stand_still(momentum: &Vector<L>, advected: &L::Advected) -> Stepped<L> {
+        let Root { half, increment, iterations, far } = Root::<L>::at(&Vector::<L>::zero(), 0);
+        let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
+        Stepped { step, half, far }
     }
 
     /// The solve with all its fallbacks, from the beginning.
@@ -213,14 +232,17 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         &self,
         momentum: &Vector<L>,
         advected: &L::Advected,
-        guess: &Vector<L>,
+        half_guess: &Vector<L>,
     ) -> Result<Root<L>, StepError> {
+        if self.h == real(0.0) {
+            return Ok(Root::at(&Vector::<L>::zero(), 0));
+        }
         let is_finite = momentum.is_finite() && advected.is_finite();
         if is_finite && self.solvability(momentum, advected) == Solvability::Impossible {
             let largest = reported(self.max_step(momentum, advected));
             return Err(StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(largest) });
         }
-        self.problem(momentum, advected).solve(guess).map_err(|error| self.explain(error, momentum, advected))
+        self.problem(momentum, advected).solve(half_guess).map_err(|error| self.explain(error, momentum, advected))
     }
 
     /// Finds out whether a smaller step would do, which turns a failed solve into the error that says so.
@@ -262,8 +284,9 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             let terms = L::step_terms(&constants, &Vector::<L>::zero(), advected);
             let unknown = |f: &Group<L>| {
                 let xi = L::Retraction::local_coordinates(f)?;
-                let factor = (real::<Scalar<L>>(4.0) + xi.dot(&xi)).simd_powi(L::DENOMINATORS.cast_signed());
-                Some(L::newton_system(&constants, &terms, &xi).0 * (h / factor))
+                let half = xi * real(0.5);
+                let factor = (real::<Scalar<L>>(1.0) + half.dot(&half)).simd_powi(L::DENOMINATORS.cast_signed());
+                Some(L::newton_system(&constants, &terms, &half).0 * (real::<Scalar<L>>(2.0) / factor))
             };
             Group::<L>::turning_limits(&unknown, &self.lagrangian.inertia())
         };
@@ -287,8 +310,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             }
             let a = kicked::<L>(&constants, momentum, advected);
             let lagrangian = &self.lagrangian;
-            let (orientation, trusted) = (self.orientation, self.trusted);
-            let problem = Problem { lagrangian, constants: &constants, a, w: advected, h, orientation, trusted };
+            let problem = Problem { lagrangian, constants: &constants, a, w: advected, h, trusted: self.trusted };
             let terms = L::step_terms(&constants, &a, advected);
             problem.attempt(&terms, &Vector::<L>::zero()).is_ok()
         };

@@ -27,43 +27,52 @@ const MAX_ITERATIONS: u32 = 20;
 const MAX_DAMPED_ITERATIONS: u32 = 60;
 
 /// A solution of the momentum equation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(crate) struct Root<L: Effect> {
-    /// Coordinates of `F`.
-    pub(crate) xi: Vector<L>,
+    /// Half the coordinates of `F`, `y = ξ/2`.
+    pub(crate) half: Vector<L>,
     /// `F − I`.
     pub(crate) increment: Matrix<L>,
     /// Iterations, those of abandoned attempts included.
     pub(crate) iterations: u32,
+    /// The lanes that 3/2 of `half` would take out of where a solution is surely the wanted one.
+    pub(crate) far: Mask<Scalar<L>>,
+}
+
+impl<L: Effect> Root<L> {
+    pub(crate) fn at(half: &Vector<L>, iterations: u32) -> Self {
+        let increment = L::Retraction::increment_of_half(half);
+        Self { half: *half, increment, iterations, far: far::<L>(half) }
+    }
 }
 
 /// Where the lanes of an iteration have come to.
 struct Lanes<L: Effect> {
-    xi: Vector<L>,
-    /// Of the Jacobian at the iterate before `xi`.
+    half: Vector<L>,
+    /// Of the Jacobian at the iterate before `half`.
     det: Scalar<L>,
     settled: Mask<Scalar<L>>,
 }
 
 impl<L: Effect> Lanes<L> {
     #[inline(always)]
-    fn starting_at(xi: &Vector<L>) -> Self {
-        Self { xi: *xi, det: real(0.0), settled: nowhere::<Scalar<L>>() }
+    fn starting_at(half: &Vector<L>) -> Self {
+        Self { half: *half, det: real(0.0), settled: nowhere::<Scalar<L>>() }
     }
 
     /// Takes `part` of the update in the lanes that haven't settled.
     #[inline(always)]
     fn advance(&mut self, update: &Vector<L>, det: Scalar<L>, part: &Vector<L>) {
-        let next = self.xi - *part;
+        let next = self.half - *part;
         let settled = settled::<L>(update, &next);
-        self.xi = self.xi.select(self.settled, next);
+        self.half = self.half.select(self.settled, next);
         self.det = self.det.select(self.settled, det);
         self.settled = self.settled | settled;
     }
 
     /// The lanes of the mask as they are, the others at another start.
     fn keeping(mut self, accepted: Mask<Scalar<L>>, start: &Vector<L>) -> Self {
-        self.xi = self.xi.select(accepted, *start);
+        self.half = self.half.select(accepted, *start);
         self.settled = accepted;
         self
     }
@@ -76,8 +85,6 @@ pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) a: Vector<L>,
     pub(crate) w: &'a L::Advected,
     pub(crate) h: Scalar<L>,
-    /// The sign of the Jacobian's determinant at the identity.
-    pub(crate) orientation: Scalar<L>,
     /// [`trusted_radius`], or zero.
     pub(crate) trusted: Scalar<L>,
 }
@@ -95,20 +102,22 @@ impl<L: Effect> Problem<'_, L> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
         if Self::goes_by_secants() {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
-            return lanes.settled.all().then(|| Self::root(&lanes, iterations));
+            return lanes.settled.all().then(|| Root::at(&lanes.half, iterations));
         }
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 0..MAX_ITERATIONS {
-            let (update, det) = self.update(&terms, &lanes.xi);
+            let (update, det) = self.update(&terms, &lanes.half);
             lanes.advance(&update, det, &update);
             if lanes.settled.all() {
-                let xi = lanes.xi;
-                let usual = self.is_oriented(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
-                if !usual.all() || !L::Retraction::is_near_identity(&xi).all() {
+                let half = lanes.half;
+                let usual = is_positive(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
+                // Most are nearer than they have to be.
+                let far = far::<L>(&half);
+                if !usual.all() || far.any() && !L::Retraction::is_half_near_identity(&half).all() {
                     return None;
                 }
-                let increment = L::Retraction::increment(&xi);
-                return Some(Root { xi, increment, iterations: iteration + 1 });
+                let increment = L::Retraction::increment_of_half(&half);
+                return Some(Root { half, increment, iterations: iteration + 1, far });
             }
         }
         None
@@ -124,13 +133,13 @@ impl<L: Effect> Problem<'_, L> {
         let (warm, iterations) = self.iterate(&terms, start);
         let accepted = self.accepted(&terms, &warm);
         if accepted.all() {
-            return Ok(Self::root(&warm, spent + iterations));
+            return Ok(Root::at(&warm.half, spent + iterations));
         }
         let (identity, spent) = (Vector::<L>::zero(), spent + MAX_ITERATIONS);
         let (cold, iterations) = self.iterate(&terms, warm.keeping(accepted, &identity));
         let accepted = self.accepted(&terms, &cold);
         if accepted.all() {
-            return Ok(Self::root(&cold, spent + iterations));
+            return Ok(Root::at(&cold.half, spent + iterations));
         }
         let (damped, iterations) = self.iterate_damped(&terms, cold.keeping(accepted, &identity));
         self.conclude(&terms, &damped, iterations).map(|mut root| {
@@ -159,7 +168,7 @@ impl<L: Effect> Problem<'_, L> {
     /// Until all lanes have settled or the iterations are used up; how many there were.
     fn iterate(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
         for iteration in 1..=MAX_ITERATIONS {
-            let (update, det) = self.update(terms, &lanes.xi);
+            let (update, det) = self.update(terms, &lanes.half);
             lanes.advance(&update, det, &update);
             if lanes.settled.all() {
                 return (lanes, iteration);
@@ -168,13 +177,13 @@ impl<L: Effect> Problem<'_, L> {
         (lanes, MAX_ITERATIONS)
     }
 
-    /// As [`iterate`](Self::iterate), with no update longer than half a radian.
+    /// As [`iterate`](Self::iterate), with no update longer than a quarter, half a radian.
     fn iterate_damped(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
         for iteration in 1..=MAX_DAMPED_ITERATIONS {
-            let (update, det) = self.update(terms, &lanes.xi);
+            let (update, det) = self.update(terms, &lanes.half);
             let length = update.dot(&update).simd_sqrt();
-            let half = real::<Scalar<L>>(0.5);
-            let factor = (half / length).select(length.simd_gt(half), real(1.0));
+            let longest = real::<Scalar<L>>(0.25);
+            let factor = (longest / length).select(length.simd_gt(longest), real(1.0));
             lanes.advance(&update, det, &(update * factor));
             if lanes.settled.all() {
                 return (lanes, iteration);
@@ -184,63 +193,53 @@ impl<L: Effect> Problem<'_, L> {
     }
 
     #[inline(always)]
-    fn update(&self, terms: &L::StepTerms, xi: &Vector<L>) -> (Vector<L>, Scalar<L>) {
-        let (residual, jacobian) = L::newton_system(self.constants, terms, xi);
+    fn update(&self, terms: &L::StepTerms, half: &Vector<L>) -> (Vector<L>, Scalar<L>) {
+        let (residual, jacobian) = L::newton_system(self.constants, terms, half);
         Vector::<L>::solve(&jacobian, &residual)
-    }
-
-    #[inline(always)]
-    fn is_oriented(&self, det: Scalar<L>) -> Mask<Scalar<L>> {
-        (det * self.orientation).simd_gt(real(0.0))
     }
 
     /// The lanes that have settled on the branch of the identity.
     fn accepted(&self, terms: &L::StepTerms, lanes: &Lanes<L>) -> Mask<Scalar<L>> {
-        let candidates = lanes.settled & self.is_oriented(lanes.det) & self.is_solved(terms, &lanes.xi);
-        let near = L::Retraction::is_near_identity(&lanes.xi);
-        if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.xi)) }
+        let candidates = lanes.settled & is_positive(lanes.det) & self.is_solved(terms, &lanes.half);
+        let near = L::Retraction::is_half_near_identity(&lanes.half);
+        if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.half)) }
     }
 
     /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too.
-    fn look_closer(&self, xi: &Vector<L>) -> Mask<Scalar<L>> {
+    fn look_closer(&self, half: &Vector<L>) -> Mask<Scalar<L>> {
         use crate::groups::LieGroup as _;
-        let f = L::Retraction::retract(xi).matrix();
-        let jacobian = self.lagrangian.momentum_jacobian(&f, self.w, self.h);
+        let f = L::Retraction::retract(&(*half + *half)).matrix();
+        let jacobian = self.lagrangian.momentum_jacobian(&f, self.w, self.h) * self.h;
         let (_, det) = Vector::<L>::solve(&jacobian, &self.a);
-        let trace = Vector::<L>::trace(&jacobian) * self.h;
-        self.is_oriented(det) & trace.simd_gt(real(0.0))
+        is_positive(det) & is_positive(Vector::<L>::trace(&jacobian))
     }
 
     /// Whether the momentum equation holds; a vanishing update alone doesn't say so.
     ///
     /// The bound is far above rounding, and far below the right side where rounding has swallowed the Jacobian.
-    fn is_solved(&self, terms: &L::StepTerms, xi: &Vector<L>) -> Mask<Scalar<L>> {
-        let (residual, _) = L::newton_system(self.constants, terms, xi);
+    fn is_solved(&self, terms: &L::StepTerms, half: &Vector<L>) -> Mask<Scalar<L>> {
+        let (residual, _) = L::newton_system(self.constants, terms, half);
         let (unknown, jacobian) =
-            L::newton_system(self.constants, &L::step_terms(self.constants, &Vector::<L>::zero(), self.w), xi);
+            L::newton_system(self.constants, &L::step_terms(self.constants, &Vector::<L>::zero(), self.w), half);
         let size = |v: &Vector<L>| v.dot(v).simd_sqrt();
         let scale = size(&unknown) + size(&(unknown - residual)) + Vector::<L>::trace(&jacobian).simd_abs();
         size(&residual).simd_le(scale * Scalar::<L>::simd_default_epsilon().simd_sqrt())
-    }
-
-    fn root(lanes: &Lanes<L>, iterations: u32) -> Root<L> {
-        Root { xi: lanes.xi, increment: L::Retraction::increment(&lanes.xi), iterations }
     }
 
     /// The root if all lanes have one, otherwise what the others have failed from.
     fn conclude(&self, terms: &L::StepTerms, lanes: &Lanes<L>, iterations: u32) -> Result<Root<L>, StepError> {
         let accepted = self.accepted(terms, lanes);
         if accepted.all() {
-            return Ok(Self::root(lanes, iterations));
+            return Ok(Root::at(&lanes.half, iterations));
         }
         if lanes.settled.all() {
             return Err(StepError::WrongBranch { determinant: reported(lanes.det) });
         }
-        let (update, det) = self.update(terms, &lanes.xi);
-        if !lanes.xi.is_finite() || (det.simd_eq(real(0.0)) & !lanes.settled).any() {
+        let (update, det) = self.update(terms, &lanes.half);
+        if !lanes.half.is_finite() || (det.simd_eq(real(0.0)) & !lanes.settled).any() {
             return Err(StepError::Singular);
         }
-        let residual = reported((update.dot(&update) / lanes.xi.dot(&lanes.xi)).simd_sqrt());
+        let residual = reported((update.dot(&update) / lanes.half.dot(&lanes.half)).simd_sqrt());
         Err(StepError::NotConverged { iterations, residual })
     }
 }
@@ -250,13 +249,18 @@ impl<L: Effect> Problem<'_, L> {
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
 #[inline(always)]
-fn settled<L: Effect>(update: &Vector<L>, xi: &Vector<L>) -> Mask<Scalar<L>> {
+fn settled<L: Effect>(update: &Vector<L>, half: &Vector<L>) -> Mask<Scalar<L>> {
     let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 64.0);
-    update.dot(update).simd_le(xi.dot(xi) * tolerance)
+    update.dot(update).simd_le(half.dot(half) * tolerance)
 }
 
-/// The sign that the Jacobian's determinant has at the identity: that of `h^d`, as the inertia is positive.
-pub(crate) fn orientation<T: Real>(h: T, dimension: usize) -> T {
-    let sign = real::<T>(1.0).simd_copysign(h);
-    if dimension.is_multiple_of(2) { sign * sign } else { sign }
+#[inline(always)]
+fn far<L: Effect>(half: &Vector<L>) -> Mask<Scalar<L>> {
+    !L::Retraction::is_half_well_near_identity(half)
+}
+
+/// The sign that the Jacobian's determinant has at the identity, where it is that of the inertia.
+#[inline(always)]
+fn is_positive<T: Real>(value: T) -> Mask<T> {
+    value.simd_gt(real(0.0))
 }

@@ -5,14 +5,13 @@ mod modified;
 
 pub(crate) use modified::{FreeBody, ModifiedBody};
 
-use nalgebra::{SimdBool as _, Vector3};
+use nalgebra::Vector3;
 
 use crate::bisection::{largest_fraction, six_digits};
 use crate::coordinates::Coordinates;
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
 use crate::inertia::DiagonalNonstandardInertia;
-use crate::retraction::{CayleyRetraction, Retraction};
 use crate::scalar::{Real, real, reported};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
@@ -104,23 +103,13 @@ impl<T: Real> PreprocessedBody<T> {
             state.steps += 1;
             return Ok(StepReport { iterations: 0, remedy: None });
         }
-        let root = match self.modified.solve(self.h, &state.momentum, &state.guess) {
+        let root = match self.modified.solve(self.h, &state.momentum, &state.half_guess) {
             Ok(root) => root,
             Err(error) => return Err(self.explain(error, state)),
         };
         state.attitude = state.attitude.advance(&root.increment);
         state.momentum += SO3::adjoint_transpose_increment(&root.increment, &state.momentum);
-        // As in `Stepper::step`, where it is explained.
-        state.guess = root.xi;
-        let far = !<CayleyRetraction as Retraction<SO3<T>>>::is_near_identity(&(root.xi * real::<T>(1.5)));
-        if state.steps > 0 && !far.any() {
-            state.guess += root.xi - state.coordinates;
-        }
-        state.coordinates = root.xi;
-        state.steps += 1;
-        if state.is_due() {
-            state.restore(&());
-        }
+        state.proceed(root.half, root.far, || ());
         Ok(StepReport { iterations: root.iterations, remedy: None })
     }
 
@@ -129,7 +118,7 @@ impl<T: Real> PreprocessedBody<T> {
     pub fn max_step(&self, state: &State<SO3<T>, ()>) -> T {
         let solvable = |fraction: f64| {
             let h = self.h * real(fraction);
-            self.modified.solve(h, &state.momentum, &(state.guess * real::<T>(fraction))).is_ok()
+            self.modified.solve(h, &state.momentum, &(state.half_guess * real::<T>(fraction))).is_ok()
         };
         largest_fraction(solvable).map_or(T::zero(), |fraction| self.h * real(fraction))
     }

@@ -3,7 +3,7 @@
 //! A [`Stepper`] refuses such a step and leaves the state alone. A policy makes another step in its place, and the
 //! report says so. Both policies here give up something; a motion that needs them often wants a smaller step.
 
-use crate::effect::{Effect, Group, Scalar, Vector};
+use crate::effect::{Effect, Group, Scalar};
 use crate::error::{SetupError, StepError};
 use crate::kinetic::Regular;
 use crate::scalar::real;
@@ -138,16 +138,14 @@ fn substepped<L: Regular + Clone>(
 ) -> Option<Moved<L>> {
     let (whole, part) = (real::<Scalar<L>>(f64::from(parts)), real::<Scalar<L>>(1.0 / f64::from(parts)));
     let small = Stepper::new(stepper.lagrangian().clone(), stepper.step_size() / whole).ok()?;
-    let scaled = |coordinates: Vector<L>, factor| coordinates * factor;
     // The history is that of the whole step, so these begin as a motion of their own.
-    let (guess, coordinates) = (scaled(state.guess, part), scaled(state.coordinates, part));
-    let mut moved = State { guess, coordinates, steps: 0, ..*state };
+    let mut moved = State { half_guess: state.half_guess * part, half: state.half * part, steps: 0, ..*state };
     let mut iterations = 0;
     for _ in 0..parts {
         iterations += small.step(&mut moved).ok()?.iterations;
     }
-    let coordinates = scaled(moved.coordinates, whole);
-    let state = State { guess: coordinates, coordinates, steps: state.steps + 1, ..moved };
+    let half = moved.half * whole;
+    let state = State { half_guess: half, half, steps: state.steps + 1, ..moved };
     Some(Moved { state, iterations })
 }
 

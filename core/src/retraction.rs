@@ -17,6 +17,14 @@ pub trait Retraction<G: LieGroup> {
     /// `D = τ(ξ) − I`, formed without subtracting `I`, so that a small `ξ` keeps all its digits.
     fn increment(xi: &G::Vector) -> G::Matrix;
 
+    /// `D` for half the coordinates, `y = ξ/2`, which are what Newton's iteration solves for: on SO(3) in Cayley coordinates
+    /// `tan(θ/2) n`, in which formulas are shortest.
+    #[must_use]
+    #[inline(always)]
+    fn increment_of_half(half: &G::Vector) -> G::Matrix {
+        Self::increment(&(*half + *half))
+    }
+
     /// `τ(ξ)`.
     #[must_use]
     fn retract(xi: &G::Vector) -> G {
@@ -28,6 +36,13 @@ pub trait Retraction<G: LieGroup> {
 
     /// The right-trivialised tangent `T` at `ξ`: `dF F⁻¹ = (T dξ)^`.
     fn tangent(xi: &G::Vector) -> <G::Vector as crate::Coordinates<G::Scalar>>::Square;
+
+    /// The same for half the coordinates, `y = ξ/2`: `dF F⁻¹ = (T dy)^`.
+    #[must_use]
+    #[inline(always)]
+    fn tangent_of_half(half: &G::Vector) -> <G::Vector as crate::Coordinates<G::Scalar>>::Square {
+        Self::tangent(&(*half + *half)) * real::<G::Scalar>(2.0)
+    }
 
     /// `h ∂p/∂ξ` for the momentum `p` that a free motion with the kinetic energy `½ η·Jη` needs to reach `τ(ξ)` within
     /// `h`, with the given `J`.
@@ -50,6 +65,20 @@ pub trait Retraction<G: LieGroup> {
     /// [`Generators`](crate::Generators::is_near_identity) say. Farther out a solver looks closer. Each lane has its
     /// own answer.
     fn is_near_identity(xi: &G::Vector) -> Mask<G::Scalar>;
+
+    /// [`is_near_identity`](Self::is_near_identity) for half the coordinates.
+    #[must_use]
+    #[inline(always)]
+    fn is_half_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
+        Self::is_near_identity(&(*half + *half))
+    }
+
+    /// The same for 3/2 of these, which keeps well away from where increments change fast from step to step.
+    #[must_use]
+    #[inline(always)]
+    fn is_half_well_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
+        Self::is_near_identity(&(*half * real(3.0)))
+    }
 }
 
 /// The Cayley map `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`.
@@ -69,6 +98,14 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         let four = real::<T>(4.0);
         let scale = four / (four + squared);
         quadratic_increment(xi, scale, scale * real(0.5))
+    }
+
+    /// `D = (ŷ + ŷ²) · 2/(1 + |y|²)`: the same bits.
+    #[inline(always)]
+    fn increment_of_half(half: &Vector3<T>) -> Matrix3<T> {
+        let squared = half.x * half.x + half.y * half.y + half.z * half.z;
+        let scale = real::<T>(2.0) / (T::one() + squared);
+        quadratic_increment(half, scale, scale)
     }
 
     /// `2 (F − Fᵀ)^∨ / (1 + tr F)`.
@@ -95,6 +132,16 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
     #[inline(always)]
     fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
         (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0))
+    }
+
+    #[inline(always)]
+    fn is_half_near_identity(half: &Vector3<T>) -> Mask<T> {
+        (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(T::one())
+    }
+
+    #[inline(always)]
+    fn is_half_well_near_identity(half: &Vector3<T>) -> Mask<T> {
+        (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(real(4.0 / 9.0))
     }
 }
 

@@ -5,8 +5,7 @@ use nalgebra::{SimdBool as _, SimdValue as _, Vector3};
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
 use crate::groups::{LieGroup, SO3};
-use crate::retraction::Retraction;
-use crate::scalar::{Mask, Real, real};
+use crate::scalar::{Mask, Real};
 
 /// How many steps go by between two looks at what roundings have done. Of the worst of them, the same in every step, a
 /// thousand make no more than is let pass.
@@ -14,40 +13,58 @@ pub(crate) const LOOKS: u32 = 1024;
 
 /// Attitude, momentum and advected parameters at one time.
 ///
-/// The coordinates of the last increment and a guess of the next ones are kept for the next solve. They are part of the
+/// The coordinates of the last increment, halved, and a guess of the next ones are kept for the next solve. They are part of the
 /// state, so that a copy continues with the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) attitude: G,
     pub(crate) momentum: G::Vector,
     pub(crate) advected: A,
-    pub(crate) coordinates: G::Vector,
-    pub(crate) guess: G::Vector,
+    /// Half the coordinates of the last increment.
+    pub(crate) half: G::Vector,
+    /// A guess of half the next ones.
+    pub(crate) half_guess: G::Vector,
     pub(crate) steps: u64,
 }
 
 impl<G: LieGroup, A: Advected<G>> State<G, A> {
-    pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, coordinates: G::Vector) -> Self {
-        Self { attitude, momentum, advected, coordinates, guess: coordinates, steps: 0 }
+    pub(crate) fn new(attitude: G, momentum: G::Vector, advected: A, half: G::Vector) -> Self {
+        Self { attitude, momentum, advected, half, half_guess: half, steps: 0 }
     }
 
-    /// Counts the step of these coordinates, and guesses those of the next.
+    /// Counts the step with half these coordinates, and guesses those of the next; `far` are the lanes in which they are
+    /// no longer near the identity at 3/2 of their length. Now and then it looks how far roundings have gone, and returns
+    /// what [`restore`](Self::restore) does.
     #[inline(always)]
-    pub(crate) fn proceed<R: Retraction<G>>(&mut self, coordinates: G::Vector) {
+    pub(crate) fn proceed(
+        &mut self,
+        half: G::Vector,
+        far: Mask<G::Scalar>,
+        spatial: impl FnOnce() -> A,
+    ) -> Option<Mask<G::Scalar>> {
         // Increments change by O(h²) from step to step, and their changes by O(h³): for (3.13) at common steps this
         // guess saves one iteration of three.
-        self.guess = coordinates + (coordinates - self.coordinates);
-        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. Before the first step
-        // there was no increment but an estimate. A selection without the branch would lie on the way to the next
-        // iteration, and cost a tenth of a step.
-        let far = !R::is_near_identity(&(coordinates * real(1.5)));
-        if self.steps == 0 {
-            self.guess = coordinates;
-        } else if far.any() {
-            self.guess = coordinates.select(far, self.guess);
+        self.half_guess = half + (half - self.half);
+        // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. A selection without the
+        // branch would lie on the way to the next iteration, and cost a tenth of a step.
+        if far.any() {
+            self.half_guess = half.select(far, self.half_guess);
         }
-        self.coordinates = coordinates;
+        self.half = half;
+        let restored = if self.is_due() { self.look(&spatial()) } else { None };
         self.steps += 1;
+        restored
+    }
+
+    /// What is done after the first step, and after many more.
+    #[cold]
+    #[inline(never)]
+    fn look(&mut self, spatial: &A) -> Option<Mask<G::Scalar>> {
+        // Before the first step there was no increment but an estimate.
+        if self.steps == 0 {
+            self.half_guess = self.half;
+        }
+        self.restore(spatial)
     }
 
     /// Whether it is time to look how far roundings have gone.
@@ -59,7 +76,6 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
     /// Puts the attitude back into the group, and what is advected to what it sees, where roundings have taken it far;
     /// `spatial` is the value `a_0` of what is advected. Returns the lanes in which that was so, if there is one.
     #[cold]
-    #[inline(never)]
     pub(crate) fn restore(&mut self, spatial: &A) -> Option<Mask<G::Scalar>> {
         let (attitude, far) = self.attitude.restored()?;
         self.attitude = attitude;

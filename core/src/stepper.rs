@@ -4,7 +4,7 @@ use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
 use crate::effect::{Effect, Group, Scalar, Vector, energy, momentum_of_velocity, velocity_of_momentum};
 use crate::error::{SetupError, StepError};
-use crate::flows::DiscreteLiePoisson;
+use crate::flows::{DiscreteLiePoisson, Stepped};
 use crate::groups::{LieGroup, SO3};
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
@@ -158,8 +158,9 @@ impl<L: Effect> Stepper<L> {
     fn at(&self, attitude: Group<L>, momentum: Vector<L>) -> State<Group<L>, L::Advected> {
         let advected = self.lagrangian().advected().seen_from(&attitude);
         // Every retraction has the identity as its derivative at zero, so this is near the first increment.
-        let coordinates = velocity_of_momentum(self.lagrangian(), &momentum, &advected) * self.step_size();
-        State::new(attitude, momentum, advected, coordinates)
+        let half_step = self.step_size() * real(0.5);
+        let half = velocity_of_momentum(self.lagrangian(), &momentum, &advected) * half_step;
+        State::new(attitude, momentum, advected, half)
     }
 
     /// One step. On an error the state is unchanged.
@@ -170,14 +171,11 @@ impl<L: Effect> Stepper<L> {
     /// isn't finite.
     #[inline]
     pub fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        let step = self.flow.step(&state.momentum, &state.advected, &state.guess)?;
+        let Stepped { step, half, far } = self.flow.step_from(&state.momentum, &state.advected, &state.half_guess)?;
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
-        state.proceed::<L::Retraction>(step.coordinates);
-        if state.is_due() {
-            state.restore(&self.lagrangian().advected());
-        }
+        state.proceed(half, far, || self.lagrangian().advected());
         Ok(StepReport { iterations: step.iterations, remedy: None })
     }
 

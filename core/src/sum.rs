@@ -169,27 +169,27 @@ where
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
-        xi: &Vector<Self>,
+        half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
         match (A::PARTS.unknown, B::PARTS.unknown) {
             (true, true) => {
-                let first = A::newton_system(&constants.0, &terms.0, xi);
-                let second = B::newton_system(&constants.1, &terms.1, xi);
-                let first = raised::<Self>(first, Self::DENOMINATORS - A::DENOMINATORS, xi);
-                let second = raised::<Self>(second, Self::DENOMINATORS - B::DENOMINATORS, xi);
+                let first = A::newton_system(&constants.0, &terms.0, half);
+                let second = B::newton_system(&constants.1, &terms.1, half);
+                let first = raised::<Self>(first, Self::DENOMINATORS - A::DENOMINATORS, half);
+                let second = raised::<Self>(second, Self::DENOMINATORS - B::DENOMINATORS, half);
                 (first.0 + second.0, first.1 + second.1)
             }
-            (true, false) => A::newton_system(&constants.0, &terms.0, xi),
-            (false, _) => B::newton_system(&constants.1, &terms.1, xi),
+            (true, false) => A::newton_system(&constants.0, &terms.0, half),
+            (false, _) => B::newton_system(&constants.1, &terms.1, half),
         }
     }
 
     #[inline(always)]
-    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &Vector<Self>) -> Vector<Self> {
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
         match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => Self::newton_system(constants, terms, xi).0,
-            (true, false) => A::newton_residual(&constants.0, &terms.0, xi),
-            (false, _) => B::newton_residual(&constants.1, &terms.1, xi),
+            (true, true) => Self::newton_system(constants, terms, half).0,
+            (true, false) => A::newton_residual(&constants.0, &terms.0, half),
+            (false, _) => B::newton_residual(&constants.1, &terms.1, half),
         }
     }
 
@@ -205,20 +205,20 @@ where
     }
 }
 
-/// `Dᵏ r` and its derivative, for `D = 4 + |ξ|²` and a system `r` with its derivative.
+/// `Dᵏ r` and its derivative, for `D = 1 + |y|²` and a system `r` with its derivative.
 #[inline(always)]
 fn raised<E: Effect>(
     (residual, jacobian): (Vector<E>, Square<E>),
     power: u32,
-    xi: &Vector<E>,
+    half: &Vector<E>,
 ) -> (Vector<E>, Square<E>) {
     if power == 0 {
         return (residual, jacobian);
     }
-    let d = xi.dot(xi) + real(4.0);
-    // d(Dᵏ r) = Dᵏ dr + k Dᵏ⁻¹ r (2ξ)ᵀ dξ.
+    let d = half.dot(half) + real(1.0);
+    // d(Dᵏ r) = Dᵏ dr + k Dᵏ⁻¹ r (2y)ᵀ dy.
     let below = (1..power).fold(real::<E::Scalar>(1.0), |product, _| product * d);
-    let slope = Vector::<E>::outer(&residual, xi) * (below * real(2.0 * f64::from(power)));
+    let slope = Vector::<E>::outer(&residual, half) * (below * real(2.0 * f64::from(power)));
     (residual * (below * d), jacobian * (below * d) + slope)
 }
 

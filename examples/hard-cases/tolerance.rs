@@ -63,18 +63,18 @@ where
     for step in 1..=steps {
         let a = momentum + L::kick_before(&constants, &w);
         let terms = L::step_terms(&constants, &a, &w);
-        let mut xi = if guess == Guess::Extrapolated && step > 2 { last * 2.0 - before } else { last };
+        let mut half = if guess == Guess::Extrapolated && step > 2 { last * 2.0 - before } else { last };
         for iteration in 1..=MOST {
-            let (residual, jacobian) = L::newton_system(&constants, &terms, &xi);
+            let (residual, jacobian) = L::newton_system(&constants, &terms, &half);
             let update = Vector3::solve(&jacobian, &residual).0;
-            xi -= update;
-            if update.norm() <= tolerance * xi.norm() || iteration == MOST {
+            half -= update;
+            if update.norm() <= tolerance * half.norm() || iteration == MOST {
                 spent += iteration;
                 break;
             }
         }
-        (before, last) = (last, xi);
-        let increment = L::Retraction::increment(&xi);
+        (before, last) = (last, half);
+        let increment = L::Retraction::increment_of_half(&half);
         let next = Advected::<SO3>::advect(&w, &increment);
         momentum = match form {
             Form::Transport => {

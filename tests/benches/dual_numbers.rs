@@ -147,7 +147,7 @@ struct Point {
 fn derived<L: Top<f64>>(top: &L, constants: &L::Constants, at: &Point) -> (Vector3<f64>, Matrix3<f64>, Vector3<f64>) {
     let a = at.momentum + L::kick_before(constants, &at.w);
     let terms = L::step_terms(constants, &a, &at.w);
-    let (residual, jacobian) = L::newton_system(constants, &terms, &at.xi);
+    let (residual, jacobian) = L::newton_system(constants, &terms, &(at.xi * 0.5));
     (residual, jacobian, top.legendre_plus(&at.f, &at.w, STEP))
 }
 

@@ -72,8 +72,8 @@ impl<E: Effect> Effect for Switched<E> {
     }
 
     #[inline(always)]
-    fn newton_system(c: &Self::Constants, terms: &E::StepTerms, xi: &Vector<E>) -> (Vector<E>, Square<E>) {
-        E::newton_system(&c.constants, terms, xi)
+    fn newton_system(c: &Self::Constants, terms: &E::StepTerms, half: &Vector<E>) -> (Vector<E>, Square<E>) {
+        E::newton_system(&c.constants, terms, half)
     }
 
     #[inline(always)]

@@ -109,9 +109,9 @@ impl<L: Effect> Effect for WithJacobian<L> {
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
-        xi: &Vector<Self>,
+        half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
-        L::newton_system(constants, terms, xi)
+        L::newton_system(constants, terms, half)
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
@@ -179,21 +179,22 @@ where
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
-        xi: &Vector3<T>,
+        half: &Vector3<T>,
     ) -> (Vector3<T>, Matrix3<T>) {
         SYSTEMS.set(SYSTEMS.get() + 1);
-        let f = L::Retraction::retract(xi).matrix();
-        let jacobian = constants.1.momentum_jacobian(&f, &terms.1, constants.2) * L::Retraction::tangent(xi);
-        (Self::newton_residual(constants, terms, xi), jacobian)
+        let f = L::Retraction::retract(&(half + half)).matrix();
+        let jacobian = constants.1.momentum_jacobian(&f, &terms.1, constants.2) * L::Retraction::tangent_of_half(half);
+        (Self::newton_residual(constants, terms, half), jacobian * (constants.2 * nalgebra::convert::<f64, T>(0.5)))
     }
 
     fn newton_residual(
         (constants, lagrangian, h): &Self::Constants,
         (a, w): &Self::StepTerms,
-        xi: &Vector3<T>,
+        half: &Vector3<T>,
     ) -> Vector3<T> {
-        let f = L::Retraction::retract(xi).matrix();
-        lagrangian.legendre_minus(&f, w, *h) + L::kick_before(constants, w) - *a
+        let f = L::Retraction::retract(&(half + half)).matrix();
+        (lagrangian.legendre_minus(&f, w, *h) + L::kick_before(constants, w) - *a)
+            * (*h * nalgebra::convert::<f64, T>(0.5))
     }
 
     fn kick_after((constants, ..): &Self::Constants, increment: &Matrix3<T>, next: &Self::Advected) -> Vector3<T> {

@@ -62,8 +62,9 @@ impl Effect for HandWrittenTop {
     type Retraction = CayleyRetraction;
     type Kinetic = WithKinetic;
     type Advected = Vector3<f64>;
-    /// `J/h`, `(h/2) m g ρ`.
-    type Constants = (Matrix3<f64>, Vector3<f64>);
+    /// `J`, `(h/2) m g ρ`, `h/2`.
+    type Constants = (Matrix3<f64>, Vector3<f64>, f64);
+    /// `(h/2) a`.
     type StepTerms = Vector3<f64>;
 
     const DENOMINATORS: u32 = 1;
@@ -102,26 +103,25 @@ impl Effect for HandWrittenTop {
     }
 
     fn constants(&self, h: f64) -> Self::Constants {
-        (*self.inertia.to_inertia().as_matrix() / h, self.rho * (0.5 * h * self.weight))
+        (*self.inertia.to_inertia().as_matrix(), self.rho * (0.5 * h * self.weight), 0.5 * h)
     }
 
-    fn kick_before((_, lever): &Self::Constants, w: &Vector3<f64>) -> Vector3<f64> {
+    fn kick_before((_, lever, _): &Self::Constants, w: &Vector3<f64>) -> Vector3<f64> {
         w.cross(lever)
     }
 
-    fn step_terms(_: &Self::Constants, a: &Vector3<f64>, _: &Vector3<f64>) -> Vector3<f64> {
-        *a
+    fn step_terms((.., half_step): &Self::Constants, a: &Vector3<f64>, _: &Vector3<f64>) -> Vector3<f64> {
+        a * *half_step
     }
 
-    fn newton_system((j, _): &Self::Constants, a: &Vector3<f64>, xi: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
-        let y = xi * 0.5;
+    fn newton_system((j, ..): &Self::Constants, t: &Vector3<f64>, y: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let jy = j * y;
-        let residual = (jy + y.cross(&jy)) * 2.0 - a * (1.0 + y.norm_squared());
-        let jacobian = j + hat(&y) * j - hat(&jy) - a * y.transpose();
-        (residual * 4.0, jacobian * 4.0)
+        let residual = jy + y.cross(&jy) - t * (1.0 + y.norm_squared());
+        let jacobian = j + hat(y) * j - hat(&jy) - t * y.transpose() * 2.0;
+        (residual, jacobian)
     }
 
-    fn kick_after((_, lever): &Self::Constants, _: &Matrix3<f64>, next: &Vector3<f64>) -> Vector3<f64> {
+    fn kick_after((_, lever, _): &Self::Constants, _: &Matrix3<f64>, next: &Vector3<f64>) -> Vector3<f64> {
         next.cross(lever)
     }
 }

@@ -241,21 +241,21 @@ where
     let momentum = system.legendre_minus(f, w, h);
     let a = momentum + before;
     let scale = a.norm() + before.norm() + system.momentum_jacobian(f, w, h).norm();
-    // At the solution the residual vanishes, up to the positive factor whose size the Jacobian shows.
+    // At the solution the residual vanishes, up to a factor whose size the Jacobian shows.
     let terms = L::step_terms(&constants, &a, w);
-    let (residual, jacobian) = L::newton_system(&constants, &terms, &xi);
-    let size = jacobian.norm() * (1.0 + xi.norm()) + residual.norm();
+    let half = xi * 0.5;
+    let (residual, jacobian) = L::newton_system(&constants, &terms, &half);
+    let size = jacobian.norm() * (1.0 + half.norm()) + residual.norm();
     assert!(residual.norm() <= 1e-12 * size, "residual {residual} of {size}");
-    // Away from it, the residual is a positive multiple of U − a.
+    // Away from it, the residual is that multiple of U − a.
     let offset = Vector3::new(0.3, -0.2, 0.5) * scale;
     let terms = L::step_terms(&constants, &(a + offset), w);
-    let (residual, jacobian) = L::newton_system(&constants, &terms, &xi);
-    let factor = -residual.dot(&offset) / offset.norm_squared();
-    assert!(factor > 0.0);
+    let (residual, jacobian) = L::newton_system(&constants, &terms, &half);
+    let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(L::DENOMINATORS.cast_signed());
     assert!((residual + offset * factor).norm() <= 1e-11 * size.max(residual.norm()));
     for j in 0..3 {
-        let s = 1e-6 * (1.0 + xi.norm());
-        let at = |s: f64| L::newton_system(&constants, &terms, &(xi + Vector3::ith(j, s))).0;
+        let s = 1e-6 * (1.0 + half.norm());
+        let at = |s: f64| L::newton_system(&constants, &terms, &(half + Vector3::ith(j, s))).0;
         let column = (at(s) - at(-s)) / (2.0 * s);
         assert!((jacobian.column(j) - column).norm() <= 1e-6 * jacobian.norm(), "column {j} of {jacobian}: {column}");
     }

@@ -42,8 +42,8 @@ fn forces<E: Force<Scalar = f64, Group = SO3>>(
 
 /// The stages against the declared virtual work, at random increments.
 fn check<E: Force<Scalar = f64, Group = SO3>>(push: &E, r: &mut Random) {
-    let (h, xi) = (0.1, r.vector());
-    let element = E::Retraction::retract(&xi);
+    let (h, half) = (0.1, r.vector() * 0.5);
+    let element = E::Retraction::retract(&(half * 2.0));
     let f = element.matrix();
     let w = push.advected().seen_from(&r.rotation());
     let constants = push.constants(h);
@@ -52,11 +52,11 @@ fn check<E: Force<Scalar = f64, Group = SO3>>(push: &E, r: &mut Random) {
     // U = −(f⁻ − kick_before), and newton_system is a multiple of U − a.
     let a = r.vector();
     let terms = E::step_terms(&constants, &a, &w);
-    let (residual, jacobian) = E::newton_system(&constants, &terms, &xi);
-    let factor = (4.0 + xi.norm_squared()).powi(E::DENOMINATORS.cast_signed());
+    let (residual, jacobian) = E::newton_system(&constants, &terms, &half);
+    let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(E::DENOMINATORS.cast_signed());
     assert!((residual - (kick - before - a) * factor).norm() < 1e-13 * factor * (1.0 + before.norm()));
     for j in 0..3 {
-        let slope = derivative(|s| E::newton_system(&constants, &terms, &(xi + unit(j) * s)).0);
+        let slope = derivative(|s| E::newton_system(&constants, &terms, &(half + unit(j) * s)).0);
         assert!((jacobian.column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()));
         let along = |s: f64| SO3::from(UnitQuaternion::from_scaled_axis(unit(j) * s)).compose(&element).matrix();
         let slope = derivative(|s| -forces(push, &along(s), &w, h).0);

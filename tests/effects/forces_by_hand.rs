@@ -14,11 +14,12 @@ struct Drag {
     moments: Vector3<f64>,
 }
 
-/// `c` and `e`.
+/// `c`, `e` and `h/2`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Coefficients {
     both: f64,
     end: f64,
+    half_step: f64,
 }
 
 /// `((F − Fᵀ)/2)^∨`, for `F` or `F − I`.
@@ -53,7 +54,7 @@ impl Effect for Drag {
 
     /// `∂/∂E_j` of `(c − e) s`.
     fn momentum_jacobian(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Matrix3<f64> {
-        let Coefficients { both, end } = self.constants(h);
+        let Coefficients { both, end, .. } = self.constants(h);
         let moved = |j: usize| skew(&(Vector3::ith(j, 1.0).cross_matrix() * f)) * (both - end);
         Matrix3::from_columns(&[moved(0), moved(1), moved(2)])
     }
@@ -72,7 +73,7 @@ impl Effect for Drag {
 
     fn constants(&self, h: f64) -> Coefficients {
         let y = 0.5 * self.c * h * self.moments.map(f64::recip).sum();
-        Coefficients { both: self.c, end: 0.5 * self.c / (1.0 + y * y) }
+        Coefficients { both: self.c, end: 0.5 * self.c / (1.0 + y * y), half_step: 0.5 * h }
     }
 
     fn kick_before(_: &Coefficients, (): &()) -> Vector3<f64> {
@@ -80,17 +81,13 @@ impl Effect for Drag {
     }
 
     fn step_terms(c: &Coefficients, a: &Vector3<f64>, (): &()) -> (f64, Vector3<f64>) {
-        (c.both - c.end, *a)
+        (2.0 * c.half_step * (c.both - c.end), a * c.half_step)
     }
 
-    /// `−f⁻ = 4 (c − e) ξ/(4 + |ξ|²)`.
-    fn newton_system(
-        _: &Coefficients,
-        (c, a): &(f64, Vector3<f64>),
-        xi: &Vector3<f64>,
-    ) -> (Vector3<f64>, Matrix3<f64>) {
-        let residual = xi * (4.0 * c) - a * (4.0 + xi.norm_squared());
-        (residual, Matrix3::from_diagonal_element(4.0 * c) - a * xi.transpose() * 2.0)
+    /// `−f⁻ = 2 (c − e) y/(1 + |y|²)`.
+    fn newton_system(_: &Coefficients, (c, t): &(f64, Vector3<f64>), y: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
+        let residual = y * *c - t * (1.0 + y.norm_squared());
+        (residual, Matrix3::from_diagonal_element(*c) - t * y.transpose() * 2.0)
     }
 
     /// `Ad*_F f⁻ + f⁺`; `f⁻` is along the axis of `F`.

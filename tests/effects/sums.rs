@@ -191,18 +191,18 @@ fn derived_terms_add() {
 #[test]
 fn newton_systems_of_three_scales_add() {
     fn check<L: DiscreteLagrangian<Scalar = f64, Group = SO3>>(sum: &L, r: &mut Random) {
-        let (h, xi, offset) = (0.05, r.vector(), r.vector());
-        let f = L::Retraction::retract(&xi).matrix();
+        let (h, half, offset) = (0.05, r.vector() * 0.5, r.vector());
+        let f = L::Retraction::retract(&(half * 2.0)).matrix();
         let w = sum.advected().seen_from(&r.rotation());
         let constants = sum.constants(h);
         let unknown = sum.legendre_minus(&f, &w, h) + L::kick_before(&constants, &w);
         let a = unknown + offset;
         let terms = L::step_terms(&constants, &a, &w);
-        let (residual, jacobian) = L::newton_system(&constants, &terms, &xi);
-        let factor = (4.0 + xi.norm_squared()).powi(L::DENOMINATORS.cast_signed());
+        let (residual, jacobian) = L::newton_system(&constants, &terms, &half);
+        let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(L::DENOMINATORS.cast_signed());
         assert!((residual + offset * factor).norm() < 1e-13 * factor * (1.0 + unknown.norm()));
         for j in 0..3 {
-            let slope = derivative(|s| L::newton_system(&constants, &terms, &(xi + Vector3::ith(j, s))).0);
+            let slope = derivative(|s| L::newton_system(&constants, &terms, &(half + Vector3::ith(j, s))).0);
             assert!((jacobian.column(j) - slope).norm() < 1e-10 * jacobian.norm());
         }
     }

@@ -20,7 +20,7 @@ const DEPARTURE: f64 = 0.5;
 /// It is looked at with the advected parameters as they are seen after quarter turns about the axes of the basis, and `ξ` along these
 /// axes and the diagonals between them. That is no proof for what lies between; but `A` and `B` are smooth on the scale
 /// of a radian, apart from potentials with features narrower than that, and nothing rests on this alone.
-pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants, h: Scalar<L>) -> Scalar<L> {
+pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
     let inertia = lagrangian.inertia();
     let standing: Vec<L::StepTerms> = elements::<L>()
         .map(|g| L::step_terms(constants, &Vector::<L>::zero(), &lagrangian.advected().seen_from(&g)))
@@ -33,8 +33,8 @@ pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants
             let xi = *direction * real::<Scalar<L>>(radius);
             let model = L::Retraction::free_momentum_tangent(&inertia, &xi);
             for terms in &standing {
-                let (_, jacobian) = L::newton_system(constants, terms, &xi);
-                is_near = is_near & is_nearly::<L>(&model, &jacobian, h);
+                let (_, jacobian) = L::newton_system(constants, terms, &(xi * real(0.5)));
+                is_near = is_near & is_nearly::<L>(&model, &jacobian);
             }
         }
         trusted = real::<Scalar<L>>(radius).select(is_near, trusted);
@@ -45,10 +45,10 @@ pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants
     trusted
 }
 
-/// Whether `‖I − (B/h)⁻¹A‖_F` is small.
-fn is_nearly<L: Effect>(model: &Square<L>, jacobian: &Square<L>, h: Scalar<L>) -> Mask<Scalar<L>> {
+/// Whether `‖I − B⁻¹A‖_F` is small.
+fn is_nearly<L: Effect>(model: &Square<L>, jacobian: &Square<L>) -> Mask<Scalar<L>> {
     let departure = axes::<L>().map(|axis| {
-        let column = axis - Vector::<L>::solve(model, &(*jacobian * axis * h)).0;
+        let column = axis - Vector::<L>::solve(model, &(*jacobian * axis)).0;
         column.dot(&column)
     });
     departure.fold(real::<Scalar<L>>(0.0), |sum, one| sum + one).simd_le(real(DEPARTURE * DEPARTURE))

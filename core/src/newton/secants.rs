@@ -90,11 +90,11 @@ impl<L: Effect> Updates<L> {
         update * (one / (one - along(last, &update)))
     }
 
-    /// Takes notice of the update that has led to `xi`.
+    /// Takes notice of the update that has led to `half`.
     #[inline(always)]
-    fn record(&mut self, update: Vector<L>, xi: &Vector<L>) -> Verdict<L> {
+    fn record(&mut self, update: Vector<L>, half: &Vector<L>) -> Verdict<L> {
         let rounding = Scalar::<L>::simd_default_epsilon();
-        let (length, size) = (update.dot(&update), xi.dot(xi));
+        let (length, size) = (update.dot(&update), half.dot(half));
         let within = |roundings: f64| {
             let tolerance = rounding * real(roundings);
             size * (tolerance * tolerance)
@@ -134,25 +134,26 @@ impl<L: Effect> Problem<'_, L> {
     /// residuals.
     #[inline(always)]
     pub(super) fn iterate_by_secants(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<L>, u32) {
-        let model = L::Retraction::free_momentum_tangent(&self.lagrangian.inertia(), guess);
+        let model = L::Retraction::free_momentum_tangent(&self.lagrangian.inertia(), &(*guess + *guess));
         let mut lanes = Lanes::<L>::starting_at(guess);
         let mut updates = Updates::<L>::none();
-        let in_ball = |xi: &Vector<L>| xi.dot(xi).simd_lt(self.trusted * self.trusted);
+        let radius = self.trusted * real(0.5);
+        let in_ball = |half: &Vector<L>| half.dot(half).simd_lt(radius * radius);
         let mut doubtful = !in_ball(guess);
         let mut iterations = 0;
         while updates.count < MAX_UPDATES && !(lanes.settled | doubtful).all() {
-            let residual = L::newton_residual(self.constants, terms, &lanes.xi);
-            let update = updates.corrected(Vector::<L>::solve(&model, &(residual * -self.h)).0);
-            let next = lanes.xi + update;
+            let residual = L::newton_residual(self.constants, terms, &lanes.half);
+            let update = updates.corrected(Vector::<L>::solve(&model, &(residual * real(-1.0))).0);
+            let next = lanes.half + update;
             let verdict = updates.record(update, &next);
             let resting = lanes.settled | doubtful;
-            lanes.xi = lanes.xi.select(resting, next);
+            lanes.half = lanes.half.select(resting, next);
             lanes.settled = lanes.settled | (verdict.settled & !resting);
             doubtful = doubtful | (verdict.doubtful & !resting);
             iterations += 1;
         }
-        lanes.settled = lanes.settled & !doubtful & in_ball(&lanes.xi);
-        lanes.det = self.orientation;
+        lanes.det = real(1.0);
+        lanes.settled = lanes.settled & !doubtful & in_ball(&lanes.half);
         (lanes, iterations)
     }
 }

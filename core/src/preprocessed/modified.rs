@@ -7,7 +7,7 @@ use crate::effect::Effect as _;
 use crate::error::StepError;
 use crate::groups::SO3;
 use crate::inertia::DiagonalNonstandardInertia;
-use crate::newton::{Problem, Root, orientation};
+use crate::newton::{Problem, Root};
 use crate::scalar::{Real, real};
 
 /// The kinetic term of (3.13).
@@ -37,9 +37,9 @@ impl<T: Real> ModifiedBody<T> {
         Self { inverse_moments, degree, s, d }
     }
 
-    /// The increment over the time `h`, s, from the body momentum `y`.
+    /// The increment over the time `h`, s, from the body momentum `y`; the guess is of half the coordinates.
     #[inline(always)]
-    pub(crate) fn solve(&self, h: T, y: &Vector3<T>, guess: &Vector3<T>) -> Result<Root<FreeBody<T>>, StepError> {
+    pub(crate) fn solve(&self, h: T, y: &Vector3<T>, half_guess: &Vector3<T>) -> Result<Root<FreeBody<T>>, StepError> {
         let (yy, half_squared) = (y.component_mul(y), h * h * real(0.5));
         let energy = yy.dot(&self.inverse_moments) * half_squared;
         let casimir = (yy.x + yy.y + yy.z) * half_squared;
@@ -52,20 +52,11 @@ impl<T: Real> ModifiedBody<T> {
         let moments = inverse.map(|inverse| T::one() / inverse);
         let lagrangian = FreeBody { J_d: DiagonalNonstandardInertia::of_moments_unchecked(&moments) };
         let constants = lagrangian.constants(h);
-        let orientation = orientation(h, 3);
-        let problem = Problem {
-            lagrangian: &lagrangian,
-            constants: &constants,
-            a: *y,
-            w: &(),
-            h,
-            orientation,
-            trusted: real(0.0),
-        };
+        let problem = Problem { lagrangian: &lagrangian, constants: &constants, a: *y, w: &(), h, trusted: real(0.0) };
         // With a momentum so large that the determinant is doubtful, the moments above aren't positive.
-        match problem.solve_directly(guess, real(f64::MAX)) {
+        match problem.solve_directly(half_guess, real(f64::MAX)) {
             Some(root) => Ok(root),
-            None => problem.solve(guess),
+            None => problem.solve(half_guess),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::angle::rotation_coefficients;
 use crate::coordinates::Coordinates as _;
 use crate::effect::Effect;
 use crate::error::{SetupError, StepError};
-use crate::flows::DiscreteLiePoisson;
+use crate::flows::{DiscreteLiePoisson, Stepped};
 use crate::groups::SO3;
 use crate::inertia::Inertia;
 use crate::kinetic::Regular;
@@ -200,8 +200,8 @@ where
         // Half an explicit step ahead is the velocity in the middle, to second order that of the whole.
         let h = drift.flow.step_size();
         let velocity = drift.inverse * momentum;
-        let guess = (velocity + drift.inverse * momentum.cross(&velocity) * (h * real(0.5))) * h;
-        let step = drift.flow.step(momentum, &(), &guess)?;
+        let half_guess = (velocity + drift.inverse * momentum.cross(&velocity) * (h * real(0.5))) * (h * real(0.5));
+        let Stepped { step, .. } = drift.flow.step_from(momentum, &(), &half_guess)?;
         Ok(Turn { increment: step.increment, change: step.momentum - momentum, iterations: step.iterations })
     }
 }

@@ -64,8 +64,8 @@ impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
         // As for a declared flow, by the velocity in the middle.
         let velocity = momentum.component_mul(&modified.inverse_moments);
         let bend = momentum.cross(&velocity).component_mul(&modified.inverse_moments);
-        let guess = (velocity + bend * (*h * real(0.5))) * *h;
-        let root = modified.solve(*h, momentum, &guess)?;
+        let half_guess = (velocity + bend * (*h * real(0.5))) * (*h * real(0.5));
+        let root = modified.solve(*h, momentum, &half_guess)?;
         let change = SO3::adjoint_transpose_increment(&root.increment, momentum);
         Ok(Turn { increment: root.increment, change, iterations: root.iterations })
     }

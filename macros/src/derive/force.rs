@@ -71,6 +71,7 @@ pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result
         kick_before: parts.kick_before,
         unknown: transport::in_small_increment(&context, &parts.unknown),
         kick_after: parts.kick_after.plus(after),
+        half_step: context.half_step(),
         cleared,
         directions,
         symbols,

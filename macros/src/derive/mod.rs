@@ -16,7 +16,7 @@ mod transport;
 use std::collections::BTreeMap;
 
 use crate::group::Group;
-use crate::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variance};
+use crate::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance};
 
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
@@ -47,7 +47,7 @@ pub(crate) struct Directions {
     pub(crate) first: SymbolId,
     /// The direction `E_j` of a Jacobian's column.
     pub(crate) second: SymbolId,
-    /// The covector `a` that the unknown part of the momentum equation has to equal.
+    /// The covector `a` that the unknown part of the momentum equation has to equal; in a Newton system `(h/2) a`.
     pub(crate) target: SymbolId,
     /// `D = F − I`.
     pub(crate) small: SymbolId,
@@ -55,11 +55,11 @@ pub(crate) struct Directions {
     pub(crate) inverse: SymbolId,
     /// `D⁻ = F⁻¹ − I`.
     pub(crate) small_inverse: SymbolId,
-    /// The coordinates `ξ` of `F = cay(ξ)`.
+    /// The Cayley vector `y` of `F = cay(2y)`.
     pub(crate) coordinates: SymbolId,
-    /// `4 + |ξ|²`, the denominator of the Cayley map.
+    /// `1 + |y|²`, the denominator of the Cayley map.
     pub(crate) denominator: SymbolId,
-    /// A variation `δξ`.
+    /// A variation `δy`.
     pub(crate) coordinate_direction: SymbolId,
     /// The new advected parameters `w⁺ = F⁻¹·w`.
     pub(crate) next: Vec<SymbolId>,
@@ -103,6 +103,8 @@ pub(crate) struct Derived {
     pub(crate) unknown: Expression,
     /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`.
     pub(crate) kick_after: Expression,
+    /// `h/2`, by which the Newton system is multiplied: it has no `1/h` then.
+    pub(crate) half_step: Expression,
     /// The momentum equation in Cayley coordinates without denominators, where it is polynomial in `F`.
     pub(crate) cleared: Option<Cleared>,
 }
@@ -173,6 +175,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         unknown,
         kick_after: parts.kick_after,
         previous: transport::previous(&context),
+        half_step: context.half_step(),
         cleared,
         closed,
         directions,
@@ -211,6 +214,10 @@ impl Context<'_> {
         Expression::symbol(id, self.symbols)
     }
 
+    fn half_step(&self) -> Expression {
+        self.symbol(self.declared.step).scaled(Rational::new(1, 2))
+    }
+
     fn product(&self, left: &Expression, right: &Expression) -> Expression {
         left.times(right, self.symbols)
     }
@@ -235,9 +242,9 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         target: column(symbols, "a", dimension, Stage::Step),
         small: symbols.add("D", (size, size), Structure::General, Stage::Iteration),
         small_inverse: symbols.add("D⁻", (size, size), Structure::General, Stage::Iteration),
-        coordinates: column(symbols, "ξ", dimension, Stage::Iteration),
-        denominator: symbols.add("(4 + |ξ|²)", (1, 1), Structure::General, Stage::Iteration),
-        coordinate_direction: column(symbols, "δξ", dimension, Stage::Construction),
+        coordinates: column(symbols, "y", dimension, Stage::Iteration),
+        denominator: symbols.add("(1 + |y|²)", (1, 1), Structure::General, Stage::Iteration),
+        coordinate_direction: column(symbols, "δy", dimension, Stage::Construction),
         velocity: algebra(symbols, "ξ̂"),
         scratch: symbols.add("x", (1, 1), Structure::General, Stage::Construction),
         next: declared

@@ -152,7 +152,7 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
     let unknown = if kernel.in_increment {
         "U(F, w) = a along F ↦ exp(tE_j)F, right-trivialised"
     } else {
-        "U(cay(ξ), w) = a in the coordinates ξ of F = cay(ξ)"
+        "U(F, w) = a in the Cayley vector y of F, tan(θ/2) along the axis"
     };
     let line = |(index, candidate): (usize, &Candidate)| {
         let verdict = if index == 0 { "taken" } else { "rejected" };

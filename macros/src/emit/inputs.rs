@@ -30,7 +30,7 @@ impl Emitter<'_> {
             return entry(&self.part(&quote_spanned!(span=> next), index), input);
         }
         if input.symbol == directions.coordinates {
-            return entry(&quote_spanned!(span=> xi), input);
+            return entry(&quote_spanned!(span=> half), input);
         }
         if input.symbol == directions.small {
             return entry(&quote_spanned!(span=> increment), input);

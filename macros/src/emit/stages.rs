@@ -50,11 +50,14 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let retraction = quote_spanned!(span=> <Self::Retraction as #root::Retraction<Self::Group>>);
     // Off SO(3) the system is written in F, and the retraction's tangent brings its Jacobian to the coordinates.
     let (increment, jacobian) = if kernel.in_increment {
-        let increment = quote_spanned!(span=> let increment = #retraction::increment(xi););
+        let increment = quote_spanned!(span=> let increment = #retraction::increment_of_half(half););
         let inverse = uses(graph, &system, emitter.derived.directions.small_inverse).then(|| {
             quote_spanned!(span=> let inverse_increment = #root::__private::inverse_increment::<Self::Group, _, _>(&increment);)
         });
-        (quote_spanned!(span=> #increment #inverse), quote_spanned!(span=> (#jacobian) * #retraction::tangent(xi)))
+        (
+            quote_spanned!(span=> #increment #inverse),
+            quote_spanned!(span=> (#jacobian) * #retraction::tangent_of_half(half)),
+        )
     } else {
         (TokenStream::new(), jacobian)
     };
@@ -103,7 +106,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         fn newton_system(
             constants: &Self::Constants,
             terms: &Self::StepTerms,
-            xi: &#vector,
+            half: &#vector,
         ) -> (#vector, #square) {
             #increment
             #lets
@@ -149,7 +152,7 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
 
         #[doc = #documentation]
         #[inline(always)]
-        fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, xi: &#vector) -> #vector {
+        fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &#vector) -> #vector {
             #lets
             #value
         }

@@ -16,7 +16,7 @@ use crate::symbolic::{Expression, Rational, Stage};
 pub(crate) struct Candidate {
     pub(crate) name: &'static str,
     pub(crate) operations: Operations,
-    /// The power of `4 + |ξ|²` that the system is multiplied by.
+    /// The power of `1 + |y|²` that the system is multiplied by.
     denominators: u32,
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct Kernel {
     /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
     /// Cayley coordinates.
     pub(crate) in_increment: bool,
-    /// The power of `4 + |ξ|²` that the Newton system is multiplied by.
+    /// The power of `1 + |y|²` that the Newton system is multiplied by.
     pub(crate) denominators: u32,
     /// The first is the one that was taken.
     pub(crate) candidates: Vec<Candidate>,
@@ -133,11 +133,11 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
         add(&graph, "in F", 0, outputs);
     } else {
         let (retracted, opaque) = retracted(&mut graph, derived);
-        add(&graph, "F rebuilt from ξ", 0, retracted.clone());
+        add(&graph, "F rebuilt from y", 0, retracted.clone());
         if derived.closed.is_empty()
             && let Some(outputs) = expanded(&mut graph, &retracted, &opaque)
         {
-            add(&graph, "F rebuilt from ξ, multiplied out", 0, outputs);
+            add(&graph, "F rebuilt from y, multiplied out", 0, outputs);
         }
     }
     if let Some(cleared) = &derived.cleared {
@@ -205,22 +205,44 @@ fn plus_identity(graph: &mut Graph, small: &Entries) -> Entries {
     })
 }
 
-/// `U(F) − a` and `∂U_k` along `E_j`, with `F` and `D` given.
+/// `(h/2) (U(F) − a)` and its derivatives along `E_j`, with `F` and `D` given.
 fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
     let given = with_inverse(graph, derived, given.clone());
     let given = &with_lets(graph, derived, given);
-    let symbol = derived.directions.target;
-    let unknown = components(graph, derived, given, &derived.unknown);
-    let mut outputs: Vec<NodeId> = unknown
-        .into_iter()
-        .enumerate()
-        .map(|(row, value)| {
-            let a = graph.input(Input { symbol, row, column: 0 }, Stage::Step);
-            graph.subtract(value, a)
-        })
-        .collect();
-    outputs.extend(square(graph, derived, given, &derived.jacobian));
+    let target = target(graph, derived);
+    let (mut outputs, jacobian) = if derived.closed.is_empty() {
+        let scaled = |expression: &Expression| derived.half_step.clone().times(expression, &derived.symbols);
+        let unknown = components(graph, derived, given, &scaled(&derived.unknown));
+        (unknown, square(graph, derived, given, &scaled(&derived.jacobian)))
+    } else {
+        // In closed `let`s the factor finds nothing to cancel.
+        let half_step = half_step(graph, derived);
+        let unknown = components(graph, derived, given, &derived.unknown);
+        let jacobian = square(graph, derived, given, &derived.jacobian);
+        let mut scaled = |nodes: Vec<NodeId>| -> Vec<NodeId> {
+            nodes.into_iter().map(|node| graph.multiply(half_step, node)).collect()
+        };
+        (scaled(unknown), scaled(jacobian))
+    };
+    for (row, value) in outputs.iter_mut().enumerate() {
+        *value = graph.subtract(*value, target.at(row, 0));
+    }
+    outputs.extend(jacobian);
     outputs
+}
+
+fn half_step(graph: &mut Graph, derived: &Derived) -> NodeId {
+    Scalariser { graph, symbols: &derived.symbols, given: Given::new() }.scalar(&derived.half_step)
+}
+
+/// `(h/2) a`, once a step.
+fn target(graph: &mut Graph, derived: &Derived) -> Entries {
+    let half_step = half_step(graph, derived);
+    let symbol = derived.directions.target;
+    Entries::new(derived.group.dimension(), 1, |row, column| {
+        let a = graph.input(Input { symbol, row, column }, Stage::Step);
+        graph.multiply(half_step, a)
+    })
 }
 
 fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
@@ -228,20 +250,21 @@ fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
     (0..3).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
 }
 
-/// `4 + |ξ|²`.
-fn denominator(graph: &mut Graph, xi: &[NodeId]) -> NodeId {
-    let squares: Vec<NodeId> = xi.iter().map(|&x| graph.multiply(x, x)).collect();
+/// `1 + |y|²`.
+fn denominator(graph: &mut Graph, y: &[NodeId]) -> NodeId {
+    let squares: Vec<NodeId> = y.iter().map(|&x| graph.multiply(x, x)).collect();
     let sum = graph.sum(&squares);
-    let four = graph.constant(Rational::integer(4));
-    graph.add(four, sum)
+    let one = graph.one();
+    graph.add(one, sum)
 }
 
 /// Residual and Jacobian of the cleared equation, nine and three; the denominator's node.
 fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (Vec<NodeId>, NodeId) {
     let directions = &derived.directions;
-    let xi = coordinates(graph, derived);
-    let d = denominator(graph, &xi);
-    let given = BTreeMap::from([(directions.denominator, Entries::new(1, 1, |_, _| d))]);
+    let y = coordinates(graph, derived);
+    let d = denominator(graph, &y);
+    let target = target(graph, derived);
+    let given = BTreeMap::from([(directions.denominator, Entries::new(1, 1, |_, _| d)), (directions.target, target)]);
     let mut outputs = components(graph, derived, &given, &cleared.residual);
     let mut columns = Vec::new();
     for j in 0..3 {
@@ -255,34 +278,32 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
     (outputs, d)
 }
 
-/// `U(F) − a` with `F = cay(ξ)`, and its Jacobian `∂U/∂E_j · T_j`, with the tangent `T` of the retraction.
+/// `(h/2) (U(F) − a)` with `F = cay(2y)`, and its Jacobian `(h/2) ∂U/∂E_j · T_j`, with the tangent `T` in `y`.
 fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, BTreeSet<NodeId>) {
-    let xi = coordinates(graph, derived);
-    let d = denominator(graph, &xi);
-    let half = graph.constant(Rational::new(1, 2));
-    let four = graph.constant(Rational::integer(4));
-    let scale = graph.divide(four, d);
-    let half_scale = graph.multiply(half, scale);
+    let y = coordinates(graph, derived);
+    let d = denominator(graph, &y);
+    let two = graph.constant(Rational::integer(2));
+    let scale = graph.divide(two, d);
     let hat = |graph: &mut Graph, row: usize, column: usize| match (3 + column - row) % 3 {
         0 => graph.zero(),
-        1 => graph.negate(xi[3 - row - column]),
-        _ => xi[3 - row - column],
+        1 => graph.negate(y[3 - row - column]),
+        _ => y[3 - row - column],
     };
     let tangent = Entries::new(3, 3, |row, column| {
         let entry = hat(graph, row, column);
-        let scaled = graph.multiply(half_scale, entry);
+        let scaled = graph.multiply(scale, entry);
         if row == column { scale } else { scaled }
     });
-    // D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²), ξ̂² = ξξᵀ − |ξ|² I; on the diagonal the squares cancel before they are formed.
+    // D = (ŷ + ŷ²) · 2/(1 + |y|²), ŷ² = yyᵀ − |y|² I; on the diagonal the squares cancel before they are formed.
     let given = by_increment(graph, derived, |graph, row, column| {
         if row == column {
-            let others: Vec<NodeId> = (0..3).filter(|&k| k != row).map(|k| graph.multiply(xi[k], xi[k])).collect();
+            let others: Vec<NodeId> = (0..3).filter(|&k| k != row).map(|k| graph.multiply(y[k], y[k])).collect();
             let sum = graph.sum(&others);
-            let shrink = graph.multiply(half_scale, sum);
+            let shrink = graph.multiply(scale, sum);
             return graph.negate(shrink);
         }
-        let product = graph.multiply(xi[row], xi[column]);
-        let outer = graph.multiply(half_scale, product);
+        let product = graph.multiply(y[row], y[column]);
+        let outer = graph.multiply(scale, product);
         let skew = hat(graph, row, column);
         let skew = graph.multiply(scale, skew);
         graph.sum(&[outer, skew])

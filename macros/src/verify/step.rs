@@ -85,7 +85,7 @@ impl Step<'_> {
         None
     }
 
-    /// The point displaced in the coordinates of the Newton system: `ξ` on SO(3), elsewhere `F ↦ exp(t E_j) F`.
+    /// The point displaced in the coordinates of the Newton system: `y` on SO(3), elsewhere `F ↦ exp(t E_j) F`.
     fn displaced(
         &self,
         sample: &Sample,
@@ -97,7 +97,7 @@ impl Step<'_> {
             return self.inputs(sample, &sample.turned(j, t));
         }
         let mut inputs = inputs.clone();
-        if let Some(entry) = inputs.get_mut(&self.derived.directions.coordinates).and_then(|xi| xi.entries.get_mut(j)) {
+        if let Some(entry) = inputs.get_mut(&self.derived.directions.coordinates).and_then(|y| y.entries.get_mut(j)) {
             *entry += t;
         }
         inputs
@@ -145,9 +145,9 @@ fn generator(group: &Group, k: usize) -> Value {
     Value { rows: group.size, columns: group.size, entries }
 }
 
-/// `ξ` with `cay(ξ) = F`.
+/// `y` with `cay(2y) = F`.
 fn cayley_coordinates(f: &Value) -> Value {
-    let scale = 2.0 / (1.0 + f.at(0, 0) + f.at(1, 1) + f.at(2, 2));
+    let scale = 1.0 / (1.0 + f.at(0, 0) + f.at(1, 1) + f.at(2, 2));
     Value::new(3, 1, |row, _| {
         let (i, j) = ((row + 2) % 3, (row + 1) % 3);
         scale * (f.at(i, j) - f.at(j, i))

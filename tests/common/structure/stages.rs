@@ -33,14 +33,14 @@ where
         let a = l.legendre_minus(&f, &w, h) + L::kick_before(&constants, &w);
         let offset: SVector<f64, D> = random.sample::<SVector<f64, D>>() * scale;
         let terms = L::step_terms(&constants, &(a + offset), &w);
-        let system = |xi: SVector<f64, D>| L::newton_system(&constants, &terms, &xi);
-        let (residual, jacobian) = system(xi);
-        // The system is a positive multiple of `U(F, w) − a`, and here that is `−offset`.
-        let factor = -residual.dot(&offset) / offset.norm_squared();
-        assert!(factor > 0.0, "{factor}");
+        let system = |half: SVector<f64, D>| L::newton_system(&constants, &terms, &half);
+        let half = xi * 0.5;
+        let (residual, jacobian) = system(half);
+        // The system is that multiple of `U(F, w) − a`, and here that is `−offset`.
+        let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(L::DENOMINATORS.cast_signed());
         assert!((residual + offset * factor).norm() <= ROUNDING * residual.norm(), "{residual} along {offset}");
         for j in 0..D {
-            let column = derivative(|s| system(xi + axis(j, s)).0);
+            let column = derivative(|s| system(half + axis(j, s)).0);
             let error = (jacobian.column(j) - column).norm();
             assert!(error <= DIFFERENCES * jacobian.norm(), "column {j} is off by {error:e} at {size}");
         }

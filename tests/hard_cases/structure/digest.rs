@@ -53,7 +53,7 @@ fn p7_heavy_top() {
     let motion = looping();
     let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let start = stepper.start(motion.attitude, motion.velocity).unwrap();
-    assert_eq!(of_steps(&stepper, start), 0x3744_f144_dae0_96d7);
+    assert_eq!(of_steps(&stepper, start), 0xca90_b389_4330_68e5);
 
     let carrying = stepper.compensated();
     let (mut state, mut digest) = (CompensatedState::from(start), Digest::new());
@@ -61,15 +61,15 @@ fn p7_heavy_top() {
         carrying.step(&mut state).unwrap();
         digest.add_state(state.state());
     }
-    assert_eq!(digest.0, 0x42dd_76b8_2c94_65c3);
+    assert_eq!(digest.0, 0x807e_9d69_abd8_0c7d);
 }
 
 #[test]
 fn p7_asymmetric_top_and_free_body() {
     let top = Stepper::new(HeavyTop::asymmetric(), 0.02).unwrap();
     let found = of_steps(&top, top.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap());
-    assert_eq!(found, 0x0c2c_11b9_2acb_c632);
+    assert_eq!(found, 0x5309_c35a_21c8_9deb);
     let body = Stepper::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.02).unwrap();
     let found = of_steps(&body, body.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap());
-    assert_eq!(found, 0xcd0f_b602_a288_08da);
+    assert_eq!(found, 0x82aa_eeef_f41d_7f7f);
 }

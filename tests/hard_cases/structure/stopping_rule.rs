@@ -19,7 +19,7 @@ struct Loose {
     tolerance: f64,
     momentum: Vector3<f64>,
     w: Vector3<f64>,
-    xi: Vector3<f64>,
+    half: Vector3<f64>,
     iterations: u64,
 }
 
@@ -29,15 +29,15 @@ impl Loose {
         let a = self.momentum + HeavyTop::kick_before(&self.constants, &self.w);
         let terms = HeavyTop::step_terms(&self.constants, &a, &self.w);
         for _ in 0..MOST_ITERATIONS {
-            let (residual, jacobian) = HeavyTop::newton_system(&self.constants, &terms, &self.xi);
+            let (residual, jacobian) = HeavyTop::newton_system(&self.constants, &terms, &self.half);
             let (update, _) = Vector3::solve(&jacobian, &residual);
-            self.xi -= update;
+            self.half -= update;
             self.iterations += 1;
-            if update.norm() <= self.tolerance * self.xi.norm() {
+            if update.norm() <= self.tolerance * self.half.norm() {
                 break;
             }
         }
-        let increment = <CayleyRetraction as Retraction<SO3>>::increment(&self.xi);
+        let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&self.half);
         let next = self.w + increment.transpose() * self.w;
         let kick = HeavyTop::kick_after(&self.constants, &increment, &next);
         self.momentum += (a - self.momentum) + SO3::adjoint_transpose_increment(&increment, &a) + kick;
@@ -96,7 +96,7 @@ fn p4_energy_drift_against_the_newton_tolerance() {
             tolerance,
             momentum: start.momentum(),
             w: start.advected(),
-            xi: motion.velocity * H,
+            half: motion.velocity * (0.5 * H),
             iterations: 0,
         };
         let kept = kept(&stepper, || {

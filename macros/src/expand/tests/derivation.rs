@@ -58,15 +58,15 @@ fn of_the_heavy_top() {
         self-adjoint
             l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)    [by the normal forms: even order; a step of −h undoes a step of h]
         Newton system
-            U(cay(ξ), w) = a in the coordinates ξ of F = cay(ξ)
-            taken: Cayley, denominators cleared, multiplied out, 111 operations an iteration
-            rejected: Cayley, denominators cleared, 112 operations an iteration
-            rejected: F rebuilt from ξ, 151 operations, 3 sign flips an iteration
-            rejected: F rebuilt from ξ, multiplied out, 275 operations, 3 sign flips an iteration
+            U(F, w) = a in the Cayley vector y of F, tan(θ/2) along the axis
+            taken: Cayley, denominators cleared, 97 operations an iteration
+            rejected: Cayley, denominators cleared, multiplied out, 105 operations an iteration
+            rejected: F rebuilt from y, 147 operations, 3 sign flips an iteration
+            rejected: F rebuilt from y, multiplied out, 268 operations, 3 sign flips an iteration
         operations
-            construction: 33 operations
-            step, before the solve: 21 operations
-            Newton iteration: 111 operations
+            construction: 9 operations
+            step, before the solve: 18 operations
+            Newton iteration: 97 operations
             step, after the solve: 9 operations
     "#]].assert_eq(&derivation(HEAVY_TOP, &top("NonstandardInertia")));
 }
