@@ -7,17 +7,23 @@
 //! | parameter in | type | `f⁻¹ · w` | for example |
 //! |---|---|---|---|
 //! | `V*` | `SVector<T, N>`, as `Vector3` | `Fᵀ w` | a direction, a plane, a potential's gradient |
-//! | `V` | [`ContravariantVector`] | `F⁻¹ w` | a point fixed in space |
+//! | `V` | [`ContravariantVector`] | `F⁻¹ w` | a displacement fixed in space |
+//! | `V`, its last coordinate one | `Point1`, `Point2`, `Point3` of nalgebra | `F⁻¹ (p, 1)` | a point fixed in space |
 //! | `V ⊗ V` | [`ContravariantTensor`] | `F⁻¹ S F⁻ᵀ` | a conductivity |
 //! | `V* ⊗ V*` | [`CovariantTensor`] | `Fᵀ S F` | a metric, a strain, the gradient of a field of force |
 //! | `V ⊗ V*` | [`MixedTensor`] | `F⁻¹ S F` | a velocity gradient |
 //!
-//! `V` is the space that the group's matrices act on, `F` the matrix itself.
+//! `V` is the space that the group's matrices act on, `F` the matrix itself. Points are moved by groups of affine maps,
+//! as SE(2) and SE(3) are, and written in homogeneous coordinates; vectors with another last coordinate move by the same
+//! matrices, but keep no distances.
 
 use core::fmt::Debug;
 
+mod points;
 mod tensors;
 
+pub(crate) use points::homogeneous;
+pub use tensors::inverse_increment;
 pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 
 use nalgebra::{SMatrix, SVector};

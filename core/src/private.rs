@@ -3,14 +3,23 @@
 pub use core;
 pub use nalgebra;
 
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
+use crate::LieGroup;
+use crate::advected::homogeneous;
+pub use crate::advected::inverse_increment;
 use crate::entries::Entries as _;
 pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::scalar::real;
 pub use crate::scene::SceneVisitor;
 use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};
+
+/// `F⁻¹` of a group element.
+#[inline]
+pub fn inverse_of<G: LieGroup>(element: G::Matrix) -> G::Matrix {
+    G::from_matrix_unchecked(element).inverse().matrix()
+}
 
 /// A field of a declared Lagrangian: its value for the declared expression, and whether it can be used.
 pub trait Parameter {
@@ -120,6 +129,31 @@ advected_parameter!(
     CovariantTensor SMatrix<T, N, N>,
     MixedTensor SMatrix<T, N, N>
 );
+
+macro_rules! point_parameter {
+    ($($dimension:literal in $size:literal),+) => {
+        $(impl<T: Real> Parameter for Point<T, $dimension> {
+            type Value = SVector<T, $size>;
+            type Scalar = T;
+
+            #[inline(always)]
+            fn value(&self) -> SVector<T, $size> {
+                homogeneous(self)
+            }
+
+            fn describe(&self, field: &'static str, visitor: &mut dyn SceneVisitor<T>) {
+                self.each(&mut |entry| visitor.parameter(field, entry));
+            }
+
+            fn is_finite(&self) -> bool {
+                Parameter::is_finite(&self.coords)
+            }
+        })+
+    };
+}
+
+// The expression computes with homogeneous coordinates.
+point_parameter!(1 in 2, 2 in 3, 3 in 4);
 
 impl<K: Generators<N, D>, T, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     /// Whether an expansion has the generators of this group, by rows.

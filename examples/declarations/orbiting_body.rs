@@ -1,12 +1,12 @@
 //! Gravity gradient without expansion, orbit and attitude together.
 
-use liestep::{ContravariantVector, SE3, lagrangian};
-use nalgebra::{Matrix4, Vector4};
+use liestep::{SE3, lagrangian};
+use nalgebra::{Matrix4, Point3};
 
 /// A rigid body in the 1/r field of a centre fixed in space, attracted at two of its points.
 ///
-/// Orbit and attitude act on each other. Places are homogeneous, `(x, y, z, 1)`; the centre is a point of space that
-/// the body sees move, an element of `V`. As `F` keeps distances, `‖F⁻¹c − p‖ = ‖c − F p‖`.
+/// Orbit and attitude act on each other. Points are written in homogeneous coordinates, `(x, y, z, 1)`; the centre is
+/// a point of space that the body sees move. As `F` keeps their distances, `‖F⁻¹c − p‖ = ‖c − F p‖`.
 #[lagrangian(
     group = SE3,
     advected(c = centre),
@@ -25,13 +25,13 @@ pub struct OrbitingBody {
     /// The mass attracted at the first point, kg.
     pub m1: f64,
     /// The first point, body frame.
-    pub p1: Vector4<f64>,
+    pub p1: Point3<f64>,
     /// The mass attracted at the second point, kg.
     pub m2: f64,
     /// The second point, body frame.
-    pub p2: Vector4<f64>,
+    pub p2: Point3<f64>,
     /// Gravitational constant times the attracting mass, m³/s².
     pub GM: f64,
     /// The attracting centre, in space.
-    pub centre: ContravariantVector<f64, 4>,
+    pub centre: Point3<f64>,
 }

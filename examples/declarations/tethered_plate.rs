@@ -1,11 +1,11 @@
 //! A planar body on a tether.
 
-use liestep::{ContravariantVector, SE2, lagrangian};
-use nalgebra::{Matrix3, Vector3};
+use liestep::{SE2, lagrangian};
+use nalgebra::{Matrix3, Point2};
 
 /// A rigid body in the plane, one of whose points is tied by an elastic tether to a point of the plane.
 ///
-/// Places are homogeneous, `(x, y, 1)`. The anchor is a point of space that the body sees move, an element of `V`.
+/// Points are written in homogeneous coordinates, `(x, y, 1)`. The anchor is one of space that the body sees move.
 #[lagrangian(
     group = SE2,
     advected(a = anchor),
@@ -25,7 +25,7 @@ pub struct TetheredPlate {
     /// Length of the tether at rest, m.
     pub length: f64,
     /// Where it is tied to the body, body frame.
-    pub p: Vector3<f64>,
+    pub p: Point2<f64>,
     /// Where it is tied to the plane.
-    pub anchor: ContravariantVector<f64, 3>,
+    pub anchor: Point2<f64>,
 }

@@ -1,14 +1,14 @@
 //! Kirchhoff's body in a fluid.
 
 use liestep::{SE3, lagrangian};
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{Matrix4, Point3, Vector4};
 
 /// A rigid body in an ideal fluid at rest, after Kirchhoff, with weight and buoyancy.
 ///
 /// The mass that the fluid adds depends on the direction. A displacement has different components in the frames
 /// before and after the step, and either alone would make a scheme of first order; half of each is self-adjoint.
 ///
-/// Matrices are homogeneous, with the fourth row and column for the place. What is advected is the height as a
+/// Matrices and points are homogeneous, with the fourth row and column for the place. What is advected is the height as a
 /// function of the place, `(n, c)` for `n·x + c`, an element of `V*`.
 #[lagrangian(
     group = SE3,
@@ -16,7 +16,7 @@ use nalgebra::{Matrix4, Vector4};
     l_d = {
         let d = F - I;
         let before = d * origin;
-        let after = F.transpose() * before;
+        let after = inverse(F) * before;
         let rotation = (d * J * d.transpose()).trace() / (2.0 * h);
         let translation = (before.dot(&(M * before)) + after.dot(&(M * after))) / (4.0 * h);
         rotation + translation - 0.5 * h * w.dot(&(weight + F * weight))
@@ -28,8 +28,8 @@ pub struct UnderwaterBody {
     pub J: Matrix4<f64>,
     /// Mass of body and added mass in the upper left block, kg; zero elsewhere.
     pub M: Matrix4<f64>,
-    /// The centre that both are about, `(x, y, z, 1)`, body frame.
-    pub origin: Vector4<f64>,
+    /// The centre that both are about, body frame.
+    pub origin: Point3<f64>,
     /// Weight times its place less buoyancy times its place, N m, and below it weight less buoyancy, N.
     pub weight: Vector4<f64>,
     /// The height, in space: `(0, 0, 1, 0)`.

@@ -83,6 +83,8 @@ pub(crate) enum FieldKind {
     Scalar,
     /// Rows.
     Vector(usize),
+    /// Rows of the homogeneous coordinates, the last of which is one.
+    Point(usize),
     /// Rows, as many columns.
     Matrix(usize),
     /// An advected parameter with its kind in its type.
@@ -98,13 +100,14 @@ impl FieldKind {
     pub(crate) fn variance(self) -> Variance {
         match self {
             Self::Advected(variance, _) => variance,
+            Self::Point(_) => Variance::Vector,
             _ => Variance::Covector,
         }
     }
 
     /// Whether a group of matrices of this size can move it.
     pub(crate) fn is_carried_by(self, size: usize) -> bool {
-        matches!(self, Self::Vector(rows) | Self::Advected(_, rows) if rows == size)
+        matches!(self, Self::Vector(rows) | Self::Point(rows) | Self::Advected(_, rows) if rows == size)
     }
 
     /// Whether its value is wrapped in a type that says how the group moves it.
@@ -115,7 +118,7 @@ impl FieldKind {
     pub(crate) fn shape(self) -> Shape {
         match self {
             Self::Scalar => Shape::Scalar,
-            Self::Vector(rows) => Shape::Matrix(rows, 1),
+            Self::Vector(rows) | Self::Point(rows) => Shape::Matrix(rows, 1),
             Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
             Self::Matrix(rows) => Shape::Matrix(rows, rows),
             Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
@@ -206,7 +209,7 @@ pub(crate) enum Kind {
     Power(Rc<Tree>, i32),
     Apply(Function, Rc<Tree>),
     Vee(Rc<Tree>),
-    /// Of a parameter.
+    /// Of a parameter or of `F`.
     Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
     /// What a `let` has named.

@@ -22,6 +22,12 @@ impl Group {
         self.generators.len()
     }
 
+    /// Whether its elements are affine maps in homogeneous coordinates: their last row is that of the identity.
+    pub(crate) fn is_affine(&self) -> bool {
+        let last_row = self.size * self.size.saturating_sub(1);
+        self.generators.iter().all(|generator| generator.iter().skip(last_row).all(|entry| entry.is_zero()))
+    }
+
     /// A group that a user declares.
     pub(crate) fn declared(size: usize, generators: Vec<Vec<Rational>>) -> Self {
         let skew = |generator: &Vec<Rational>| {

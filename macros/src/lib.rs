@@ -39,14 +39,15 @@ mod verify;
 /// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
 /// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and four functions: `vee(A)`, the vector of
 /// `½ (A − Aᵀ)`; `log(F)`, the rotation vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a
-/// field. A large Lagrangian is best written with `let`s: what isn't cheaper multiplied out is differentiated through
+/// field or of `F`. A large Lagrangian is best written with `let`s: what isn't cheaper multiplied out is differentiated through
 /// them, by multipliers.
 ///
-/// The fields are `f64`, `Vector3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
+/// The fields are `f64`, `Vector3<f64>`, `Point3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
 /// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct.
-/// Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. An advected vector is a
-/// covector, moved by `ρ(f)ᵀ`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and `MixedTensor` are the
-/// other kinds.
+/// Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. A point, where the group
+/// moves points, stands for its homogeneous coordinates, `(x, y, z, 1)` on SE(3). An advected vector is a covector, moved
+/// by `ρ(f)ᵀ`; a point is moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and
+/// `MixedTensor` are the other kinds.
 ///
 /// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
 /// `body + potential`.

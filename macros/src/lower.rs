@@ -43,7 +43,7 @@ pub(crate) fn lower_without(
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
     let size = declaration.structure.size;
-    let structure = if declaration.structure.orthogonal { Structure::Orthogonal } else { Structure::General };
+    let structure = if declaration.structure.orthogonal { Structure::Rotation } else { Structure::General };
     let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
     let structure = weaker(Name::Increment, structure);
     let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
@@ -53,6 +53,7 @@ pub(crate) fn lower_without(
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
             FieldKind::Vector(_) | FieldKind::Advected(..) => (ambient(field.kind.shape()), Structure::General),
+            FieldKind::Point(rows) => ((rows, 1), Structure::Point),
             FieldKind::Matrix(rows) => ((rows, rows), Structure::General),
             FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
@@ -65,7 +66,9 @@ pub(crate) fn lower_without(
     for (index, w) in declaration.advected.iter().enumerate() {
         let kind = declaration.advected_kind(index);
         let shape = ambient(kind.shape());
-        let id = symbols.add(w.name.unraw().to_string(), shape, Structure::General, Stage::Step);
+        let structure = if matches!(kind, FieldKind::Point(_)) { Structure::Point } else { Structure::General };
+        let structure = weaker(Name::Advected(index), structure);
+        let id = symbols.add(w.name.unraw().to_string(), shape, structure, Stage::Step);
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }

@@ -64,7 +64,10 @@ pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors
         };
         errors.push(Span::call_site(), message);
     }
-    let (fields, unreadable) = fields(&item, errors);
+    let (mut fields, unreadable) = fields(&item, errors);
+    if errors.is_empty() {
+        points(&mut fields, &structure, errors);
+    }
     let scalar = scalar(&item, errors);
     let advected = advected(&arguments.advected, &fields, &unreadable, structure.size, errors);
     let has_names = matches!(item.fields, Fields::Named(_));
@@ -181,7 +184,7 @@ fn fields(item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<St
             unreadable.push(name.unraw().to_string());
             errors.push_over(
                 &field.ty,
-                "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Matrix3<f64>, NonstandardInertia, \
+                "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Point3<f64>, Matrix3<f64>, NonstandardInertia, \
                  DiagonalNonstandardInertia or Inertia (or the same with the struct's type parameter)",
             );
         }
@@ -204,6 +207,7 @@ fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     Some(match name.as_str() {
         "f64" | "f32" => FieldKind::Scalar,
         "Vector2" | "Vector3" | "Vector4" => FieldKind::Vector(digit(&name)?),
+        "Point1" | "Point2" | "Point3" => FieldKind::Point(digit(&name)? + 1),
         "Matrix2" | "Matrix3" | "Matrix4" => FieldKind::Matrix(digit(&name)?),
         "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
         "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
@@ -272,6 +276,29 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
+/// Points belong to the space that the group acts on; after a mistake they are taken for vectors of that space.
+fn points(fields: &mut [(Field, Span)], group: &crate::group::Group, errors: &mut Errors) {
+    for (field, span) in fields {
+        let FieldKind::Point(rows) = field.kind else { continue };
+        let (name, size) = (field.name.unraw(), group.size);
+        let message = if !group.is_affine() {
+            format!(
+                "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{size}<f64>"
+            )
+        } else if rows != size {
+            let (found, wanted) = (rows - 1, size - 1);
+            format!(
+                "`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: use \
+                 Point{wanted}<f64>"
+            )
+        } else {
+            continue;
+        };
+        errors.push(*span, message);
+        field.kind = FieldKind::Vector(size);
+    }
+}
+
 fn advected(
     pairs: &[(Ident, Ident)],
     fields: &[(Field, Span)],
@@ -299,6 +326,7 @@ fn advected(
         }
         if let Some((found, span)) = index.and_then(|index| fields.get(index))
             && !found.kind.is_carried_by(size)
+            && !matches!(found.kind, FieldKind::Point(_))
         {
             let shape = found.kind.shape().describe();
             let message = if found.kind.is_wrapped() {

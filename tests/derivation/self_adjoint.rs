@@ -2,8 +2,13 @@
 
 #![allow(dead_code)] // nothing here is stepped
 
-use liestep::{DiscreteLagrangian, Inertia, NonstandardInertia, SE3, SO3, lagrangian};
-use nalgebra::{Matrix4, Vector3};
+use liestep::{
+    ContravariantVector, DiscreteLagrangian, Effect as _, Inertia, LieGroup as _, NonstandardInertia, SE3, SO3,
+    lagrangian,
+};
+use nalgebra::{Matrix4, Point3, UnitQuaternion, Vector3, Vector4};
+
+use crate::declarations::{OrbitingBody, TetheredPlate};
 
 /// The kinetic term of (3.13) with all of the potential at one end.
 #[lagrangian(
@@ -78,6 +83,34 @@ struct AddedMass {
     a: f64,
 }
 
+/// A body whose point `p` is attracted by a point of space.
+#[lagrangian(
+    group = SE3,
+    advected(c = centre),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)
+        + 0.5 * h * k * (1.0 / (c - p).norm() + 1.0 / (c - F * p).norm()),
+)]
+struct Attracted {
+    J: Matrix4<f64>,
+    k: f64,
+    p: Point3<f64>,
+    centre: Point3<f64>,
+}
+
+/// The same with vectors, which don't promise to be points: `F` keeps no distance of vectors.
+#[lagrangian(
+    group = SE3,
+    advected(c = centre),
+    l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)
+        + 0.5 * h * k * (1.0 / (c - p).norm() + 1.0 / (c - F * p).norm()),
+)]
+struct AttractedVector {
+    J: Matrix4<f64>,
+    k: f64,
+    p: Vector4<f64>,
+    centre: ContravariantVector<f64, 4>,
+}
+
 /// The same at the beginning and at the end, in equal parts.
 #[lagrangian(
     group = SE3,
@@ -109,14 +142,46 @@ fn it_is_found_by_the_normal_forms() {
 
 #[test]
 fn it_is_found_at_random_points() {
-    let words = "= −l_d(F⁻¹, F⁻¹·w, −h)    [at random points, to rounding";
-    assert_eq!([found::<Body>(words), found::<SymmetricAddedMass>(words)], [Some(true); 2]);
+    let words = "= −l_d(F⁻¹, F⁻¹·w, −h)    [at random points of the field of 2⁶¹ − 1 elements";
+    assert_eq!([found::<Body>(words), found::<SymmetricAddedMass>(words), found::<Attracted>(words)], [Some(true); 3]);
+    assert_eq!([found::<OrbitingBody>(words), found::<TetheredPlate>(words)], [Some(true); 2]);
 }
 
 #[test]
 fn it_is_missing() {
     let words = "≠ −l_d(F⁻¹, F⁻¹·w, −h)    [at random points";
     assert_eq!([found::<OneEnd>(words), found::<AddedMass>(words)], [Some(false); 2]);
+    let words = "≠ −l_d(F⁻¹, F⁻¹·w, −h)    [equal, at random points, if all vectors have 1 for their last coordinate";
+    assert_eq!(found::<AttractedVector>(words), Some(false));
+}
+
+/// The promise is among the hypotheses, where it is used: of the four coordinates three are left.
+#[test]
+fn points_are_a_hypothesis() {
+    assert!(Attracted::DERIVATION.contains("p₄ = 1, c₄ = 1"), "{}", Attracted::DERIVATION);
+    assert!(!AttractedVector::DERIVATION.contains("₄ = 1"));
+}
+
+/// The value of a point is that of the vector of its homogeneous coordinates.
+#[test]
+fn points_are_homogeneous_vectors() {
+    let J = Matrix4::from_diagonal(&Vector4::new(1.0, 2.0, 3.0, 1.5));
+    let (p, centre) = (Point3::new(0.3, -0.2, 0.5), Point3::new(2.0, 1.0, -1.5));
+    let points = Attracted { J, k: 2.0, p, centre };
+    let vectors =
+        AttractedVector { J, k: 2.0, p: p.to_homogeneous(), centre: ContravariantVector(centre.to_homogeneous()) };
+    let f = SE3::from_rotation_and_translation(UnitQuaternion::new(p.coords), Vector3::new(0.1, 0.7, -0.4)).matrix();
+    let moved = ContravariantVector(f * vectors.centre.0);
+    let [of_points, of_vectors] = [
+        [
+            points.legendre_minus(&f, &f.transform_point(&centre), 0.1),
+            points.legendre_plus(&f, &f.transform_point(&centre), 0.1),
+        ],
+        [vectors.legendre_minus(&f, &moved, 0.1), vectors.legendre_plus(&f, &moved, 0.1)],
+    ];
+    for (a, b) in of_points.iter().zip(of_vectors) {
+        assert!((a - b).norm() < 1e-13 * b.norm(), "{a} {b}");
+    }
 }
 
 /// The words are those of the declared function.

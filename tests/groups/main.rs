@@ -11,6 +11,7 @@ mod declarations;
 mod built_in_groups;
 mod laws;
 mod laws_can_fail;
+mod points;
 mod retraction_laws;
 mod so3_laws;
 mod user_group;

@@ -43,10 +43,11 @@ macro_rules! family {
                 let d = F - I;
                 let kinetic = (d * J * d.transpose()).trace() / (2.0 * h);
                 let gauge = 0.3 * a[0] * (A * d).trace() + 0.3 * a[1] * w.dot(&(d * r)) + 0.3 * a[2] * w.dot(&(d * v));
+                let backwards = 0.3 * c[2] * (A * (inverse(F) - I)).trace() + h * c[3] * w.dot(&(inverse(F) * r));
                 let forms = b[0] * w.dot(&(A * w)) + b[1] * w.dot(&(F * r)).powi(2) + b[2] * v.dot(&(A * v));
                 let products = a[3] * (A * F).trace() * w.dot(&r) + b[3] * w.dot(&(F * v));
                 let smooth = c[0] * (w.dot(&(F * r)) + w.dot(&r)).sin() + c[1] * (1.0 + v.dot(&r).powi(2)).sqrt();
-                kinetic + gauge - 0.5 * h * (forms + products + smooth)
+                kinetic + gauge + backwards - 0.5 * h * (forms + products + smooth)
             },
         )]
         #[derive(Clone, Debug)]

@@ -7,6 +7,7 @@ mod common;
 #[path = "../../examples/declarations/mod.rs"]
 mod declarations;
 
+mod composition;
 mod continuous;
 mod energy;
 mod momenta;

@@ -4,8 +4,8 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::{CovariantTensor, LieGroup as _, SE3, SL2, lagrangian};
-use nalgebra::{Matrix2, Matrix3, Matrix4, Vector3, Vector4};
+use liestep::{CovariantTensor, DiscreteLagrangian, LieGroup as _, SE3, SL2, lagrangian};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
 
 use crate::common::measure::order;
 use crate::common::structure::reversal;
@@ -28,7 +28,7 @@ use crate::samples;
 struct OneSidedUnderwaterBody {
     J: Matrix4<f64>,
     M: Matrix4<f64>,
-    origin: Vector4<f64>,
+    origin: Point3<f64>,
     weight: Vector4<f64>,
     height: Vector4<f64>,
 }
@@ -46,6 +46,9 @@ struct OneSidedElasticFlow {
     k: f64,
     metric: CovariantTensor<f64, 2>,
 }
+
+// What a composition asks for when it is compiled: these have none.
+const _: () = assert!(!OneSidedUnderwaterBody::SELF_ADJOINT && !OneSidedElasticFlow::SELF_ADJOINT);
 
 fn assert_first_order(errors: &[(f64, f64)]) {
     let order = order(errors, PLATEAU);

@@ -4,11 +4,12 @@
 #![allow(non_snake_case)]
 
 use liestep::{LieGroup as _, SL2, Stepper};
-use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3};
 
 use crate::common::measure::{four_halvings, order, relative, steps_in};
 use crate::common::structure::System;
 use crate::continuous::{Body, Phase};
+use crate::declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
 use crate::samples::{self, Start};
 
 /// Above what a thousand steps of the Runge–Kutta method leave of systems with rates of a few per second.
@@ -119,19 +120,24 @@ fn satellite() {
     });
 }
 
-/// Rotation and translation of a body with the first moment `s = ∫ X dm`: `½ Ω·𝕀Ω + Ω·(s × v) + ½ m v²`.
 #[test]
 fn orbiting_body() {
     let body = samples::orbiting_body();
+    let (inertia, potential) = orbit(&body);
+    assert_second_order(&body, inertia, samples::in_orbit(), potential);
+}
+
+/// Rotation and translation of a body with the first moment `s = ∫ X dm`: `½ Ω·𝕀Ω + Ω·(s × v) + ½ m v²`.
+pub(crate) fn orbit(body: &OrbitingBody) -> (SMatrix<f64, 6, 6>, impl Fn(&Matrix4<f64>) -> f64 + use<'_>) {
     let first: Vector3<f64> = body.J.fixed_view::<3, 1>(0, 3).into_owned();
     let mut inertia = SMatrix::<f64, 6, 6>::identity() * body.J[(3, 3)];
     inertia.fixed_view_mut::<3, 3>(0, 0).copy_from(&ordinary(&rotation(&body.J)));
     inertia.fixed_view_mut::<3, 3>(0, 3).copy_from(&first.cross_matrix());
     inertia.fixed_view_mut::<3, 3>(3, 0).copy_from(&-first.cross_matrix());
-    assert_second_order(&body, inertia, samples::in_orbit(), |g| {
-        let distance = |p: Vector4<f64>| (g * p - body.centre.0).norm();
+    (inertia, move |g| {
+        let distance = |p: Point3<f64>| (g.transform_point(&p) - body.centre).norm();
         -body.GM * (body.m1 / distance(body.p1) + body.m2 / distance(body.p2))
-    });
+    })
 }
 
 #[test]
@@ -158,10 +164,8 @@ fn underwater_body() {
 }
 
 /// The velocity of the centre `c` is `v + Ω × c = v − ĉ Ω`, and `½ Ω·𝕀Ω` and `½ v_c·M v_c` add.
-pub(crate) fn kirchhoff(
-    body: &crate::declarations::UnderwaterBody,
-) -> (SMatrix<f64, 6, 6>, impl Fn(&Matrix4<f64>) -> f64 + use<>) {
-    let centre: Vector3<f64> = body.origin.fixed_rows::<3>(0).into_owned();
+pub(crate) fn kirchhoff(body: &UnderwaterBody) -> (SMatrix<f64, 6, 6>, impl Fn(&Matrix4<f64>) -> f64 + use<>) {
+    let centre = body.origin.coords;
     let mut velocity_of_centre = SMatrix::<f64, 3, 6>::zeros();
     velocity_of_centre.fixed_view_mut::<3, 3>(0, 0).copy_from(&-centre.cross_matrix());
     velocity_of_centre.fixed_view_mut::<3, 3>(0, 3).copy_from(&Matrix3::identity());
@@ -172,16 +176,19 @@ pub(crate) fn kirchhoff(
     (inertia, move |g| (rotation(g) * lever).z + net * g[(2, 3)])
 }
 
-/// A planar body with the first moment `s`: the velocity of `X` is `v + ω (−X_2, X_1)`.
 #[test]
 fn tethered_plate() {
     let body = samples::tethered_plate();
+    let (inertia, potential) = tether(&body);
+    assert_second_order(&body, inertia, samples::on_se2(), potential);
+}
+
+/// A planar body with the first moment `s`: the velocity of `X` is `v + ω (−X_2, X_1)`.
+pub(crate) fn tether(body: &TetheredPlate) -> (Matrix3<f64>, impl Fn(&Matrix3<f64>) -> f64 + use<'_>) {
     let (J, m) = (body.J, body.J[(2, 2)]);
     let (first, second) = (J[(0, 2)], J[(1, 2)]);
     let inertia = Matrix3::new(J[(0, 0)] + J[(1, 1)], -second, first, -second, m, 0.0, first, 0.0, m);
-    assert_second_order(&body, inertia, samples::on_se2(), |g| {
-        0.5 * body.k * ((g * body.p - body.anchor.0).norm() - body.length).powi(2)
-    });
+    (inertia, move |g| 0.5 * body.k * ((g.transform_point(&body.p) - body.anchor).norm() - body.length).powi(2))
 }
 
 #[test]

@@ -3,10 +3,10 @@
 // The letters of the field.
 #![allow(non_snake_case, unreachable_pub)]
 
-use liestep::{
-    ContravariantVector, CovariantTensor, DiagonalNonstandardInertia, Inertia, NonstandardInertia, SE2, SE3, SL2, SO3,
+use liestep::{CovariantTensor, DiagonalNonstandardInertia, Inertia, NonstandardInertia, SE2, SE3, SL2, SO3};
+use nalgebra::{
+    Matrix2, Matrix3, Matrix4, Point2, Point3, SVector, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6,
 };
-use nalgebra::{Matrix2, Matrix3, Matrix4, SVector, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6};
 
 use crate::declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
@@ -123,11 +123,12 @@ pub fn satellite() -> Satellite {
 
 pub fn orbiting_body() -> OrbitingBody {
     let (m1, m2) = (0.8, 0.5);
-    let (p1, p2) = (Vector4::new(0.2, 0.1, 0.3, 1.0), Vector4::new(-0.25, 0.1, -0.35, 1.0));
+    let (p1, p2) = (Point3::new(0.2, 0.1, 0.3), Point3::new(-0.25, 0.1, -0.35));
     // Both masses, and a light frame about the origin.
     let own = Matrix4::from_diagonal(&Vector4::new(0.3, 0.2, 0.1, 0.3));
-    let J = own + m1 * p1 * p1.transpose() + m2 * p2 * p2.transpose();
-    let centre = ContravariantVector(Vector4::new(4.5, 2.0, -3.0, 1.0));
+    let moment = |p: Point3<f64>| p.to_homogeneous() * p.to_homogeneous().transpose();
+    let J = own + m1 * moment(p1) + m2 * moment(p2);
+    let centre = Point3::new(4.5, 2.0, -3.0);
     OrbitingBody { J, m1, p1, m2, p2, GM: 6.0, centre }
 }
 
@@ -150,7 +151,7 @@ pub fn underwater_body() -> UnderwaterBody {
     UnderwaterBody {
         J: Matrix4::from_diagonal(&Vector4::new(1.2, 0.8, 0.5, 0.0)),
         M: Matrix4::from_diagonal(&Vector4::new(1.0, 1.8, 3.0, 0.0)),
-        origin: Vector4::new(0.1, 0.0, -0.2, 1.0),
+        origin: Point3::new(0.1, 0.0, -0.2),
         weight: Vector4::new(0.2, -0.1, -1.5, 0.6),
         height: Vector4::z(),
     }
@@ -161,8 +162,8 @@ pub fn tethered_plate() -> TetheredPlate {
         J: Matrix3::new(0.8, 0.1, 0.2, 0.1, 0.5, -0.1, 0.2, -0.1, 1.5),
         k: 6.0,
         length: 0.8,
-        p: Vector3::new(0.4, -0.3, 1.0),
-        anchor: ContravariantVector(Vector3::new(1.5, 1.0, 1.0)),
+        p: Point2::new(0.4, -0.3),
+        anchor: Point2::new(1.5, 1.0),
     }
 }
 

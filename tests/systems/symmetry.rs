@@ -5,7 +5,7 @@
 #![allow(non_snake_case)]
 
 use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Inertia, NonstandardInertia, Stepper};
-use nalgebra::{Matrix2, Matrix3, Matrix4, SVector, Vector3, Vector4};
+use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, SVector, Vector3, Vector4};
 
 use crate::common::structure::System;
 use crate::common::structure::symmetry::{drift, symmetries};
@@ -136,7 +136,7 @@ fn bodies_with_an_axis() {
         Matrix4::from_diagonal(&Vector4::new(0.9, 0.9, 0.5, 0.0)),
         Matrix4::from_diagonal(&Vector4::new(1.0, 1.0, 3.0, 0.0)),
     );
-    (body.origin, body.weight) = (Vector4::new(0.0, 0.0, -0.2, 1.0), Vector4::new(0.0, 0.0, -1.5, 0.6));
+    (body.origin, body.weight) = (Point3::new(0.0, 0.0, -0.2), Vector4::new(0.0, 0.0, -1.5, 0.6));
     assert_component(body, samples::on_se3(), 2);
     let mut flow = samples::elastic_flow();
     flow.M = Matrix2::identity();

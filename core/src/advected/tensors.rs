@@ -12,7 +12,7 @@ use crate::scalar::{Real, is_finite};
 
 /// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
 ///
-/// On SE(3) with `N = 4` a point `(p, 1)` or a direction `(d, 0)`.
+/// On SE(3) with `N = 4` for example a direction `(d, 0)`. A point is better declared as one, by nalgebra's `Point3`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContravariantVector<T, const N: usize>(pub SVector<T, N>);
 
@@ -28,8 +28,8 @@ pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
-/// `E = −F⁻¹D`.
-fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
+/// `F⁻¹ − I = −F⁻¹D`.
+pub fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
 where
     G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
 {

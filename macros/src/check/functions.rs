@@ -61,6 +61,8 @@ impl Checker<'_> {
         at: proc_macro2::Span,
     ) -> Option<Rc<Tree>> {
         match (&argument.kind, shape) {
+            // The group knows the inverses of its elements.
+            (Kind::Name(Name::Increment), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
             (_, Shape::Matrix(rows, columns)) if rows != columns || rows > 3 => {
                 self.mismatch("inverse", "a matrix of up to 3 × 3", shape, at)
             }
@@ -69,12 +71,8 @@ impl Checker<'_> {
                 None
             }
             (Kind::Name(Name::Field(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
-            (Kind::Name(Name::Increment), _) if self.declaration.structure.orthogonal => {
-                self.errors.push(at, "the inverse of `F` is `F.transpose()`");
-                None
-            }
             _ => {
-                self.errors.push(at, "`inverse` takes a field of the struct: make this matrix a field");
+                self.errors.push(at, "`inverse` takes `F` or a field of the struct: make this matrix a field");
                 None
             }
         }

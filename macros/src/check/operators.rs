@@ -59,7 +59,10 @@ impl Checker<'_> {
                     let shape = right.shape.describe();
                     self.errors.push(
                         operator,
-                        format!("only a scalar can divide, and this is {shape}: the inverse of `F` is `F.transpose()`"),
+                        format!(
+                            "only a scalar can divide, and this is {shape}: multiply by `inverse(F)`, or by that of a \
+                             field"
+                        ),
                     );
                     return None;
                 }

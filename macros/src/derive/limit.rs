@@ -105,6 +105,7 @@ fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {
 }
 
 fn at_identity(context: &Context, expression: &Expression) -> Expression {
-    let map = BTreeMap::from([(context.declared.increment, Expression::identity(context.declared.group.size))]);
+    let identity = Expression::identity(context.declared.group.size);
+    let map = BTreeMap::from([(context.declared.increment, identity.clone()), (context.directions.inverse, identity)]);
     context.substituted(expression, &map)
 }

@@ -53,6 +53,8 @@ pub(crate) struct Directions {
     pub(crate) small: SymbolId,
     /// `F⁻¹`.
     pub(crate) inverse: SymbolId,
+    /// `D⁻ = F⁻¹ − I`.
+    pub(crate) small_inverse: SymbolId,
     /// The Cayley vector `y` of `F = cay(2y)`.
     pub(crate) coordinates: SymbolId,
     /// `1 + |y|²`, the denominator of the Cayley map.
@@ -242,6 +244,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         second: algebra(symbols, "E_j"),
         target: column(symbols, "a", dimension, Stage::Step),
         small: symbols.add("D", (size, size), Structure::General, Stage::Iteration),
+        small_inverse: symbols.add("D⁻", (size, size), Structure::General, Stage::Iteration),
         coordinates: column(symbols, "y", dimension, Stage::Iteration),
         denominator: symbols.add("(1 + |y|²)", (1, 1), Structure::General, Stage::Iteration),
         coordinate_direction: column(symbols, "δy", dimension, Stage::Construction),
@@ -253,7 +256,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
             .map(|&(w, variance)| {
                 let name = format!("{}⁺", symbols.get(w).name);
                 let columns = if variance.is_tensor() { size } else { 1 };
-                symbols.add(name, (size, columns), Structure::General, Stage::Step)
+                symbols.add(name, (size, columns), symbols.get(w).structure, Stage::Step)
             })
             .collect(),
     }

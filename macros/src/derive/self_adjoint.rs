@@ -11,10 +11,12 @@ use crate::symbolic::{Expression, Rational};
 pub(crate) enum SelfAdjointness {
     /// The normal forms are equal.
     Symbolic,
-    /// The values are equal at all sample points, to rounding.
+    /// The values are equal at random points of a finite field, where nothing is rounded.
+    Exact,
+    /// The values are equal at all sample points, to rounding, and the field doesn't say.
     Numeric,
-    /// The values differ, but not where all vectors are points with one for their last coordinate, which no type
-    /// promises.
+    /// The values differ, but not where all vectors have one for their last coordinate, which the types of points
+    /// promise and theirs don't.
     ForPoints,
     /// The values differ.
     No,
@@ -24,7 +26,7 @@ pub(crate) enum SelfAdjointness {
 
 impl SelfAdjointness {
     pub(crate) fn is_found(self) -> bool {
-        matches!(self, Self::Symbolic | Self::Numeric)
+        matches!(self, Self::Symbolic | Self::Exact | Self::Numeric)
     }
 }
 
@@ -39,6 +41,7 @@ pub(super) fn defect(context: &Context) -> Expression {
     let inverse = Expression::inverse(declared.increment, context.symbols);
     let mut map = BTreeMap::from([
         (declared.increment, inverse.clone()),
+        (context.directions.inverse, f.clone()),
         (declared.step, context.symbol(declared.step).scaled(-Rational::ONE)),
     ]);
     for &(w, variance) in &declared.advected {

@@ -87,8 +87,9 @@ pub(super) struct Expansion<'a> {
 impl<'a> Expansion<'a> {
     pub(super) fn new(context: &'a Context, velocity: SymbolId, scratch: SymbolId) -> Result<Self, LimitError> {
         let mut expansion = Self { context, velocity, scratch, known: BTreeMap::new() };
-        let increment = expansion.exponential();
+        let [increment, inverse] = [Rational::ONE, -Rational::ONE].map(|sign| expansion.exponential(sign));
         expansion.known.insert(context.declared.increment, increment);
+        expansion.known.insert(context.directions.inverse, inverse);
         let h = Series::constant(Expression::identity(1)).shifted(1);
         expansion.known.insert(context.declared.step, h);
         for one in &context.declared.lets {
@@ -98,9 +99,9 @@ impl<'a> Expansion<'a> {
         Ok(expansion)
     }
 
-    /// `I + h ξ̂ + h² ξ̂²/2 + …`.
-    fn exponential(&self) -> Series {
-        let xi = self.context.symbol(self.velocity);
+    /// `I ± h ξ̂ + h² ξ̂²/2 ± …`.
+    fn exponential(&self, sign: Rational) -> Series {
+        let xi = self.context.symbol(self.velocity).scaled(sign);
         let identity = Expression::identity(self.context.declared.group.size);
         let mut series = Series::constant(identity.clone());
         let mut power = identity;
@@ -165,6 +166,10 @@ impl<'a> Expansion<'a> {
         let inner = |word: &[Factor]| Ok(self.word(word)?.unwrap_or_else(Series::one));
         Ok(match factor {
             Factor::Symbol { id, transposed } => turned(self.symbol(*id), *transposed),
+            Factor::Inverse { id, transposed } if symbols.inverse_of(*id).is_some() => {
+                let inverse = symbols.inverse_of(*id).unwrap_or(*id);
+                turned(self.symbol(inverse), *transposed)
+            }
             Factor::Inverse { .. } | Factor::Unit { .. } => {
                 let mut value = Expression::zero(factor.shape(symbols));
                 value.add_term(

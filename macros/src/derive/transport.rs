@@ -48,7 +48,7 @@ pub(super) fn previous(context: &Context) -> Vec<(SymbolId, Expression)> {
     moved.collect()
 }
 
-/// With `F = I + D`; as it is where that would multiply the terms.
+/// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.
 pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
     let increment = context.declared.increment;
     // Each F becomes two terms.
@@ -57,6 +57,12 @@ pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Exp
     if terms.fold(0, usize::saturating_add) > 4 * unknown.len() + 16 {
         return unknown.clone();
     }
-    let small = Expression::identity(context.declared.group.size).plus(context.symbol(context.directions.small));
-    context.substituted(unknown, &BTreeMap::from([(increment, small)]))
+    let identity = Expression::identity(context.declared.group.size);
+    let near_identity = |small| identity.clone().plus(context.symbol(small));
+    let directions = context.directions;
+    let map = BTreeMap::from([
+        (increment, near_identity(directions.small)),
+        (directions.inverse, near_identity(directions.small_inverse)),
+    ]);
+    context.substituted(unknown, &map)
 }

@@ -165,12 +165,17 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
 fn adjoint(found: SelfAdjointness) -> String {
     let (sign, how, consequence) = match found {
         SelfAdjointness::Symbolic => ("=", "by the normal forms", "even order; a step of −h undoes a step of h"),
+        SelfAdjointness::Exact => (
+            "=",
+            "at random points of the field of 2⁶¹ − 1 elements, wrong with a probability below 2⁻⁵⁰",
+            "even order; a step of −h undoes a step of h",
+        ),
         SelfAdjointness::Numeric => {
             ("=", "at random points, to rounding", "even order; a step of −h undoes a step of h")
         }
         SelfAdjointness::ForPoints => (
             "≠",
-            "equal, at random points, if all vectors have 1 for their last coordinate, which no type promises",
+            "equal, at random points, if all vectors have 1 for their last coordinate, as the types of points promise",
             "with such vectors even order, and a step of −h undoes a step of h",
         ),
         SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),

@@ -65,7 +65,11 @@ impl Header {
     }
 
     fn advected_type(&self, kind: FieldKind) -> TokenStream {
-        let FieldKind::Advected(variance, rows) = kind else { return self.column(self.size) };
+        let (variance, rows) = match kind {
+            FieldKind::Advected(variance, rows) => (variance, rows),
+            FieldKind::Point(rows) => return self.point(rows - 1),
+            _ => return self.column(self.size),
+        };
         let name = match variance {
             Variance::Vector | Variance::Covector => "ContravariantVector",
             Variance::Contravariant => "ContravariantTensor",
@@ -75,6 +79,11 @@ impl Header {
         let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
         let name = Ident::new(name, Span::mixed_site());
         quote_spanned!(Span::mixed_site()=> #root::#name<#scalar, #rows>)
+    }
+
+    fn point(&self, coordinates: usize) -> TokenStream {
+        let (root, scalar, coordinates) = (&self.root, &self.scalar, Literal::usize_unsuffixed(coordinates));
+        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Point<#scalar, #coordinates>)
     }
 
     fn matrix_of(&self, rows: usize) -> TokenStream {

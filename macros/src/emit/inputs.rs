@@ -35,6 +35,9 @@ impl Emitter<'_> {
         if input.symbol == directions.small {
             return entry(&quote_spanned!(span=> increment), input);
         }
+        if input.symbol == directions.small_inverse {
+            return entry(&quote_spanned!(span=> inverse_increment), input);
+        }
         if input.symbol == directions.inverse {
             return entry(&quote_spanned!(span=> inverse), input);
         }
@@ -56,7 +59,12 @@ impl Emitter<'_> {
             let index = syn::Index::from(index);
             quote_spanned!(span=> #all.#index)
         };
-        if self.declaration.advected_kind(index).is_wrapped() { quote_spanned!(span=> #part.0) } else { part }
+        match self.declaration.advected_kind(index) {
+            FieldKind::Advected(..) => quote_spanned!(span=> #part.0),
+            // The last coordinate is a constant before.
+            FieldKind::Point(_) => quote_spanned!(span=> #part.coords),
+            _ => part,
+        }
     }
 
     fn field_entry(&self, index: usize, input: Input) -> TokenStream {
@@ -69,6 +77,7 @@ impl Emitter<'_> {
             FieldKind::Vector(_) | FieldKind::Matrix(_) | FieldKind::Advected(..) => {
                 place(quote_spanned!(span=> self.#name))
             }
+            FieldKind::Point(_) => place(quote_spanned!(span=> self.#name.coords)),
             FieldKind::SymmetricInertia => place(quote_spanned!(span=> self.#name.as_matrix())),
             FieldKind::DiagonalInertia => {
                 let diagonal = Input { column: 0, ..input };

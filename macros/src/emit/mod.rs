@@ -167,6 +167,9 @@ impl Emitter<'_> {
             Form::Square => (square(&mut graph, d, &none, expression), self.header.square()),
         };
         let documentation = docs::of(equations, name, &graph, &outputs);
+        let inverse = stages::uses(&graph, &outputs, d.directions.inverse).then(
+            || quote_spanned!(span=> let inverse = #root::__private::inverse_of::<<Self as #root::Effect>::Group>(*f);),
+        );
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
@@ -178,7 +181,7 @@ impl Emitter<'_> {
         };
         quote_spanned! {span=>
             #[doc = #documentation]
-            fn #name(&self, #arguments) -> #result { #body }
+            fn #name(&self, #arguments) -> #result { #inverse #body }
         }
     }
 

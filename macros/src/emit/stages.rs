@@ -8,7 +8,7 @@ use quote::quote_spanned;
 use super::Emitter;
 use super::code::{Form, needed};
 use crate::scalar::{Graph, Kernel, Node, NodeId};
-use crate::symbolic::Stage;
+use crate::symbolic::{Stage, SymbolId};
 
 /// The methods of the stages, and the arrays that pass values between them.
 pub(super) struct Stages {
@@ -54,15 +54,17 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     // Off SO(3) the system is written in F, and the retraction's tangent brings its Jacobian to the coordinates.
     let (increment, jacobian) = if kernel.in_increment {
         let increment = quote_spanned!(span=> let increment = #retraction::increment_of_half(half););
-        (increment, quote_spanned!(span=> (#jacobian) * #retraction::tangent_of_half(half)))
+        let inverse = uses(graph, &system, emitter.derived.directions.small_inverse).then(|| {
+            quote_spanned!(span=> let inverse_increment = #root::__private::inverse_increment::<Self::Group, _, _>(&increment);)
+        });
+        (
+            quote_spanned!(span=> #increment #inverse),
+            quote_spanned!(span=> (#jacobian) * #retraction::tangent_of_half(half)),
+        )
     } else {
         (TokenStream::new(), jacobian)
     };
-    let inverse = emitter.derived.directions.inverse;
-    let needs_inverse = needed(graph, &kernel.kick_after, &|_| None)
-        .into_iter()
-        .any(|id| matches!(graph.node(id), Node::Input(entry) if entry.symbol == inverse));
-    let inverse = needs_inverse.then(|| {
+    let inverse = uses(graph, &kernel.kick_after, emitter.derived.directions.inverse).then(|| {
         let group = quote_spanned!(span=> <Self::Group as #root::LieGroup>);
         quote_spanned! {span=>
             let inverse = #group::matrix(&#group::inverse(&#group::from_increment(increment)));
@@ -204,6 +206,12 @@ fn input(emitter: &Emitter, graph: &Graph, id: NodeId) -> Option<TokenStream> {
 fn slot(slots: &BTreeMap<NodeId, usize>, id: NodeId, array: &str) -> Option<TokenStream> {
     let (array, index) = (syn::Ident::new(array, Span::mixed_site()), Literal::usize_unsuffixed(*slots.get(&id)?));
     Some(quote_spanned!(Span::mixed_site()=> #array[#index]))
+}
+
+/// Whether the outputs need an entry of a symbol.
+pub(super) fn uses(graph: &Graph, outputs: &[NodeId], symbol: SymbolId) -> bool {
+    let mut nodes = needed(graph, outputs, &|_| None).into_iter();
+    nodes.any(|id| matches!(graph.node(id), Node::Input(entry) if entry.symbol == symbol))
 }
 
 /// The nodes of one stage that a later stage uses, in order, with their places in an array.

@@ -43,8 +43,11 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
-        let is_wrapped = declaration.advected_kind(index).is_wrapped();
-        let value = if is_wrapped { quote_spanned!(span=> #part.0) } else { part };
+        let value = match declaration.advected_kind(index) {
+            FieldKind::Advected(..) => quote_spanned!(span=> #part.0),
+            FieldKind::Point(_) => quote_spanned!(span=> #root::__private::Parameter::value(&#part)),
+            _ => part,
+        };
         bind(&parameter.name.unraw().to_string(), value);
     }
     for field in &declaration.fields {
@@ -130,11 +133,25 @@ impl VisitMut for Rewrite<'_> {
         // A path, as one closure can't be for matrices of several sizes.
         if matches!(&*call.func, Expr::Path(path) if path.path.is_ident("inverse")) {
             let root = &self.header.root;
-            *call.func = syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::inverse);
+            *call.func = if call.args.first().is_some_and(is_increment) {
+                syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::inverse_of::<<Self as #root::Effect>::Group>)
+            } else {
+                syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::inverse)
+            };
         }
     }
 
     fn visit_member_mut(&mut self, _: &mut syn::Member) {}
+}
+
+/// Whether it is `F`.
+fn is_increment(expression: &Expr) -> bool {
+    match expression {
+        Expr::Path(path) => path.path.is_ident("F"),
+        Expr::Paren(inner) => is_increment(&inner.expr),
+        Expr::Group(inner) => is_increment(&inner.expr),
+        _ => false,
+    }
 }
 
 /// An identifier for a name that may be a keyword.

@@ -142,7 +142,8 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     let in_increment = !derived.group.is_so3;
     let mut moved = Vec::new();
     if in_increment {
-        let given = with_lets(&mut graph, derived, increment);
+        let given = with_inverse(&mut graph, derived, increment);
+        let given = with_lets(&mut graph, derived, given);
         let outputs = system(&mut graph, derived, &given);
         add(&graph, "in F", 0, outputs);
     } else {
@@ -198,12 +199,27 @@ fn by_increment(
 ) -> Given {
     let size = derived.group.size;
     let small = Entries::new(size, size, |row, column| entry(graph, row, column));
+    let f = plus_identity(graph, &small);
+    BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
+}
+
+/// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
+fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+    let (size, directions) = (derived.group.size, &derived.directions);
+    let small = Entries::new(size, size, |row, column| {
+        graph.input(Input { symbol: directions.small_inverse, row, column }, Stage::Iteration)
+    });
+    let inverse = plus_identity(graph, &small);
+    given.extend([(directions.small_inverse, small), (directions.inverse, inverse)]);
+    given
+}
+
+fn plus_identity(graph: &mut Graph, small: &Entries) -> Entries {
     let one = graph.one();
-    let f = Entries::new(size, size, |row, column| {
+    Entries::new(small.rows, small.columns, |row, column| {
         let entry = small.at(row, column);
         if row == column { graph.add(entry, one) } else { entry }
-    });
-    BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
+    })
 }
 
 /// `(h/2) (U(F) − a)` and its derivatives along `E_j`, with `F`, `D` and the `let`s given.

@@ -109,6 +109,9 @@ impl Scalariser<'_> {
             if structure == Structure::Diagonal && row != column {
                 return graph.zero();
             }
+            if structure == Structure::Point && row == rows - 1 {
+                return graph.one();
+            }
             let (row, column) =
                 if structure.is_symmetric() { (row.min(column), row.max(column)) } else { (row, column) };
             graph.input(Input { symbol: id, row, column }, stage)

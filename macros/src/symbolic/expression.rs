@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::functions::Function;
 use super::rational::Rational;
-use super::symbols::{Stage, Structure, SymbolId, Symbols};
+use super::symbols::{Stage, SymbolId, Symbols};
 use super::word::{self, Factor};
 
 /// Larger ones are on their way to where exponents saturate.
@@ -82,7 +82,7 @@ impl Expression {
     /// The inverse of a group element.
     pub(crate) fn inverse(id: SymbolId, symbols: &Symbols) -> Self {
         let symbol = symbols.get(id);
-        let factor = if symbol.structure == Structure::Orthogonal {
+        let factor = if symbol.structure.is_orthogonal() {
             Factor::Symbol { id, transposed: true }
         } else {
             Factor::Inverse { id, transposed: false }
@@ -380,11 +380,4 @@ pub(crate) fn degree(monomial: &Monomial, symbol: SymbolId) -> usize {
         inside.saturating_mul(usize::try_from(exponent.unsigned_abs()).unwrap_or(usize::MAX))
     });
     scalars.fold(of_word(&monomial.word), usize::saturating_add)
-}
-
-impl Structure {
-    /// Whether `Sᵀ = S`.
-    pub(crate) fn is_symmetric(self) -> bool {
-        matches!(self, Self::Symmetric | Self::Diagonal)
-    }
 }

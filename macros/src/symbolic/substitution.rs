@@ -6,7 +6,8 @@ use super::expression::{Atom, Expression, Monomial};
 use super::symbols::{SymbolId, Symbols};
 use super::word::Factor;
 
-/// The expression with every symbol of the map replaced, in normal form again.
+/// The expression with every symbol of the map replaced, in normal form again. A matrix and its inverse are replaced each
+/// for itself, the inverse by what the map has for the [symbol](Symbols::inverse_of) of its entries.
 pub(crate) fn substitute(
     expression: &Expression,
     map: &BTreeMap<SymbolId, Expression>,
@@ -58,7 +59,13 @@ fn factor_image(factor: &Factor, map: &BTreeMap<SymbolId, Expression>, symbols: 
             Some(image) => image.clone(),
             None => single(factor, symbols),
         },
-        Factor::Unit { .. } | Factor::Inverse { .. } => single(factor, symbols),
+        // An inverse is replaced where its own symbol is.
+        Factor::Inverse { id, transposed } => match symbols.inverse_of(*id).and_then(|inverse| map.get(&inverse)) {
+            Some(image) if *transposed => image.transpose(symbols),
+            Some(image) => image.clone(),
+            None => single(factor, symbols),
+        },
+        Factor::Unit { .. } => single(factor, symbols),
         Factor::Hat(word) => inner(word).hat(symbols),
         Factor::Diagonal(word) => inner(word).diagonal(symbols),
         Factor::Vee { word, transposed } => {

@@ -15,8 +15,23 @@ pub(crate) enum Structure {
     Diagonal,
     /// `Aᵀ = −A`: an algebra element of an orthogonal group.
     Skew,
-    /// `FᵀF = FFᵀ = I`, `det F = 1`.
+    /// A vector whose last entry is one.
+    Point,
+    /// `FᵀF = FFᵀ = I`.
     Orthogonal,
+    /// The same with `det F = 1`.
+    Rotation,
+}
+
+impl Structure {
+    /// Whether `Sᵀ = S`.
+    pub(crate) fn is_symmetric(self) -> bool {
+        matches!(self, Self::Symmetric | Self::Diagonal)
+    }
+
+    pub(crate) fn is_orthogonal(self) -> bool {
+        matches!(self, Self::Orthogonal | Self::Rotation)
+    }
 }
 
 /// When the value of a symbol is known.

@@ -49,7 +49,9 @@ impl Factor {
             Self::Symbol { id, transposed } => match symbols.get(*id).structure {
                 Structure::Symmetric | Structure::Diagonal => (1, self.clone()),
                 Structure::Skew => (-1, self.clone()),
-                Structure::General | Structure::Orthogonal => (1, Self::Symbol { id: *id, transposed: !transposed }),
+                Structure::General | Structure::Point | Structure::Orthogonal | Structure::Rotation => {
+                    (1, Self::Symbol { id: *id, transposed: !transposed })
+                }
             },
             Self::Inverse { id, .. } if symbols.get(*id).structure.is_symmetric() => (1, self.clone()),
             Self::Inverse { id, transposed } => (1, Self::Inverse { id: *id, transposed: !transposed }),
@@ -65,7 +67,7 @@ impl Factor {
     fn is_inverse_of(&self, other: &Self, symbols: &Symbols) -> bool {
         match (self, other) {
             (Self::Symbol { id: a, transposed: s }, Self::Symbol { id: b, transposed: t }) => {
-                a == b && s != t && symbols.get(*a).structure == Structure::Orthogonal
+                a == b && s != t && symbols.get(*a).structure.is_orthogonal()
             }
             (Self::Symbol { id: a, transposed: s }, Self::Inverse { id: b, transposed: t })
             | (Self::Inverse { id: a, transposed: s }, Self::Symbol { id: b, transposed: t }) => a == b && s == t,
@@ -110,7 +112,7 @@ pub(crate) fn transpose(word: &[Factor], symbols: &Symbols) -> (i8, Vec<Factor>)
     (sign, factors)
 }
 
-/// Applies `FᵀF = FFᵀ = I` and `Fᵀ û F = (Fᵀu)^` between neighbours until nothing changes.
+/// Applies `FᵀF = FFᵀ = I`, and `Fᵀ û F = (Fᵀu)^` where `det F = 1`, between neighbours until nothing changes.
 pub(crate) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
     let mut stack: Vec<Factor> = Vec::with_capacity(word.len());
     for factor in word {
@@ -120,7 +122,7 @@ pub(crate) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
         }
         if let [.., left, Factor::Hat(inner)] = stack.as_slice()
             && left.is_inverse_of(&factor, symbols)
-            && matches!(left, Factor::Symbol { .. })
+            && matches!(left, Factor::Symbol { id, .. } if symbols.get(*id).structure == Structure::Rotation)
             && matches!(factor, Factor::Symbol { .. })
         {
             let rotated = reduce([vec![left.clone()], inner.clone()].concat(), symbols);

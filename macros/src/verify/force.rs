@@ -37,7 +37,7 @@ fn disagreement(
         values.insert(Name::Increment, turn(&derived.group, j, t).times(&sample.increment));
         values.insert(Name::DisplacementBefore, Value::new(dimension, 1, |row, _| f64::from(u8::from(row == k))));
         values.insert(Name::DisplacementAfter, Value::new(dimension, 1, |_, _| 0.0));
-        -Evaluation { values: &values, known: BTreeMap::new() }.of(tree).first()
+        -Evaluation::new(&values).of(tree).first()
     };
     let size: f64 = jacobian.iter().chain(momentum).map(|x| x.abs()).sum();
     let differs = |found: Option<&f64>, expected: f64| {

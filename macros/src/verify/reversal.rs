@@ -1,4 +1,4 @@
-//! Self-adjointness by numbers: the normal form doesn't know every relation of a group.
+//! Self-adjointness by values: the normal form doesn't know every relation of a group.
 
 use std::rc::Rc;
 
@@ -15,11 +15,16 @@ pub(super) fn self_adjointness(
     samples: &[Sample],
     tree: &Rc<Tree>,
     defect: &Expression,
+    exact: impl FnOnce() -> Option<bool>,
 ) -> Result<SelfAdjointness, &'static str> {
     match (is_equal(samples, tree), defect.is_zero()) {
         (None, _) => Ok(SelfAdjointness::Unknown),
         (Some(true), true) => Ok(SelfAdjointness::Symbolic),
-        (Some(true), false) => Ok(SelfAdjointness::Numeric),
+        (Some(true), false) => Ok(match exact() {
+            Some(true) => SelfAdjointness::Exact,
+            Some(false) => SelfAdjointness::No,
+            None => SelfAdjointness::Numeric,
+        }),
         (Some(false), true) => Err("adjoint"),
         (Some(false), false) => {
             let points: Vec<Sample> = samples.iter().filter_map(Sample::with_points).collect();
@@ -41,8 +46,7 @@ impl Sample<'_> {
     /// On a group of affine maps, the same with one for the last coordinate of all vectors.
     fn with_points(&self) -> Option<Self> {
         let group = &self.derived.group;
-        let last_row = group.size * (group.size - 1);
-        if group.generators.iter().any(|generator| generator.iter().skip(last_row).any(|entry| !entry.is_zero())) {
+        if !group.is_affine() {
             return None;
         }
         let mut sample = self.clone();

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::{KineticPart, kinetic_part, verify};
+use super::{KineticPart, degree, kinetic_part, verify};
 use crate::ast::{Declaration, Tree};
 use crate::choose::{Chosen, cheapest};
 use crate::derive::{Derived, SelfAdjointness};
@@ -21,14 +21,18 @@ struct Declared {
     derived: Derived,
 }
 
+fn checked(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
+    let mut errors = Errors::default();
+    let item = syn::parse_str(item).expect("a struct");
+    let declaration = parse::parse(crate::ast::Role::Lagrangian, arguments.parse().expect("tokens"), item, &mut errors);
+    let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
+    (declaration, tree)
+}
+
 impl Declared {
     fn new(arguments: &str, item: &str) -> Self {
-        let mut errors = Errors::default();
-        let item = syn::parse_str(item).expect("a struct");
-        let declaration =
-            parse::parse(crate::ast::Role::Lagrangian, arguments.parse().expect("tokens"), item, &mut errors);
-        let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
-        let candidates = lower(&declaration, &tree, &mut errors).expect("small");
+        let (declaration, tree) = checked(arguments, item);
+        let candidates = lower(&declaration, &tree, &mut Errors::default()).expect("small");
         let Chosen { lowered, derived, .. } = cheapest(candidates).unwrap_or_else(|_| panic!("nothing to derive"));
         Self { declaration, tree, lowered, derived }
     }
@@ -145,7 +149,7 @@ fn adjoints() {
     let [top, planar] = both();
     assert_eq!(top.verified(), Ok(SelfAdjointness::Symbolic));
     // Isometries leave |F − I|² alone, which a normal form without FᵀF = I can't see.
-    assert_eq!(planar.verified(), Ok(SelfAdjointness::Numeric));
+    assert_eq!(planar.verified(), Ok(SelfAdjointness::Exact));
     // A symbolic form that claims too much is an error.
     let declared = Declared::new(
         "group = SO3, l_d = (J_d.trace() - (F * J_d).trace()) / h + h * F[(0, 1)]",
@@ -158,15 +162,21 @@ fn adjoints() {
 /// Isometries keep the distance of points, not of vectors with different last coordinates.
 #[test]
 fn tethers_between_points() {
-    let plate = |tether: &str| {
+    let plate = |tether: &str, [point, anchor]: [&str; 2]| {
         let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * {tether}");
         let arguments = format!("group = SE2, advected(a = anchor), l_d = {l_d}");
-        let item = "struct Plate { J: Matrix3<f64>, p: Vector3<f64>, anchor: ContravariantVector<f64, 3> }";
-        Declared::new(&arguments, item).verified()
+        let item = format!("struct Plate {{ J: Matrix3<f64>, p: {point}, anchor: {anchor} }}");
+        Declared::new(&arguments, &item).verified()
     };
     let both = "((a - p).norm_squared() + (a - F * p).norm_squared())";
-    assert_eq!(plate(both), Ok(SelfAdjointness::ForPoints));
-    assert_eq!(plate("(a - p).norm_squared()"), Ok(SelfAdjointness::No));
+    let [points, vectors] = [["Point2<f64>"; 2], ["Vector3<f64>", "ContravariantVector<f64, 3>"]];
+    assert_eq!(plate(both, points), Ok(SelfAdjointness::Exact));
+    assert_eq!(plate(both, vectors), Ok(SelfAdjointness::ForPoints));
+    for types in [points, vectors, [points[0], vectors[1]]] {
+        assert_eq!(plate("(a - p).norm_squared()", types), Ok(SelfAdjointness::No));
+    }
+    // Both have to be points.
+    assert_eq!(plate(both, [points[0], vectors[1]]), Ok(SelfAdjointness::ForPoints));
 }
 
 #[test]
@@ -181,7 +191,71 @@ fn added_mass_has_to_be_symmetrised() {
     let turned = format!("(a * {}.powi(2) + b * {}.powi(2))", column(0), column(1));
     assert_eq!(body(inertial), Ok(SelfAdjointness::No));
     assert_eq!(body(&turned), Ok(SelfAdjointness::No));
-    assert_eq!(body(&format!("0.5 * ({inertial} + {turned})")), Ok(SelfAdjointness::Numeric));
+    assert_eq!(body(&format!("0.5 * ({inertial} + {turned})")), Ok(SelfAdjointness::Exact));
+}
+
+/// On all groups an inverse is one, and a word with it is varied, reversed and taken to the limit.
+#[test]
+fn inverses() {
+    let body = |group: &str, size: usize, other: &str| {
+        let square = |d: &str| format!("(({d}) * J * ({d}).transpose()).trace()");
+        let l_d = format!("({} + {}) / h", square("F - I"), square(other));
+        Declared::new(&format!("group = {group}, l_d = {l_d}"), &format!("struct Body {{ J: Matrix{size}<f64> }}"))
+    };
+    for (group, size) in [("SE2", 3), ("SL2", 2), ("Heisenberg", 3), ("SO3", 3), ("R1", 2)] {
+        let both = body(group, size, "I - inverse(F)");
+        assert_eq!(both.verified(), Ok(SelfAdjointness::Symbolic), "{group}");
+        assert_eq!(both.kinetic_part(), KineticPart::Regular, "{group}");
+        let skewed = body(group, size, "J - J * inverse(F)").verified();
+        // On the line both squares are of the same number.
+        let expected = if group == "R1" { SelfAdjointness::Exact } else { SelfAdjointness::No };
+        assert_eq!(skewed, Ok(expected), "{group}");
+    }
+}
+
+/// What rounding hides, the finite field sees.
+#[test]
+fn small_terms_count() {
+    let body = |more: &str| {
+        let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + 1e-14 * h * k * {more}");
+        Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }").verified()
+    };
+    assert_eq!(body("F.trace()"), Ok(SelfAdjointness::Exact));
+    assert_eq!(body("F[(0, 3)]"), Ok(SelfAdjointness::No));
+}
+
+/// By hand: a field counts as 2, `F` on a group of dimension one as 2/2.
+#[test]
+fn degrees() {
+    let of = |l_d: &str| {
+        let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
+        degree::coincidences(&tree, declaration.structure.dimension())
+    };
+    // k F²/h is (2 + 4)/(4 + 2).
+    assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 12);
+    // Over a common denominator: (2 + 2)/2, and (4 + 4)/(4 + 4).
+    assert_eq!(of("k + F[(0, 1)]"), 6);
+    assert_eq!(of("k * F[(0, 1)] / h + F[(0, 1)].powi(2)"), 8 + 8);
+    // One function, whose argument has four values on the two sides with their negatives.
+    assert_eq!(of("(k + F[(0, 1)]).sin()"), 2 + 16 * 6);
+    // A tower of powers is too high for three points to decide.
+    let tower = (1..12).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<Vec<_>>().concat();
+    assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x11 }}")) > 1 << 40);
+}
+
+/// Where the field doesn't say, rounded values do.
+#[test]
+fn adjoints_to_rounding() {
+    let squeezes = "group = Mine, generators = [[[1.0, 0.0], [0.0, -2.0]]]";
+    let squeezed = |l_d: &str| Declared::new(&format!("{squeezes}, l_d = {l_d}"), "struct Body { k: f64 }").verified();
+    // The one-parameter group of diag(1, −2) isn't that of a Cayley transform.
+    assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(0, 0)]) / h"), Ok(SelfAdjointness::Numeric));
+    assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(1, 1)]) / h"), Ok(SelfAdjointness::No));
+    // ln x² = 2 ln x isn't a relation of just any function.
+    let l_d =
+        "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + h * F[(0, 3)] * (k.powi(2).ln() - 2.0 * k.ln())";
+    let declared = Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }");
+    assert_eq!(declared.verified(), Ok(SelfAdjointness::Numeric));
 }
 
 #[test]

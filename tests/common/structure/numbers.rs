@@ -1,7 +1,7 @@
 //! Advected parameters as columns of numbers.
 
 use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Point, SMatrix, SVector};
 
 /// What can be taken apart into numbers and put together again: the parameters of one kind, none, or several.
 pub trait Numbers: Copy {
@@ -38,6 +38,16 @@ impl<const N: usize> Numbers for SVector<f64, N> {
 
     fn take(numbers: &mut dyn Iterator<Item = f64>) -> Self {
         Self::from_fn(|_, _| numbers.next().expect("too few numbers"))
+    }
+}
+
+impl<const N: usize> Numbers for Point<f64, N> {
+    fn append(&self, numbers: &mut Vec<f64>) {
+        self.coords.append(numbers);
+    }
+
+    fn take(numbers: &mut dyn Iterator<Item = f64>) -> Self {
+        Self::from(SVector::take(numbers))
     }
 }
 

@@ -1,14 +1,12 @@
-//! The step of `−h` undoes that of `h` where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`.
-//!
-//! A homogeneous `(x, y, z, 1)` stands for a place only with that last number, and only there does `F` keep distances;
-//! so the parameters are taken from the orbit of the declared ones.
+//! The step of `−h` undoes that of `h` where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, for parameters off the orbit of the
+//! declared ones too.
 
 use liestep::laws::samples::{Random, along};
 use liestep::{DiscreteLiePoisson, LieGroup as _};
 use nalgebra::SVector;
 
 use super::numbers::Numbers as _;
-use super::{System, seen_at_random, step};
+use super::{System, random_advected, step};
 
 /// How far a step of `h` and one of `−h` end from where they started, at random states, relative to these.
 pub fn error_of_return<L: System<N, D> + Clone, const N: usize, const D: usize>(
@@ -21,7 +19,7 @@ pub fn error_of_return<L: System<N, D> + Clone, const N: usize, const D: usize>(
     let back = DiscreteLiePoisson::new(lagrangian.clone(), -h).unwrap();
     let mut worst = 0.0_f64;
     for _ in 0..10 {
-        let w = seen_at_random(lagrangian, &mut random);
+        let w = random_advected(lagrangian, &mut random);
         let velocity: SVector<f64, D> = random.sample();
         let f = along::<L::Group, N, D>(&velocity, h).matrix();
         let momentum = lagrangian.legendre_minus(&f, &w, h);

@@ -1,5 +1,5 @@
 use liestep::{Effect, NonstandardInertia, SO3, Stepper, lagrangian};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Translation3, Vector3};
 
 #[lagrangian(
     group = SO3,
@@ -8,7 +8,7 @@ use nalgebra::{Point3, Vector3};
 )]
 struct Top {
     J_d: NonstandardInertia,
-    rho: Point3<f64>,
+    rho: Translation3<f64>,
     up: Vector3<f64>,
 }
 

@@ -93,6 +93,16 @@ fn hypotheses_that_are_used() {
     assert_eq!(hypotheses(free, "struct Body { k: f64 }"), "none");
     let without_relation = "group = SO3, l_d = (J_d.trace() - (F * J_d).trace()) / h + (J_d * F * J_d * F).trace() * h";
     assert_eq!(hypotheses(without_relation, "struct Body { J_d: NonstandardInertia }"), "J_dᵀ = J_d");
+    // aᵀ Fᵀ ŵ F b = aᵀ (Fᵀw)^ b holds for rotations, not for reflections.
+    let triple = "group = SO3, advected(w = up),
+        l_d = k * (3.0 - F.trace()) / h - h * (F * a).dot(&w.cross(&(F * b)))";
+    let item = "struct Body { k: f64, a: Vector3<f64>, b: Vector3<f64>, up: Vector3<f64> }";
+    assert_eq!(hypotheses(triple, item), "FᵀF = I, det F = 1");
+    // Of what is promised of a point, what saves an operation.
+    let tether = "group = SE2, advected(a = anchor),
+        l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * (a - F * p).norm_squared()";
+    let item = "struct Planar { J: Matrix3<f64>, k: f64, p: Point2<f64>, anchor: Point2<f64> }";
+    assert_eq!(hypotheses(tether, item), "p₃ = 1, a₃ = 1");
     // Elsewhere nothing is assumed.
     let planar = "group = SE2, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)";
     assert_eq!(hypotheses(planar, "struct Planar { J: Matrix3<f64> }"), "none");

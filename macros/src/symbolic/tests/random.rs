@@ -43,10 +43,11 @@ impl Random {
         match structure {
             Structure::General if (rows, columns) == (1, 1) => Matrix::scalar(1.25 + 0.5 * any.at(0, 0)),
             Structure::General => any,
+            Structure::Point => Matrix::new(rows, 1, |row, _| if row + 1 < rows { any.at(row, 0) } else { 1.0 }),
             Structure::Symmetric => any.plus(&any.transpose()),
             Structure::Skew => any.minus(&any.transpose()),
             Structure::Diagonal => Matrix::new(3, 1, |row, _| any.at(row, row)).diagonal(),
-            Structure::Orthogonal => self.rotation(),
+            Structure::Orthogonal | Structure::Rotation => self.rotation(),
         }
     }
 }
@@ -91,7 +92,7 @@ impl World {
         Self {
             h: add("h", scalar, Structure::General, Stage::Construction),
             k: add("k", scalar, Structure::General, Stage::Construction),
-            f: add("F", square, Structure::Orthogonal, Stage::Iteration),
+            f: add("F", square, Structure::Rotation, Stage::Iteration),
             symmetric: add("S", square, Structure::Symmetric, Stage::Construction),
             diagonal: add("D", square, Structure::Diagonal, Stage::Construction),
             a: add("A", square, Structure::General, Stage::Construction),

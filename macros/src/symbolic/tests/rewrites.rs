@@ -4,7 +4,7 @@
 use super::numeric::{Matrix, Values, value};
 use super::random::{Both, Random, World, both};
 use crate::symbolic::word::canonical_trace;
-use crate::symbolic::{Expression, Factor, Function, Rational, SymbolId};
+use crate::symbolic::{Expression, Factor, Function, Rational, Stage, Structure, SymbolId, Symbols};
 
 /// Compares an expression in normal form with numbers, where its hypothesis holds and where it is broken.
 struct Law {
@@ -217,6 +217,15 @@ fn hats_turn_with_rotations() {
         assert_eq!(turned, f.times(&u, &w.symbols).hat(&w.symbols));
         law.holds_only_with_promise(&turned, |v| v[&w.f].times(&v[&w.u].hat()).times(&v[&w.f].transpose()));
     }
+    // An orthogonal matrix doesn't promise its determinant.
+    let mut symbols = Symbols::default();
+    let f = symbols.add("F", (3, 3), Structure::Orthogonal, Stage::Iteration);
+    let u = symbols.add("u", (3, 1), Structure::General, Stage::Step);
+    let [f, u] = [f, u].map(|id| Expression::symbol(id, &symbols));
+    let f_t = f.transpose(&symbols);
+    let turned = f_t.times(&u.hat(&symbols), &symbols).times(&f, &symbols);
+    assert_eq!(turned.longest_word(), 4);
+    assert_ne!(turned, f_t.times(&u, &symbols).hat(&symbols));
 }
 
 #[test]
