@@ -50,20 +50,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let (residual, jacobian) = values.split_at(kernel.residual.len());
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
     let residual_alone = kernel.jacobian_is_dear().then(|| residual_alone(emitter, kernel, &from_terms));
-    let retraction = quote_spanned!(span=> <Self::Retraction as #root::Retraction<Self::Group>>);
-    // Off SO(3) the system is written in F, and the retraction's tangent brings its Jacobian to the coordinates.
-    let (increment, jacobian) = if kernel.in_increment {
-        let increment = quote_spanned!(span=> let increment = #retraction::increment_of_half(half););
-        let inverse = uses(graph, &system, emitter.derived.directions.small_inverse).then(|| {
-            quote_spanned!(span=> let inverse_increment = #root::__private::inverse_increment::<Self::Group, _, _>(&increment);)
-        });
-        (
-            quote_spanned!(span=> #increment #inverse),
-            quote_spanned!(span=> (#jacobian) * #retraction::tangent_of_half(half)),
-        )
-    } else {
-        (TokenStream::new(), jacobian)
-    };
+    let (increment, jacobian) = in_coordinates(emitter, kernel, &system, jacobian);
     let inverse = uses(graph, &kernel.kick_after, emitter.derived.directions.inverse).then(|| {
         let group = quote_spanned!(span=> <Self::Group as #root::LieGroup>);
         quote_spanned! {span=>
@@ -126,6 +113,29 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         }
     };
     Stages { methods, constants_type: length(&constants), step_terms_type: length(&step_terms) }
+}
+
+/// What comes before the Newton system, and its Jacobian along the coordinates.
+///
+/// Off SO(3) the system is written in `F`, and the retraction's tangent brings its Jacobian to the coordinates.
+fn in_coordinates(
+    emitter: &Emitter,
+    kernel: &Kernel,
+    system: &[NodeId],
+    jacobian: TokenStream,
+) -> (TokenStream, TokenStream) {
+    if !kernel.in_increment {
+        return (TokenStream::new(), jacobian);
+    }
+    let (span, root) = (Span::mixed_site(), &emitter.header.root);
+    let retraction = quote_spanned!(span=> <Self::Retraction as #root::Retraction<Self::Group>>);
+    let inverse = uses(&kernel.graph, system, emitter.derived.directions.small_inverse).then(|| {
+        quote_spanned!(span=> let inverse_increment = #root::__private::inverse_increment::<Self::Group, _, _>(&increment);)
+    });
+    (
+        quote_spanned!(span=> let increment = #retraction::increment_of_half(half); #inverse),
+        quote_spanned!(span=> (#jacobian) * #retraction::tangent_of_half(half)),
+    )
 }
 
 /// Which parts of a step aren't zero, and the factor of the Newton system.
