@@ -20,7 +20,7 @@ use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
 use crate::entries::Entries;
 use crate::groups::LieGroup;
 use crate::scalar::{Real, real, reported};
-use crate::state::{History, State};
+use crate::state::{DIFFERENCES, History, State};
 use crate::stepper::Stepper;
 use fingerprint::{Fingerprint, Parameters};
 
@@ -233,17 +233,17 @@ fn read<L: Effect<Scalar: Stored>>(
 fn remembered<L: Effect<Scalar: Stored>>(
     checkpoint: &Checkpoint<Scalar<L>>,
 ) -> Result<History<Vector<L>>, CheckpointError> {
-    let what = "differences";
+    let (what, found) = ("differences", checkpoint.differences.len());
     let size = <Group<L> as LieGroup>::DIMENSION;
+    // Of more increments than these no more is remembered.
+    let increments = usize::try_from(checkpoint.increments).unwrap_or(usize::MAX).min(DIFFERENCES + 1);
+    let expected = size * increments.saturating_sub(1);
+    if found != expected {
+        return Err(CheckpointError::WrongSize { what, found, expected });
+    }
     let differences: Result<Vec<Vector<L>>, _> =
         checkpoint.differences.chunks(size).map(|chunk| unlisted(what, chunk)).collect();
-    let increments = usize::try_from(checkpoint.increments).unwrap_or(usize::MAX);
-    let expected = size * increments.saturating_sub(1);
-    History::of(increments, &differences?).ok_or(CheckpointError::WrongSize {
-        what,
-        found: checkpoint.differences.len(),
-        expected,
-    })
+    Ok(History::of(increments, &differences?))
 }
 
 /// The checkpoint is of this scene, with these parameters and this step.

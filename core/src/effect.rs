@@ -105,8 +105,8 @@ pub trait Effect {
     /// Whether the Jacobian of [`newton_system`](Self::newton_system) costs more than several residuals.
     ///
     /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
-    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which the system must have the
-    /// factor one. The macro decides it by counting operations.
+    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which
+    /// [`DENOMINATORS`](Self::DENOMINATORS) must be zero. The macro decides it by counting operations.
     const JACOBIAN_IS_DEAR: bool = false;
 
     /// How much arithmetic its share of a step is; the macro counts it.

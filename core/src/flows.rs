@@ -1,17 +1,22 @@
 //! The two flows of the thesis: on increments, (2.5), and on momenta, (2.8).
 
+mod euler_poincare;
+mod increment;
+
+pub use euler_poincare::{DiscreteEulerPoincare, reconstruct};
+pub use increment::Increment;
+pub(crate) use increment::Stepped;
+
 use crate::advected::Advected;
 use crate::bisection::{largest_fraction, six_digits};
 use crate::coordinates::Coordinates as _;
 use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
-use crate::entries::Entries as _;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
-use crate::lagrangian::DiscreteLagrangian;
 use crate::newton::{Kick, Problem, Root, trusted_radius};
 use crate::retraction::Retraction;
-use crate::scalar::{Mask, is_finite, real, reported};
+use crate::scalar::{is_finite, real, reported};
 use crate::solvability::{Solvability, TurningLimits};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
@@ -28,52 +33,11 @@ pub struct DiscreteLiePoisson<L: Effect> {
     trusted: Scalar<L>,
 }
 
-/// One application of a flow.
-#[derive(Clone, Copy, Debug)]
-pub struct Increment<L: Effect> {
-    /// The coordinates `ξ` of `F_i = τ(ξ)`: a guess for the next solve.
-    pub coordinates: Vector<L>,
-    /// `F_i − I`.
-    pub increment: <Group<L> as LieGroup>::Matrix,
-    /// `μ_{i+1}`.
-    pub momentum: Vector<L>,
-    /// `w_{i+1}`.
-    pub advected: L::Advected,
-    /// Newton iterations, counted as in [`StepReport`](crate::StepReport).
-    pub iterations: u32,
-}
-
-/// A step, with what its successor needs of the [`Root`].
-pub(crate) struct Stepped<L: Effect> {
-    pub(crate) step: Increment<L>,
-    pub(crate) half: Vector<L>,
-    pub(crate) far: Mask<Scalar<L>>,
-}
-
-impl<L: Effect> Stepped<L> {
-    /// The sum of all that the step has made.
-    #[inline(always)]
-    fn total(&self) -> Scalar<L> {
-        let mut total = real(0.0);
-        self.step.momentum.each(&mut |entry| total += entry);
-        self.step.advected.each(&mut |entry| total += entry);
-        total
-    }
-}
-
 /// A momentum equation and its solution.
 pub(crate) struct Solved<L: Effect> {
     /// `a = μ + kick_before(w)`.
     pub(crate) a: Vector<L>,
     pub(crate) root: Root<L>,
-}
-
-impl<L: Effect> Increment<L> {
-    /// `F_i`.
-    #[must_use]
-    pub fn element(&self) -> Group<L> {
-        Group::<L>::from_increment(&self.increment)
-    }
 }
 
 impl<L: Effect> DiscreteLiePoisson<L> {
@@ -388,45 +352,6 @@ impl<L: Effect> DiscreteLiePoisson<L> {
 #[inline(always)]
 fn kicked<L: Effect>(constants: &L::Constants, momentum: &Vector<L>, w: &L::Advected) -> Vector<L> {
     if L::PARTS.kick_before { *momentum + L::kick_before(constants, w) } else { *momentum }
-}
-
-/// The discrete advected Euler–Poincaré flow `(f_i, w_i) ↦ (f_{i+1}, w_{i+1})`, \[RDAE, (2.5)\].
-#[derive(Clone, Debug)]
-pub struct DiscreteEulerPoincare<L: DiscreteLagrangian> {
-    flow: DiscreteLiePoisson<L>,
-}
-
-impl<L: DiscreteLagrangian> DiscreteEulerPoincare<L> {
-    /// Checks the parameters and folds the constants for the step `h`, in seconds.
-    ///
-    /// # Errors
-    ///
-    /// As [`DiscreteLiePoisson::new`].
-    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
-    where
-        L: Regular,
-    {
-        DiscreteLiePoisson::new(lagrangian, h).map(|flow| Self { flow })
-    }
-
-    /// One step: `w⁺ = f⁻¹·w`, and `f⁺` with `𝔽l_d⁻(f⁺, w⁺) = 𝔽l_d⁺(f, w)`.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`] where that equation has no solution on the branch of the identity.
-    pub fn step(&self, f: &Group<L>, w: &L::Advected) -> Result<(Group<L>, L::Advected), StepError> {
-        let momentum = self.flow.lagrangian.legendre_plus(&f.matrix(), w, self.flow.h);
-        let next = w.advect(&f.increment());
-        let guess = L::Retraction::local_coordinates(f).unwrap_or_else(Vector::<L>::zero);
-        let step = self.flow.step(&momentum, &next, &guess)?;
-        Ok((step.element(), next))
-    }
-}
-
-/// The reconstruction `g_{i+1} = g_i f_i`, \[RDAE, (2.10)\].
-#[must_use]
-pub fn reconstruct<G: LieGroup>(g: &G, f: &G) -> G {
-    g.advance(&f.increment())
 }
 
 /// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times the

@@ -153,7 +153,7 @@ impl<const N: usize> Series<N> {
     }
 }
 
-/// By Horner's rule in `x⁴`, four chains side by side: each link waits for the one before, and on that wait waits the step.
+/// By Horner's rule in `x⁴`: four chains that the processor runs side by side. A single one's latency would be that of the step.
 #[inline(always)]
 fn polynomial<T: Real, const N: usize>(coefficients: &[f64; N], x: T) -> T {
     let square = x * x;

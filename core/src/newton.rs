@@ -7,7 +7,8 @@
 //! the component of the identity. Below 90° there is at most one solution, and the determinant alone decides.
 //!
 //! SIMD lanes iterate together until all have settled. One that has settled earlier stays as it is, so that no lane's
-//! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given.
+//! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given. Only a logarithm or an
+//! exponential in the Lagrangian takes the series that the lane farthest from the identity needs, and rounds by it.
 
 mod branch;
 mod secants;

@@ -189,7 +189,11 @@ where
         error: StepError,
     ) -> Result<StepReport, StepError> {
         match self.stepper.step(state) {
-            Ok(report) => Ok(StepReport { remedy: Some(Remedy::Fallback), ..report }),
+            Ok(report) => {
+                // Its increments are those of another map.
+                state.history = History::new();
+                Ok(StepReport { remedy: Some(Remedy::Fallback), ..report })
+            }
             Err(_) => Err(error),
         }
     }

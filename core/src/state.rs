@@ -2,6 +2,8 @@
 
 mod history;
 
+#[cfg(feature = "serde")]
+pub(crate) use history::DIFFERENCES;
 pub(crate) use history::History;
 
 use nalgebra::{SimdBool as _, SimdValue as _, Vector3};
@@ -28,7 +30,7 @@ pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) half: G::Vector,
     /// A guess of half the next ones.
     pub(crate) half_guess: G::Vector,
-    /// Where an evaluation is dear; elsewhere it stays empty.
+    /// Of increments of one step, where the Jacobian is dear; elsewhere it stays empty.
     pub(crate) history: History<G::Vector>,
     pub(crate) steps: u64,
 }

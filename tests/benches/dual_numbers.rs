@@ -141,8 +141,8 @@ struct Point {
     momentum: Vector3<f64>,
 }
 
-/// The derived step and iteration stages and left momentum: residual and Jacobian up to a positive factor in the
-/// coordinates `ξ`.
+/// The derived step and iteration stages and left momentum: residual and Jacobian up to a factor, in half
+/// the coordinates.
 #[inline(never)]
 fn derived<L: Top<f64>>(top: &L, constants: &L::Constants, at: &Point) -> (Vector3<f64>, Matrix3<f64>, Vector3<f64>) {
     let a = at.momentum + L::kick_before(constants, &at.w);

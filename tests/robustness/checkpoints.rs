@@ -142,6 +142,10 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
         CheckpointError::WrongSize { what: "attitude", found: 1000, expected: 9 }
     );
     assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 2 });
+    for increments in [2, 20, 1_u64 << 63] {
+        let error = refused(|value| value["increments"] = json!(increments));
+        assert!(matches!(error, CheckpointError::WrongSize { what: "differences", found: 0, .. }), "{error}");
+    }
     let scaled = refused(|value| value["attitude"][4] = json!(0.5));
     assert!(matches!(scaled, CheckpointError::NotInGroup { defect } if defect > 1e-3), "{scaled}");
     let elsewhere = refused(|value| value["advected"] = json!([0.0, 0.0, 1.0]));

@@ -115,7 +115,7 @@ where
 /// What is left of a drift whose spin has been taken out.
 fn without_spin<K: KineticFlow<f64>>() -> Operations {
     let Operations { step, iteration } = K::OPERATIONS;
-    Operations { step: step - K::OPERATIONS_OF_SPIN, iteration }
+    Operations { step: step.saturating_sub(K::OPERATIONS_OF_SPIN), iteration }
 }
 
 impl<L, K> Method<SO3, L::Advected> for Splitting<L, K>

@@ -60,6 +60,8 @@ struct Updates<L: Effect> {
     count: usize,
     /// `θ²`.
     contraction: Scalar<L>,
+    /// The square of the most that an update has changed the kick by, for its length.
+    kick_slope: Scalar<L>,
     /// Whether the last was at the level of rounding.
     at_floor: Mask<Scalar<L>>,
 }
@@ -78,6 +80,7 @@ impl<L: Effect> Updates<L> {
             lengths: [real(0.0); MAX_UPDATES],
             count: 0,
             contraction: real(0.0),
+            kick_slope: real(0.0),
             at_floor: nowhere::<Scalar<L>>(),
         }
     }
@@ -152,7 +155,7 @@ impl<L: Effect> Problem<'_, L> {
             let next = lanes.half + update;
             let resting = lanes.settled | doubtful;
             if let Some(kick) = kick {
-                let found = self.has_settled(&(kick - lanes.kick.value), &update, &updates);
+                let found = self.kick_has_settled(&(kick - lanes.kick.value), &update, &mut updates);
                 lanes.kick.value = lanes.kick.value.select(resting, kick);
                 lanes.kick.found = (lanes.kick.found & resting) | (found & !resting);
             }
@@ -167,12 +170,13 @@ impl<L: Effect> Problem<'_, L> {
         (lanes, iterations)
     }
 
-    /// Whether the kick before the update is that after it, when the last update has changed it so much.
+    /// Whether this update changes the kick by less than its rounding, judged by what those before have changed; the last of
+    /// them has made the change that is given.
     #[inline(always)]
-    fn has_settled(&self, change: &Vector<L>, update: &Vector<L>, updates: &Updates<L>) -> Mask<Scalar<L>> {
+    fn kick_has_settled(&self, change: &Vector<L>, update: &Vector<L>, updates: &mut Updates<L>) -> Mask<Scalar<L>> {
         let Some(last) = updates.count.checked_sub(1) else { return nowhere::<Scalar<L>>() };
+        updates.kick_slope = updates.kick_slope.simd_max(change.dot(change) / updates.lengths[last]);
         let tolerance = Scalar::<L>::simd_default_epsilon() * real(MISSING);
-        let missing = change.dot(change) * update.dot(update);
-        missing.simd_le(updates.lengths[last] * (self.a.dot(&self.a) * (tolerance * tolerance)))
+        (updates.kick_slope * update.dot(update)).simd_le(self.a.dot(&self.a) * (tolerance * tolerance))
     }
 }

@@ -49,14 +49,13 @@ impl<V: Copy> History<V> {
     }
 
     /// Of as many differences as [`parts`](Self::parts) gives for these increments.
-    pub(crate) fn of<T: Real>(increments: usize, known: &[V]) -> Option<Self>
+    pub(crate) fn of<T: Real>(increments: usize, known: &[V]) -> Self
     where
         V: Coordinates<T>,
     {
         let mut history = Self { increments, ..Self::new() };
-        let matches = increments <= DIFFERENCES + 1 && known.len() == increments.saturating_sub(1);
         history.differences.iter_mut().zip(known).for_each(|(place, &difference)| *place = difference);
-        matches.then_some(history)
+        history
     }
 }
 

@@ -41,7 +41,7 @@ impl Step<'_> {
         inputs
     }
 
-    /// The residual is a positive multiple of `U(F, w) − a`, and the Jacobian its derivative.
+    /// The residual is a multiple of `U(F, w) − a`, positive as the sample's step is, and the Jacobian its derivative.
     fn newton_disagreement(
         &self,
         sample: &Sample,
