@@ -217,12 +217,13 @@ fn the_same_question_has_the_same_answer() {
 #[test]
 fn gauss_collocation_is_chosen_for_the_chaotic_top() {
     let motion = Motion::read("chaotic_asymmetric_top");
-    let accuracy = Accuracy { tolerance: 1e-9, horizon: 10.0 };
+    // Eight stages reach 1e-11 with the longest step that can be solved, so less can't be asked in earnest.
+    let accuracy = Accuracy { tolerance: 1e-11, horizon: 10.0 };
     let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
     let choice = stepper.choice();
     assert!(choice.chosen().name.starts_with("Gauss, "), "{choice}");
     let reached = error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0);
-    assert!(reached <= 1e-9 && reached > 1e-11, "{reached:e}\n{choice}");
+    assert!(reached <= 1e-11 && reached > 1e-13, "{reached:e}\n{choice}");
     // Its state can be stepped by hand, and what is read off it is that of the scene.
     let mut state = stepper.start();
     let (energy, vertical) = (stepper.energy(&state), state.momentum_along(&motion.top.up));
