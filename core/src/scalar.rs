@@ -18,7 +18,8 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// Values of all lanes are made from arrays of the lanes' values, inertias and attitudes too, and read by
 /// [`SimdValue::extract`]:
 ///
-/// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled.
+/// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled. Only
+///   logarithms and exponentials in a Lagrangian round by the lane that is farthest from the identity.
 ///   Only `l_d` with a sine or a cosine may differ by roundings, where the lanes compute these in their own way.
 /// - Every lane's step is solved, or the whole step is an error and the state of all lanes is what it was. An error's
 ///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is.

@@ -20,7 +20,7 @@ pub struct Increment<L: Effect> {
     pub iterations: u32,
 }
 
-/// A step, with what its successor needs of the [`Root`].
+/// A step, with what its successor needs of the [`Root`](crate::newton::Root).
 pub(crate) struct Stepped<L: Effect> {
     pub(crate) step: Increment<L>,
     pub(crate) half: Vector<L>,
