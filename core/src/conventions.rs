@@ -137,6 +137,9 @@
 //! | \[SS05\] | M. Sofroniou, G. Spaletta, *Derivation of symmetric composition constants for symmetric integrators*, Optimization Methods and Software 20, 2005 |
 //! | \[BM02\] | S. Blanes, P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, Journal of Computational and Applied Mathematics 142, 2002 |
 //! | \[ML95\] | R. I. McLachlan, *Composition methods in the presence of small parameters*, BIT 35, 1995 |
+//! | \[Ch97\] | S. A. Chin, *Symplectic integrators from composite operator factorizations*, Physics Letters A 226, 1997 |
+//! | \[LR01\] | J. Laskar, P. Robutel, *High order symplectic integrators for perturbed Hamiltonian systems*, Celestial Mechanics and Dynamical Astronomy 80, 2001 |
+//! | \[OMF02\] | I. P. Omelyan, I. M. Mryglod, R. Folk, *Construction of high-order force-gradient algorithms for integration of motion in classical and quantum systems*, Physical Review E 66, 2002 |
 //! | \[BCF13\] | S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, *New families of symplectic splitting methods for numerical integration in dynamical astronomy*, Applied Numerical Mathematics 68, 2013 |
 //! | \[HLW06\] | E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, 2nd edition, Springer, 2006 |
 //! | \[HW96\] | E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd edition, Springer, 1996 |

@@ -156,6 +156,16 @@ pub trait Effect {
     /// The part of the diamond that doesn't depend on `F`.
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self>;
 
+    /// The derivative of [`kick_before`](Self::kick_before) as the body turns with this velocity: `d/dt` of it at
+    /// `exp(−t v̂)·w`. `None` where it isn't known.
+    ///
+    /// The kicks of a [`SplittingScheme`](crate::SplittingScheme) with force gradients are made with it.
+    #[inline(always)]
+    #[must_use]
+    fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
+        None
+    }
+
     /// What one solve needs of `a = μ + kick_before(w)` and `w`.
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms;
 

@@ -45,6 +45,8 @@ pub enum SetupError {
     },
     /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
     AnotherBias,
+    /// A splitting with force gradients needs the derivative of the torque.
+    NoForceGradient,
     /// One of the candidates for an accuracy is another scene than the first.
     AnotherPotential,
 }
@@ -81,6 +83,10 @@ impl fmt::Display for SetupError {
             Self::AnotherBias => write!(
                 f,
                 "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them"
+            ),
+            Self::NoForceGradient => write!(
+                f,
+                "a term of the scene was written without `kick_derivative`, so it has no force gradient; declare it, or choose a scheme without gradients"
             ),
             Self::AnotherPotential => {
                 write!(

@@ -24,7 +24,7 @@ use crate::lagrangian::DiscreteLagrangian;
 use crate::scalar::{Real, real, reported};
 use crate::state::{LOOKS, State};
 use crate::stepper::{StepReport, Stepper};
-use nalgebra::{SimdBool as _, Vector3};
+use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 /// An integrator for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
@@ -81,6 +81,8 @@ pub struct Splitting<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, K: Kinet
     /// Of the whole step; it starts motions.
     stepper: Stepper<L>,
     torque: L::Constants,
+    /// `J⁻¹`, for force gradients.
+    inverse_inertia: Matrix3<T>,
     kinetic: K,
     h: T,
     /// The first share of a step, which is the last one too.
@@ -98,6 +100,8 @@ enum Share<D, T> {
     Drift(D),
     /// The time that the torque acts, s.
     Kick(T),
+    /// And the share of the force gradient, s³.
+    GradientKick(T, T),
 }
 
 impl<T, L, K> Splitting<L, K, T>
@@ -112,7 +116,7 @@ where
     /// # Errors
     ///
     /// [`SetupError::NotSeparable`], [`SetupError::AnotherInertia`] and [`SetupError::AnotherBias`] where that isn't so;
-    /// otherwise as
+    /// [`SetupError::NoForceGradient`] where the scheme asks for one and the scene was written without; otherwise as
     /// [`DiscreteLiePoisson::new`](crate::DiscreteLiePoisson::new).
     pub fn new(lagrangian: L, kinetic: K, h: T, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let stepper = Stepper::new(lagrangian, h)?;
@@ -126,25 +130,44 @@ where
             return Err(SetupError::AnotherBias);
         }
         let torque = torque(stepper.lagrangian())?;
-        let share = |(flow, part): (Flow, f64)| -> Result<_, SetupError> {
+        let inverse_inertia = inverse_inertia(stepper.lagrangian());
+        let has_gradients = scheme.has_gradients();
+        let start = stepper.lagrangian().advected();
+        if has_gradients && kick::force_gradient::<L>(&torque, &inverse_inertia, &start).is_none() {
+            return Err(SetupError::NoForceGradient);
+        }
+        let share = |((flow, part), gradient): ((Flow, f64), f64)| -> Result<_, SetupError> {
             let time = h * real(part);
             Ok(match flow {
                 Flow::Drift => Share::Drift(kinetic.drift(time)?),
-                Flow::Kick => Share::Kick(time),
+                Flow::Kick if gradient == 0.0 => Share::Kick(time),
+                Flow::Kick => Share::GradientKick(time, h * h * h * real(gradient)),
             })
         };
-        let all: Vec<_> = scheme.shares().collect();
-        let (flow, part) = all[0];
-        let outer = share((flow, part))?;
-        let joint = share((flow, 2.0 * part))?;
+        let all: Vec<_> = scheme.shares().zip(scheme.gradients()).collect();
+        let ((flow, part), gradient) = all[0];
+        let outer = share(((flow, part), gradient))?;
+        let joint = share(((flow, 2.0 * part), 2.0 * gradient))?;
         let inner = all[1..all.len() - 1].iter().copied().map(share).collect::<Result<_, _>>()?;
-        let mut splitting = Self { scheme, stepper, torque, kinetic, h, outer, inner, joint, spin: None };
+        let mut splitting =
+            Self { scheme, stepper, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None };
         // A turn for itself costs about what three others save.
         let drifts = splitting.scheme.shares().filter(|(flow, _)| *flow == Flow::Drift).count();
-        if drifts > 3 && spin::is_without_torque(splitting.stepper.lagrangian(), &splitting.torque) {
+        if drifts > 3 && splitting.is_without_torque() {
             splitting.take_spin();
         }
         Ok(splitting)
+    }
+
+    /// Whether no kick has a third component, to the last bit: then a rotation about the third axis doesn't change the
+    /// potential.
+    fn is_without_torque(&self) -> bool {
+        spin::all_samples(self.stepper.lagrangian(), |w| {
+            let torque: Vector3<T> = L::kick_before(&self.torque, w);
+            let gradient = kick::force_gradient::<L>(&self.torque, &self.inverse_inertia, w);
+            let gradient = gradient.filter(|_| self.scheme.has_gradients()).unwrap_or_else(Vector3::zeros);
+            torque.z.simd_eq(T::zero()).all() && gradient.z.simd_eq(T::zero()).all()
+        })
     }
 
     /// A potential that is symmetric about the third body axis commutes with rotations about it, and so does what else a
@@ -220,6 +243,12 @@ where
     ) -> Result<(), StepError> {
         match share {
             Share::Kick(time) => state.momentum += L::kick_before(&self.torque, &state.advected) * *time,
+            Share::GradientKick(time, share) => {
+                let torque: Vector3<T> = L::kick_before(&self.torque, &state.advected);
+                let gradient = kick::force_gradient::<L>(&self.torque, &self.inverse_inertia, &state.advected);
+                // That there is one was asked when the step was set up.
+                state.momentum += torque * *time + gradient.unwrap_or_else(Vector3::zeros) * *share;
+            }
             Share::Drift(drift) => {
                 let turn = K::advance(drift, &state.momentum)?;
                 state.attitude = state.attitude.advance(&turn.increment);

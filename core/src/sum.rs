@@ -157,6 +157,17 @@ where
         }
     }
 
+    #[inline(always)]
+    fn kick_derivative(constants: &Self::Constants, w: &Self::Advected, velocity: &Vector<Self>) -> Option<Vector<Self>> {
+        let first = || A::kick_derivative(&constants.0, &w.0, velocity);
+        let second = || B::kick_derivative(&constants.1, &w.1, velocity);
+        match (A::PARTS.kick_before, B::PARTS.kick_before) {
+            (true, true) => Some(first()? + second()?),
+            (true, false) => first(),
+            (false, _) => second(),
+        }
+    }
+
     /// The right side `a` belongs to one unknown part, zero to the other.
     #[inline(always)]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {

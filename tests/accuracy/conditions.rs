@@ -7,7 +7,8 @@
 //!
 //! The same with the letters `A` and `B` for the kinetic flow and the kicks gives the conditions of a splitting. One for a
 //! small potential, `(8, 6, 4)`, must agree with `exp(A + B)` in words of up to eight letters with one `B`, of up to six
-//! with two, of up to four with more. (The Nyström schemes ask for less than agreement, as some words don't matter.)
+//! with two, of up to four with more. (The Nyström schemes ask for less than agreement, as some words don't matter.) A share
+//! `g` of the force gradient is one of `½ [B, [A, B]]` beside the kick.
 
 use core::ops::{Add, Div, Mul, Sub};
 use std::collections::BTreeMap;
@@ -51,6 +52,26 @@ fn times_exponential<T: Number>(series: &Series<T>, x: impl Fn(u32) -> T) -> Ser
         cuts.fold(T::from(0.0), |sum, part| sum + part)
     };
     series.keys().map(|word| (word.clone(), coefficient(word))).collect()
+}
+
+/// The series times the exponential of a sum of words with these coefficients.
+fn times_exponential_of(series: &Series<f64>, words: &[(Vec<u32>, f64)]) -> Series<f64> {
+    let longest = series.keys().map(Vec::len).max().unwrap_or(0);
+    let (mut sum, mut last) = (series.clone(), series.clone());
+    for n in (1_u32..).take(longest) {
+        let mut next: Series<f64> = series.keys().map(|word| (word.clone(), 0.0)).collect();
+        for (word, x) in &mut next {
+            for (end, factor) in words {
+                let before = word.strip_suffix(end.as_slice()).map_or(0.0, |begin| last[begin]);
+                *x += before * factor / f64::from(n);
+            }
+        }
+        for (word, x) in &next {
+            *sum.entry(word.clone()).or_default() += x;
+        }
+        last = next;
+    }
+    sum
 }
 
 fn power<T: Number>(x: T, n: u32) -> T {
@@ -104,9 +125,15 @@ fn splitting_deviation(scheme: &SplittingScheme, longest: [usize; 3]) -> f64 {
         0 => word.len() <= longest[0],
         kicks => word.len() <= longest[kicks.min(3) - 1],
     });
-    let composed = scheme.shares().fold(one.clone(), |composed, (flow, part)| {
+    let composed = scheme.shares().zip(scheme.gradients()).fold(one.clone(), |composed, ((flow, part), gradient)| {
         let of_flow = if flow == Flow::Drift { A } else { B };
-        times_exponential(&composed, |letter| if letter == of_flow { part } else { 0.0 })
+        if gradient == 0.0 {
+            return times_exponential(&composed, |letter| if letter == of_flow { part } else { 0.0 });
+        }
+        // ½ [B, [A, B]] = B A B − ½ (A B B + B B A).
+        let half = -0.5 * gradient;
+        let words = [(vec![B], part), (vec![B, A, B], gradient), (vec![A, B, B], half), (vec![B, B, A], half)];
+        times_exponential_of(&composed, &words)
     });
     let exact = times_exponential(&one, |_| 1.0);
     composed.iter().map(|(word, x)| (x - exact[word]).abs()).fold(0.0, f64::max)
@@ -119,6 +146,8 @@ fn near_integrable_splittings_satisfy_their_order_conditions() {
         (SplittingScheme::NEAR_INTEGRABLE_4_2, [4, 2, 2]),
         (SplittingScheme::NEAR_INTEGRABLE_8_6_4, [8, 6, 4]),
         (SplittingScheme::NEAR_INTEGRABLE_10_6_4, [10, 6, 4]),
+        (SplittingScheme::FORCE_GRADIENT_2, [4, 4, 4]),
+        (SplittingScheme::FORCE_GRADIENT_4, [8, 4, 4]),
     ] {
         let within = splitting_deviation(&scheme, longest);
         println!("{}: {within:.1e}", scheme.name());
@@ -139,6 +168,7 @@ fn nystrom_splittings_satisfy_the_common_order_conditions() {
         (SplittingScheme::NYSTROM_6, [4, 4, 3]),
         (SplittingScheme::NYSTROM_11, [6, 3, 3]),
         (SplittingScheme::NYSTROM_14, [6, 3, 3]),
+        (SplittingScheme::FORCE_GRADIENT_5, [6, 4, 4]),
     ] {
         let within = splitting_deviation(&scheme, longest);
         println!("{}: {within:.1e}", scheme.name());

@@ -107,6 +107,21 @@ fn composed_splittings_are_strang_composed() {
 }
 
 #[test]
+fn force_gradients_in_two_stages_are_of_order_4() {
+    assert_order_of_exact(SplittingScheme::FORCE_GRADIENT_2, [200; 3], 1.5);
+}
+
+#[test]
+fn force_gradients_in_four_stages_are_of_order_4() {
+    assert_order_of_exact(SplittingScheme::FORCE_GRADIENT_4, [200; 3], 1.5);
+}
+
+#[test]
+fn force_gradients_in_five_stages_are_of_order_6() {
+    assert_order_of_exact(SplittingScheme::FORCE_GRADIENT_5, [100; 3], 1.3);
+}
+
+#[test]
 fn near_integrable_4_2_is_of_order_2() {
     assert_order_of_exact(SplittingScheme::NEAR_INTEGRABLE_4_2, [200; 3], 2.0);
 }

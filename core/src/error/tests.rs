@@ -31,6 +31,7 @@ fn setup_errors() {
         SetupError::NotSeparable { defect: 0.25 },
         SetupError::AnotherInertia { difference: 0.5 },
         SetupError::AnotherBias,
+        SetupError::NoForceGradient,
         SetupError::AnotherPotential,
     ];
     for error in errors {
@@ -43,6 +44,7 @@ fn setup_errors() {
             SetupError::NotSeparable { .. } => &["K(F) − (h/2) (V(w) + V(F⁻¹·w))", "2.5e-1", "more than rounding"],
             SetupError::AnotherInertia { .. } => &["another body", "5e-1"],
             SetupError::AnotherBias => &["momentum at rest", "rotors"],
+            SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
             SetupError::AnotherPotential => &["another potential"],
         };
         assert_says(&error.to_string(), parts);

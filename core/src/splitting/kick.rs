@@ -1,9 +1,10 @@
-//! The kick of a declared Lagrangian's potential, and the check that it is one.
+//! The kicks of a declared Lagrangian's potential, and the check that it has one.
 
-use nalgebra::{SimdBool as _, Vector3};
+use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use crate::advected::Advected as _;
 use crate::coordinates::Coordinates;
+use crate::effect::Effect;
 use crate::error::SetupError;
 use crate::groups::{LieGroup as _, SO3};
 use crate::lagrangian::DiscreteLagrangian;
@@ -50,4 +51,32 @@ where
     } else {
         Err(SetupError::NotSeparable { defect: reported(defect) })
     }
+}
+
+/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`; `None` where the derivative of the
+/// torque isn't known.
+///
+/// With the velocity `v = J⁻¹τ`, held fixed, and a turn `η` of the body,
+///
+/// ```text
+/// −dU·η = v·∂_η τ = η·∂_v τ + τ·(η × v) = η·(∂_v τ + v × τ)
+/// ```
+///
+/// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket.
+#[inline(always)]
+pub(super) fn force_gradient<L>(
+    torque: &L::Constants,
+    inverse_inertia: &Matrix3<L::Scalar>,
+    w: &L::Advected,
+) -> Option<Vector3<L::Scalar>>
+where
+    L: DiscreteLagrangian<Group = SO3<<L as Effect>::Scalar>>,
+{
+    let tau: Vector3<L::Scalar> = L::kick_before(torque, w);
+    let velocity = inverse_inertia * tau;
+    let change = L::kick_derivative(torque, w, &velocity)?;
+    // A multiple of the torque makes no difference, and without it a body that is symmetric about its third axis gets
+    // exactly nothing there.
+    let across = velocity - tau * inverse_inertia.m11;
+    Some(change + across.cross(&tau))
 }

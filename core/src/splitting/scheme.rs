@@ -21,6 +21,11 @@ pub enum Flow {
 /// the error is of the orders `ε h⁸`, `ε² h⁶`, `ε³ h⁴` where `ε` is the ratio of the two, so the order in `h` alone is
 /// the last of the numbers, while what is seen at common steps is the first.
 ///
+/// Kicks may have a share of the *force gradient*, too: beside `b_i h τ` that of `g_i h³ U`, the potential's own commutator
+/// with the kinetic energy, `U = −½ τ·J⁻¹τ`. That is a function of the attitude like the potential, so the kick is as
+/// explicit and as symplectic as without it; it costs one [derivative](crate::Effect::kick_derivative) of the torque, and
+/// takes away an error that is otherwise paid for with more kinetic flows, and with negative ones.
+///
 /// # Examples
 ///
 /// ```
@@ -34,6 +39,8 @@ pub struct SplittingScheme {
     order: u32,
     first: Flow,
     half: &'static [f64],
+    /// Of each share of `half`; those of drifts are zero, and so are all beyond the last.
+    gradients: &'static [f64],
 }
 
 impl SplittingScheme {
@@ -156,8 +163,49 @@ impl SplittingScheme {
         ],
     );
 
+    /// Order 4 in two stages, with force gradients: Gauss's nodes and weights. \[Ch97\], algorithm B
+    pub const FORCE_GRADIENT_2: Self = Self::new(
+        "force gradient 2-4",
+        4,
+        Flow::Drift,
+        &[0.2113248654051871177454256097490212721762, 0.5, 0.5773502691896257645091487805019574556476],
+    )
+    .with_gradients(&[0.0, 0.0111645496846301127696897357705886513774]);
+
+    /// Order 4 in four stages, `(8, 4)` for a small potential: Gauss's nodes and weights, \[LR01\], with force gradients in
+    /// the inner two kicks, as many as their commutator asks for.
+    pub const FORCE_GRADIENT_4: Self = Self::new(
+        "force gradient 4-4",
+        4,
+        Flow::Drift,
+        &[
+            0.0694318442029737123880267555535952474521,
+            0.1739274225687269286865319746109997036177,
+            0.2605776340045981552106403648947824089476,
+            0.3260725774312730713134680253890002963823,
+            0.3399810435848562648026657591032446872006,
+        ],
+    )
+    .with_gradients(&[0.0, 0.0, 0.0, 0.0033967750482086013315321577834921437970]);
+
+    /// Order 6 in five stages, with force gradients. \[OMF02\]
+    pub const FORCE_GRADIENT_5: Self = Self::new(
+        "force gradient 5-6",
+        6,
+        Flow::Drift,
+        &[
+            0.1097059723948682,
+            0.2693315848935301,
+            0.4140632267310831,
+            1.1319803486515564,
+            -0.0237691991259513,
+            -1.8026238670901730,
+        ],
+    )
+    .with_gradients(&[0.0, 0.0017284322679412332, 0.0, 0.0, 0.0, -0.02649277286832104]);
+
     /// All of these.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::STRANG,
         Self::NEAR_INTEGRABLE_4_2,
         Self::NEAR_INTEGRABLE_8_6_4,
@@ -167,6 +215,9 @@ impl SplittingScheme {
         Self::NYSTROM_14,
         Self::KAHAN_LI_8,
         Self::SOFRONIOU_SPALETTA_10,
+        Self::FORCE_GRADIENT_2,
+        Self::FORCE_GRADIENT_4,
+        Self::FORCE_GRADIENT_5,
     ];
 
     /// Other coefficients: drifts and kicks by turns, from the first to the middle one.
@@ -177,7 +228,14 @@ impl SplittingScheme {
     #[must_use]
     pub const fn new(name: &'static str, order: u32, first: Flow, half: &'static [f64]) -> Self {
         assert!(half.len() >= 2, "a splitting has a drift and a kick at least");
-        Self { name, order, first, half }
+        Self { name, order, first, half, gradients: &[] }
+    }
+
+    /// With these shares `g_i` of the force gradient: one for each drift and kick, from the first on as far as there are
+    /// any; those of drifts count for nothing.
+    #[must_use]
+    pub const fn with_gradients(self, gradients: &'static [f64]) -> Self {
+        Self { gradients, ..self }
     }
 
     /// What it is called in tables.
@@ -198,6 +256,22 @@ impl SplittingScheme {
         let shares = half.iter().chain(half.iter().rev().skip(1)).copied();
         let other = if first == Flow::Drift { Flow::Kick } else { Flow::Drift };
         [first, other].into_iter().cycle().zip(shares)
+    }
+
+    /// The shares of the force gradient in each of [`shares`](Self::shares), zero in drifts.
+    pub fn gradients(&self) -> impl Iterator<Item = f64> + use<> {
+        let (count, gradients) = (self.half.len(), self.gradients);
+        let drift = usize::from(self.first == Flow::Kick);
+        (0..2 * count - 1).map(move |index| {
+            let from_ends = index.min(2 * (count - 1) - index);
+            if index % 2 == drift { 0.0 } else { gradients.get(from_ends).copied().unwrap_or(0.0) }
+        })
+    }
+
+    /// Whether any kick has a share of the force gradient.
+    #[must_use]
+    pub fn has_gradients(&self) -> bool {
+        self.gradients().any(|share| share != 0.0)
     }
 
     /// Kinetic flows in a step of many: the last of a step and the first of the next are one.

@@ -4,11 +4,10 @@
 //! one and the same angle are rounded in the same way at each step, and what they miss of `s² + c² = 1` would lengthen or
 //! shorten `w`, `p` and the attitude in proportion to the number of steps. So that, too, is made good.
 
-use nalgebra::{Matrix3, SimdBool as _, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::angle::{rotation_coefficients, square};
 use crate::advected::Advected;
-use crate::effect::Effect;
 use crate::groups::{LieGroup, SO3};
 use crate::lagrangian::DiscreteLagrangian;
 use crate::retraction::{CayleyRetraction, Retraction as _};
@@ -18,17 +17,15 @@ use crate::state::State;
 /// Attitudes without anything special about them.
 const SAMPLES: [[f64; 3]; 4] = [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5], [1.3, 0.8, -0.2], [-0.6, -1.2, 0.9]];
 
-/// Whether the torque has no third component, to the last bit: then a rotation about the third axis doesn't change the
-/// potential.
-pub(super) fn is_without_torque<T, L>(lagrangian: &L, torque: &L::Constants) -> bool
+/// Whether something is so from wherever the scene is seen.
+pub(super) fn all_samples<T, L>(lagrangian: &L, is_so: impl Fn(&L::Advected) -> bool) -> bool
 where
     T: Real,
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
 {
     SAMPLES.iter().all(|xi| {
         let attitude = CayleyRetraction::retract(&Vector3::from(*xi).map(real::<T>));
-        let torque: Vector3<T> = <L as Effect>::kick_before(torque, &lagrangian.advected().seen_from(&attitude));
-        torque.z.simd_eq(T::zero()).all()
+        is_so(&lagrangian.advected().seen_from(&attitude))
     })
 }
 

@@ -69,6 +69,7 @@ pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result
         previous: transport::previous(&context),
         limit: Limit { has_kinetic: false, slope: none(), inertia: none(), bias: none(), potential: none() },
         kick_before: parts.kick_before,
+        kick_derivative: None,
         unknown: transport::in_small_increment(&context, &parts.unknown),
         moved: None,
         kick_after: parts.kick_after.plus(after),

@@ -6,6 +6,7 @@ mod closed;
 mod diamond;
 mod energy;
 mod force;
+mod kick_derivative;
 mod limit;
 mod momentum_equation;
 mod momentum_maps;
@@ -65,6 +66,8 @@ pub(crate) struct Directions {
     pub(crate) next: Vec<SymbolId>,
     /// `ξ̂` in the limit `F = exp(hξ̂)`.
     velocity: SymbolId,
+    /// The body velocity `v` that a kick is differentiated along.
+    pub(crate) along: SymbolId,
     /// A scalar to differentiate functions by.
     scratch: SymbolId,
 }
@@ -98,6 +101,9 @@ pub(crate) struct Derived {
     pub(crate) limit: Limit,
     /// The part of the diamond without `F`.
     pub(crate) kick_before: Expression,
+    /// Its derivative along `w ↦ exp(−t E_j)·w`, where kinetic-potential splittings may ask for it: on SO(3), of a Lagrangian
+    /// without closed `let`s.
+    pub(crate) kick_derivative: Option<Expression>,
     /// The part of `μ` with `F`, written in `D = F − I`: its constants cancel exactly, so that a small step keeps its
     /// digits.
     pub(crate) unknown: Expression,
@@ -136,10 +142,11 @@ impl Derived {
             &self.unknown,
             &self.kick_after,
         ];
+        let all = all.into_iter().chain(&self.kick_derivative);
         let cleared = self.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
         let closed =
             self.closed.iter().flat_map(|one| [&one.value, &one.pairing, &one.tangent.1, &one.multiplier_tangent.1]);
-        !all.into_iter().chain(cleared).chain(closed).any(Expression::has_overflow)
+        !all.chain(cleared).chain(closed).any(Expression::has_overflow)
     }
 }
 
@@ -159,6 +166,8 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     let adjoint_defect = self_adjoint::defect(&context);
     let limit = limit::limit(&context, &momentum)?;
     let parts = transport::parts(&context, &momentum, &diamond);
+    let kick_derivative = (closed.is_empty() && declared.group.is_so3)
+        .then(|| kick_derivative::kick_derivative(&context, &parts.kick_before));
     let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
     let unknown =
         if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
@@ -174,6 +183,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
         adjoint_defect,
         limit,
         kick_before: parts.kick_before,
+        kick_derivative,
         unknown,
         moved: Some(parts.moved),
         kick_after: parts.kick_after,
@@ -249,6 +259,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         denominator: symbols.add("(1 + |y|²)", (1, 1), Structure::General, Stage::Iteration),
         coordinate_direction: column(symbols, "δy", dimension, Stage::Construction),
         velocity: algebra(symbols, "ξ̂"),
+        along: column(symbols, "v", dimension, Stage::Step),
         scratch: symbols.add("x", (1, 1), Structure::General, Stage::Construction),
         next: declared
             .advected

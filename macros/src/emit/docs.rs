@@ -40,7 +40,7 @@ pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation>
     let covector = |expression| covector_text(expression, derived.directions.first, symbols);
     let scalar = |expression| text(expression, symbols);
     let equation = |method, left, right, source| Equation { method, left, right, source };
-    vec![
+    let mut equations = vec![
         equation("l_d", "l_d", scalar(&declared.l_d), "as declared, in normal form"),
         equation("right_momentum", "(R_F)* δl_d/δF", covector(&derived.right_momentum), "section 3.2.1, item 2"),
         equation("left_momentum", "(L_F)* δl_d/δF", covector(&derived.left_momentum), "section 3.2.1, item 1; (2.6)"),
@@ -53,7 +53,11 @@ pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation>
         equation("potential", "V", scalar(&derived.limit.potential), "continuous limit"),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
         equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
-    ]
+    ];
+    if let Some(change) = &derived.kick_derivative {
+        equations.push(equation("kick_derivative", "∂k₀ along exp(−tE_j)·w", covector(change), "the force gradient's"));
+    }
+    equations
 }
 
 /// The equations of a force.

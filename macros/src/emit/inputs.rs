@@ -41,6 +41,9 @@ impl Emitter<'_> {
         if input.symbol == directions.inverse {
             return entry(&quote_spanned!(span=> inverse), input);
         }
+        if input.symbol == directions.along {
+            return entry(&quote_spanned!(span=> velocity), input);
+        }
         if input.symbol == directions.target {
             return entry(&quote_spanned!(span=> a), input);
         }

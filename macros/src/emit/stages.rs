@@ -23,7 +23,8 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     // The moved part of the diamond is emitted only with a residual alone.
     let moved: &[NodeId] = if kernel.jacobian_is_dear() { &kernel.moved } else { &[] };
     let solved = [system.as_slice(), moved].concat();
-    let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after].concat();
+    let change = kernel.kick_derivative.as_deref().unwrap_or_default();
+    let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after, change].concat();
     let constants = boundary(graph, &everything, Stage::Construction);
     let step_terms = boundary(graph, &solved, Stage::Step);
     let (span, root) = (Span::mixed_site(), &emitter.header.root);
@@ -46,6 +47,10 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     };
     let kick_before = value(&kernel.kick_before, &from_constants);
     let kick_after = value(&kernel.kick_after, &from_constants);
+    let kick_derivative = kernel.kick_derivative.as_ref().map(|outputs| {
+        let documentation = super::docs::of(equations, "kick_derivative", graph, outputs);
+        kick_derivative(emitter, &documentation, &value(outputs, &from_constants))
+    });
     let (lets, values) = emitter.statements(graph, &system, &from_terms);
     let (residual, jacobian) = values.split_at(kernel.residual.len());
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
@@ -84,6 +89,8 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         #[doc = #before]
         #[inline(always)]
         fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> #vector { #kick_before }
+
+        #kick_derivative
 
         #[doc = #step]
         #[inline(always)]
@@ -150,6 +157,23 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
         const PARTS: #root::Parts = #root::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
         const OPERATIONS: #root::Operations = #root::Operations { step: #step, iteration: #iteration };
+    }
+}
+
+/// How a kick changes as the body turns.
+fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) -> TokenStream {
+    let (span, root, vector) = (Span::mixed_site(), &emitter.header.root, emitter.header.vector());
+    let option = quote_spanned!(span=> #root::__private::core::option::Option);
+    quote_spanned! {span=>
+        #[doc = #documentation]
+        #[inline(always)]
+        fn kick_derivative(
+            constants: &Self::Constants,
+            w: &Self::Advected,
+            velocity: &#vector,
+        ) -> #option<#vector> {
+            #option::Some({ #value })
+        }
     }
 }
 

@@ -25,6 +25,8 @@ pub(crate) struct Candidate {
 pub(crate) struct Kernel {
     pub(crate) graph: Graph,
     pub(crate) kick_before: Vec<NodeId>,
+    /// The derivative of `kick_before` along a body velocity, where it is derived.
+    pub(crate) kick_derivative: Option<Vec<NodeId>>,
     pub(crate) residual: Vec<NodeId>,
     pub(crate) jacobian: Vec<NodeId>,
     pub(crate) kick_after: Vec<NodeId>,
@@ -101,6 +103,22 @@ fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
     })
 }
 
+/// `Σ v_j E_j`.
+fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
+    let (group, symbol) = (&derived.group, derived.directions.along);
+    let components: Vec<NodeId> =
+        (0..group.dimension()).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Step)).collect();
+    let generators: Vec<Entries> = (0..group.dimension()).map(|j| generator(graph, group, j)).collect();
+    Entries::new(group.size, group.size, |row, column| {
+        let terms: Vec<NodeId> = generators
+            .iter()
+            .zip(&components)
+            .map(|(generator, &component)| graph.multiply(generator.at(row, column), component))
+            .collect();
+        graph.sum(&terms)
+    })
+}
+
 /// A Jacobian, linear in `E_k` and `E_j`, row by row.
 pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
@@ -127,6 +145,10 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     let mut graph = Graph::default();
     let none = with_lets(&mut graph, derived, Given::new());
     let kick_before = components(&mut graph, derived, &none, &derived.kick_before);
+    let kick_derivative = derived.kick_derivative.as_ref().map(|expression| {
+        let velocity = velocity(&mut graph, derived);
+        components(&mut graph, derived, &Given::from([(derived.directions.second, velocity)]), expression)
+    });
     let increment = by_increment(&mut graph, derived, |graph, row, column| {
         graph.input(Input { symbol: derived.directions.small, row, column }, Stage::Iteration)
     });
@@ -168,6 +190,7 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     let (residual, jacobian) = outputs.split_at(derived.group.dimension().min(outputs.len()));
     Kernel {
         kick_before,
+        kick_derivative,
         residual: residual.to_vec(),
         jacobian: jacobian.to_vec(),
         kick_after,

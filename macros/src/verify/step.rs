@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::terms::Terms;
-use super::{SPACING, Sample, TOLERANCE, Value, evaluated, linear};
+use super::{SPACING, Sample, TOLERANCE, Value, evaluated, linear, turn};
 use crate::derive::Derived;
 use crate::group::Group;
 use crate::scalar::Kernel;
@@ -30,6 +30,31 @@ impl Step<'_> {
         }
         self.newton_disagreement(sample, &inputs, &target).or_else(|| {
             self.transport_disagrees(sample, &inputs, &target, &terms.left(&inputs)).then_some("transported momentum")
+        })
+        .or_else(|| self.kick_derivative_disagrees(sample, &inputs).then_some("derivative of the kick"))
+    }
+
+    /// Along each generator, against the kicks at `exp(∓t E_j)·w`.
+    fn kick_derivative_disagrees(&self, sample: &Sample, inputs: &BTreeMap<SymbolId, Value>) -> bool {
+        let (graph, group, along) = (&self.kernel.graph, &self.derived.group, self.derived.directions.along);
+        let Some(outputs) = &self.kernel.kick_derivative else { return false };
+        (0..group.dimension()).any(|j| {
+            let kick = |t: f64| {
+                let values = sample.moved_values(&sample.increment, (&turn(group, j, -t), &turn(group, j, t)));
+                let mut inputs = inputs.clone();
+                for (symbol, name) in &sample.symbols {
+                    inputs.extend(values.get(name).map(|value| (*symbol, value.clone())));
+                }
+                evaluated(graph, &self.kernel.kick_before, &inputs)
+            };
+            let (after, before) = (kick(SPACING), kick(-SPACING));
+            let mut inputs = inputs.clone();
+            inputs.insert(along, Value::new(group.dimension(), 1, |row, _| if row == j { 1.0 } else { 0.0 }));
+            let found = evaluated(graph, outputs, &inputs);
+            let size = 1.0 + found.iter().chain(&after).map(|x| x.abs()).sum::<f64>();
+            let expected = after.iter().zip(&before).map(|(x, y)| (x - y) / (2.0 * SPACING));
+            let defect: Vec<f64> = found.iter().zip(expected).map(|(x, y)| x - y).collect();
+            defect.iter().any(|entry| entry.is_finite()) && !is_small(&defect, TOLERANCE * size)
         })
     }
 
