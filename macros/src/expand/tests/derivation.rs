@@ -53,6 +53,8 @@ fn of_the_heavy_top() {
             k₀ = (h m g/2) (rho wᵀ − w rhoᵀ)^∨    [a = μ + k₀]
         kick_after
             k₁⁺ = (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
+        kick_derivative
+            ∂k₀ along exp(−tE_j)·w = (h m g/2) (E_j w rhoᵀ + rho wᵀ E_j)^∨    [the force gradient's]
         hypotheses used
             FᵀF = I, J_dᵀ = J_d
         self-adjoint
