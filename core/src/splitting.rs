@@ -8,7 +8,7 @@ mod preprocessed;
 mod scheme;
 mod spin;
 
-pub(crate) use kick::torque;
+pub(crate) use kick::{has_force_gradient, torque};
 pub(crate) use kinetic::inverse_inertia;
 pub use kinetic::{DeclaredDrift, KineticFlow, SymmetricBody, SymmetricDrift, Turn};
 pub use preprocessed::{PreprocessedDrift, PreprocessedFlow};
@@ -131,9 +131,7 @@ where
         }
         let torque = torque(stepper.lagrangian())?;
         let inverse_inertia = inverse_inertia(stepper.lagrangian());
-        let has_gradients = scheme.has_gradients();
-        let start = stepper.lagrangian().advected();
-        if has_gradients && kick::force_gradient::<L>(&torque, &inverse_inertia, &start).is_none() {
+        if scheme.has_gradients() && !has_force_gradient(stepper.lagrangian()) {
             return Err(SetupError::NoForceGradient);
         }
         let share = |((flow, part), gradient): ((Flow, f64), f64)| -> Result<_, SetupError> {

@@ -158,7 +158,11 @@ where
     }
 
     #[inline(always)]
-    fn kick_derivative(constants: &Self::Constants, w: &Self::Advected, velocity: &Vector<Self>) -> Option<Vector<Self>> {
+    fn kick_derivative(
+        constants: &Self::Constants,
+        w: &Self::Advected,
+        velocity: &Vector<Self>,
+    ) -> Option<Vector<Self>> {
         let first = || A::kick_derivative(&constants.0, &w.0, velocity);
         let second = || B::kick_derivative(&constants.1, &w.1, velocity);
         match (A::PARTS.kick_before, B::PARTS.kick_before) {

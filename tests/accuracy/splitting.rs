@@ -1,6 +1,6 @@
 //! Kinetic-potential splittings.
 
-use liestep::effects::Rotor;
+use liestep::effects::{GravityGradient, Rotor, Spring};
 use liestep::{
     CompositionScheme, DiagonalNonstandardInertia, Effect, Flow, Inertia, KineticFlow, LieGroup as _, PreprocessedFlow,
     PreprocessedOrder, SO3, SetupError, Splitting, SplittingScheme, Stepper, SymmetricBody,
@@ -137,6 +137,40 @@ fn near_integrable_8_6_4_and_10_6_4_are_of_order_4() {
 }
 
 /// With a kinetic flow of order 6 on the top that has no exact one.
+/// The gradients of potentials that aren't linear in what is advected, which their sum adds up: against shorter steps.
+#[test]
+fn force_gradients_of_any_potential() {
+    let top = HeavyTop::thesis();
+    let scene = || {
+        let spring =
+            Spring { k: 40.0, length: 0.5, at: Vector3::new(0.2, 0.3, 0.9), anchor: Vector3::new(1.5, 0.5, 1.0) };
+        // Like a satellite's mass, of another shape than the body that turns.
+        let J = Inertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).unwrap();
+        let gradient = GravityGradient { GM: 20.0, r: 1.5, J, direction: Vector3::new(0.0, 0.6, 0.8) };
+        top.clone() + spring + gradient
+    };
+    let run = |scheme, steps: u32| {
+        let splitting = Splitting::new(scene(), symmetric(&top), 2.0 / f64::from(steps), scheme).unwrap();
+        let mut state = splitting.start(SO3::identity(), Vector3::new(0.5, 2.0, 6.0)).unwrap();
+        splitting.advance(&mut state, steps.into()).unwrap();
+        (*state.attitude().as_matrix(), state.momentum())
+    };
+    let exact = run(SplittingScheme::NYSTROM_14, 800);
+    for (scheme, coarse) in [
+        (SplittingScheme::FORCE_GRADIENT_2, 100),
+        (SplittingScheme::FORCE_GRADIENT_4, 50),
+        (SplittingScheme::FORCE_GRADIENT_5, 30),
+    ] {
+        let [first, second] = [coarse, 2 * coarse].map(|steps| {
+            let end = run(scheme, steps);
+            relative(&end.0, &exact.0) + relative(&end.1, &exact.1)
+        });
+        let measured = (first / second).log2();
+        println!("{}: {first:.1e}, {second:.1e}, order {measured:.2}", scheme.name());
+        assert!((measured - f64::from(scheme.order())).abs() < 0.25, "{}: {measured}", scheme.name());
+    }
+}
+
 #[test]
 fn declared_kinetic_flows_keep_the_order() {
     let chaotic = (TOPS[3], 10.0);

@@ -1,8 +1,8 @@
 //! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
 
 use liestep::{
-    CayleyRetraction, DiscreteLagrangian, Effect, NonstandardInertia, SO3, SceneVisitor, SetupError, Stepper,
-    WithKinetic,
+    Accuracy, Candidates, CayleyRetraction, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia,
+    SO3, SceneVisitor, SetupError, Splitting, SplittingScheme, Stepper, SymmetricBody, WithKinetic,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -143,4 +143,24 @@ fn a_top_written_by_hand_steps_and_keeps_its_vertical_momentum() {
     assert!(most <= 4, "{most} iterations");
     assert!((state.momentum_along(&Vector3::z()) - momentum).abs() < 1e-12);
     assert!(state.orthogonality_defect() < 1e-13);
+}
+
+/// What a kick's derivative isn't written for can be split, but not with force gradients.
+#[test]
+fn a_force_gradient_has_to_be_written() {
+    let moments = Vector3::new(3.0, 3.0, 4.0);
+    let top = HandWrittenTop {
+        inertia: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap(),
+        weight: 9.81,
+        rho: Vector3::z(),
+    };
+    let body = SymmetricBody::new(&Inertia::from_principal_moments(moments).unwrap()).unwrap();
+    let split = |scheme| Splitting::new(top.clone(), body, 0.01, scheme).map(|splitting| *splitting.scheme());
+    assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(SplittingScheme::NYSTROM_6));
+    assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
+    // Nor is it chosen.
+    let accuracy = Accuracy { tolerance: 1e-4, horizon: 1.0 };
+    let candidates = Candidates::of(top.clone(), 2).and_splittings("exact", top, body);
+    let stepper = candidates.for_accuracy(accuracy, SO3::identity(), Vector3::new(0.5, 2.0, 12.0)).unwrap();
+    assert!(!stepper.choice().to_string().contains("force gradient"));
 }

@@ -16,7 +16,7 @@ use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
 use crate::preprocessed::{PreprocessedBody, PreprocessedOrder};
 use crate::retraction::Retraction as _;
-use crate::splitting::{KineticFlow, Splitting, SplittingScheme};
+use crate::splitting::{KineticFlow, Splitting, SplittingScheme, has_force_gradient};
 use crate::stepper::Stepper;
 
 /// A method, to be made for a step.
@@ -180,7 +180,8 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
         K: KineticFlow<f64> + Clone + 'static,
     {
         self.compare(&scene);
-        for scheme in SplittingScheme::ALL {
+        let has_gradient = has_force_gradient(&scene);
+        for scheme in SplittingScheme::ALL.into_iter().filter(|scheme| has_gradient || !scheme.has_gradients()) {
             let (scene, kinetic, stages) = (scene.clone(), kinetic.clone(), count(scheme.drifts()));
             self.methods.push(Candidate {
                 name: format!("{name}, {}", scheme.name()),

@@ -20,6 +20,9 @@ const OF_A_STAGE: f64 = 150.0;
 /// products of matrices don't.
 const OF_AN_ITERATION: f64 = 90.0;
 
+/// What a force gradient takes besides another kick: products with `J⁻¹`, and that the torque is waited for.
+const OF_A_FORCE_GRADIENT: f64 = 120.0;
+
 /// An iteration of collocation makes so many at each of its stages: for the rates of quaternion and momentum, for the
 /// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count as
 /// one, here and below.
@@ -132,7 +135,9 @@ where
         // The iterations change little from step to step, and those of the last are reported.
         let iterations = u64::from(self.advance(state, steps)?.iterations);
         let (drifts, kicks) = (self.scheme().drifts() as u64, self.scheme().kicks() as u64);
-        let kicks = (steps * kicks) as f64 * 0.5 * f64::from(<L as Effect>::OPERATIONS.step);
+        let kick = 0.5 * f64::from(<L as Effect>::OPERATIONS.step);
+        let gradients = (steps * self.scheme().gradient_kicks() as u64) as f64 * (kick + OF_A_FORCE_GRADIENT);
+        let kicks = (steps * kicks) as f64 * kick + gradients;
         let (drift, turn) = if self.has_spin_apart() {
             (without_spin::<K>(), OF_A_STAGE + f64::from(K::OPERATIONS_OF_SPIN))
         } else {

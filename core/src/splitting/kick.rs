@@ -80,3 +80,12 @@ where
     let across = velocity - tau * inverse_inertia.m11;
     Some(change + across.cross(&tau))
 }
+
+/// Whether the derivative of the torque is known.
+pub(crate) fn has_force_gradient<T, L>(lagrangian: &L) -> bool
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+{
+    L::kick_derivative(&lagrangian.constants(T::one()), &lagrangian.advected(), &Vector3::zeros()).is_some()
+}

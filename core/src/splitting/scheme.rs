@@ -274,6 +274,13 @@ impl SplittingScheme {
         self.gradients().any(|share| share != 0.0)
     }
 
+    /// Kicks with a share of the force gradient in a step of many.
+    #[must_use]
+    pub fn gradient_kicks(&self) -> usize {
+        let joined = self.gradients().next().is_some_and(|share| share != 0.0);
+        self.gradients().filter(|share| *share != 0.0).count() - usize::from(joined)
+    }
+
     /// Kinetic flows in a step of many: the last of a step and the first of the next are one.
     #[must_use]
     pub fn drifts(&self) -> usize {

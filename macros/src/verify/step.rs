@@ -28,10 +28,12 @@ impl Step<'_> {
         if target.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        self.newton_disagreement(sample, &inputs, &target).or_else(|| {
-            self.transport_disagrees(sample, &inputs, &target, &terms.left(&inputs)).then_some("transported momentum")
-        })
-        .or_else(|| self.kick_derivative_disagrees(sample, &inputs).then_some("derivative of the kick"))
+        self.newton_disagreement(sample, &inputs, &target)
+            .or_else(|| {
+                self.transport_disagrees(sample, &inputs, &target, &terms.left(&inputs))
+                    .then_some("transported momentum")
+            })
+            .or_else(|| self.kick_derivative_disagrees(sample, &inputs).then_some("derivative of the kick"))
     }
 
     /// Along each generator, against the kicks at `exp(∓t E_j)·w`.

@@ -107,10 +107,12 @@ fn a_wrong_step_is_named() {
     for declared in both() {
         assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Err("transported momentum"));
         assert_eq!(declared.after(|d| negate(&mut d.kick_before)), Err("Newton residual at the solution"));
-        let change = |d: &mut Derived| d.kick_derivative.as_mut().is_some_and(|change| {
-            negate(change);
-            !change.is_zero()
-        });
+        let change = |d: &mut Derived| {
+            d.kick_derivative.as_mut().is_some_and(|change| {
+                negate(change);
+                !change.is_zero()
+            })
+        };
         if change(&mut declared.derived.clone()) {
             assert_eq!(declared.after(|d| _ = change(d)), Err("derivative of the kick"));
         }
