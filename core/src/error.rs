@@ -86,7 +86,7 @@ impl fmt::Display for SetupError {
             ),
             Self::NoForceGradient => write!(
                 f,
-                "a term of the scene was written without `kick_derivative`, so it has no force gradient; declare it, or choose a scheme without gradients"
+                "a term of the scene was written without `kick_derivative`, so it has no force gradient; choose a scheme without them, or write it"
             ),
             Self::AnotherPotential => {
                 write!(

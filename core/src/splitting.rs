@@ -31,7 +31,9 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 /// The shares `a_i` and `b_i` of a [`SplittingScheme`] go to the kinetic flow over `a_i h` and to kicks
 /// `p ← p + b_i h τ(w)` by turns. The kinetic part of the declared Lagrangian is replaced by a [`KineticFlow`], exact for
 /// a symmetric body or declared with a higher order; that part makes nearly all of the error of (3.13). Every stage is a
-/// Poisson map that keeps the momentum maps, so the step is.
+/// Poisson map that keeps the momentum maps, so the step is. Schemes with force gradients add to a kick a share of
+/// `−½ τ·J⁻¹τ`, the potential's commutator with the kinetic energy, whose torque is derived as `τ` is; with them two to
+/// five flows reach an order that takes six to fourteen without.
 ///
 /// # Contract
 ///
@@ -74,7 +76,7 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 ///
 /// # Source
 ///
-/// \[BM02\], \[ML95\], \[BCF13\]; see [`conventions`](crate::conventions).
+/// \[BM02\], \[ML95\], \[BCF13\], with force gradients \[Ch97\], \[OMF02\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug)]
 pub struct Splitting<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, K: KineticFlow<T>, T: Real = f64> {
     scheme: SplittingScheme,
