@@ -135,6 +135,10 @@
 //! | \[Su90\] | M. Suzuki, *Fractal decomposition of exponential operators with applications to many-body theories and Monte Carlo simulations*, Physics Letters A 146, 1990 |
 //! | \[KL97\] | W. Kahan, R.-C. Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations*, Mathematics of Computation 66, 1997 |
 //! | \[SS05\] | M. Sofroniou, G. Spaletta, *Derivation of symmetric composition constants for symmetric integrators*, Optimization Methods and Software 20, 2005 |
+//! | \[FR90\] | E. Forest, R. D. Ruth, *Fourth-order symplectic integration*, Physica D 43, 1990 |
+//! | \[ML93\] | R. I. McLachlan, *Explicit Lie–Poisson integration and the Euler equations*, Physical Review Letters 71, 1993 |
+//! | \[TW94\] | J. Touma, J. Wisdom, *Lie–Poisson integrators for rigid body dynamics in the solar system*, The Astronomical Journal 107, 1994 |
+//! | \[Fa03\] | F. Fassò, *Comparison of splitting algorithms for the rigid body*, Journal of Computational Physics 189, 2003 |
 //! | \[BM02\] | S. Blanes, P. C. Moan, *Practical symplectic partitioned Runge–Kutta and Runge–Kutta–Nyström methods*, Journal of Computational and Applied Mathematics 142, 2002 |
 //! | \[ML95\] | R. I. McLachlan, *Composition methods in the presence of small parameters*, BIT 35, 1995 |
 //! | \[Ch97\] | S. A. Chin, *Symplectic integrators from composite operator factorizations*, Physics Letters A 226, 1997 |

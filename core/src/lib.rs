@@ -83,8 +83,8 @@ pub use scalar::{Mask, Real};
 pub use scene::SceneVisitor;
 pub use solvability::{Solvability, TurningLimits};
 pub use splitting::{
-    DeclaredDrift, Flow, KineticFlow, PreprocessedDrift, PreprocessedFlow, Splitting, SplittingScheme, SymmetricBody,
-    SymmetricDrift, Turn,
+    DeclaredDrift, Flow, KineticFlow, PreprocessedDrift, PreprocessedFlow, SplitBody, SplitDrift, Splitting,
+    SplittingScheme, SymmetricBody, SymmetricDrift, Turn,
 };
 pub use state::State;
 pub use stepper::{StepReport, Stepper};

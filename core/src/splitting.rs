@@ -7,12 +7,14 @@ mod kinetic;
 mod preprocessed;
 mod scheme;
 mod spin;
+mod split_body;
 
 pub(crate) use kick::{has_force_gradient, torque};
 pub(crate) use kinetic::inverse_inertia;
 pub use kinetic::{DeclaredDrift, KineticFlow, SymmetricBody, SymmetricDrift, Turn};
 pub use preprocessed::{PreprocessedDrift, PreprocessedFlow};
 pub use scheme::{Flow, SplittingScheme};
+pub use split_body::{SplitBody, SplitDrift};
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates;

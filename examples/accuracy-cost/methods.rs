@@ -2,7 +2,7 @@
 
 use liestep::{
     Composition, CompositionScheme, DiscreteLagrangian, Gauss, KineticFlow, PreprocessedBody, PreprocessedFlow,
-    PreprocessedOrder, Regular, SO3, Splitting, SplittingScheme, Stepper, SymmetricBody,
+    PreprocessedOrder, Regular, SO3, SplitBody, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
 use crate::rivals::{Equations, dop853, library};
@@ -106,6 +106,12 @@ pub(crate) fn ours(scene: &Scene) -> Vec<Method> {
                 Some(PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten))
             }));
             methods.extend(splittings("K6", Family::Poisson, Scene::top, |scene| Some(scene.sixth_order_body())));
+            methods.extend(splittings("split 7", Family::Poisson, Scene::top, |scene| {
+                SplitBody::<7>::new(&scene.inertia()).ok()
+            }));
+            methods.extend(splittings("split 9", Family::Poisson, Scene::top, |scene| {
+                SplitBody::<9>::new(&scene.inertia()).ok()
+            }));
         }
     }
     if scene.kind == Kind::Free {
