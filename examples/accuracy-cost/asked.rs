@@ -3,7 +3,9 @@
 use std::error::Error;
 use std::time::Duration;
 
-use liestep::{Accuracy, AccurateStepper, Candidates, PreprocessedFlow, PreprocessedOrder, SO3, SymmetricBody};
+use liestep::{
+    Accuracy, AccurateStepper, Candidates, PreprocessedFlow, PreprocessedOrder, SO3, SplitBody, SymmetricBody,
+};
 use nalgebra::Vector3;
 
 use crate::common::table::{aligned, number};
@@ -80,7 +82,7 @@ impl Question {
         );
         let candidates = match SymmetricBody::new(&scene.inertia()) {
             Ok(body) => candidates.and_splittings("exact", scene.top(), body),
-            Err(_) => candidates
+            Err(_) => split(candidates, scene)
                 .and_gauss(scene.top())
                 .and_splittings("K6", scene.top(), scene.sixth_order_body())
                 .and_splittings(
@@ -90,6 +92,17 @@ impl Question {
                 ),
         };
         Self { ask: asking(candidates, start, velocity), fixed }
+    }
+}
+
+/// With rotations about the body axes, which are the principal ones.
+fn split(candidates: Candidates<SO3, Vector3<f64>>, scene: &Scene) -> Candidates<SO3, Vector3<f64>> {
+    let inertia = scene.inertia();
+    match (SplitBody::<7>::new(&inertia), SplitBody::<9>::new(&inertia)) {
+        (Ok(seven), Ok(nine)) => {
+            candidates.and_splittings("split 7", scene.top(), seven).and_splittings("split 9", scene.top(), nine)
+        }
+        _ => candidates,
     }
 }
 
