@@ -6,7 +6,7 @@ mod rotor;
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use self::axes::Axes;
-use self::rotor::{REACH, Rotor};
+use self::rotor::Rotor;
 use super::angle::rotation_coefficients;
 use super::kinetic::{KineticFlow, Turn};
 use crate::error::{SetupError, StepError};
