@@ -252,3 +252,17 @@ fn increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
     );
     increment
 }
+
+#[cfg(test)]
+mod tests {
+    use super::increment;
+
+    /// A length that is off by roundings changes the rotation by its square.
+    #[test]
+    fn lengths_are_divided_out() {
+        let exact = increment([0.6, 0.0, 0.48, 0.64]);
+        let longer = increment([0.6, 0.0, 0.48, 0.64].map(|part: f64| part * (1.0 + 1e-9)));
+        assert!((longer - exact).norm() < 1e-15);
+        assert!((exact.transpose() * exact + exact + exact.transpose()).norm() < 1e-15);
+    }
+}
