@@ -53,7 +53,7 @@ use crate::scalar::{Mask, Real, is_finite, real, reported};
 /// let inertia = Inertia::from_principal_moments(Vector3::new(1.6, 2.6, 3.0))?;
 /// let body = SplitBody::<7>::new(&inertia)?;
 /// let momentum = Vector3::new(1.0, -2.0, 3.0);
-/// let turn = SplitBody::advance(&body.drift(0.1)?, &momentum)?;
+/// let turn = SplitBody::<7>::advance(&body.drift(0.1)?, &momentum)?;
 /// // What the space sees of the momentum, F (p + Δp), hasn't changed.
 /// let after = momentum + turn.change;
 /// assert!((after + turn.increment * after - momentum).norm() < 1e-15);
