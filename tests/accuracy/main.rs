@@ -18,4 +18,5 @@ mod gauss;
 mod higher_order;
 mod many_digits;
 mod preprocessed;
+mod split_body;
 mod splitting;
