@@ -111,6 +111,8 @@ pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) h: Scalar<L>,
     /// [`trusted_radius`], or zero.
     pub(crate) trusted: Scalar<L>,
+    /// A part of the Jacobian's determinant at rest, above which it is far from changing its sign.
+    pub(crate) safe: Scalar<L>,
 }
 
 impl<L: Effect> Problem<'_, L> {
@@ -130,8 +132,7 @@ impl<L: Effect> Problem<'_, L> {
         }
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 0..MAX_ITERATIONS {
-            let (update, det) = self.update(&terms, &lanes.half);
-            lanes.advance(&update, det, &update);
+            self.refine(&terms, &mut lanes);
             if lanes.settled.all() {
                 let half = lanes.half;
                 let usual = is_positive(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
@@ -192,8 +193,7 @@ impl<L: Effect> Problem<'_, L> {
     /// Until all lanes have settled or the iterations are used up; how many there were.
     fn iterate(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
         for iteration in 1..=MAX_ITERATIONS {
-            let (update, det) = self.update(terms, &lanes.half);
-            lanes.advance(&update, det, &update);
+            self.refine(terms, &mut lanes);
             if lanes.settled.all() {
                 return (lanes, iteration);
             }
@@ -214,6 +214,26 @@ impl<L: Effect> Problem<'_, L> {
             }
         }
         (lanes, MAX_DAMPED_ITERATIONS)
+    }
+
+    #[inline(always)]
+    fn refine(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) {
+        let (residual, jacobian) = L::newton_system(self.constants, terms, &lanes.half);
+        let (factors, det) = Vector::<L>::factorise(&jacobian);
+        let first = Vector::<L>::solve_again(&factors, det, &residual);
+        lanes.advance(&first, det, &first);
+        if lanes.settled.all() || !Self::is_plain() {
+            return;
+        }
+        let short = is_short::<L>(&first, &lanes.half) & det.simd_gt(self.safe) & !lanes.settled;
+        if !short.any() {
+            return;
+        }
+        let (residual, _) = L::newton_residual(self.constants, terms, &lanes.half);
+        let second = Vector::<L>::solve_again(&factors, det, &residual);
+        let next = lanes.half - second;
+        lanes.half = next.select(short, lanes.half);
+        lanes.settled = lanes.settled | (short & settled_again::<L>(&first, &second, &next));
     }
 
     #[inline(always)]
@@ -276,6 +296,19 @@ impl<L: Effect> Problem<'_, L> {
 fn settled<L: Effect>(update: &Vector<L>, half: &Vector<L>) -> Mask<Scalar<L>> {
     let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 64.0);
     update.dot(update).simd_le(half.dot(half) * tolerance)
+}
+
+#[inline(always)]
+fn is_short<L: Effect>(update: &Vector<L>, half: &Vector<L>) -> Mask<Scalar<L>> {
+    let (length, size) = (update.dot(update), half.dot(half));
+    (length * length).simd_le(size * size * (Scalar::<L>::simd_default_epsilon() * real(1.0 / 16.0)))
+}
+
+#[inline(always)]
+fn settled_again<L: Effect>(first: &Vector<L>, second: &Vector<L>, half: &Vector<L>) -> Mask<Scalar<L>> {
+    let (before, after) = (first.dot(first), second.dot(second));
+    let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 32.0);
+    (after * (after / before)).simd_le(half.dot(half) * (tolerance * tolerance))
 }
 
 #[inline(always)]

@@ -134,8 +134,13 @@ impl<L: Effect> Problem<'_, L> {
     /// iteration as its values do, but lag behind them here.
     #[inline(always)]
     pub(super) fn goes_by_secants() -> bool {
+        L::JACOBIAN_IS_DEAR && Self::is_plain()
+    }
+
+    #[inline(always)]
+    pub(super) fn is_plain() -> bool {
         let element = TypeId::of::<<Scalar<L> as SimdValue>::Element>();
-        L::JACOBIAN_IS_DEAR && (element == TypeId::of::<f64>() || element == TypeId::of::<f32>())
+        element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
     }
 
     /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of
