@@ -205,7 +205,6 @@ fn read<L: Effect<Scalar: Stored>>(
         momentum: unlisted("momentum", &checkpoint.momentum)?,
         advected: unlisted::<_, L::Advected>("advected", &checkpoint.advected)?,
         half: unlisted::<_, Vector<L>>("coordinates", &checkpoint.coordinates)? * real(0.5),
-        change: unlisted::<_, Vector<L>>("guess", &checkpoint.guess)? * real(0.0),
         half_guess: unlisted::<_, Vector<L>>("guess", &checkpoint.guess)? * real(0.5),
         history,
         steps: checkpoint.steps,

@@ -12,8 +12,10 @@
 
 mod branch;
 mod secants;
+mod simplified;
 
 pub(crate) use branch::trusted_radius;
+pub(crate) use simplified::safe;
 
 use crate::coordinates::Coordinates;
 use crate::effect::{Effect, Matrix, Scalar, Vector};
@@ -71,7 +73,7 @@ impl<L: Effect> Root<L> {
 /// Where the lanes of an iteration have come to.
 struct Lanes<L: Effect> {
     half: Vector<L>,
-    /// Of the Jacobian at the iterate before `half`.
+    /// Of the last Jacobian: at the iterate before `half`, or before two [short updates](simplified).
     det: Scalar<L>,
     settled: Mask<Scalar<L>>,
     kick: Kick<L>,
@@ -111,7 +113,7 @@ pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) h: Scalar<L>,
     /// [`trusted_radius`], or zero.
     pub(crate) trusted: Scalar<L>,
-    /// A part of the Jacobian's determinant at rest, above which it is far from changing its sign.
+    /// A [`safe`] determinant.
     pub(crate) safe: Scalar<L>,
 }
 
@@ -131,8 +133,8 @@ impl<L: Effect> Problem<'_, L> {
             return lanes.settled.all().then(|| Root::of(&lanes, iterations));
         }
         let mut lanes = Lanes::<L>::starting_at(guess);
-        for iteration in 0..MAX_ITERATIONS {
-            self.refine(&terms, &mut lanes);
+        for iteration in 1..=MAX_ITERATIONS {
+            let again = self.refine(&terms, &mut lanes);
             if lanes.settled.all() {
                 let half = lanes.half;
                 let usual = is_positive(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
@@ -142,7 +144,8 @@ impl<L: Effect> Problem<'_, L> {
                     return None;
                 }
                 let increment = L::Retraction::increment_of_half(&half);
-                return Some(Root { half, increment, iterations: iteration + 1, far, kick: Kick::none() });
+                let iterations = iteration + u32::from(again);
+                return Some(Root { half, increment, iterations, far, kick: Kick::none() });
             }
         }
         None
@@ -193,9 +196,9 @@ impl<L: Effect> Problem<'_, L> {
     /// Until all lanes have settled or the iterations are used up; how many there were.
     fn iterate(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
         for iteration in 1..=MAX_ITERATIONS {
-            self.refine(terms, &mut lanes);
+            let again = self.refine(terms, &mut lanes);
             if lanes.settled.all() {
-                return (lanes, iteration);
+                return (lanes, iteration + u32::from(again));
             }
         }
         (lanes, MAX_ITERATIONS)
@@ -214,26 +217,6 @@ impl<L: Effect> Problem<'_, L> {
             }
         }
         (lanes, MAX_DAMPED_ITERATIONS)
-    }
-
-    #[inline(always)]
-    fn refine(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) {
-        let (residual, jacobian) = L::newton_system(self.constants, terms, &lanes.half);
-        let (factors, det) = Vector::<L>::factorise(&jacobian);
-        let first = Vector::<L>::solve_again(&factors, det, &residual);
-        lanes.advance(&first, det, &first);
-        if lanes.settled.all() || !Self::is_plain() {
-            return;
-        }
-        let short = is_short::<L>(&first, &lanes.half) & det.simd_gt(self.safe) & !lanes.settled;
-        if !short.any() {
-            return;
-        }
-        let (residual, _) = L::newton_residual(self.constants, terms, &lanes.half);
-        let second = Vector::<L>::solve_again(&factors, det, &residual);
-        let next = lanes.half - second;
-        lanes.half = next.select(short, lanes.half);
-        lanes.settled = lanes.settled | (short & settled_again::<L>(&first, &second, &next));
     }
 
     #[inline(always)]
@@ -296,19 +279,6 @@ impl<L: Effect> Problem<'_, L> {
 fn settled<L: Effect>(update: &Vector<L>, half: &Vector<L>) -> Mask<Scalar<L>> {
     let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 64.0);
     update.dot(update).simd_le(half.dot(half) * tolerance)
-}
-
-#[inline(always)]
-fn is_short<L: Effect>(update: &Vector<L>, half: &Vector<L>) -> Mask<Scalar<L>> {
-    let (length, size) = (update.dot(update), half.dot(half));
-    (length * length).simd_le(size * size * (Scalar::<L>::simd_default_epsilon() * real(1.0 / 16.0)))
-}
-
-#[inline(always)]
-fn settled_again<L: Effect>(first: &Vector<L>, second: &Vector<L>, half: &Vector<L>) -> Mask<Scalar<L>> {
-    let (before, after) = (first.dot(first), second.dot(second));
-    let tolerance = Scalar::<L>::simd_default_epsilon() * real(1.0 / 32.0);
-    (after * (after / before)).simd_le(half.dot(half) * (tolerance * tolerance))
 }
 
 #[inline(always)]

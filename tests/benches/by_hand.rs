@@ -8,8 +8,8 @@
 //! R⁺    = R + R D,    w⁺ = w + Dᵀ w,    p⁺ = p + Dᵀ a + the two half kicks
 //! ```
 //!
-//! It stops where the library stops and refuses what the library refuses, but it knows one body and one force only,
-//! and has no second attempt.
+//! The guess is the library's, and so is Newton's iteration, with its last update by the Jacobian before. It stops where the
+//! library stops and refuses what the library refuses, but it knows one body and one force only, and has no second attempt.
 
 /// A heavy top with its step folded in.
 pub(crate) struct Top {
@@ -132,8 +132,8 @@ impl Top {
                 // Beyond a quarter turn the sign of the determinant alone doesn't tell the branch.
                 return (det > 0.0 && squared < 1.0).then_some([x, y, z]);
             }
-            // Once more with the same Jacobian, where that is enough.
-            if first * first > squared * squared * (f64::EPSILON / 16.0) || det <= self.safe {
+            // Once more with the same Jacobian, where that will be enough.
+            if first * first * first > squared * (f64::EPSILON * f64::EPSILON / 4.0) || det <= self.safe {
                 continue;
             }
             let s = 1.0 + squared;
@@ -146,7 +146,7 @@ impl Top {
             (x, y, z) = (x - dx, y - dy, z - dz);
             let squared = x * x + y * y + z * z;
             let second = dx * dx + dy * dy + dz * dz;
-            if second * (second / first) <= squared * (f64::EPSILON * f64::EPSILON / 1024.0) {
+            if second * first.max(second / first) <= squared * (f64::EPSILON * f64::EPSILON / 1024.0) {
                 return (squared < 1.0).then_some([x, y, z]);
             }
         }

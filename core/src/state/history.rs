@@ -23,6 +23,22 @@ impl<V: Copy> History<V> {
         Self { differences: [V::zero(); DIFFERENCES], increments: 0 }
     }
 
+    /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y`: where the parabola through three of them goes
+    /// next. Increments change by `O(h²)` from step to step, and their second differences by `O(h⁴)`: for (3.13) at common
+    /// steps Newton's iteration is left with an error that a second one, with the Jacobian of the first, brings to rounding.
+    ///
+    /// The first increment of all has no difference to the one before; the guess after the second is that much worse.
+    #[inline(always)]
+    pub(crate) fn parabola<T: Real>(&mut self, last: V, y: V) -> V
+    where
+        V: Coordinates<T>,
+    {
+        let difference = y - last;
+        let before = core::mem::replace(&mut self.differences[0], difference);
+        self.increments = 2;
+        y + (difference + (difference - before))
+    }
+
     /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y + …`: where the polynomial through all of
     /// them goes next.
     #[inline(always)]
