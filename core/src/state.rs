@@ -59,7 +59,7 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         if far.any() {
             self.half_guess = half.select(far, self.half_guess);
         }
-        let restored = if self.is_due() { self.look(&spatial()) } else { None };
+        let restored = if self.is_due() { self.look(&spatial(), by_many) } else { None };
         self.steps += 1;
         restored
     }
@@ -84,10 +84,13 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
     /// What is done after the first step, and after many more.
     #[cold]
     #[inline(never)]
-    fn look(&mut self, spatial: &A) -> Option<Mask<G::Scalar>> {
-        // Before the first step there was no increment but an estimate.
+    fn look(&mut self, spatial: &A, by_many: bool) -> Option<Mask<G::Scalar>> {
+        // Before the first step there was no increment but an estimate, which a parabola would go through.
         if self.steps == 0 {
             self.half_guess = self.half;
+            if !by_many {
+                self.history = History::new();
+            }
         }
         self.restore(spatial)
     }
