@@ -126,10 +126,10 @@ impl<L: Effect> CompensatedStepper<L> {
         let CompensatedState { state: now, carry } = state;
         let flow = self.stepper.flow();
         if flow.step_size() == real(0.0) {
-            now.proceed(zero(), nowhere::<Scalar<L>>(), || self.stepper.lagrangian().advected());
+            now.proceed(zero(), nowhere::<Scalar<L>>(), L::JACOBIAN_IS_DEAR, || self.stepper.lagrangian().advected());
             return Ok(StepReport { iterations: 0, remedy: None });
         }
-        let solved = flow.solve(&now.momentum, &now.advected, &now.half_guess)?;
+        let solved = flow.solve(&now.momentum, &now.advected, &now.guess())?;
         let increment = &solved.root.increment;
         let advected = sum(&now.advected, &now.advected.change(increment), &carry.advected);
         // The kicks are added for themselves: in `a` they are rounded to the digits of the momentum.
@@ -144,12 +144,9 @@ impl<L: Effect> CompensatedStepper<L> {
         now.attitude = Group::<L>::from_matrix_unchecked(attitude.0);
         now.momentum = momentum.0;
         now.advected = advected.0;
-        let (root, last) = (&solved.root, now.half);
+        let root = &solved.root;
         // What is carried belongs to the state before.
-        let restored = now.proceed(root.half, root.far, || self.stepper.lagrangian().advected());
-        if L::JACOBIAN_IS_DEAR {
-            now.look_back(last, root.far);
-        }
+        let restored = now.proceed(root.half, root.far, L::JACOBIAN_IS_DEAR, || self.stepper.lagrangian().advected());
         if let Some(far) = restored {
             let mut kept = |carry: Scalar<L>, nothing: Scalar<L>| nothing.select(far, carry);
             carry.attitude = carry.attitude.zip(&zero(), &mut kept);

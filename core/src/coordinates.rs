@@ -43,16 +43,27 @@ pub trait Coordinates<T: Real>:
     #[must_use]
     fn select(self, mask: Mask<T>, other: Self) -> Self;
 
-    /// The solution `z` of `A z = b`, and `det A`.
+    /// What [`solve_again`](Self::solve_again) solves `A z = b` from, and `det A`.
     ///
     /// There is no pivoting and no branch, so that SIMD lanes stay together, and so that another unit of length, which
     /// scales rows and columns, changes no digit. Where `A` is singular, `z` isn't finite and `det A` is zero or not
     /// finite.
     ///
-    /// Up to three dimensions this is Cramer's rule. Beyond, it is elimination in the order of the basis: as accurate
-    /// as any for a matrix whose symmetric part is positive definite, like the Jacobian of a kinetic energy near the
-    /// identity, and not finite where a leading minor is zero.
-    fn solve(matrix: &Self::Square, right_side: &Self) -> (Self, T);
+    /// Up to three dimensions this is Cramer's rule, and the adjugate is returned. Beyond, it is elimination in the order of
+    /// the basis, and both triangles are returned: as accurate as any for a matrix whose symmetric part is positive definite,
+    /// like the Jacobian of a kinetic energy near the identity, and not finite where a leading minor is zero.
+    fn factorise(matrix: &Self::Square) -> (Self::Square, T);
+
+    /// The solution `z` of `A z = b` from what [`factorise`](Self::factorise) has made of `A`.
+    fn solve_again(factors: &Self::Square, det: T, right_side: &Self) -> Self;
+
+    /// The solution `z` of `A z = b`, and `det A`.
+    #[must_use]
+    #[inline(always)]
+    fn solve(matrix: &Self::Square, right_side: &Self) -> (Self, T) {
+        let (factors, det) = Self::factorise(matrix);
+        (Self::solve_again(&factors, det, right_side), det)
+    }
 
     /// The trace of a square matrix.
     fn trace(matrix: &Self::Square) -> T;
@@ -94,13 +105,25 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 
     #[inline(always)]
-    fn solve(matrix: &SMatrix<T, D, D>, b: &Self) -> (Self, T) {
+    fn factorise(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
         // `D` is a constant, so that one of these is left.
         match D {
-            1 => (b / matrix[(0, 0)], matrix[(0, 0)]),
-            2 => cramer_2(matrix, b),
-            3 => cramer_3(matrix, b),
-            _ => eliminate(*matrix, *b),
+            1 => (SMatrix::from_element(T::one()), matrix[(0, 0)]),
+            2 => adjugate_2(matrix),
+            3 => adjugate_3(matrix),
+            _ => eliminate(*matrix),
+        }
+    }
+
+    #[inline(always)]
+    fn solve_again(factors: &SMatrix<T, D, D>, det: T, b: &Self) -> Self {
+        match D {
+            1 => b / det,
+            2 | 3 => {
+                let inverse = T::one() / det;
+                Self::from_fn(|i, _| sum::<T, D>(|k| factors[(i, k)] * b[k]) * inverse)
+            }
+            _ => substitute(factors, *b),
         }
     }
 
@@ -117,20 +140,20 @@ fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
 }
 
 #[inline(always)]
-fn cramer_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>, b: &SVector<T, D>) -> (SVector<T, D>, T) {
+fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let det = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
-    let inverse = T::one() / det;
-    let mut z = SVector::zeros();
-    z[0] = (m[(1, 1)] * b[0] - m[(0, 1)] * b[1]) * inverse;
-    z[1] = (m[(0, 0)] * b[1] - m[(1, 0)] * b[0]) * inverse;
-    (z, det)
+    let mut adjugate = SMatrix::zeros();
+    adjugate[(0, 0)] = m[(1, 1)];
+    adjugate[(0, 1)] = -m[(0, 1)];
+    adjugate[(1, 0)] = -m[(1, 0)];
+    adjugate[(1, 1)] = m[(0, 0)];
+    (adjugate, det)
 }
 
-/// Cramer's rule by cross products of the rows.
+/// Its rows are cross products of columns.
 #[inline(always)]
-fn cramer_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, b: &SVector<T, D>) -> (SVector<T, D>, T) {
+fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
-    // Rows of the adjugate: cofactors of the columns.
     let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
     let c21 = m(2, 3) * m(3, 1) - m(2, 1) * m(3, 3);
     let c31 = m(2, 1) * m(3, 2) - m(2, 2) * m(3, 1);
@@ -142,29 +165,36 @@ fn cramer_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, b: &SVector<T, D
     let c33 = m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1);
     // By the first column: that is the shorter code.
     let det = m(1, 1) * c11 + m(2, 1) * c12 + m(3, 1) * c13;
-    let inverse = T::one() / det;
-    let mut z = SVector::zeros();
-    z[0] = (c11 * b[0] + c12 * b[1] + c13 * b[2]) * inverse;
-    z[1] = (c21 * b[0] + c22 * b[1] + c23 * b[2]) * inverse;
-    z[2] = (c31 * b[0] + c32 * b[1] + c33 * b[2]) * inverse;
-    (z, det)
+    let rows = [[c11, c12, c13], [c21, c22, c23], [c31, c32, c33]];
+    (SMatrix::from_fn(|i, j| rows[i][j]), det)
 }
 
-/// Gaussian elimination in the given order.
+/// Gaussian elimination in the given order: the upper triangle that is left, and below it the factors of the rows.
 ///
 /// A zero pivot divides its own component, which then can't be finite; nothing has to be tested.
 #[inline]
-fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>, mut z: SVector<T, D>) -> (SVector<T, D>, T) {
+fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let mut det = T::one();
     for k in 0..D {
         det *= a[(k, k)];
         for i in k + 1..D {
             let factor = a[(i, k)] / a[(k, k)];
+            a[(i, k)] = factor;
             for j in k + 1..D {
                 let product = factor * a[(k, j)];
                 a[(i, j)] -= product;
             }
-            let product = factor * z[k];
+        }
+    }
+    (a, det)
+}
+
+/// Through both triangles of [`eliminate`].
+#[inline]
+fn substitute<T: Real, const D: usize>(a: &SMatrix<T, D, D>, mut z: SVector<T, D>) -> SVector<T, D> {
+    for k in 0..D {
+        for i in k + 1..D {
+            let product = a[(i, k)] * z[k];
             z[i] -= product;
         }
     }
@@ -175,5 +205,5 @@ fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>, mut z: SVector<T,
         }
         z[k] /= a[(k, k)];
     }
-    (z, det)
+    z
 }

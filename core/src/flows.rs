@@ -14,7 +14,7 @@ use crate::effect::{Effect, Group, Matrix, Scalar, Vector};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::kinetic::Regular;
-use crate::newton::{Kick, Problem, Root, trusted_radius};
+use crate::newton::{Kick, Problem, Root, safe, trusted_radius};
 use crate::retraction::Retraction;
 use crate::scalar::{is_finite, real, reported};
 use crate::solvability::{Solvability, TurningLimits};
@@ -31,6 +31,8 @@ pub struct DiscreteLiePoisson<L: Effect> {
     /// The square of a right side far beyond those of steps that have a solution.
     largest_target: Scalar<L>,
     trusted: Scalar<L>,
+    /// What the Jacobian's determinant has to exceed for a solve to do without a second one.
+    safe: Scalar<L>,
 }
 
 /// A momentum equation and its solution.
@@ -63,6 +65,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         }
         let constants = lagrangian.constants(h);
         let (at_rest, trace) = jacobian_at_rest(&lagrangian, &constants);
+        let safe = safe(at_rest);
         // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
         let at_rest = (0..<Group<L> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
         let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
@@ -74,7 +77,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         let largest_target = if h == real(0.0) { h } else { largest * largest };
         let is_dear = L::JACOBIAN_IS_DEAR && h != real(0.0);
         let trusted = if is_dear { trusted_radius(&lagrangian, &constants) } else { real(0.0) };
-        Ok(Self { lagrangian, h, constants, largest_target, trusted })
+        Ok(Self { lagrangian, h, constants, largest_target, trusted, safe })
     }
 
     /// The declared Lagrangian.
@@ -248,6 +251,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             w,
             h: self.h,
             trusted: self.trusted,
+            safe: self.safe,
         }
     }
 
@@ -340,7 +344,15 @@ impl<L: Effect> DiscreteLiePoisson<L> {
             }
             let a = kicked::<L>(&constants, momentum, advected);
             let lagrangian = &self.lagrangian;
-            let problem = Problem { lagrangian, constants: &constants, a, w: advected, h, trusted: self.trusted };
+            let problem = Problem {
+                lagrangian,
+                constants: &constants,
+                a,
+                w: advected,
+                h,
+                trusted: self.trusted,
+                safe: self.safe,
+            };
             let terms = L::step_terms(&constants, &a, advected);
             problem.attempt(&terms, &Vector::<L>::zero()).is_ok()
         };

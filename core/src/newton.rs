@@ -12,8 +12,10 @@
 
 mod branch;
 mod secants;
+mod simplified;
 
 pub(crate) use branch::trusted_radius;
+pub(crate) use simplified::safe;
 
 use crate::coordinates::Coordinates;
 use crate::effect::{Effect, Matrix, Scalar, Vector};
@@ -71,7 +73,7 @@ impl<L: Effect> Root<L> {
 /// Where the lanes of an iteration have come to.
 struct Lanes<L: Effect> {
     half: Vector<L>,
-    /// Of the Jacobian at the iterate before `half`.
+    /// Of the last Jacobian: at the iterate before `half`, or before two [short updates](simplified).
     det: Scalar<L>,
     settled: Mask<Scalar<L>>,
     kick: Kick<L>,
@@ -111,6 +113,8 @@ pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) h: Scalar<L>,
     /// [`trusted_radius`], or zero.
     pub(crate) trusted: Scalar<L>,
+    /// A [`safe`] determinant.
+    pub(crate) safe: Scalar<L>,
 }
 
 impl<L: Effect> Problem<'_, L> {
@@ -129,9 +133,8 @@ impl<L: Effect> Problem<'_, L> {
             return lanes.settled.all().then(|| Root::of(&lanes, iterations));
         }
         let mut lanes = Lanes::<L>::starting_at(guess);
-        for iteration in 0..MAX_ITERATIONS {
-            let (update, det) = self.update(&terms, &lanes.half);
-            lanes.advance(&update, det, &update);
+        for iteration in 1..=MAX_ITERATIONS {
+            let again = self.refine(&terms, &mut lanes);
             if lanes.settled.all() {
                 let half = lanes.half;
                 let usual = is_positive(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
@@ -141,7 +144,8 @@ impl<L: Effect> Problem<'_, L> {
                     return None;
                 }
                 let increment = L::Retraction::increment_of_half(&half);
-                return Some(Root { half, increment, iterations: iteration + 1, far, kick: Kick::none() });
+                let iterations = iteration + u32::from(again);
+                return Some(Root { half, increment, iterations, far, kick: Kick::none() });
             }
         }
         None
@@ -192,10 +196,9 @@ impl<L: Effect> Problem<'_, L> {
     /// Until all lanes have settled or the iterations are used up; how many there were.
     fn iterate(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
         for iteration in 1..=MAX_ITERATIONS {
-            let (update, det) = self.update(terms, &lanes.half);
-            lanes.advance(&update, det, &update);
+            let again = self.refine(terms, &mut lanes);
             if lanes.settled.all() {
-                return (lanes, iteration);
+                return (lanes, iteration + u32::from(again));
             }
         }
         (lanes, MAX_ITERATIONS)

@@ -103,13 +103,13 @@ impl<T: Real> PreprocessedBody<T> {
             state.steps += 1;
             return Ok(StepReport { iterations: 0, remedy: None });
         }
-        let root = match self.modified.solve(self.h, &state.momentum, &state.half_guess) {
+        let root = match self.modified.solve(self.h, &state.momentum, &state.guess()) {
             Ok(root) => root,
             Err(error) => return Err(self.explain(error, state)),
         };
         state.attitude = state.attitude.advance(&root.increment);
         state.momentum += SO3::adjoint_transpose_increment(&root.increment, &state.momentum);
-        state.proceed(root.half, root.far, || ());
+        state.proceed(root.half, root.far, false, || ());
         Ok(StepReport { iterations: root.iterations, remedy: None })
     }
 

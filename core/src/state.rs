@@ -10,6 +10,7 @@ use nalgebra::{SimdBool as _, SimdValue as _, Vector3};
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;
+use crate::entries::Entries as _;
 use crate::groups::{LieGroup, SO3};
 use crate::scalar::{Mask, Real};
 
@@ -30,7 +31,7 @@ pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) half: G::Vector,
     /// A guess of half the next ones.
     pub(crate) half_guess: G::Vector,
-    /// Of increments of one step, where the Jacobian is dear; elsewhere it stays empty.
+    /// Of increments of one step: of many where the Jacobian is dear, elsewhere of the last three.
     pub(crate) history: History<G::Vector>,
     pub(crate) steps: u64,
 }
@@ -40,44 +41,56 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         Self { attitude, momentum, advected, half, half_guess: half, history: History::new(), steps: 0 }
     }
 
-    /// Counts the step with half these coordinates, and guesses those of the next; `far` are the lanes in which they are
-    /// no longer near the identity at 3/2 of their length. Now and then it looks how far roundings have gone, and returns
-    /// what [`restore`](Self::restore) does.
+    /// Counts the step with half these coordinates, and guesses those of the next, by many increments or by three; `far` are
+    /// the lanes in which they are no longer near the identity at 3/2 of their length. Now and then it looks how far roundings
+    /// have gone, and returns what [`restore`](Self::restore) does.
     #[inline(always)]
     pub(crate) fn proceed(
         &mut self,
         half: G::Vector,
         far: Mask<G::Scalar>,
+        by_many: bool,
         spatial: impl FnOnce() -> A,
     ) -> Option<Mask<G::Scalar>> {
-        // Increments change by O(h²) from step to step, and their changes by O(h³): for (3.13) at common steps this
-        // guess saves one iteration of three.
-        self.half_guess = half + (half - self.half);
+        let last = core::mem::replace(&mut self.half, half);
+        self.half_guess = if by_many { self.history.next(last, half) } else { self.history.parabola(last, half) };
         // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. A selection without the
         // branch would lie on the way to the next iteration, and cost a tenth of a step.
         if far.any() {
             self.half_guess = half.select(far, self.half_guess);
         }
-        self.half = half;
-        let restored = if self.is_due() { self.look(&spatial()) } else { None };
+        let restored = if self.is_due() { self.look(&spatial(), by_many) } else { None };
         self.steps += 1;
         restored
     }
 
-    /// A better guess, by all increments so far: `last` was the one before. It takes some dozens of additions.
+    /// The guess for the next solve, as a solve had better read it.
+    ///
+    /// A processor hands on what has just been stored to a load of the same place, but a load of two components that were
+    /// stored apart waits until both stores are done. The compiler stores them and loads them in pairs, and in different ones
+    /// if it may. With the last component loaded for itself they are the same; it was a tenth of a step of (3.13).
     #[inline(always)]
-    pub(crate) fn look_back(&mut self, last: G::Vector, far: Mask<G::Scalar>) {
-        let guess = self.history.next(last, self.half);
-        self.half_guess = if far.any() { self.half.select(far, guess) } else { guess };
+    pub(crate) fn guess(&self) -> G::Vector {
+        if G::Scalar::LANES > 1 {
+            return self.half_guess;
+        }
+        let mut left = G::DIMENSION;
+        self.half_guess.zip(&self.half_guess, &mut |component, _| {
+            left -= 1;
+            if left == 0 { core::hint::black_box(component) } else { component }
+        })
     }
 
     /// What is done after the first step, and after many more.
     #[cold]
     #[inline(never)]
-    fn look(&mut self, spatial: &A) -> Option<Mask<G::Scalar>> {
-        // Before the first step there was no increment but an estimate.
+    fn look(&mut self, spatial: &A, by_many: bool) -> Option<Mask<G::Scalar>> {
+        // Before the first step there was no increment but an estimate, which a parabola would go through.
         if self.steps == 0 {
             self.half_guess = self.half;
+            if !by_many {
+                self.history = History::new();
+            }
         }
         self.restore(spatial)
     }

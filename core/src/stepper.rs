@@ -177,7 +177,7 @@ impl<L: Effect> Stepper<L> {
 
     #[inline(always)]
     fn step_as_compiled(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        match self.flow.step_directly(&state.momentum, &state.advected, &state.half_guess) {
+        match self.flow.step_directly(&state.momentum, &state.advected, &state.guess()) {
             Some(stepped) => Ok(self.taken(state, &stepped)),
             None => self.step_carefully(state),
         }
@@ -188,7 +188,7 @@ impl<L: Effect> Stepper<L> {
     #[cold]
     #[inline(never)]
     fn step_carefully(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        let stepped = self.flow.step_carefully(&state.momentum, &state.advected, &state.half_guess)?;
+        let stepped = self.flow.step_carefully(&state.momentum, &state.advected, &state.guess())?;
         Ok(self.taken(state, &stepped))
     }
 
@@ -198,11 +198,7 @@ impl<L: Effect> Stepper<L> {
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
-        let last = state.half;
-        state.proceed(*half, *far, || self.lagrangian().advected());
-        if L::JACOBIAN_IS_DEAR {
-            state.look_back(last, *far);
-        }
+        state.proceed(*half, *far, L::JACOBIAN_IS_DEAR, || self.lagrangian().advected());
         StepReport { iterations: step.iterations, remedy: None }
     }
 

@@ -8,8 +8,8 @@
 //! R⁺    = R + R D,    w⁺ = w + Dᵀ w,    p⁺ = p + Dᵀ a + the two half kicks
 //! ```
 //!
-//! It stops where the library stops and refuses what the library refuses, but it knows one body and one force only,
-//! and has no second attempt.
+//! The guess is the library's, and so is Newton's iteration, with its last update by the Jacobian before. It stops where the
+//! library stops and refuses what the library refuses, but it knows one body and one force only, and has no second attempt.
 
 /// A heavy top with its step folded in.
 pub(crate) struct Top {
@@ -20,15 +20,19 @@ pub(crate) struct Top {
     /// `(h/2) m g ρ`.
     lever: [f64; 3],
     half_step: f64,
+    /// A sixteenth of the Jacobian's determinant at rest.
+    safe: f64,
 }
 
-/// Attitude by rows, body momentum, vertical in the body, the last Cayley vector and the guess of the next.
+/// Attitude by rows, body momentum, vertical in the body, the last Cayley vector, its last change and the guess of the
+/// next.
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     pub(crate) attitude: [[f64; 3]; 3],
     pub(crate) momentum: [f64; 3],
     pub(crate) vertical: [f64; 3],
     pub(crate) last: [f64; 3],
+    pub(crate) change: [f64; 3],
     pub(crate) guess: [f64; 3],
 }
 
@@ -44,6 +48,7 @@ impl Top {
             differences: [c - b, a - c, b - a],
             lever: rho.map(|entry| 0.5 * h * weight * entry),
             half_step: 0.5 * h,
+            safe: a * b * c / 16.0,
         }
     }
 
@@ -88,7 +93,10 @@ impl Top {
         state.momentum = momentum;
         state.vertical = vertical;
         let [x0, y0, z0] = state.last;
-        state.guess = [x + (x - x0), y + (y - y0), z + (z - z0)];
+        let [cx, cy, cz] = [x - x0, y - y0, z - z0];
+        let [bx, by, bz] = state.change;
+        state.guess = [x + (cx + (cx - bx)), y + (cy + (cy - by)), z + (cz + (cz - bz))];
+        state.change = [cx, cy, cz];
         state.last = [x, y, z];
         true
     }
@@ -110,16 +118,36 @@ impl Top {
             let (m21, m22, m23) = (d2z - u2 * x, j2 - u2 * y, d2x - u2 * z);
             let (m31, m32, m33) = (d3y - u3 * x, d3x - u3 * y, j3 - u3 * z);
             let (c11, c21, c31) = (m22 * m33 - m23 * m32, m23 * m31 - m21 * m33, m21 * m32 - m22 * m31);
+            let (c12, c22, c32) = (m13 * m32 - m12 * m33, m11 * m33 - m13 * m31, m12 * m31 - m11 * m32);
+            let (c13, c23, c33) = (m12 * m23 - m13 * m22, m13 * m21 - m11 * m23, m11 * m22 - m12 * m21);
             let det = m11 * c11 + m12 * c21 + m13 * c31;
             let inverse = 1.0 / det;
-            let dx = (c11 * g1 + (m13 * m32 - m12 * m33) * g2 + (m12 * m23 - m13 * m22) * g3) * inverse;
-            let dy = (c21 * g1 + (m11 * m33 - m13 * m31) * g2 + (m13 * m21 - m11 * m23) * g3) * inverse;
-            let dz = (c31 * g1 + (m12 * m31 - m11 * m32) * g2 + (m11 * m22 - m12 * m21) * g3) * inverse;
+            let dx = (c11 * g1 + c12 * g2 + c13 * g3) * inverse;
+            let dy = (c21 * g1 + c22 * g2 + c23 * g3) * inverse;
+            let dz = (c31 * g1 + c32 * g2 + c33 * g3) * inverse;
             (x, y, z) = (x - dx, y - dy, z - dz);
             let squared = x * x + y * y + z * z;
-            if dx * dx + dy * dy + dz * dz <= squared * (f64::EPSILON / 64.0) {
+            let first = dx * dx + dy * dy + dz * dz;
+            if first <= squared * (f64::EPSILON / 64.0) {
                 // Beyond a quarter turn the sign of the determinant alone doesn't tell the branch.
                 return (det > 0.0 && squared < 1.0).then_some([x, y, z]);
+            }
+            // Once more with the same Jacobian, where that will be enough.
+            if first * first * first > squared * (f64::EPSILON * f64::EPSILON / 4.0) || det <= self.safe {
+                continue;
+            }
+            let s = 1.0 + squared;
+            let g1 = j1 * x + d1 * y * z - s * t1;
+            let g2 = j2 * y + d2 * z * x - s * t2;
+            let g3 = j3 * z + d3 * x * y - s * t3;
+            let dx = (c11 * g1 + c12 * g2 + c13 * g3) * inverse;
+            let dy = (c21 * g1 + c22 * g2 + c23 * g3) * inverse;
+            let dz = (c31 * g1 + c32 * g2 + c33 * g3) * inverse;
+            (x, y, z) = (x - dx, y - dy, z - dz);
+            let squared = x * x + y * y + z * z;
+            let second = dx * dx + dy * dy + dz * dz;
+            if second * first.max(second / first) <= squared * (f64::EPSILON * f64::EPSILON / 1024.0) {
+                return (squared < 1.0).then_some([x, y, z]);
             }
         }
         None

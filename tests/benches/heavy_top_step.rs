@@ -78,6 +78,7 @@ fn written_by_hand(start: &DerivedState) -> (by_hand::Top, by_hand::State) {
         momentum,
         vertical: start.advected().into(),
         last: first,
+        change: [0.0; 3],
         guess: first,
     };
     (by_hand::Top::new(MOMENTS, WEIGHT, RHO, STEP), state)

@@ -143,20 +143,20 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
     );
     assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 2 });
     let edits: [fn(&mut Value); 3] = [
-        |value| value["increments"] = json!(2),
+        |value| value["increments"] = json!(3),
         |value| value["increments"] = json!(20),
         |value| value["increments"] = json!(1_u64 << 63),
     ];
     for edit in edits {
         let error = refused(edit);
-        assert!(matches!(error, CheckpointError::WrongSize { what: "differences", found: 0, .. }), "{error}");
+        assert!(matches!(error, CheckpointError::WrongSize { what: "differences", found: 3, .. }), "{error}");
     }
     let scaled = refused(|value| value["attitude"][4] = json!(0.5));
     assert!(matches!(scaled, CheckpointError::NotInGroup { defect } if defect > 1e-3), "{scaled}");
     let elsewhere = refused(|value| value["advected"] = json!([0.0, 0.0, 1.0]));
     assert!(matches!(elsewhere, CheckpointError::NotAdvected { distance } if distance > 1e-3), "{elsewhere}");
     // One digit of what nothing else could tell from the right one.
-    for name in ["momentum", "coordinates", "guess"] {
+    for name in ["momentum", "coordinates", "guess", "differences"] {
         let mut value = serde_json::to_value(&stored).unwrap();
         value[name][0] = json!(f64::from_bits(value[name][0].as_f64().unwrap().to_bits() ^ 1));
         assert_eq!(stepper.resume(&serde_json::from_value(value).unwrap()), Err(CheckpointError::Altered), "{name}");
@@ -168,7 +168,7 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
 #[test]
 fn p7_what_is_not_finite_is_refused() {
     let (stepper, stored) = checkpoint();
-    for what in ["attitude", "momentum", "advected", "coordinates", "guess"] {
+    for what in ["attitude", "momentum", "advected", "coordinates", "guess", "differences"] {
         for number in ["nan", "inf", "-inf"] {
             let mut table: toml::Table = toml::to_string(&stored).unwrap().parse().unwrap();
             table[what][0] = toml::Value::Float(number.parse().unwrap());

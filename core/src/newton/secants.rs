@@ -35,14 +35,13 @@
 //!   motion with a symmetry, such as a planar pendulum's, lie in one plane, and say nothing about the directions across it.
 //!   But what the samples of the ball have missed is seen by these.
 
-use core::any::TypeId;
-
+use super::simplified::is_plain;
 use super::{Lanes, Problem};
 use crate::coordinates::Coordinates as _;
 use crate::effect::{Effect, Scalar, Vector};
 use crate::retraction::Retraction as _;
 use crate::scalar::{Mask, nowhere, real};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// Contraction by a quarter may need more, but then Newton's iteration is cheaper.
 const MAX_UPDATES: usize = 8;
@@ -129,13 +128,9 @@ impl<L: Effect> Updates<L> {
 
 impl<L: Effect> Problem<'_, L> {
     /// Whether the solve starts without the Jacobian.
-    ///
-    /// Only with plain floating-point numbers: the derivatives that a dual number carries converge with the quadratic
-    /// iteration as its values do, but lag behind them here.
     #[inline(always)]
     pub(super) fn goes_by_secants() -> bool {
-        let element = TypeId::of::<<Scalar<L> as SimdValue>::Element>();
-        L::JACOBIAN_IS_DEAR && (element == TypeId::of::<f64>() || element == TypeId::of::<f32>())
+        L::JACOBIAN_IS_DEAR && is_plain::<Scalar<L>>()
     }
 
     /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of

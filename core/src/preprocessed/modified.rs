@@ -7,7 +7,7 @@ use crate::effect::Effect as _;
 use crate::error::StepError;
 use crate::groups::SO3;
 use crate::inertia::DiagonalNonstandardInertia;
-use crate::newton::{Problem, Root};
+use crate::newton::{Problem, Root, safe};
 use crate::scalar::{Real, real};
 
 /// The kinetic term of (3.13).
@@ -52,7 +52,9 @@ impl<T: Real> ModifiedBody<T> {
         let moments = inverse.map(|inverse| T::one() / inverse);
         let lagrangian = FreeBody { J_d: DiagonalNonstandardInertia::of_moments_unchecked(&moments) };
         let constants = lagrangian.constants(h);
-        let problem = Problem { lagrangian: &lagrangian, constants: &constants, a: *y, w: &(), h, trusted: real(0.0) };
+        let safe = safe(moments.x * moments.y * moments.z);
+        let problem =
+            Problem { lagrangian: &lagrangian, constants: &constants, a: *y, w: &(), h, trusted: real(0.0), safe };
         // With a momentum so large that the determinant is doubtful, the moments above aren't positive.
         match problem.solve_directly(half_guess, real(f64::MAX)) {
             Some(root) => Ok(root),

@@ -23,6 +23,23 @@ impl<V: Copy> History<V> {
         Self { differences: [V::zero(); DIFFERENCES], increments: 0 }
     }
 
+    /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y`: where the parabola through three of them goes
+    /// next. Increments change by `O(h²)` from step to step, and their second differences by `O(h⁴)`: for (3.13) at common
+    /// steps Newton's iteration is left with an error that a second one, with the Jacobian of the first, brings to rounding.
+    ///
+    /// The first increment of all has no difference to the one before, which counts as zero; the guess after the second is that
+    /// much worse.
+    #[inline(always)]
+    pub(crate) fn parabola<T: Real>(&mut self, last: V, y: V) -> V
+    where
+        V: Coordinates<T>,
+    {
+        let difference = y - last;
+        let before = core::mem::replace(&mut self.differences[0], difference);
+        self.increments = 2;
+        y + (difference + (difference - before))
+    }
+
     /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y + …`: where the polynomial through all of
     /// them goes next.
     #[inline(always)]
@@ -78,6 +95,22 @@ mod tests {
             (guess - value(20)).norm() / value(20).norm()
         });
         assert!(errors[0] < 1e-12 && errors[1] > 1e-9, "{errors:?}");
+    }
+
+    /// The parabola through three increments goes on as it was; a cubic doesn't, by its third difference.
+    #[test]
+    fn a_parabola_is_continued() {
+        for (cubic, missing) in [(0.0, 0.0), (1.0, 6.0)] {
+            let value = |i: i32| {
+                let i = f64::from(i);
+                Vector1::new(3.0 - 2.0 * i + 5.0 * i * i + cubic * i * i * i)
+            };
+            let mut history = History::new();
+            let guesses: Vec<_> = (1..6).map(|i| history.parabola(value(i - 1), value(i))).collect();
+            for (i, guess) in (2..).zip(&guesses).skip(1) {
+                assert_eq!((value(i) - guess).x, missing, "increment {i}");
+            }
+        }
     }
 
     /// At the beginning there is one point, then a line, a parabola and so on.

@@ -1,0 +1,91 @@
+//! A last iteration without a Jacobian of its own.
+//!
+//! Most solves take two of Newton's iterations: one from the guess, and one that brings the rest to rounding. The second
+//! needs no better Jacobian than the first had. With that it takes the residual alone and no inverse, and what is left to
+//! wait for is shorter. It converges at a rate, not quadratically, so whether it was enough has to be seen.
+//!
+//! # What is missing
+//!
+//! Let `C` bound how fast the Jacobian changes, relative to itself: `|A⁻¹(A(y + e) − A)| ≤ 2C|e|`. After an update `u₁` by
+//! Newton's iteration `C|u₁|²` are missing; the next, `u₂`, finds what they are; and after it, with the same Jacobian,
+//! `2C|u₁||u₂|`. The two updates tell `C` along the first as `|u₂|/|u₁|²`. In other directions it may be larger: in Cayley
+//! coordinates it is of the order of one, times the ratio of the largest to the least inertia, by which roundings of the
+//! residual are magnified too. So it is taken as one where the updates tell less.
+//!
+//! # The branch
+//!
+//! The determinant is that at the iterate before both updates, and they are short: to have changed its sign on the way it
+//! would have to change by all of itself within a ten-thousandth of `|y|`. Where it is a sixteenth or less of what it is
+//! at rest, as very near a fold, that isn't relied on, and every iteration has its own Jacobian.
+
+use core::any::TypeId;
+
+use super::{Lanes, Problem};
+use crate::coordinates::Coordinates as _;
+use crate::effect::{Effect, Scalar, Vector};
+use crate::scalar::{Mask, Real, real};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
+
+/// What may be missing at the end, in roundings of `y`: below the rounding of the residual that the last update was made
+/// of.
+const MISSING: f64 = 1.0 / 16.0;
+/// Of the determinant at rest.
+const SAFE: f64 = 1.0 / 16.0;
+/// The `C` that a first update is judged by, which is that of the heavy tops of the thesis at common steps: a top whose
+/// own is larger wastes a residual in a narrow range of updates.
+const COMMON: f64 = 1.0 / 16.0;
+
+/// The determinant that [`Problem::safe`] is, from that of the Jacobian at rest.
+pub(crate) fn safe<T: Real>(at_rest: T) -> T {
+    at_rest * real(SAFE)
+}
+
+/// Whether iterations that converge at a rate will do: only with plain floating-point numbers. The derivatives that a dual
+/// number carries converge with the quadratic iteration as its values do, but lag behind them in others.
+#[inline(always)]
+pub(super) fn is_plain<T: Real>() -> bool {
+    let element = TypeId::of::<<T as SimdValue>::Element>();
+    element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
+}
+
+impl<L: Effect> Problem<'_, L> {
+    /// An iteration of the lanes that haven't settled, and in those that it has brought near enough one more with the same
+    /// Jacobian. Whether a lane has settled by that.
+    #[inline(always)]
+    pub(super) fn refine(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
+        let (residual, jacobian) = L::newton_system(self.constants, terms, &lanes.half);
+        let (factors, det) = Vector::<L>::factorise(&jacobian);
+        let first = Vector::<L>::solve_again(&factors, det, &residual);
+        lanes.advance(&first, det, &first);
+        if !is_plain::<Scalar<L>>() || lanes.settled.all() {
+            return false;
+        }
+        let before = first.dot(&first);
+        let is_near = is_near(before, lanes.half.dot(&lanes.half)) & det.simd_gt(self.safe) & !lanes.settled;
+        if !is_near.any() {
+            return false;
+        }
+        let (residual, _) = L::newton_residual(self.constants, terms, &lanes.half);
+        let second = Vector::<L>::solve_again(&factors, det, &residual);
+        let next = lanes.half - second;
+        lanes.half = next.select(is_near, lanes.half);
+        let settled = is_near & is_enough(before, second.dot(&second), next.dot(&next));
+        lanes.settled = lanes.settled | settled;
+        settled.any()
+    }
+}
+
+/// Whether an update will be enough after one with the square `first` that has led to one with the square `size`:
+/// `2C|u₁|³ ≤ MISSING ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
+#[inline(always)]
+fn is_near<T: Real>(first: T, size: T) -> Mask<T> {
+    let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING / COMMON);
+    (first * first * first).simd_le(size * (tolerance * tolerance))
+}
+
+/// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ MISSING ε|y|`. All are squares.
+#[inline(always)]
+fn is_enough<T: Real>(first: T, second: T, size: T) -> Mask<T> {
+    let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING);
+    (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
+}
