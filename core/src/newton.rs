@@ -6,6 +6,8 @@
 //! `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P` from zero while `det > 0`, so determinant and trace together single out
 //! the component of the identity. Below 90° there is at most one solution, and the determinant alone decides.
 //!
+//! Where one iteration has come near enough, the next is made with the [same Jacobian](simplified).
+//!
 //! SIMD lanes iterate together until all have settled. One that has settled earlier stays as it is, so that no lane's
 //! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given. Only a logarithm or an
 //! exponential in the Lagrangian takes the series that the lane farthest from the identity needs, and rounds by it.

@@ -19,7 +19,8 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepReport {
-    /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up.
+    /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up. The last
+    /// may have been made with the Jacobian of the one before.
     ///
     /// Where the [Jacobian is dear](Effect::JACOBIAN_IS_DEAR) they are residuals, up to eight, to which come
     /// the iterations with the Jacobian where these weren't enough.

@@ -111,7 +111,16 @@ impl<L: Effect> Effect for WithJacobian<L> {
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
+        SYSTEMS.set(SYSTEMS.get() + 1);
         L::newton_system(constants, terms, half)
+    }
+
+    fn newton_residual(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Option<Vector<Self>>) {
+        (L::newton_residual(constants, terms, half).0, None)
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
@@ -123,11 +132,17 @@ std::thread_local! {
     static SYSTEMS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// Whether `run` evaluates a Jacobian of a [`WithoutJacobian`].
-pub fn needs_jacobian<T>(run: impl FnOnce() -> T) -> (T, bool) {
+/// How many Jacobians of a [`WithJacobian`] or a [`WithoutJacobian`] `run` evaluates.
+pub fn jacobians<T>(run: impl FnOnce() -> T) -> (T, u32) {
     let before = SYSTEMS.get();
     let outcome = run();
-    (outcome, SYSTEMS.get() > before)
+    (outcome, SYSTEMS.get() - before)
+}
+
+/// Whether `run` evaluates a Jacobian of a [`WithoutJacobian`].
+pub fn needs_jacobian<T>(run: impl FnOnce() -> T) -> (T, bool) {
+    let (outcome, jacobians) = jacobians(run);
+    (outcome, jacobians > 0)
 }
 
 /// As if the Jacobian were dear. The second field is the inertia that the limit is said to have.

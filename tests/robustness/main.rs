@@ -15,5 +15,6 @@ mod policies;
 mod random_inputs;
 mod secants;
 mod secants_long_run;
+mod simplified;
 mod solvability;
 mod solve;

@@ -89,3 +89,39 @@ fn is_enough<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{is_enough, is_near};
+
+    const EPSILON: f64 = f64::EPSILON;
+
+    /// With `C = 1/16`, at the length of the first update after which a second is just enough: `|u₁|³ = ε|y|/2`.
+    #[test]
+    fn what_is_expected_is_what_is_asked_for() {
+        for size in [1e-80_f64, 1e-8, 0.06, 1.0] {
+            let limit = (0.5 * EPSILON * size).cbrt();
+            for (first, enough) in [(limit * 0.999, true), (limit * 1.001, false)] {
+                let second = first * first / 16.0;
+                let [first, second, size] = [first, second, size].map(|length| length * length);
+                assert_eq!(is_near(first, size), enough);
+                assert_eq!(is_enough(first, second, size), enough);
+            }
+        }
+    }
+
+    /// A larger `C` than one is taken from the updates; with a smaller one it is one.
+    #[test]
+    fn a_curvature_that_the_updates_tell_counts() {
+        let (first, size) = (1e-6_f64, 0.06_f64);
+        let enough = |curvature: f64, size: f64| {
+            let second = curvature * first * first;
+            is_enough(first * first, second * second, size * size)
+        };
+        let limit = |curvature: f64| 32.0 * curvature * curvature.max(1.0) * first.powi(3) / EPSILON;
+        for curvature in [1e-3, 0.1, 10.0, 1e3] {
+            assert!(enough(curvature, limit(curvature) * 1.001) && !enough(curvature, limit(curvature) * 0.999));
+        }
+        assert!(!enough(1.0, f64::NAN) && !is_enough(0.0, f64::NAN, size));
+    }
+}

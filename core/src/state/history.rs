@@ -108,7 +108,7 @@ mod tests {
             let mut history = History::new();
             let guesses: Vec<_> = (1..6).map(|i| history.parabola(value(i - 1), value(i))).collect();
             for (i, guess) in (2..).zip(&guesses).skip(1) {
-                assert_eq!((value(i) - guess).x, missing, "increment {i}");
+                assert_eq!(value(i) - guess, Vector1::new(missing), "increment {i}");
             }
         }
     }

@@ -53,7 +53,7 @@ fn p7_heavy_top() {
     let motion = looping();
     let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let start = stepper.start(motion.attitude, motion.velocity).unwrap();
-    assert_eq!(of_steps(&stepper, start), 0xca90_b389_4330_68e5);
+    assert_eq!(of_steps(&stepper, start), 0x9c10_0b19_5563_0e0c);
 
     let carrying = stepper.compensated();
     let (mut state, mut digest) = (CompensatedState::from(start), Digest::new());
@@ -61,15 +61,15 @@ fn p7_heavy_top() {
         carrying.step(&mut state).unwrap();
         digest.add_state(state.state());
     }
-    assert_eq!(digest.0, 0x9428_0eac_7f7c_413b);
+    assert_eq!(digest.0, 0x37af_7c6e_8cc1_b7f4);
 }
 
 #[test]
 fn p7_asymmetric_top_and_free_body() {
     let top = Stepper::new(HeavyTop::asymmetric(), 0.02).unwrap();
     let found = of_steps(&top, top.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap());
-    assert_eq!(found, 0x5309_c35a_21c8_9deb);
+    assert_eq!(found, 0x6fce_7211_8ba0_3d78);
     let body = Stepper::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.02).unwrap();
     let found = of_steps(&body, body.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap());
-    assert_eq!(found, 0x82aa_eeef_f41d_7f7f);
+    assert_eq!(found, 0x970e_625c_5c93_dae5);
 }

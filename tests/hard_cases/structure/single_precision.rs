@@ -173,27 +173,39 @@ fn p8_at_rest() {
     }
 }
 
-/// S5: there and back.
+/// How far from its start a motion is after a million steps there and back: attitude, momentum and vertical, in ε.
+fn there_and_back(motion: &Motion, h: f64) -> [f64; 3] {
+    let (there, mut state) = started(motion, h);
+    let (back, before) = (Stepper::new(top::<f32>(motion), convert(-h)).unwrap(), state);
+    for _ in 0..1_000_000 {
+        there.step(&mut state).unwrap();
+    }
+    for _ in 0..1_000_000 {
+        back.step(&mut state).unwrap();
+    }
+    let errors = [
+        f64::from((state.attitude().matrix() - before.attitude().matrix()).norm()) / 3.0_f64.sqrt(),
+        relative(&double(&state.momentum()), &double(&before.momentum())),
+        relative(&double(&state.advected()), &double(&before.advected())),
+    ];
+    errors.map(|error| error / EPSILON)
+}
+
+/// S5: there and back. It is a walk of roundings, and of neighbouring step sizes one comes back ten times nearer than another:
+/// so the median over an octave.
 #[test]
 fn p8_a_million_steps_there_and_back() {
     let motion = looping();
     for h in [1e-5, 1e-4] {
-        let (there, mut state) = started(&motion, h);
-        let (back, before) = (Stepper::new(top::<f32>(&motion), convert(-h)).unwrap(), state);
-        for _ in 0..1_000_000 {
-            there.step(&mut state).unwrap();
-        }
-        for _ in 0..1_000_000 {
-            back.step(&mut state).unwrap();
-        }
-        let errors = [
-            f64::from((state.attitude().matrix() - before.attitude().matrix()).norm()) / 3.0_f64.sqrt(),
-            relative(&double(&state.momentum()), &double(&before.momentum())),
-            relative(&double(&state.advected()), &double(&before.advected())),
-        ];
-        let units = errors.map(|error| error / EPSILON);
-        println!("h = {h}: {units:.0?} ε");
-        assert!(units.iter().all(|&units| units <= 4500.0), "h = {h}: {units:?} ε");
+        let runs = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]
+            .map(|k: f64| there_and_back(&motion, h / 2_f64.powf(k / 8.0)));
+        let medians = [0, 1, 2].map(|part| {
+            let mut units = runs.map(|units| units[part]);
+            units.sort_by(f64::total_cmp);
+            units[4]
+        });
+        println!("h = {h}: {medians:.0?} ε, of {runs:.0?}");
+        assert!(medians.iter().all(|&units| units <= 4500.0), "h = {h}: {medians:?} ε");
     }
 }
 
