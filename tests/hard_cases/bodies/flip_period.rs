@@ -92,8 +92,8 @@ fn b7_the_time_of_two_flips_of_the_sixth_order_body() {
     assert!(error.abs() < 1e-12, "{error:e}");
 }
 
-/// Near the intermediate axis roundings grow: those of some 30 000 stages to 2e-12, a half of the time to more than 1.4e-12. One
-/// step size would say little, so it is a mean of neighbouring ones that is right to 1e-12.
+/// Near the intermediate axis roundings grow: those of some 30 000 stages to 2e-12, a half of the time to more than 1.4e-12.
+/// One step size would say little, so it is a mean of neighbouring ones that is right to 1e-12.
 #[test]
 fn b7_the_time_of_two_flips_of_a_composition() {
     let body = FreeBody::with_moments(moments().into());
@@ -109,9 +109,11 @@ fn b7_the_time_of_two_flips_of_a_composition() {
         })
         .collect();
     let mean = errors.iter().sum::<f64>() / 27.0;
-    let largest = errors.iter().fold(0.0_f64, |largest, error| largest.max(error.abs()));
-    println!("mean of the relative errors {mean:e}, the largest {largest:e}");
-    assert!(mean.abs() < 1e-12 && largest < 1e-11, "{errors:?}");
+    let mut sizes: Vec<f64> = errors.iter().map(|error| error.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let (median, largest) = (sizes[13], sizes[26]);
+    println!("mean of the relative errors {mean:e}; of their sizes the median {median:e}, the largest {largest:e}");
+    assert!(mean.abs() < 1e-12 && median < 2e-12 && largest < 1e-11, "{errors:?}");
 }
 
 #[test]
