@@ -12,7 +12,7 @@ use crate::entries::{Entries, zero};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::scalar::{Real, nowhere, real};
-use crate::state::State;
+use crate::state::{Continued, State};
 use crate::stepper::{StepReport, Stepper};
 use nalgebra::SimdValue as _;
 
@@ -126,7 +126,9 @@ impl<L: Effect> CompensatedStepper<L> {
         let CompensatedState { state: now, carry } = state;
         let flow = self.stepper.flow();
         if flow.step_size() == real(0.0) {
-            now.proceed(zero(), nowhere::<Scalar<L>>(), L::JACOBIAN_IS_DEAR, || self.stepper.lagrangian().advected());
+            now.proceed(zero(), nowhere::<Scalar<L>>(), Continued::for_jacobian(L::JACOBIAN_IS_DEAR), || {
+                self.stepper.lagrangian().advected()
+            });
             return Ok(StepReport { iterations: 0, remedy: None });
         }
         let solved = flow.solve(&now.momentum, &now.advected, &now.guess())?;
@@ -146,7 +148,9 @@ impl<L: Effect> CompensatedStepper<L> {
         now.advected = advected.0;
         let root = &solved.root;
         // What is carried belongs to the state before.
-        let restored = now.proceed(root.half, root.far, L::JACOBIAN_IS_DEAR, || self.stepper.lagrangian().advected());
+        let restored = now.proceed(root.half, root.far, Continued::for_jacobian(L::JACOBIAN_IS_DEAR), || {
+            self.stepper.lagrangian().advected()
+        });
         if let Some(far) = restored {
             let mut kept = |carry: Scalar<L>, nothing: Scalar<L>| nothing.select(far, carry);
             carry.attitude = carry.attitude.zip(&zero(), &mut kept);

@@ -151,7 +151,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         half_guess: &Vector<L>,
     ) -> Option<Stepped<L>> {
         let problem = self.problem(momentum, advected);
-        let root = problem.solve_directly(half_guess, self.largest_target)?;
+        let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
         let stepped = self.moved(momentum, advected, &problem.a, &root);
         // A finite sum has finite terms. Where it isn't, it may have overflowed.
         is_finite(stepped.total()).then_some(stepped)
@@ -218,7 +218,7 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         half_guess: &Vector<L>,
     ) -> Result<Solved<L>, StepError> {
         let problem = self.problem(momentum, advected);
-        let root = match problem.solve_directly(half_guess, self.largest_target) {
+        let root = match problem.solve_directly::<true>(half_guess, self.largest_target) {
             Some(root) => root,
             None => self.solve_carefully(momentum, advected, half_guess)?,
         };

@@ -125,10 +125,12 @@ impl<L: Effect> Problem<'_, L> {
     /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is doubtful:
     /// the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
+    /// `AGAIN` says whether a Jacobian may be [used again](simplified).
+    ///
     /// Nothing here is lent to a function that isn't inlined, so that all of it can stay in registers; that is a sixth
     /// of the time of a step.
     #[inline(always)]
-    pub(crate) fn solve_directly(&self, guess: &Vector<L>, largest: Scalar<L>) -> Option<Root<L>> {
+    pub(crate) fn solve_directly<const AGAIN: bool>(&self, guess: &Vector<L>, largest: Scalar<L>) -> Option<Root<L>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
         if Self::goes_by_secants() {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
@@ -136,7 +138,7 @@ impl<L: Effect> Problem<'_, L> {
         }
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 1..=MAX_ITERATIONS {
-            let again = self.refine(&terms, &mut lanes);
+            let again = self.refine::<AGAIN>(&terms, &mut lanes);
             if lanes.settled.all() {
                 let half = lanes.half;
                 let usual = is_positive(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
@@ -198,7 +200,7 @@ impl<L: Effect> Problem<'_, L> {
     /// Until all lanes have settled or the iterations are used up; how many there were.
     fn iterate(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
         for iteration in 1..=MAX_ITERATIONS {
-            let again = self.refine(terms, &mut lanes);
+            let again = self.refine::<true>(terms, &mut lanes);
             if lanes.settled.all() {
                 return (lanes, iteration + u32::from(again));
             }

@@ -13,7 +13,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
 use crate::inertia::DiagonalNonstandardInertia;
 use crate::scalar::{Real, real, reported};
-use crate::state::State;
+use crate::state::{Continued, State};
 use crate::stepper::{StepReport, Stepper};
 
 /// The order of a [`PreprocessedBody`].
@@ -103,13 +103,13 @@ impl<T: Real> PreprocessedBody<T> {
             state.steps += 1;
             return Ok(StepReport { iterations: 0, remedy: None });
         }
-        let root = match self.modified.solve(self.h, &state.momentum, &state.guess()) {
+        let root = match self.modified.solve(self.h, &state.momentum, &state.half_guess) {
             Ok(root) => root,
             Err(error) => return Err(self.explain(error, state)),
         };
         state.attitude = state.attitude.advance(&root.increment);
         state.momentum += SO3::adjoint_transpose_increment(&root.increment, &state.momentum);
-        state.proceed(root.half, root.far, false, || ());
+        state.proceed(root.half, root.far, Continued::Line, || ());
         Ok(StepReport { iterations: root.iterations, remedy: None })
     }
 

@@ -104,8 +104,8 @@ enum Share<D, T> {
     Drift(D),
     /// The time that the torque acts, s.
     Kick(T),
-    /// And the share of the force gradient, s³.
-    GradientKick(T, T),
+    /// And the inverse inertia times the share of the force gradient, s³/(kg m²).
+    GradientKick(T, Matrix3<T>),
 }
 
 impl<T, L, K> Splitting<L, K, T>
@@ -143,7 +143,7 @@ where
             Ok(match flow {
                 Flow::Drift => Share::Drift(kinetic.drift(time)?),
                 Flow::Kick if gradient == 0.0 => Share::Kick(time),
-                Flow::Kick => Share::GradientKick(time, h * h * h * real(gradient)),
+                Flow::Kick => Share::GradientKick(time, inverse_inertia * (h * h * h * real(gradient))),
             })
         };
         let all: Vec<_> = scheme.shares().zip(scheme.gradients()).collect();
@@ -245,11 +245,11 @@ where
     ) -> Result<(), StepError> {
         match share {
             Share::Kick(time) => state.momentum += L::kick_before(&self.torque, &state.advected) * *time,
-            Share::GradientKick(time, share) => {
+            Share::GradientKick(time, mobility) => {
                 let torque: Vector3<T> = L::kick_before(&self.torque, &state.advected);
-                let gradient = kick::force_gradient::<L>(&self.torque, &self.inverse_inertia, &state.advected);
+                let gradient = kick::force_gradient::<L>(&self.torque, mobility, &state.advected);
                 // That there is one was asked when the step was set up.
-                state.momentum += torque * *time + gradient.unwrap_or_else(Vector3::zeros) * *share;
+                state.momentum += torque * *time + gradient.unwrap_or_else(Vector3::zeros);
             }
             Share::Drift(drift) => {
                 let turn = K::advance(drift, &state.momentum)?;

@@ -4,7 +4,7 @@ mod history;
 
 #[cfg(feature = "serde")]
 pub(crate) use history::DIFFERENCES;
-pub(crate) use history::History;
+pub(crate) use history::{Continued, History};
 
 use nalgebra::{SimdBool as _, SimdValue as _, Vector3};
 
@@ -41,7 +41,7 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         Self { attitude, momentum, advected, half, half_guess: half, history: History::new(), steps: 0 }
     }
 
-    /// Counts the step with half these coordinates, and guesses those of the next, by many increments or by three; `far` are
+    /// Counts the step with half these coordinates, and guesses those of the next by continuing the last ones; `far` are
     /// the lanes in which they are no longer near the identity at 3/2 of their length. Now and then it looks how far roundings
     /// have gone, and returns what [`restore`](Self::restore) does.
     #[inline(always)]
@@ -49,17 +49,21 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         &mut self,
         half: G::Vector,
         far: Mask<G::Scalar>,
-        by_many: bool,
+        continued: Continued,
         spatial: impl FnOnce() -> A,
     ) -> Option<Mask<G::Scalar>> {
         let last = core::mem::replace(&mut self.half, half);
-        self.half_guess = if by_many { self.history.next(last, half) } else { self.history.parabola(last, half) };
+        self.half_guess = match continued {
+            Continued::Line => half + (half - last),
+            Continued::Parabola => self.history.parabola(last, half),
+            Continued::Polynomial => self.history.next(last, half),
+        };
         // Near the fold they change too fast for that; a factor of 3/2 keeps well away from it. A selection without the
         // branch would lie on the way to the next iteration, and cost a tenth of a step.
         if far.any() {
             self.half_guess = half.select(far, self.half_guess);
         }
-        let restored = if self.is_due() { self.look(&spatial(), by_many) } else { None };
+        let restored = if self.is_due() { self.look(&spatial(), continued) } else { None };
         self.steps += 1;
         restored
     }
@@ -84,11 +88,11 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
     /// What is done after the first step, and after many more.
     #[cold]
     #[inline(never)]
-    fn look(&mut self, spatial: &A, by_many: bool) -> Option<Mask<G::Scalar>> {
+    fn look(&mut self, spatial: &A, continued: Continued) -> Option<Mask<G::Scalar>> {
         // Before the first step there was no increment but an estimate, which a parabola would go through.
         if self.steps == 0 {
             self.half_guess = self.half;
-            if !by_many {
+            if continued == Continued::Parabola {
                 self.history = History::new();
             }
         }

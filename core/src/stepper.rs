@@ -12,7 +12,7 @@ use crate::machine::{Work, at_best};
 use crate::remedy::Remedy;
 use crate::scalar::{real, reported};
 use crate::solvability::Solvability;
-use crate::state::State;
+use crate::state::{Continued, State};
 use crate::symmetry::{AxiallyInvariant, LeftInvariant};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
@@ -199,7 +199,7 @@ impl<L: Effect> Stepper<L> {
         state.attitude = state.attitude.advance(&step.increment);
         state.momentum = step.momentum;
         state.advected = step.advected;
-        state.proceed(*half, *far, L::JACOBIAN_IS_DEAR, || self.lagrangian().advected());
+        state.proceed(*half, *far, Continued::for_jacobian(L::JACOBIAN_IS_DEAR), || self.lagrangian().advected());
         StepReport { iterations: step.iterations, remedy: None }
     }
 

@@ -50,14 +50,15 @@ pub(super) fn is_plain<T: Real>() -> bool {
 
 impl<L: Effect> Problem<'_, L> {
     /// An iteration of the lanes that haven't settled, and in those that it has brought near enough one more with the same
-    /// Jacobian. Whether a lane has settled by that.
+    /// Jacobian, if it may be used `AGAIN`: where steps are so long that it seldom can, asking costs more. Whether a lane
+    /// has settled by that.
     #[inline(always)]
-    pub(super) fn refine(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
+    pub(super) fn refine<const AGAIN: bool>(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
         let (residual, jacobian) = L::newton_system(self.constants, terms, &lanes.half);
         let (factors, det) = Vector::<L>::factorise(&jacobian);
         let first = Vector::<L>::solve_again(&factors, det, &residual);
         lanes.advance(&first, det, &first);
-        if !is_plain::<Scalar<L>>() || lanes.settled.all() {
+        if !AGAIN || !is_plain::<Scalar<L>>() || lanes.settled.all() {
             return false;
         }
         let before = first.dot(&first);

@@ -56,7 +56,7 @@ impl<T: Real> ModifiedBody<T> {
         let problem =
             Problem { lagrangian: &lagrangian, constants: &constants, a: *y, w: &(), h, trusted: real(0.0), safe };
         // With a momentum so large that the determinant is doubtful, the moments above aren't positive.
-        match problem.solve_directly(half_guess, real(f64::MAX)) {
+        match problem.solve_directly::<false>(half_guess, real(f64::MAX)) {
             Some(root) => Ok(root),
             None => problem.solve(half_guess),
         }

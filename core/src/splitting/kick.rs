@@ -53,8 +53,8 @@ where
     }
 }
 
-/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`; `None` where the derivative of the
-/// torque isn't known.
+/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`, or for a multiple of `J⁻¹` as many
+/// times that; `None` where the derivative of the torque isn't known.
 ///
 /// With the velocity `v = J⁻¹τ`, held fixed, and a turn `η` of the body,
 ///

@@ -7,6 +7,24 @@ use crate::scalar::Real;
 /// double the roundings in the guess, and gains little where `h ω` is near one.
 pub(crate) const DIFFERENCES: usize = 7;
 
+/// What increments are continued by to guess the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Continued {
+    /// The line through two, for steps so long that a parabola strays farther.
+    Line,
+    /// The parabola through three.
+    Parabola,
+    /// The polynomial through as many as are known, where an iteration is dear.
+    Polynomial,
+}
+
+impl Continued {
+    /// By what a solve of a Lagrangian costs.
+    pub(crate) const fn for_jacobian(is_dear: bool) -> Self {
+        if is_dear { Self::Polynomial } else { Self::Parabola }
+    }
+}
+
 /// The backward differences `∇ y, ∇² y, …` of the last increments `y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct History<V> {
