@@ -238,19 +238,19 @@ fn turned<T: Real>([a, b, c]: [T; 3], (s, cosine): (T, T), [w, x, y, z]: Quatern
 #[inline(always)]
 fn increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
     let (xx, yy, zz) = (x * x, y * y, z * z);
-    let excess = ((w * w - T::one()) + xx) + (yy + zz);
-    // 2/(1 + ε).
-    let twice = real::<T>(2.0) - (excess + excess);
-    let (tx, ty, tz) = (twice * x, twice * y, twice * z);
+    // 1/(1 + ε), which the products beside it don't wait for.
+    let factor = T::one() - (((w * w - T::one()) + xx) + (yy + zz));
+    let (tx, ty, tz) = (x + x, y + y, z + z);
     let (wx, wy, wz) = (w * tx, w * ty, w * tz);
     let (xy, xz, yz) = (x * ty, x * tz, y * tz);
+    let (sx, sy, sz) = (x * tx, y * ty, z * tz);
     #[rustfmt::skip]
     let increment = Matrix3::new(
-        -twice * (yy + zz), xy - wz,            xz + wy,
-        xy + wz,            -twice * (xx + zz), yz - wx,
-        xz - wy,            yz + wx,            -twice * (xx + yy),
+        -(sy + sz), xy - wz,    xz + wy,
+        xy + wz,    -(sx + sz), yz - wx,
+        xz - wy,    yz + wx,    -(sx + sy),
     );
-    increment
+    increment * factor
 }
 
 #[cfg(test)]
