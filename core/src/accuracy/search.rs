@@ -21,7 +21,7 @@ const ABOVE_THE_FLOOR: f64 = 8.0;
 /// A method is looked at further, once one is found, if it may be cheaper than that by this factor.
 const WORTH_LOOKING: f64 = 0.8;
 /// Of the tolerance, an error so small that longer steps are tried.
-const TOO_GOOD: f64 = 0.2;
+const TOO_GOOD: f64 = 0.4;
 
 /// The method found, and how it compares.
 pub(super) struct Found {
