@@ -62,7 +62,8 @@ where
 /// −dU·η = v·∂_η τ = η·∂_v τ + τ·(η × v) = η·(∂_v τ + v × τ)
 /// ```
 ///
-/// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket.
+/// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket; the
+/// commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` makes it a momentum.
 #[inline(always)]
 pub(super) fn force_gradient<L>(
     torque: &L::Constants,
