@@ -121,7 +121,13 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
             1 => b / det,
             2 | 3 => {
                 let inverse = T::one() / det;
-                Self::from_fn(|i, _| sum::<T, D>(|k| factors[(i, k)] * b[k]) * inverse)
+                // A loop, here and in `sum`: the compiler doesn't always inline `from_fn` and `fold`, and what isn't inlined has
+                // no vector instructions of the machine.
+                let mut z = *b;
+                for i in 0..D {
+                    z[i] = sum::<T, D>(|k| factors[(i, k)] * b[k]) * inverse;
+                }
+                z
             }
             _ => substitute(factors, *b),
         }
@@ -136,7 +142,14 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 /// `term(0) + term(1) + …`, in that order.
 #[inline(always)]
 fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
-    if D == 0 { T::zero() } else { (1..D).fold(term(0), |sum, k| sum + term(k)) }
+    if D == 0 {
+        return T::zero();
+    }
+    let mut sum = term(0);
+    for k in 1..D {
+        sum += term(k);
+    }
+    sum
 }
 
 #[inline(always)]

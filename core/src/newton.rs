@@ -8,13 +8,14 @@
 //!
 //! Where one iteration has come near enough, the next is made with the [same Jacobian](simplified).
 //!
-//! SIMD lanes iterate together until all have settled. One that has settled earlier stays as it is, so that no lane's
+//! SIMD lanes iterate [together] until all have settled. One that has settled earlier stays as it is, so that no lane's
 //! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given. Only a logarithm or an
 //! exponential in the Lagrangian takes the series that the lane farthest from the identity needs, and rounds by it.
 
 mod branch;
 mod secants;
 mod simplified;
+mod together;
 
 pub(crate) use branch::trusted_radius;
 pub(crate) use simplified::safe;
@@ -136,23 +137,30 @@ impl<L: Effect> Problem<'_, L> {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
             return lanes.settled.all().then(|| Root::of(&lanes, iterations));
         }
+        if Scalar::<L>::LANES > 1 {
+            return self.solve_together::<AGAIN>(&terms, guess, largest);
+        }
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 1..=MAX_ITERATIONS {
             let again = self.refine::<AGAIN>(&terms, &mut lanes);
             if lanes.settled.all() {
-                let half = lanes.half;
-                let usual = is_positive(lanes.det) & self.a.dot(&self.a).simd_lt(largest);
-                // Most are nearer than they have to be.
-                let far = far::<L>(&half);
-                if !usual.all() || far.any() && !L::Retraction::is_half_near_identity(&half).all() {
-                    return None;
-                }
-                let increment = L::Retraction::increment_of_half(&half);
-                let iterations = iteration + u32::from(again);
-                return Some(Root { half, increment, iterations, far, kick: Kick::none() });
+                return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
             }
         }
         None
+    }
+
+    /// What an iteration has settled on, if nothing about it is doubtful.
+    #[inline(always)]
+    fn usual(&self, half: &Vector<L>, det: Scalar<L>, iterations: u32, largest: Scalar<L>) -> Option<Root<L>> {
+        let usual = is_positive(det) & self.a.dot(&self.a).simd_lt(largest);
+        // Most are nearer than they have to be.
+        let far = far::<L>(half);
+        if !usual.all() || far.any() && !L::Retraction::is_half_near_identity(half).all() {
+            return None;
+        }
+        let increment = L::Retraction::increment_of_half(half);
+        Some(Root { half: *half, increment, iterations, far, kick: Kick::none() })
     }
 
     /// From the guess; where that fails from the identity; where that fails, once more with shortened steps.

@@ -22,7 +22,7 @@ use core::any::TypeId;
 
 use super::{Lanes, Problem};
 use crate::coordinates::Coordinates as _;
-use crate::effect::{Effect, Scalar, Vector};
+use crate::effect::{Effect, Scalar, Square, Vector};
 use crate::scalar::{Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
 
@@ -48,26 +48,51 @@ pub(super) fn is_plain<T: Real>() -> bool {
     element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
 }
 
+/// What an iteration has made of a Jacobian.
+pub(super) struct Made<L: Effect> {
+    pub(super) update: Vector<L>,
+    factors: Square<L>,
+    pub(super) det: Scalar<L>,
+}
+
 impl<L: Effect> Problem<'_, L> {
     /// An iteration of the lanes that haven't settled, and in those that it has brought near enough one more with the same
     /// Jacobian, if it may be used `AGAIN`: where steps are so long that it seldom can, asking costs more. Whether a lane
     /// has settled by that.
     #[inline(always)]
     pub(super) fn refine<const AGAIN: bool>(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
-        let (residual, jacobian) = L::newton_system(self.constants, terms, &lanes.half);
+        let made = self.newton(terms, &lanes.half);
+        lanes.advance(&made.update, made.det, &made.update);
+        self.again::<AGAIN>(terms, &made, lanes)
+    }
+
+    /// An iteration from there.
+    #[inline(always)]
+    pub(super) fn newton(&self, terms: &L::StepTerms, half: &Vector<L>) -> Made<L> {
+        let (residual, jacobian) = L::newton_system(self.constants, terms, half);
         let (factors, det) = Vector::<L>::factorise(&jacobian);
-        let first = Vector::<L>::solve_again(&factors, det, &residual);
-        lanes.advance(&first, det, &first);
+        Made { update: Vector::<L>::solve_again(&factors, det, &residual), factors, det }
+    }
+
+    /// The update from there by the Jacobian that another was made with.
+    #[inline(always)]
+    pub(super) fn simplified(&self, terms: &L::StepTerms, half: &Vector<L>, made: &Made<L>) -> Vector<L> {
+        let (residual, _) = L::newton_residual(self.constants, terms, half);
+        Vector::<L>::solve_again(&made.factors, made.det, &residual)
+    }
+
+    /// The second part of [`refine`](Self::refine).
+    #[inline(always)]
+    pub(super) fn again<const AGAIN: bool>(&self, terms: &L::StepTerms, made: &Made<L>, lanes: &mut Lanes<L>) -> bool {
         if !AGAIN || !is_plain::<Scalar<L>>() || lanes.settled.all() {
             return false;
         }
-        let before = first.dot(&first);
-        let is_near = is_near(before, lanes.half.dot(&lanes.half)) & det.simd_gt(self.safe) & !lanes.settled;
+        let before = made.update.dot(&made.update);
+        let is_near = is_near(before, lanes.half.dot(&lanes.half)) & made.det.simd_gt(self.safe) & !lanes.settled;
         if !is_near.any() {
             return false;
         }
-        let (residual, _) = L::newton_residual(self.constants, terms, &lanes.half);
-        let second = Vector::<L>::solve_again(&factors, det, &residual);
+        let second = self.simplified(terms, &lanes.half, made);
         let next = lanes.half - second;
         lanes.half = next.select(is_near, lanes.half);
         let settled = is_near & is_enough(before, second.dot(&second), next.dot(&next));
@@ -79,14 +104,14 @@ impl<L: Effect> Problem<'_, L> {
 /// Whether an update will be enough after one with the square `first` that has led to one with the square `size`:
 /// `2C|u₁|³ ≤ MISSING ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
 #[inline(always)]
-fn is_near<T: Real>(first: T, size: T) -> Mask<T> {
+pub(super) fn is_near<T: Real>(first: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING / COMMON);
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
 /// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ MISSING ε|y|`. All are squares.
 #[inline(always)]
-fn is_enough<T: Real>(first: T, second: T, size: T) -> Mask<T> {
+pub(super) fn is_enough<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }
