@@ -115,6 +115,37 @@ fn each_lane_moves_as_alone() {
     assert!(unequal.iter().all(|&steps| steps > 100), "{unequal:?}");
 }
 
+/// Upright tops, one in each lane, that lean each so many times as much as the one before.
+fn spinning(times: f64) -> [Lane<f64>; 8] {
+    let mut random = Random::new(10);
+    let mut tilt = 1e-12;
+    core::array::from_fn(|_| {
+        let mut lane: Lane<f64> = lane(&mut random, 0.0);
+        lane.top.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+        lane.top.rho = Vector3::z();
+        lane.attitude = UnitQuaternion::from_scaled_axis(random.direction() * tilt).into();
+        lane.velocity = Vector3::z() * 10.0;
+        tilt *= times;
+        lane
+    })
+}
+
+/// One iteration is enough for tops that nearly sleep: they wait while others take their second, or in another ensemble
+/// their third too.
+#[test]
+fn lanes_that_have_settled_wait_for_others() {
+    for (times, h, most) in [(20.0, 0.02, 2), (40.0, 0.06, 3)] {
+        let lanes = spinning(times);
+        let unequal = assert_independent::<AutoF64x8, 8>(&lanes, h, 500);
+        let iterations = alone::<AutoF64x8, 8>(&lanes, h).map(|(stepper, mut state)| {
+            let reports = (0..500).map(|_| stepper.step(&mut state).unwrap().iterations);
+            reports.skip(10).max().unwrap()
+        });
+        assert!(unequal > 400, "{unequal} {iterations:?}");
+        assert_eq!((iterations[0], iterations[7]), (1, most), "{iterations:?}");
+    }
+}
+
 /// A lane that turns by some 70° a step extrapolates no more; the others still do.
 #[test]
 fn a_lane_near_a_quarter_turn_changes_no_other() {
