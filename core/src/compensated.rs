@@ -11,6 +11,7 @@ use crate::effect::{Effect, Group, Scalar, Vector};
 use crate::entries::{Entries, zero};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
+use crate::machine::{Work, at_best_in_lanes};
 use crate::scalar::{Real, nowhere, real};
 use crate::state::{Continued, State};
 use crate::stepper::{StepReport, Stepper};
@@ -123,6 +124,11 @@ impl<L: Effect> CompensatedStepper<L> {
     /// As [`Stepper::step`].
     #[inline]
     pub fn step(&self, state: &mut CompensatedState<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
+        at_best_in_lanes::<Scalar<L>, _>(Step(self, state))
+    }
+
+    #[inline(always)]
+    fn step_as_compiled(&self, state: &mut CompensatedState<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
         let CompensatedState { state: now, carry } = state;
         let flow = self.stepper.flow();
         if flow.step_size() == real(0.0) {
@@ -157,6 +163,18 @@ impl<L: Effect> CompensatedStepper<L> {
             carry.advected = carry.advected.zip(&zero(), &mut kept);
         }
         Ok(StepReport { iterations: solved.root.iterations, remedy: None })
+    }
+}
+
+/// A step of this state.
+struct Step<'a, L: Effect>(&'a CompensatedStepper<L>, &'a mut CompensatedState<Group<L>, L::Advected>);
+
+impl<L: Effect> Work for Step<'_, L> {
+    type Output = Result<StepReport, StepError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.0.step_as_compiled(self.1)
     }
 }
 

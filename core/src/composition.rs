@@ -12,6 +12,7 @@ use crate::flows::Stepped;
 use crate::groups::LieGroup as _;
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
+use crate::machine::{Work, at_best_in_lanes};
 use crate::scalar::{Mask, real, reported};
 use crate::state::State;
 use crate::stepper::{StepReport, Stepper};
@@ -157,6 +158,11 @@ impl<L: DiscreteLagrangian> Composition<L> {
     /// A step whose error speaks of a stage.
     #[inline]
     pub(crate) fn all_stages(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
+        at_best_in_lanes::<Scalar<L>, _>(Step(self, state))
+    }
+
+    #[inline(always)]
+    fn step_as_compiled(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
         let mut next = *state;
         let mut iterations = 0;
         for stage in &self.stages {
@@ -242,6 +248,18 @@ impl<L: DiscreteLagrangian> Composition<L> {
     #[must_use]
     pub fn energy(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
         self.first().energy(state)
+    }
+}
+
+/// A step of this state.
+struct Step<'a, L: DiscreteLagrangian>(&'a Composition<L>, &'a mut State<Group<L>, L::Advected>);
+
+impl<L: DiscreteLagrangian> Work for Step<'_, L> {
+    type Output = Result<StepReport, StepError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.0.step_as_compiled(self.1)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What states are made of, scalar by scalar: what a sum with a carry, a checkpoint and the laws' samples need.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SimdValue as _};
 
 use crate::scalar::Real;
 
@@ -35,7 +35,17 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
 
     #[inline(always)]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
-        self.zip_map(other, combine)
+        if T::LANES == 1 {
+            return self.zip_map(other, combine);
+        }
+        // The compiler doesn't inline `zip_map` for lanes, and what isn't inlined has no vector instructions of the machine.
+        let mut combined = *self;
+        for column in 0..C {
+            for row in 0..R {
+                combined[(row, column)] = combine(self[(row, column)], other[(row, column)]);
+            }
+        }
+        combined
     }
 }
 

@@ -2,6 +2,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::scalar::Real;
+
 /// What is worth compiling for several instruction sets.
 ///
 /// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions only.
@@ -17,6 +19,12 @@ pub(crate) trait Work {
 #[inline(always)]
 pub(crate) fn at_best<W: Work>(work: W) -> W::Output {
     Arch::new().dispatch(Dispatched(work))
+}
+
+/// The same, if the scalar has several lanes; a body alone gains nothing.
+#[inline(always)]
+pub(crate) fn at_best_in_lanes<T: Real, W: Work>(work: W) -> W::Output {
+    if T::LANES > 1 { at_best(work) } else { work.run() }
 }
 
 struct Dispatched<W>(W);

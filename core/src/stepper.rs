@@ -8,13 +8,13 @@ use crate::flows::{DiscreteLiePoisson, Stepped};
 use crate::groups::{LieGroup, SO3};
 use crate::kinetic::Regular;
 use crate::lagrangian::DiscreteLagrangian;
-use crate::machine::{Work, at_best};
+use crate::machine::{Work, at_best_in_lanes};
 use crate::remedy::Remedy;
 use crate::scalar::{real, reported};
 use crate::solvability::Solvability;
 use crate::state::{Continued, State};
 use crate::symmetry::{AxiallyInvariant, LeftInvariant};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,7 +173,7 @@ impl<L: Effect> Stepper<L> {
     /// isn't finite.
     #[inline]
     pub fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        if Scalar::<L>::LANES > 1 { at_best(Step(self, state)) } else { self.step_as_compiled(state) }
+        at_best_in_lanes::<Scalar<L>, _>(Step(self, state))
     }
 
     #[inline(always)]
