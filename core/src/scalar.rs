@@ -26,8 +26,8 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// - The group is [`SO3`](crate::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::MatrixGroup) inverts matrices by
 ///   pivots and asks for `RealField`, of which lanes aren't one.
 ///
-/// [`Stepper::step`](crate::Stepper::step) finds out which vector instructions the machine has and takes them, so a program
-/// needn't be compiled for one machine. That is for lanes which are arrays, such as `AutoF64x8`: the `Wide` types of simba
+/// [`Stepper::step`](crate::Stepper::step) finds out which vector instructions the machine has and takes them, and so do
+/// composed and compensated steps; a program needn't be compiled for one machine. That is for lanes which are arrays, such as `AutoF64x8`: the `Wide` types of simba
 /// take those instructions that the program is compiled for, two `f64` a register on x86-64 unless the compiler is told
 /// more, as by `-C target-cpu=native`. `cargo bench --bench ensemble` measures both.
 pub trait Real: SimdRealField + Copy {}

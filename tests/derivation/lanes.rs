@@ -1,6 +1,9 @@
 //! Several tops at once in SIMD lanes: each lane is, bit for bit, a top of its own.
 
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, Real, SO3, StepError, Stepper, lagrangian};
+use liestep::{
+    CompensatedState, Composition, CompositionScheme, DiagonalNonstandardInertia, LieGroup as _, Real, SO3, State,
+    StepError, Stepper, lagrangian,
+};
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
@@ -113,6 +116,37 @@ fn each_lane_moves_as_alone() {
         assert_independent::<WideF32x8, 8>(&spread(3, 6.0), 0.1, 2000),
     ];
     assert!(unequal.iter().all(|&steps| steps > 100), "{unequal:?}");
+}
+
+/// Steps of higher order and with compensated sums, which are compiled for the machine's instructions as well.
+#[test]
+fn composed_and_compensated_lanes_move_as_alone() {
+    let lanes: [Lane<f64>; 8] = spread(12, 16.0);
+    let composed = |(stepper, state): Running<f64>| {
+        let composition = Composition::new(stepper.lagrangian().clone(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
+        (composition, state)
+    };
+    let (wide, mut all) = together::<AutoF64x8, 8>(&lanes, 0.01);
+    let mut compensated_all = CompensatedState::from(all);
+    let step = wide.step_size();
+    let wide_composition = Composition::new(wide.lagrangian().clone(), step, CompositionScheme::SUZUKI_4).unwrap();
+    let wide = wide.compensated();
+    let mut compositions = alone::<AutoF64x8, 8>(&lanes, 0.01).map(composed);
+    let mut singles = alone::<AutoF64x8, 8>(&lanes, 0.01).map(|(s, state)| (s.compensated(), state.into()));
+    for number in 0..1500 {
+        wide_composition.step(&mut all).unwrap();
+        wide.step(&mut compensated_all).unwrap();
+        for (k, ((composition, one), (single, compensated))) in compositions.iter_mut().zip(&mut singles).enumerate() {
+            composition.step(one).unwrap();
+            single.step(compensated).unwrap();
+            let pairs: [(_, &State<_, _>); 2] = [(&all, one), (compensated_all.state(), compensated.state())];
+            for (wide, single) in pairs {
+                let momentum = wide.momentum().extract(k);
+                assert_eq!(momentum, single.momentum(), "step {number}, lane {k}");
+                assert_eq!(wide.attitude().as_matrix().extract(k), *single.attitude().as_matrix());
+            }
+        }
+    }
 }
 
 /// Upright tops, one in each lane, that lean each so many times as much as the one before.
