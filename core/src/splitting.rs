@@ -199,8 +199,9 @@ where
 
     /// So many steps, of which the states between aren't asked for. On an error the state is unchanged.
     ///
-    /// The result is that of as many [steps](Self::step) to rounding. The iterations of the report are those of the last
-    /// step.
+    /// The last drift of a step and the first of the next are made as one. Where the kinetic flow is exact the result is that of
+    /// as many [steps](Self::step) to rounding; elsewhere they differ by some of its error. The iterations of the report
+    /// are those of the last step.
     ///
     /// # Errors
     ///
