@@ -1,32 +1,18 @@
 //! Where the Jacobian is dear a step is solved without it: to the same root, to rounding, and where that is in doubt by
 //! Newton's iteration.
 
+use crate::any_scalar::Top;
 use crate::common::measure::{derivative, slope};
 use crate::common::random::Random;
 use crate::common::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use crate::declarations::{self, FourthOrderTop, SixthOrderTop};
 use liestep::{
     CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia,
-    LieGroup as _, Real, Regular, SO3, StepError, Stepper, lagrangian,
+    LieGroup as _, Regular, SO3, StepError, Stepper, lagrangian,
 };
 use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use simba::simd::WideF64x4;
-
-/// (3.13) in principal axes, for any scalar.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Top<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
-    weight: T,
-    rho: Vector3<T>,
-    up: Vector3<T>,
-}
 
 fn top(moments: Vector3<f64>, weight: f64, rho: Vector3<f64>) -> Top<f64> {
     Top { J_d: DiagonalNonstandardInertia::from_principal_moments(moments).unwrap(), weight, rho, up: Vector3::z() }

@@ -1,25 +1,11 @@
 //! A last iteration with the Jacobian of the one before ends where Newton's iteration does, and is made only where it will.
 
+use crate::any_scalar::Top;
 use crate::common::measure::relative;
 use crate::common::solvers::{WithJacobian, jacobians};
-use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Real, SO3, Stepper, lagrangian};
+use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use num_dual::Dual64;
-
-/// (3.13) in principal axes, for any scalar.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Top<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
-    weight: T,
-    rho: Vector3<T>,
-    up: Vector3<T>,
-}
 
 fn any<T: RealField>(v: Vector3<f64>) -> Vector3<T> {
     v.map(convert)
