@@ -233,8 +233,8 @@ fn many_steps_are_single_steps() {
     }
 }
 
-/// How far a step of length `h` is from a Poisson map at a momentum and a parameter. One off the orbit of the declared one
-/// is that of another top, whose vertical it is.
+/// How far a step of length `h` is from a Poisson map at a momentum and a parameter. One off the orbit of the declared
+/// one is that of another top, whose vertical it is.
 pub(crate) fn poisson_defect<K: KineticFlow<f64>>(
     top: &HeavyTop,
     kinetic: impl Fn() -> K,
@@ -271,7 +271,8 @@ fn p1_splittings_are_poisson_maps() {
     assert_poisson(&asymmetric, || SixthOrderBody { J: inertia(&asymmetric) }, "K6");
 }
 
-/// The preprocessed flow isn't symplectic: what is missing falls with the eleventh power of the step until it is rounding.
+/// The preprocessed flow isn't symplectic: what is missing falls with the eleventh power of the step until it is
+/// rounding.
 #[test]
 fn preprocessed_flows_are_poisson_to_their_order() {
     let top = HeavyTop::asymmetric();
@@ -366,7 +367,8 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }
 
-/// `p_3` is constant, but its square isn't rounded in the same way at each step: that would change `|w|²` by 9e-14 here.
+/// `p_3` is constant, but its square isn't rounded in the same way at each step: that would change `|w|²` by 9e-14
+/// here.
 #[test]
 fn the_exact_flow_keeps_lengths() {
     let motion = looping();

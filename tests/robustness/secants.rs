@@ -79,7 +79,8 @@ fn the_residual_alone_is_the_systems() {
     }
 }
 
-/// How far a step's root is from what Newton's iteration from there on makes of it, in roundings of `ξ`, and iterations.
+/// How far a step's root is from what Newton's iteration from there on makes of it, in roundings of `ξ`, and
+/// iterations.
 fn missing<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone>(
     lagrangian: &L,
     h: f64,
@@ -112,7 +113,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / f64::from(u32::try_from(values.len()).unwrap())
 }
 
-/// The residual's own rounding is all that is missing, as it is with the Jacobian; from the last coordinates for a guess.
+/// The residual's own rounding is all that is missing, as it is with the Jacobian; from the last coordinates for a
+/// guess.
 #[test]
 fn solves_end_at_the_level_of_rounding() {
     for (h, speed) in [(0.01, 8.0), (0.02, 8.0), (0.05, 8.0), (0.05, 2.0), (1e-4, 8.0)] {
@@ -128,8 +130,8 @@ fn solves_end_at_the_level_of_rounding() {
     }
 }
 
-/// What `steps` random momenta of each size come to with both solvers: the largest difference relative to `ξ`, and how many
-/// were solved without the Jacobian, with it after all, and not at all.
+/// What `steps` random momenta of each size come to with both solvers: the largest difference relative to `ξ`, and how
+/// many were solved without the Jacobian, with it after all, and not at all.
 fn compared<L>(without: &WithoutJacobian<L, f64>, h: f64, angle: f64) -> (f64, [u32; 3])
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
