@@ -13,7 +13,7 @@ use crate::common::reference::Motion;
 use crate::common::structure::poisson::TOLERANCE;
 use crate::common::tops::{HeavyTop, inertia};
 use crate::convergence::{End, TOPS, assert_order, counts};
-use crate::splitting::poisson_defect;
+use crate::poisson::poisson_defect;
 
 /// Each of three axes with the middle moment, and each of the others farther from it.
 const MOMENTS: [[f64; 3]; 6] =
