@@ -9,8 +9,8 @@
 //! momentum, energy, body rates, and the path of the tip on the sphere. One rival keeps the attitude in a quaternion
 //! that it normalises, as a careful user would; the other in the nine entries of `R`, as the thesis did.
 //!
-//! At a small step the rivals, of order 4, have the smaller energy error: look at how it grows, at the momentum and, for
-//! the nine entries, at the rigidity; or take `--step 0.05`.
+//! At a small step the rivals, of order 4, have the smaller energy error: look at how it grows, at the momentum and,
+//! for the nine entries, at the rigidity; or take `--step 0.05`.
 //!
 //! Every figure names its reading of the thesis' `diag(2, 2, 1)`: as `J_d` (A, which (3.13) says) or as `J` (B).
 

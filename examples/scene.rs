@@ -5,10 +5,10 @@
 //! cargo run --release --example scene -- examples/scenes/*.toml --out pictures --csv
 //! ```
 //!
-//! A file names a body, the effects on it, where the motion starts, the step or an accuracy, and what to draw; the files in
-//! `examples/scenes` show every key. Numbers are in SI units, or texts with a unit: `"30 deg"`. Which effects there are
-//! is decided once a run: the step that then runs is that of the sum of just those, compiled as if it had been written
-//! by hand. A mistake in a file is reported with its line and column.
+//! A file names a body, the effects on it, where the motion starts, the step or an accuracy, and what to draw; the
+//! files in `examples/scenes` show every key. Numbers are in SI units, or texts with a unit: `"30 deg"`. Which effects
+//! there are is decided once a run: the step that then runs is that of the sum of just those, compiled as if it had
+//! been written by hand. A mistake in a file is reported with its line and column.
 
 #[path = "common/csv.rs"]
 mod csv;

@@ -3,10 +3,11 @@
 //! Every method is tried on the very motion, from its start to the horizon, with one step, two, four and so on. Two
 //! neighbouring trials show the error of the coarser (Richardson), and its fall from trial to trial what a given error
 //! takes; trial by trial the search follows the method that looks cheapest, by the operations that its steps make and
-//! by no clock, so that the same question has the same answer each time on one platform. Growth of errors along the motion, steps too
-//! long to be solved and orders that coarse steps haven't got yet are in these measurements; in the end the step is
-//! taken from a run whose error has been measured against a finer one, and of that one only the own error is extrapolated. Where the potential can be split off,
-//! [`Gauss`](crate::Gauss) collocation may be among the methods ([`Candidates::and_gauss`]).
+//! by no clock, so that the same question has the same answer each time on one platform. Growth of errors along the
+//! motion, steps too long to be solved and orders that coarse steps haven't got yet are in these measurements; in the
+//! end the step is taken from a run whose error has been measured against a finer one, and of that one only the own
+//! error is extrapolated. Where the potential can be split off, [`Gauss`](crate::Gauss) collocation may be among the
+//! methods ([`Candidates::and_gauss`]).
 
 mod candidates;
 mod choice;
@@ -73,13 +74,14 @@ where
     L: DiscreteLagrangian<Scalar = f64> + Regular + Clone + 'static,
     L::Advected: 'static,
 {
-    /// The cheapest way to an accuracy that a scene of order 2 has by itself: its own step, or a symmetric composition of
-    /// order 4, 6, 8 or 10, with the step that is just short enough for the motion from this attitude (body to space)
-    /// and body velocity.
+    /// The cheapest way to an accuracy that a scene of order 2 has by itself: its own step, or a symmetric composition
+    /// of order 4, 6, 8 or 10, with the step that is just short enough for the motion from this attitude (body to
+    /// space) and body velocity.
     ///
-    /// The choice takes trial runs to the horizon, which cost together some twenty to a hundred times what the run does;
-    /// [`Choice::trials`] says how much. The step is then fixed: energy and momenta are kept as by any fixed step, and the
-    /// same question gives the same bits. [`Candidates`] chooses from more methods, where a scene allows them.
+    /// The choice takes trial runs to the horizon, which cost together some twenty to a hundred times what the run
+    /// does; [`Choice::trials`] says how much. The step is then fixed: energy and momenta are kept as by any fixed
+    /// step, and the same question gives the same bits. [`Candidates`] chooses from more methods, where a scene allows
+    /// them.
     ///
     /// # Errors
     ///

@@ -14,8 +14,8 @@
 //! | `V ⊗ V*` | [`MixedTensor`] | `F⁻¹ S F` | a velocity gradient |
 //!
 //! `V` is the space that the group's matrices act on, `F` the matrix itself. Points are moved by groups of affine maps,
-//! as SE(2) and SE(3) are, and written in homogeneous coordinates; vectors with another last coordinate move by the same
-//! matrices, but keep no distances.
+//! as SE(2) and SE(3) are, and written in homogeneous coordinates; vectors with another last coordinate move by the
+//! same matrices, but keep no distances.
 
 use core::fmt::Debug;
 

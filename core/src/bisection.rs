@@ -1,6 +1,7 @@
 //! The largest fraction of a step that will do.
 
-/// The largest fraction of one that passes, to six digits: one itself if that does, `None` if nothing above 10⁻³⁰⁰ does.
+/// The largest fraction of one that passes, to six digits: one itself if that does, `None` if nothing above 10⁻³⁰⁰
+/// does.
 ///
 /// What is returned passes. Where larger fractions pass again beyond one that fails, any of these bounds may be found.
 pub(crate) fn largest_fraction(passes: impl Fn(f64) -> bool) -> Option<f64> {

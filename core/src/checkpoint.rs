@@ -49,9 +49,9 @@ impl Stored for f32 {
 ///
 /// # Format
 ///
-/// A map of names to numbers and lists of numbers, matrices row by row; units are those of the [`State`]. The lists have
-/// the length that the scene calls for. A text format must read floats to the last bit, as `serde_json` does with its
-/// feature `float_roundtrip`; one that doesn't is found out by the digest.
+/// A map of names to numbers and lists of numbers, matrices row by row; units are those of the [`State`]. The lists
+/// have the length that the scene calls for. A text format must read floats to the last bit, as `serde_json` does with
+/// its feature `float_roundtrip`; one that doesn't is found out by the digest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint<T> {
@@ -126,8 +126,8 @@ impl<L: Effect<Scalar: Stored>> Stepper<L> {
     ///
     /// # Errors
     ///
-    /// [`CheckpointError`] where the checkpoint is of another scene, has other parameters or another step, or was made by
-    /// a compensated stepper; where it isn't a state of this scene; and where a digit of it has changed.
+    /// [`CheckpointError`] where the checkpoint is of another scene, has other parameters or another step, or was made
+    /// by a compensated stepper; where it isn't a state of this scene; and where a digit of it has changed.
     pub fn resume(&self, checkpoint: &Checkpoint<Scalar<L>>) -> Result<State<Group<L>, L::Advected>, CheckpointError> {
         let state = read(self, checkpoint)?;
         if !checkpoint.carry.is_empty() {

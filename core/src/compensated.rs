@@ -2,8 +2,8 @@
 //!
 //! A step adds small changes to the attitude, the momentum and the advected parameters: `R + R D`, `w + Dᵀ w`,
 //! `p + (Dᵀ a + kicks)`. Each sum loses some `ε` of the state, and these losses walk at random; the changes themselves
-//! are wrong by some `ε` of a change only. With the losses kept, what is left is the walk of the changes, smaller by the
-//! angle of a step: at `h = 10⁻⁴` nothing is seen of it in 10⁷ steps, near a radian a step nothing is gained.
+//! are wrong by some `ε` of a change only. With the losses kept, what is left is the walk of the changes, smaller by
+//! the angle of a step: at `h = 10⁻⁴` nothing is seen of it in 10⁷ steps, near a radian a step nothing is gained.
 
 use crate::advected::Advected;
 use crate::coordinates::Coordinates as _;

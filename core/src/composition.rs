@@ -269,9 +269,9 @@ const FARTHEST_EXTRAPOLATION: f64 = 3.0;
 impl<T: crate::Real> Stage<T> {
     /// The stage of `γ = this` between those of `before` and `next`.
     ///
-    /// The coordinates of a stage over its `γ` are the mean velocity over it, to second order that in its middle. Two of
-    /// them give that of the next stage by a straight line, whose middle lies `(this + next)/2` away from this one's,
-    /// where that of the stage before lies `(before + this)/2` back.
+    /// The coordinates of a stage over its `γ` are the mean velocity over it, to second order that in its middle. Two
+    /// of them give that of the next stage by a straight line, whose middle lies `(this + next)/2` away from this
+    /// one's, where that of the stage before lies `(before + this)/2` back.
     fn between(stepper: usize, before: f64, this: f64, next: f64) -> Self {
         let ratio = (this + next) / (before + this);
         let ratio = if ratio.abs() <= FARTHEST_EXTRAPOLATION { ratio } else { 0.0 };

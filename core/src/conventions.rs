@@ -2,7 +2,8 @@
 //!
 //! This page is documentation only. The source of the theory is the thesis \[RDAE\]; its equation numbers are cited
 //! as (2.7) throughout the crate. Three further pages: [`equations`] says where each of them lives in the code,
-//! [`errata`] where this crate departs from the thesis and why, [`guarantees`] what a step conserves and when it exists.
+//! [`errata`] where this crate departs from the thesis and why, [`guarantees`] what a step conserves and when it
+//! exists.
 //!
 //! # Left and right
 //!
@@ -26,8 +27,8 @@
 //! | [`legendre_minus`] | `μ_i = right_momentum − diamond`, (2.7) | momentum at the start of the step |
 //! | [`legendre_plus`] | `μ_{i+1} = left_momentum`, (2.6) | momentum at the end of the step |
 //!
-//! The first is a single variation in disguise, `μ_k = d/ds l_d(exp(s E_k) F, exp(s E_k)·w)` at `s = 0`: start point and
-//! advected parameter move together.
+//! The first is a single variation in disguise, `μ_k = d/ds l_d(exp(s E_k) F, exp(s E_k)·w)` at `s = 0`: start point
+//! and advected parameter move together.
 //!
 //! The stars mean transposes. `Ad*_F` is [`adjoint_transpose`], `⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩`, on SO(3) `Fᵀμ`; the
 //! coadjoint representation of textbooks is its inverse, `Ad*_{F⁻¹}`, and isn't used under that name. `ad*_ξ` is
@@ -70,14 +71,14 @@
 //! # The initial momentum
 //!
 //! `μ_0` belongs to the same instant as `g_0` and `w_0` and is the physical momentum there: `μ_0 = J Ω_0` for a rigid
-//! body, which is what [`Stepper::start`] computes. The half kick `(h/2) τ(w_0)` of the potential is part of the momentum
-//! equation (2.7); adding it to `μ_0` as well costs an order of accuracy, and so does `F_0 = exp(hΩ_0)`.
+//! body, which is what [`Stepper::start`] computes. The half kick `(h/2) τ(w_0)` of the potential is part of the
+//! momentum equation (2.7); adding it to `μ_0` as well costs an order of accuracy, and so does `F_0 = exp(hΩ_0)`.
 //!
 //! # `J_d` and `J`, readings A and B
 //!
 //! The matrix in the trace of (3.13) is the nonstandard inertia `J_d = ∫ X Xᵀ dm`, not the inertia
-//! `J = ∫ (X·X I − X Xᵀ) dm = tr(J_d) I − J_d`; see [`NonstandardInertia`]. The thesis gives `diag(2, 2, 1)` and doesn't
-//! use it in one sense only, so there are two readings, and every figure names its own:
+//! `J = ∫ (X·X I − X Xᵀ) dm = tr(J_d) I − J_d`; see [`NonstandardInertia`]. The thesis gives `diag(2, 2, 1)` and
+//! doesn't use it in one sense only, so there are two readings, and every figure names its own:
 //!
 //! | reading | `J_d`, kg m² | `J`, kg m² | |
 //! |---|---|---|---|
@@ -150,8 +151,8 @@
 //! | \[AMM17\] | M. Antoñana, J. Makazaga, A. Murua, *Reducing and monitoring round-off error propagation for symplectic implicit Runge–Kutta schemes*, Numerical Algorithms 76, 2017 |
 //! | \[HV06\] | E. Hairer, G. Vilmart, *Preprocessed discrete Moser–Veselov algorithm for the full dynamics of the rigid body*, Journal of Physics A 39, 2006 |
 //!
-//! The Lagrangian (3.13) gives the integrator of \[LML05\], with the same momentum; the discrete Legendre transforms and
-//! the order of accuracy they imply are those of \[MW01\]; the continuous theory of chapter 1 is in \[HSS09\].
+//! The Lagrangian (3.13) gives the integrator of \[LML05\], with the same momentum; the discrete Legendre transforms
+//! and the order of accuracy they imply are those of \[MW01\]; the continuous theory of chapter 1 is in \[HSS09\].
 //!
 //! [`right_momentum`]: crate::DiscreteLagrangian::right_momentum
 //! [`left_momentum`]: crate::DiscreteLagrangian::left_momentum

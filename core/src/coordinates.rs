@@ -49,9 +49,10 @@ pub trait Coordinates<T: Real>:
     /// scales rows and columns, changes no digit. Where `A` is singular, `z` isn't finite and `det A` is zero or not
     /// finite.
     ///
-    /// Up to three dimensions this is Cramer's rule, and the adjugate is returned. Beyond, it is elimination in the order of
-    /// the basis, and both triangles are returned: as accurate as any for a matrix whose symmetric part is positive definite,
-    /// like the Jacobian of a kinetic energy near the identity, and not finite where a leading minor is zero.
+    /// Up to three dimensions this is Cramer's rule, and the adjugate is returned. Beyond, it is elimination in the
+    /// order of the basis, and both triangles are returned: as accurate as any for a matrix whose symmetric part is
+    /// positive definite, like the Jacobian of a kinetic energy near the identity, and not finite where a leading minor
+    /// is zero.
     fn factorise(matrix: &Self::Square) -> (Self::Square, T);
 
     /// The solution `z` of `A z = b` from what [`factorise`](Self::factorise) has made of `A`.

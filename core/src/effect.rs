@@ -115,8 +115,8 @@ pub trait Effect {
     /// What was declared and everything derived from it, as text.
     const DERIVATION: &'static str;
 
-    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms, each once it is asked for:
-    /// a constant can't be put together from others.
+    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms, each once it is asked
+    /// for: a constant can't be put together from others.
     #[must_use]
     fn derivation() -> String {
         Self::DERIVATION.to_owned()
@@ -172,16 +172,16 @@ pub trait Effect {
     /// `(h/2) (1 + |y|²)ⁿ (U(τ(2y), w) − a)` with `n` = [`DENOMINATORS`](Self::DENOMINATORS), and its derivative with
     /// respect to `y`, half the coordinates of `F`.
     ///
-    /// In this form the derivative at rest is the inertia, whatever the step and its sign, and for (3.13) the moments of
-    /// inertia are the only constants in it.
+    /// In this form the derivative at rest is the inertia, whatever the step and its sign, and for (3.13) the moments
+    /// of inertia are the only constants in it.
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
 
-    /// The residual of [`newton_system`](Self::newton_system) alone; with it, where one gradient of `l_d` gives both, the
-    /// part `k` of the diamond that depends on `F`, which stands for [`kick_after`](Self::kick_after) then:
+    /// The residual of [`newton_system`](Self::newton_system) alone; with it, where one gradient of `l_d` gives both,
+    /// the part `k` of the diamond that depends on `F`, which stands for [`kick_after`](Self::kick_after) then:
     /// `Ad*_F k = kick_after(F, w⁺)`.
     #[inline(always)]
     fn newton_residual(

@@ -1,7 +1,8 @@
 //! A library of effects on a rigid body, to be added up to scenes: `RigidBody { … } + Gravity { … }`.
 //!
 //! Each is a declaration like a user's own, and adds with those. A scene needs a body; what isn't in the sum isn't
-//! simulated. Attitudes are those of the body's axes in space, vectors "in space" are advected: the body sees them turn.
+//! simulated. Attitudes are those of the body's axes in space, vectors "in space" are advected: the body sees them
+//! turn.
 //!
 //! | effect | energy |
 //! |---|---|
@@ -12,8 +13,8 @@
 //! | [`Spring`] | `½ k (|R r − a| − l)²` |
 //! | [`Rotor`] | none of its own: it shifts the momentum, `JΩ + s` |
 //!
-//! The body can be discretised in several ways, which differ in order, in cost and in how far a body may turn in a step;
-//! `cargo bench --bench kinetic-terms` has the costs.
+//! The body can be discretised in several ways, which differ in order, in cost and in how far a body may turn in a
+//! step; `cargo bench --bench kinetic-terms` has the costs.
 //!
 //! | kinetic term | order of a free body | its energy | a spin turns in a step by up to |
 //! |---|---|---|---|
@@ -32,7 +33,8 @@
 //! | [`Thrust`] | of a force that is constant in the body, at a point of it |
 //! | [`Torque`] | constant in the body |
 //!
-//! A torque that is given anew each step isn't an effect but data of the step: [`Stepper::step_with`](crate::Stepper::step_with).
+//! A torque that is given anew each step isn't an effect but data of the step:
+//! [`Stepper::step_with`](crate::Stepper::step_with).
 
 // The letters of the field.
 #![allow(non_snake_case)]

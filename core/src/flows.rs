@@ -329,8 +329,8 @@ impl<L: Effect> DiscreteLiePoisson<L> {
 
     /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
     ///
-    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds of
-    /// [`solvability`](Self::solvability) decide.
+    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds
+    /// of [`solvability`](Self::solvability) decide.
     #[must_use]
     pub fn max_step(&self, momentum: &Vector<L>, advected: &L::Advected) -> Scalar<L> {
         let limits = self.turning_limits(advected);
@@ -366,8 +366,8 @@ fn kicked<L: Effect>(constants: &L::Constants, momentum: &Vector<L>, w: &L::Adve
     if L::PARTS.kick_before { *momentum + L::kick_before(constants, w) } else { *momentum }
 }
 
-/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times the
-/// former, `10¹²` times in `f64`, the rounding of the latter doesn't reach it.
+/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times
+/// the former, `10¹²` times in `f64`, the rounding of the latter doesn't reach it.
 const RATIO: f64 = 1.0 / 4096.0;
 
 /// Determinant and trace of the Newton system for a body at rest.

@@ -6,9 +6,9 @@
 //! ```
 //!
 //! with the Stumpff functions `c_k(q) = Σ (−q)ⁱ/(2i + k)!` (`c₁ = sin θ/θ`, `c₂ = (1 − cos θ)/θ²`) and
-//! `G(n) = θ/sin θ = Σ nᵐ m!/(3/2)_m`. Both are analytic at the identity, where `θ` isn't, and their derivatives stay in
-//! the family: `c_k' = (k c_{k+2} − c_{k+1})/2` and `2n(1 − n) G⁽ᵏ⁺¹⁾ = 2k² G⁽ᵏ⁻¹⁾ − (2k + 1)(1 − 2n) G⁽ᵏ⁾`, with one in
-//! place of the first term for `k = 0`.
+//! `G(n) = θ/sin θ = Σ nᵐ m!/(3/2)_m`. Both are analytic at the identity, where `θ` isn't, and their derivatives stay
+//! in the family: `c_k' = (k c_{k+2} − c_{k+1})/2` and `2n(1 − n) G⁽ᵏ⁺¹⁾ = 2k² G⁽ᵏ⁻¹⁾ − (2k + 1)(1 − 2n) G⁽ᵏ⁾`, with
+//! one in place of the first term for `k = 0`.
 
 use crate::groups::{LieGroup as _, SO3};
 use crate::scalar::{Real, real};
@@ -16,8 +16,8 @@ use nalgebra::{Matrix3, SMatrix, SimdBool as _, Vector3};
 
 /// Terms of the series next to zero, which is where nearly all steps are.
 const FEW: usize = 9;
-/// Terms of the logarithm's series at large steps, up to 0.7 rad: with them all, the series would take as long as the rest
-/// of a residual.
+/// Terms of the logarithm's series at large steps, up to 0.7 rad: with them all, the series would take as long as the
+/// rest of a residual.
 const SOME: usize = 20;
 /// Terms of the series up to where the closed forms are as exact.
 const MANY: usize = 34;
@@ -153,7 +153,8 @@ impl<const N: usize> Series<N> {
     }
 }
 
-/// By Horner's rule in `x⁴`: four chains that the processor runs side by side. A single one's latency would be that of the step.
+/// By Horner's rule in `x⁴`: four chains that the processor runs side by side. A single one's latency would be that of
+/// the step.
 #[inline(always)]
 fn polynomial<T: Real, const N: usize>(coefficients: &[f64; N], x: T) -> T {
     let square = x * x;

@@ -1,7 +1,7 @@
 //! Gauss collocation in the quaternion and its momentum: the cheapest Poisson map for high accuracy.
 //!
-//! [`Candidates::and_gauss`](crate::Candidates::and_gauss) makes it one of the methods to be chosen by accuracy, and then
-//! finds the step.
+//! [`Candidates::and_gauss`](crate::Candidates::and_gauss) makes it one of the methods to be chosen by accuracy, and
+//! then finds the step.
 
 mod coefficients;
 mod lift;
@@ -29,26 +29,28 @@ use nalgebra::Vector3;
 /// An integrator of order `4 PAIRS` for a body on SO(3) under a potential, by Gauss collocation with `2 PAIRS` stages.
 ///
 /// The continuous Lagrangian `½ Ω·JΩ + s·Ω − V(w)` of the declared one, which must be `K(F) − (h/2) (V(w) + V(F⁻¹·w))`,
-/// is integrated in the quaternion and its conjugate momentum. Of the declared `K` only the inertia `J` and the bias `s`
-/// remain.
+/// is integrated in the quaternion and its conjugate momentum. Of the declared `K` only the inertia `J` and the bias
+/// `s` remain.
 ///
 /// # What is kept
 ///
 /// Gauss collocation is symplectic, commutes with linear maps, and keeps what is quadratic. Body momentum and advected
-/// parameters are functions of quaternion and momentum with the Poisson brackets of the semidirect product, and what else
-/// is in these, a turn about a symmetry of the parameters and `p ↦ p + λq`, is a linear symmetry. So the step is a Poisson
-/// map of `(Π, w)`. Momentum maps are quadratic, hence kept to rounding: the momentum about the vertical, that of a symmetric
-/// top about its axis. Attitudes are rotations and the parameters stay on their orbit by construction. The energy isn't
-/// quadratic: its error is of the order of the method and doesn't drift. A step of `−h` undoes one of `h`.
+/// parameters are functions of quaternion and momentum with the Poisson brackets of the semidirect product, and what
+/// else is in these, a turn about a symmetry of the parameters and `p ↦ p + λq`, is a linear symmetry. So the step is a
+/// Poisson map of `(Π, w)`. Momentum maps are quadratic, hence kept to rounding: the momentum about the vertical, that
+/// of a symmetric top about its axis. Attitudes are rotations and the parameters stay on their orbit by construction.
+/// The energy isn't quadratic: its error is of the order of the method and doesn't drift. A step of `−h` undoes one of
+/// `h`.
 ///
 /// # What it costs
 ///
-/// The stages are solved to rounding by fixed-point iteration, from the polynomial of the step before; each iteration is
-/// `2 PAIRS` right-hand sides, computed several at once in SIMD lanes, by the instructions that the machine is found to
-/// have: with AVX2, four at once, which makes 4 and 8 stages cheaper than others. That takes some 13 iterations where a step turns the
-/// body by three quarters of a radian, 20 at one and a half, and doesn't converge much beyond. So a coarse result isn't
-/// cheap, and a better one costs little more: it is the cheapest Poisson map for an asymmetric top under gravity from an
-/// error of 10⁻⁴ on, over long times from the coarsest. `cargo run --release --example accuracy-cost` measures it.
+/// The stages are solved to rounding by fixed-point iteration, from the polynomial of the step before; each iteration
+/// is `2 PAIRS` right-hand sides, computed several at once in SIMD lanes, by the instructions that the machine is found
+/// to have: with AVX2, four at once, which makes 4 and 8 stages cheaper than others. That takes some 13 iterations
+/// where a step turns the body by three quarters of a radian, 20 at one and a half, and doesn't converge much beyond.
+/// So a coarse result isn't cheap, and a better one costs little more: it is the cheapest Poisson map for an asymmetric
+/// top under gravity from an error of 10⁻⁴ on, over long times from the coarsest.
+/// `cargo run --release --example accuracy-cost` measures it.
 ///
 /// # Contract
 ///
@@ -231,9 +233,10 @@ where
 
 /// `y + (change + carry)` rounded, and what the rounding left behind, by Knuth's exact transformation.
 ///
-/// The last change of the iteration, of the order of rounding, is an error of a sign of its own, which lengthens quaternion
-/// and momentum by the same factor; in a million steps momentum maps would lose three digits to it. The length of the
-/// quaternion is known, so both are brought back to it, by as little as rounding. With exact stages that is no change.
+/// The last change of the iteration, of the order of rounding, is an error of a sign of its own, which lengthens
+/// quaternion and momentum by the same factor; in a million steps momentum maps would lose three digits to it. The
+/// length of the quaternion is known, so both are brought back to it, by as little as rounding. With exact stages that
+/// is no change.
 #[inline(always)]
 fn compensated(y: &Lifted, change: &Lifted, carry: &Lifted) -> (Lifted, Lifted) {
     let (mut next, mut left) = (*y, *carry);

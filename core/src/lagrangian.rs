@@ -24,9 +24,9 @@ pub trait DiscreteLagrangian: Effect {
     /// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` for all values of the parameters.
     ///
     /// Then a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
-    /// compositions raise it; otherwise it is 1 in general. The macro finds it out, by its normal forms or by the values at
-    /// random points of a finite field, and says in [`DERIVATION`](Effect::DERIVATION) how, and whether it would hold if
-    /// vectors were declared as points; who implements the trait by hand states it.
+    /// compositions raise it; otherwise it is 1 in general. The macro finds it out, by its normal forms or by the
+    /// values at random points of a finite field, and says in [`DERIVATION`](Effect::DERIVATION) how, and whether it
+    /// would hold if vectors were declared as points; who implements the trait by hand states it.
     const SELF_ADJOINT: bool;
 
     /// The declared `l_d(F, w)`, in J s.

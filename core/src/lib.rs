@@ -6,8 +6,8 @@
 //!
 //! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
 //! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
-//! direction: `{machine, scalar} ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum} ← newton ← flows ←
-//! stepper`, and on it `{composition, preprocessed ← splitting ← {accuracy, gauss}}`.
+//! direction: `{machine, scalar} ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum}
+//! ← newton ← flows ← stepper`, and on it `{composition, preprocessed ← splitting ← {accuracy, gauss}}`.
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;

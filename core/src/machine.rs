@@ -6,8 +6,9 @@ use crate::scalar::Real;
 
 /// What is worth compiling for several instruction sets.
 ///
-/// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions only.
-/// No instruction set changes a digit: the compiler neither fuses nor reorders operations on floating-point numbers.
+/// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions
+/// only. No instruction set changes a digit: the compiler neither fuses nor reorders operations on floating-point
+/// numbers.
 pub(crate) trait Work {
     type Output;
 

@@ -2,15 +2,17 @@
 //!
 //! The equation has several solutions (four for a free asymmetric body at small `h`); the wanted one continues
 //! `F = I` as the right side grows from zero. On the way the determinant of the Jacobian never vanishes, so its sign
-//! at a solution tells. For (3.13) with a physical body more is known: `det = tr(P) tr(Fᵀ adj J_d)/h² − det J_d/h³` with
-//! `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P` from zero while `det > 0`, so determinant and trace together single out
-//! the component of the identity. Below 90° there is at most one solution, and the determinant alone decides.
+//! at a solution tells. For (3.13) with a physical body more is known: `det = tr(P) tr(Fᵀ adj J_d)/h² − det J_d/h³`
+//! with `P = F J_d/h` and `det J_d ≥ 0` keeps `tr P` from zero while `det > 0`, so determinant and trace together
+//! single out the component of the identity. Below 90° there is at most one solution, and the determinant alone
+//! decides.
 //!
 //! Where one iteration has come near enough, the next is made with the [same Jacobian](simplified).
 //!
 //! SIMD lanes iterate [together] until all have settled. One that has settled earlier stays as it is, so that no lane's
-//! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given. Only a logarithm or an
-//! exponential in the Lagrangian takes the series that the lane farthest from the identity needs, and rounds by it.
+//! digits depend on its neighbours: each is, bit for bit, what a scalar of its own would have given. Only a logarithm
+//! or an exponential in the Lagrangian takes the series that the lane farthest from the identity needs, and rounds by
+//! it.
 
 mod branch;
 mod secants;
@@ -123,8 +125,8 @@ pub(crate) struct Problem<'a, L: Effect> {
 impl<L: Effect> Problem<'_, L> {
     /// The solution from the guess, if it is near the identity and nothing is doubtful.
     ///
-    /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is doubtful:
-    /// the Jacobian is lost in its rounding, and an update may vanish far from any solution.
+    /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is
+    /// doubtful: the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
     /// `AGAIN` says whether a Jacobian may be [used again](simplified).
     ///

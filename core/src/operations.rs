@@ -1,6 +1,7 @@
 //! How much arithmetic a step is.
 
-/// How many operations the parts of a step make: additions, multiplications, divisions; a library call counts as twenty.
+/// How many operations the parts of a step make: additions, multiplications, divisions; a library call counts as
+/// twenty.
 ///
 /// They rank methods by cost, the same on every machine and in every run. What all steps of a group have in common
 /// (advancing the attitude, solving a small linear system) isn't in them.

@@ -43,16 +43,17 @@ impl PreprocessedOrder {
 
 /// An integrator for the free rigid body: (3.13) with moments of inertia that make up for its error.
 ///
-/// To all orders in the step, the discrete free body of (3.13) goes through the points of the exact motion at other times and of another body: with
+/// To all orders in the step, the discrete free body of (3.13) goes through the points of the exact motion at other
+/// times and of another body: with
 ///
 /// ```text
 /// 1/Ĩ_j = s/I_j + d        s = 1 + h² s_3 + h⁴ s_5 + …        d = h² d_3 + h⁴ d_5 + …
 /// ```
 ///
-/// in its place, `s_k` and `d_k` polynomials in the energy `H = ½ Σ y_j²/I_j` and in `C = ½ |y|²`, its order is as high as
-/// the series are taken. Energy, `C` and `R y` are kept exactly, a step of `−h` undoes one of `h`, and the map of `y` is
-/// Poisson. That of `(y, R)` together isn't symplectic, so that kicks of a potential between such steps make the energy
-/// drift: this is for bodies that nothing acts on.
+/// in its place, `s_k` and `d_k` polynomials in the energy `H = ½ Σ y_j²/I_j` and in `C = ½ |y|²`, its order is as high
+/// as the series are taken. Energy, `C` and `R y` are kept exactly, a step of `−h` undoes one of `h`, and the map of
+/// `y` is Poisson. That of `(y, R)` together isn't symplectic, so that kicks of a potential between such steps make the
+/// energy drift: this is for bodies that nothing acts on.
 ///
 /// # Examples
 ///
@@ -96,7 +97,8 @@ impl<T: Real> PreprocessedBody<T> {
     ///
     /// # Errors
     ///
-    /// [`StepError`] where the momentum equation has no solution on the branch of the identity, or a value isn't finite.
+    /// [`StepError`] where the momentum equation has no solution on the branch of the identity, or a value isn't
+    /// finite.
     #[inline]
     pub fn step(&self, state: &mut State<SO3<T>, ()>) -> Result<StepReport, StepError> {
         if self.h == T::zero() {

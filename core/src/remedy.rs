@@ -78,7 +78,8 @@ impl<L: Effect, P: OnFailure<L>> RemediedStepper<L, P> {
         &self.stepper
     }
 
-    /// One step, or what the policy does in its place; [`StepReport::remedy`] tells. On an error the state is unchanged.
+    /// One step, or what the policy does in its place; [`StepReport::remedy`] tells. On an error the state is
+    /// unchanged.
     ///
     /// # Errors
     ///
@@ -92,8 +93,8 @@ impl<L: Effect, P: OnFailure<L>> RemediedStepper<L, P> {
 /// Takes the step in equal parts, as few as will do.
 ///
 /// The motion through such a step is as good as any other, but the step isn't constant then: the energy keeps to its
-/// bound between two such steps and may change by the order of `h²` at each, so that over many it can drift. What a step
-/// conserves whatever its size is kept: the group, the momentum maps, the Casimirs.
+/// bound between two such steps and may change by the order of `h²` at each, so that over many it can drift. What a
+/// step conserves whatever its size is kept: the group, the momentum maps, the Casimirs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Substeps {
     /// No more parts than these.

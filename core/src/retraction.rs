@@ -17,8 +17,8 @@ pub trait Retraction<G: LieGroup> {
     /// `D = τ(ξ) − I`, formed without subtracting `I`, so that a small `ξ` keeps all its digits.
     fn increment(xi: &G::Vector) -> G::Matrix;
 
-    /// `D` for half the coordinates, `y = ξ/2`, which are what Newton's iteration solves for: on SO(3) in Cayley coordinates
-    /// `tan(θ/2) n`, in which formulas are shortest.
+    /// `D` for half the coordinates, `y = ξ/2`, which are what Newton's iteration solves for: on SO(3) in Cayley
+    /// coordinates `tan(θ/2) n`, in which formulas are shortest.
     #[must_use]
     #[inline(always)]
     fn increment_of_half(half: &G::Vector) -> G::Matrix {

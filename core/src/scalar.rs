@@ -18,18 +18,19 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// Values of all lanes are made from arrays of the lanes' values, inertias and attitudes too, and read by
 /// [`SimdValue::extract`]:
 ///
-/// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled. Only
-///   logarithms and exponentials in a Lagrangian round by the lane that is farthest from the identity.
-///   Only `l_d` with a sine or a cosine may differ by roundings, where the lanes compute these in their own way.
+/// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled.
+///   Logarithms and exponentials in a Lagrangian are the exception, which round by the lane that is farthest from the
+///   identity, and sines and cosines, which differ by roundings where the lanes compute them in their own way.
 /// - Every lane's step is solved, or the whole step is an error and the state of all lanes is what it was. An error's
 ///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is.
 /// - The group is [`SO3`](crate::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::MatrixGroup) inverts matrices by
 ///   pivots and asks for `RealField`, of which lanes aren't one.
 ///
-/// [`Stepper::step`](crate::Stepper::step) finds out which vector instructions the machine has and takes them, and so do
-/// composed and compensated steps; a program needn't be compiled for one machine. That is for lanes which are arrays, such as `AutoF64x8`: the `Wide` types of simba
-/// take those instructions that the program is compiled for, two `f64` a register on x86-64 unless the compiler is told
-/// more, as by `-C target-cpu=native`. `cargo bench --bench ensemble` measures both.
+/// [`Stepper::step`](crate::Stepper::step) finds out which vector instructions the machine has and takes them, and so
+/// do composed and compensated steps: a program needn't be compiled for one machine. That is for lanes which are
+/// arrays, such as `AutoF64x8`: the `Wide` types of simba take those instructions that the program is compiled for, two
+/// `f64` a register on x86-64 unless the compiler is told more, as by `-C target-cpu=native`. `cargo bench --bench
+/// ensemble` measures both.
 pub trait Real: SimdRealField + Copy {}
 
 impl<T: SimdRealField + Copy> Real for T {}

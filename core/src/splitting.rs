@@ -31,9 +31,9 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 /// An integrator for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
 /// The shares `a_i` and `b_i` of a [`SplittingScheme`] go to the kinetic flow over `a_i h` and to kicks
-/// `p ← p + b_i h τ(w)` by turns. The kinetic part of the declared Lagrangian is replaced by a [`KineticFlow`], exact for
-/// a symmetric body or declared with a higher order; that part makes nearly all of the error of (3.13). Every stage is a
-/// Poisson map that keeps the momentum maps, so the step is. Schemes with force gradients add to a kick a share of
+/// `p ← p + b_i h τ(w)` by turns. The kinetic part of the declared Lagrangian is replaced by a [`KineticFlow`], exact
+/// for a symmetric body or declared with a higher order; that part makes nearly all of the error of (3.13). Every stage
+/// is a Poisson map that keeps the momentum maps, so the step is. Schemes with force gradients add to a kick a share of
 /// `−½ τ·J⁻¹τ`, the potential's commutator with the kinetic energy, whose torque is derived as `τ` is; with them two to
 /// five flows reach an order that takes six to fourteen without.
 ///
@@ -114,14 +114,14 @@ where
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Regular,
     K: KineticFlow<T>,
 {
-    /// Checks that the Lagrangian can be split and that the flow is that of its body, and folds the constants of all the
-    /// shares of the step `h`, in seconds.
+    /// Checks that the Lagrangian can be split and that the flow is that of its body, and folds the constants of all
+    /// the shares of the step `h`, in seconds.
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotSeparable`], [`SetupError::AnotherInertia`] and [`SetupError::AnotherBias`] where that isn't so;
-    /// [`SetupError::NoForceGradient`] where the scheme asks for one and the scene was written without; otherwise as
-    /// [`DiscreteLiePoisson::new`](crate::DiscreteLiePoisson::new).
+    /// [`SetupError::NotSeparable`], [`SetupError::AnotherInertia`] and [`SetupError::AnotherBias`] where that isn't
+    /// so; [`SetupError::NoForceGradient`] where the scheme asks for one and the scene was written without; otherwise
+    /// as [`DiscreteLiePoisson::new`](crate::DiscreteLiePoisson::new).
     pub fn new(lagrangian: L, kinetic: K, h: T, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let stepper = Stepper::new(lagrangian, h)?;
         let inertia = stepper.lagrangian().inertia();
@@ -172,8 +172,8 @@ where
         })
     }
 
-    /// A potential that is symmetric about the third body axis commutes with rotations about it, and so does what else a
-    /// symmetric body does; `p_3` is constant.
+    /// A potential that is symmetric about the third body axis commutes with rotations about it, and so does what else
+    /// a symmetric body does; `p_3` is constant.
     fn take_spin(&mut self) {
         let (mut outer, mut joint, mut inner) = (self.outer.clone(), self.joint.clone(), self.inner.clone());
         let mut spin = T::zero();
@@ -199,9 +199,9 @@ where
 
     /// So many steps, of which the states between aren't asked for. On an error the state is unchanged.
     ///
-    /// The last drift of a step and the first of the next are made as one. Where the kinetic flow is exact the result is that of
-    /// as many [steps](Self::step) to rounding; elsewhere they differ by some of its error. The iterations of the report
-    /// are those of the last step.
+    /// The last drift of a step and the first of the next are made as one. Where the kinetic flow is exact the result is
+    /// that of as many [steps](Self::step) to rounding; elsewhere they differ by some of its error. The iterations of the
+    /// report are those of the last step.
     ///
     /// # Errors
     ///

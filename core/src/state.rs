@@ -20,8 +20,8 @@ pub(crate) const LOOKS: u32 = 1024;
 
 /// Attitude, momentum and advected parameters at one time.
 ///
-/// The coordinates of the last increment, halved, and a guess of the next ones are kept for the next solve, with what the guess
-/// is made of. They are part of the state, so that a copy continues with the same bits.
+/// The coordinates of the last increment, halved, and a guess of the next ones are kept for the next solve, with what
+/// the guess is made of. They are part of the state, so that a copy continues with the same bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<G: LieGroup, A: Advected<G>> {
     pub(crate) attitude: G,
@@ -41,9 +41,9 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
         Self { attitude, momentum, advected, half, half_guess: half, history: History::new(), steps: 0 }
     }
 
-    /// Counts the step with half these coordinates, and guesses those of the next by continuing the last ones; `far` are
-    /// the lanes in which they are no longer near the identity at 3/2 of their length. Now and then it looks how far roundings
-    /// have gone, and returns what [`restore`](Self::restore) does.
+    /// Counts the step with half these coordinates, and guesses those of the next by continuing the last ones; `far`
+    /// are the lanes in which they are no longer near the identity at 3/2 of their length. Now and then it looks how
+    /// far roundings have gone, and returns what [`restore`](Self::restore) does.
     #[inline(always)]
     pub(crate) fn proceed(
         &mut self,
@@ -70,9 +70,10 @@ impl<G: LieGroup, A: Advected<G>> State<G, A> {
 
     /// The guess for the next solve, as a solve had better read it.
     ///
-    /// A processor hands on what has just been stored to a load of the same place, but a load of two components that were
-    /// stored apart waits until both stores are done. The compiler stores them and loads them in pairs, and in different ones
-    /// if it may. With the last component loaded for itself they are the same; it was a tenth of a step of (3.13).
+    /// A processor hands on what has just been stored to a load of the same place, but a load of two components that
+    /// were stored apart waits until both stores are done. The compiler stores them and loads them in pairs, and in
+    /// different ones if it may. With the last component loaded for itself they are the same; it was a tenth of a step
+    /// of (3.13).
     #[inline(always)]
     pub(crate) fn guess(&self) -> G::Vector {
         if G::Scalar::LANES > 1 {

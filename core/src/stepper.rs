@@ -19,8 +19,8 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 /// What a step did.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepReport {
-    /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up. The last
-    /// may have been made with the Jacobian of the one before.
+    /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up. The
+    /// last may have been made with the Jacobian of the one before.
     ///
     /// Where the [Jacobian is dear](Effect::JACOBIAN_IS_DEAR) they are residuals, up to eight, to which come
     /// the iterations with the Jacobian where these weren't enough.
@@ -249,8 +249,8 @@ impl<L: Effect> Stepper<L> {
         velocity_of_momentum(self.lagrangian(), &state.momentum, &state.advected)
     }
 
-    /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. Where the scene is a [`DiscreteLagrangian`] it oscillates
-    /// about its initial value, at the order of the scheme, and doesn't drift.
+    /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. Where the scene is a [`DiscreteLagrangian`] it
+    /// oscillates about its initial value, at the order of the scheme, and doesn't drift.
     #[must_use]
     pub fn energy(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
         energy(self.lagrangian(), &state.momentum, &state.advected)
@@ -264,8 +264,8 @@ impl<L: Effect> Stepper<L> {
 
     /// The stepper of `−h`, which undoes the steps of this one exactly.
     ///
-    /// For that `l_d` has to be [self-adjoint](DiscreteLagrangian::SELF_ADJOINT); another is refused when the user's crate
-    /// is built:
+    /// For that `l_d` has to be [self-adjoint](DiscreteLagrangian::SELF_ADJOINT); another is refused when the user's
+    /// crate is built:
     ///
     /// ```compile_fail,E0080
     /// use liestep::effects::RigidBody;

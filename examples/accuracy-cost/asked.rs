@@ -34,7 +34,8 @@ pub(crate) fn compare(scenes: &[Scene], effort: impl Fn(f64) -> Effort) -> Resul
 
 /// A scene to be asked for, and the methods that the answer is compared with.
 pub(crate) struct Question {
-    /// The end of a run that has the accuracy, with the name of its method, its step and the cost of the trials in runs.
+    /// The end of a run that has the accuracy, with the name of its method, its step and the cost of the trials in
+    /// runs.
     pub(crate) ask: Box<dyn Fn(Accuracy) -> Result<Answer, liestep::AccuracyError>>,
     pub(crate) fixed: Vec<methods::Method>,
 }

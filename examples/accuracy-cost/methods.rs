@@ -11,8 +11,8 @@ use crate::scenes::{End, Kind, Scene};
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
 pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
 
-/// Makes the run of a scene over a time with a step (or a tolerance) ready: all that doesn't depend on the state is done
-/// here.
+/// Makes the run of a scene over a time with a step (or a tolerance) ready: all that doesn't depend on the state is
+/// done here.
 type Prepare = Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>;
 
 /// A way to integrate.

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 
 use super::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop};
 
-/// A top declared by its inertia about the pivot (kg m²), its weight (N), its centre of mass in the body's frame (m) and
-/// the vertical.
+/// A top declared by its inertia about the pivot (kg m²), its weight (N), its centre of mass in the body's frame (m)
+/// and the vertical.
 pub trait Top: Sized {
     /// The top with these parameters.
     fn new(J: Inertia, weight: f64, rho: Vector3<f64>, up: Vector3<f64>) -> Self;

@@ -8,8 +8,8 @@ use nalgebra::{Matrix4, Point3, Vector4};
 /// The mass that the fluid adds depends on the direction. A displacement has different components in the frames
 /// before and after the step, and either alone would make a scheme of first order; half of each is self-adjoint.
 ///
-/// Matrices and points are homogeneous, with the fourth row and column for the place. What is advected is the height as a
-/// function of the place, `(n, c)` for `n·x + c`, an element of `V*`.
+/// Matrices and points are homogeneous, with the fourth row and column for the place. What is advected is the height as
+/// a function of the place, `(n, c)` for `n·x + c`, an element of `V*`.
 #[lagrangian(
     group = SE3,
     advected(w = height),

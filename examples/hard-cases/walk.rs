@@ -27,8 +27,8 @@ pub(crate) struct Defects {
 
 /// Whether what grows walks or drifts: its largest size over that of a walk with the same steps.
 ///
-/// Looked at `n` times, a walk gets to some four standard deviations at most, and what always grows alike to `√n`. What is
-/// followed are the six entries of `RRᵀ − I` (those of `RᵀR − I` turn with the body), `|w|²` and `p·w`.
+/// Looked at `n` times, a walk gets to some four standard deviations at most, and what always grows alike to `√n`. What
+/// is followed are the six entries of `RRᵀ − I` (those of `RᵀR − I` turn with the body), `|w|²` and `p·w`.
 struct Followed {
     last: SVector<f64, 8>,
     squares: SVector<f64, 8>,

@@ -1,7 +1,7 @@
 //! Multiplied out or with closed `let`s: whichever costs less to run.
 //!
-//! Multiplied out, what cancels is found; with closed `let`s, nothing is written twice. Both are derived where there are
-//! `let`s, and counted.
+//! Multiplied out, what cancels is found; with closed `let`s, nothing is written twice. Both are derived where there
+//! are `let`s, and counted.
 
 use crate::derive::{self, Derived, ForceError, LimitError};
 use crate::lower::Lowered;

@@ -1,7 +1,8 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
 //! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower, choose, hypotheses, verify, explain} → ast`, `derive → symbolic`, `scalar → symbolic`; `emit` alone quotes tokens.
+//! `lib → expand → {parse, check, lower, choose, hypotheses, verify, explain} → ast`, `derive → symbolic`,
+//! `scalar → symbolic`; `emit` alone quotes tokens.
 
 mod ast;
 mod check;
@@ -20,8 +21,8 @@ mod scalar;
 mod symbolic;
 mod verify;
 
-/// Derives an integrator from a reduced discrete Lagrangian: `impl Effect`, `impl DiscreteLagrangian` and `impl Add` for
-/// the annotated struct.
+/// Derives an integrator from a reduced discrete Lagrangian: `impl Effect`, `impl DiscreteLagrangian` and `impl Add`
+/// for the annotated struct.
 ///
 /// ```text
 /// #[lagrangian(
@@ -34,20 +35,20 @@ mod verify;
 /// struct Name { … }                   the parameters
 /// ```
 ///
-/// In scope in the expression are `F` (the increment `g_i⁻¹ g_{i+1}`, a matrix), `I`, `h` (the step), the advected names
-/// and the fields. It is ordinary Rust over nalgebra, so it also becomes the method `l_d` as it stands: `+ - * /`, unary
-/// minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix() .component_mul(&v)
-/// .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and four functions: `vee(A)`, the vector of
-/// `½ (A − Aᵀ)`; `log(F)`, the rotation vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a
-/// field or of `F`. A large Lagrangian is best written with `let`s: what isn't cheaper multiplied out is differentiated through
-/// them, by multipliers.
+/// In scope in the expression are `F` (the increment `g_i⁻¹ g_{i+1}`, a matrix), `I`, `h` (the step), the advected
+/// names and the fields. It is ordinary Rust over nalgebra, so it also becomes the method `l_d` as it stands:
+/// `+ - * /`, unary minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix()
+/// .component_mul(&v) .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and four functions:
+/// `vee(A)`, the vector of `½ (A − Aᵀ)`; `log(F)`, the rotation vector of a rotation; `exp(v)`, the rotation by a
+/// vector; and `inverse(J)` of a field or of `F`. A large Lagrangian is best written with `let`s: what isn't cheaper
+/// multiplied out is differentiated through them, by multipliers.
 ///
 /// The fields are `f64`, `Vector3<f64>`, `Point3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
-/// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the struct.
-/// Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. A point, where the group
-/// moves points, stands for its homogeneous coordinates, `(x, y, z, 1)` on SE(3). An advected vector is a covector, moved
-/// by `ρ(f)ᵀ`; a point is moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and
-/// `MixedTensor` are the other kinds.
+/// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the
+/// struct. Their types say what may be used: an inertia is symmetric, a diagonal one has six zeros. A point, where the
+/// group moves points, stands for its homogeneous coordinates, `(x, y, z, 1)` on SE(3). An advected vector is a
+/// covector, moved by `ρ(f)ᵀ`; a point is moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`,
+/// `CovariantTensor` and `MixedTensor` are the other kinds.
 ///
 /// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
 /// `body + potential`.
@@ -58,7 +59,8 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
     expand::expand(ast::Role::Lagrangian, arguments.into(), &item.into()).into()
 }
 
-/// Derives the stages of a force from its virtual work in a step: `impl Effect` and `impl Add` for the annotated struct.
+/// Derives the stages of a force from its virtual work in a step: `impl Effect` and `impl Add` for the annotated
+/// struct.
 ///
 /// ```text
 /// #[force(

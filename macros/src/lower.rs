@@ -28,7 +28,8 @@ pub(crate) struct Lowered {
     pub(crate) displacements: Option<Displacements>,
 }
 
-/// Lowers the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has been reported.
+/// Lowers the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has been
+/// reported.
 pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
     lower_without(declaration, tree, &|_, structure| structure, errors)
 }

@@ -5,10 +5,10 @@
 //! letters `A_k` whose indices add up to `p` or less; a method of order `2q` lacks `A_3, …, A_{2q−1}`. So the words'
 //! coefficients are multiplied out: that is all the conditions at once, without a list of them.
 //!
-//! The same with the letters `A` and `B` for the kinetic flow and the kicks gives the conditions of a splitting. One for a
-//! small potential, `(8, 6, 4)`, must agree with `exp(A + B)` in words of up to eight letters with one `B`, of up to six
-//! with two, of up to four with more. (The Nyström schemes ask for less than agreement, as some words don't matter.) A share
-//! `g` of the force gradient is one of `½ [B, [A, B]]` beside the kick.
+//! The same with the letters `A` and `B` for the kinetic flow and the kicks gives the conditions of a splitting. One
+//! for a small potential, `(8, 6, 4)`, must agree with `exp(A + B)` in words of up to eight letters with one `B`, of up
+//! to six with two, of up to four with more. (The Nyström schemes ask for less than agreement, as some words don't
+//! matter.) A share `g` of the force gradient is one of `½ [B, [A, B]]` beside the kick.
 
 use core::ops::{Add, Div, Mul, Sub};
 use std::collections::BTreeMap;

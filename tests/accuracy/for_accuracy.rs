@@ -295,8 +295,8 @@ fn a_tolerance_below_rounding_is_refused_with_the_floor() {
     assert!(error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0) <= 4.0 * floor);
 }
 
-/// A spin of more than a turn in the shortest step that is tried, each of which has a solution: no two trials agree, and
-/// rounding has no part in that. (No composition is of a method of order 8, so that one method is tried.)
+/// A spin of more than a turn in the shortest step that is tried, each of which has a solution: no two trials agree,
+/// and rounding has no part in that. (No composition is of a method of order 8, so that one method is tried.)
 #[test]
 fn steps_too_long_for_the_motion_are_not_taken_for_rounding() {
     let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 1.0, 1.0)).unwrap() };

@@ -47,8 +47,8 @@ fn four_stages_are_of_order_8() {
     }
 }
 
-/// In long numbers: in a double orders as high as these go from the first step that can be solved to rounding before the
-/// error falls by its first power alone.
+/// In long numbers: in a double orders as high as these go from the first step that can be solved to rounding before
+/// the error falls by its first power alone.
 fn assert_order_of_long_collocation<const PAIRS: usize>(numbers: [(u32, u32); 4]) {
     let tableau = Tableau::new(2 * PAIRS);
     let order = u32::try_from(4 * PAIRS).unwrap();
@@ -114,8 +114,8 @@ fn p1_collocation_is_a_poisson_map() {
     }
 }
 
-/// The same collocation of `Π' = Π × Ω + τ`, `w' = w × Ω` itself has the same order and isn't Poisson: the test above can
-/// tell the two apart.
+/// The same collocation of `Π' = Π × Ω + τ`, `w' = w × Ω` itself has the same order and isn't Poisson: the test above
+/// can tell the two apart.
 #[test]
 fn p1_collocation_of_the_reduced_equations_is_not_poisson() {
     let top = HeavyTop::asymmetric();
@@ -189,7 +189,8 @@ fn energy_errors<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> [f6
     })
 }
 
-/// The energy isn't quadratic: at a long step it comes and goes, and its error is no larger in the second half of the time.
+/// The energy isn't quadratic: at a long step it comes and goes, and its error is no larger in the second half of the
+/// time.
 #[test]
 fn the_energy_does_not_drift() {
     let [first, second] = energy_errors::<2>(&looping(), 0.15, 200_000);
@@ -222,8 +223,8 @@ fn s5_negative_collocation_step_is_the_inverse_map() {
     }
 }
 
-/// Gravity along a general direction, a full inertia tensor, a rotor and a spring: against the fourth order of two stages
-/// with steps a fiftieth as long.
+/// Gravity along a general direction, a full inertia tensor, a rotor and a spring: against the fourth order of two
+/// stages with steps a fiftieth as long.
 #[test]
 fn scenes_of_several_effects_are_integrated() {
     let J_d = NonstandardInertia::new(Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.5, 0.3, -0.1, 0.3, 1.0)).unwrap();

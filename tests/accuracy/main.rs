@@ -17,6 +17,7 @@ mod for_accuracy;
 mod gauss;
 mod higher_order;
 mod many_digits;
+mod poisson;
 mod preprocessed;
 mod split_body;
 mod splitting;

@@ -10,9 +10,10 @@ use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use crate::common::measure::{order, relative};
 use crate::common::random::Random;
 use crate::common::reference::Motion;
-use crate::common::structure::poisson::{TOLERANCE, defect_of};
+use crate::common::structure::poisson::TOLERANCE;
 use crate::common::tops::{HeavyTop, inertia};
 use crate::convergence::{End, TOPS, assert_order, counts};
+use crate::poisson::poisson_defect;
 
 /// Each of three axes with the middle moment, and each of the others farther from it.
 const MOMENTS: [[f64; 3]; 6] =
@@ -192,15 +193,7 @@ fn p1_they_are_poisson_maps() {
         let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
         let top = HeavyTop { J_d: nonstandard, ..HeavyTop::asymmetric() };
         let (momentum, w) = (random.vector() * 3.0, random.vector());
-        // A parameter off the orbit of the declared one is that of another top, whose vertical it is.
-        let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
-            let top = HeavyTop { up: *w, ..top.clone() };
-            let splitting = Splitting::new(top, split::<N>(moments), h, scheme).unwrap();
-            let mut state = splitting.start_with_momentum(SO3::identity(), *momentum).unwrap();
-            splitting.step(&mut state).unwrap();
-            (state.momentum(), state.advected())
-        };
-        let (defect, _) = defect_of::<HeavyTop, 3, 3>(step, &momentum, &w);
+        let defect = poisson_defect(&top, || split::<N>(moments), (scheme, h), (&momentum, &w));
         println!("{N} rotations, {moments:?}, {}, h = {h}: {defect:.1e}", scheme.name());
         assert!(defect < TOLERANCE, "{N} rotations, {moments:?}, {}, h = {h}: {defect:e}", scheme.name());
     }

@@ -10,14 +10,13 @@ use nalgebra::Vector3;
 use crate::common::measure::relative;
 use crate::common::random::Random;
 use crate::common::reference::{Motion, looping};
-use crate::common::structure::poisson::{TOLERANCE, defect_of};
 use crate::common::tops::{FreeBody, HeavyTop, inertia};
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBody};
 use crate::many_digits::heavy_top::Top;
 use crate::many_digits::{self, DoubleDouble};
 
-fn symmetric(top: &HeavyTop) -> SymmetricBody {
+pub(crate) fn symmetric(top: &HeavyTop) -> SymmetricBody {
     SymmetricBody::new(&inertia(top)).unwrap()
 }
 
@@ -136,7 +135,6 @@ fn near_integrable_8_6_4_and_10_6_4_are_of_order_4() {
     }
 }
 
-/// With a kinetic flow of order 6 on the top that has no exact one.
 /// The gradients of potentials that aren't linear in what is advected, which their sum adds up: against shorter steps.
 #[test]
 fn force_gradients_of_any_potential() {
@@ -171,6 +169,7 @@ fn force_gradients_of_any_potential() {
     }
 }
 
+/// On the top that has no exact one.
 #[test]
 fn declared_kinetic_flows_keep_the_order() {
     let chaotic = (TOPS[3], 10.0);
@@ -230,64 +229,6 @@ fn many_steps_are_single_steps() {
         assert_eq!(many.steps(), single.steps());
         assert!(relative(&many.momentum(), &single.momentum()) < 2e-13, "{}", scheme.name());
         assert!(relative(&many.attitude().matrix(), &single.attitude().matrix()) < 2e-13, "{}", scheme.name());
-    }
-}
-
-fn assert_poisson<K: KineticFlow<f64>>(top: &HeavyTop, kinetic: impl Fn() -> K, name: &str) {
-    let mut random = Random::new(31);
-    for scheme in SplittingScheme::ALL {
-        for h in [0.1, 0.3] {
-            let (momentum, w) = (random.vector() * 3.0, random.vector());
-            // A parameter off the orbit of the declared one is that of another top, whose vertical it is.
-            let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
-                let top = HeavyTop { up: *w, ..top.clone() };
-                let splitting = Splitting::new(top, kinetic(), h, scheme).unwrap();
-                let mut state = splitting.start_with_momentum(SO3::identity(), *momentum).unwrap();
-                splitting.step(&mut state).unwrap();
-                (state.momentum(), state.advected())
-            };
-            let (defect, _) = defect_of::<HeavyTop, 3, 3>(step, &momentum, &w);
-            println!("{name}, {}, h = {h}: {defect:.1e}", scheme.name());
-            assert!(defect < TOLERANCE, "{name}, {}, h = {h}: {defect:e}", scheme.name());
-        }
-    }
-}
-
-#[test]
-fn p1_splittings_are_poisson_maps() {
-    let (symmetric_top, asymmetric) = (HeavyTop::thesis(), HeavyTop::asymmetric());
-    assert_poisson(&symmetric_top, || symmetric(&symmetric_top), "exact");
-    assert_poisson(&asymmetric, || FreeBody { J_d: asymmetric.J_d.into() }, "(3.13)");
-    assert_poisson(&asymmetric, || FourthOrderBody { J: inertia(&asymmetric) }, "K4");
-    assert_poisson(&asymmetric, || SixthOrderBody { J: inertia(&asymmetric) }, "K6");
-}
-
-/// The preprocessed flow isn't symplectic: what is missing falls with the eleventh power of the step until it is rounding.
-#[test]
-fn preprocessed_flows_are_poisson_to_their_order() {
-    let top = HeavyTop::asymmetric();
-    let (momentum, w) = (Vector3::new(2.0, -1.0, 3.0), Vector3::new(0.6, 0.0, 0.8));
-    let defect = |order, h: f64| {
-        let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
-            let top = HeavyTop { up: *w, ..top.clone() };
-            let kinetic = PreprocessedFlow::new(top.J_d, order);
-            let splitting = Splitting::new(top, kinetic, h, SplittingScheme::STRANG).unwrap();
-            let mut state = splitting.start_with_momentum(SO3::identity(), *momentum).unwrap();
-            splitting.step(&mut state).unwrap();
-            (state.momentum(), state.advected())
-        };
-        defect_of::<HeavyTop, 3, 3>(step, &momentum, &w).0
-    };
-    for (order, preprocessing) in [(4, PreprocessedOrder::Four), (10, PreprocessedOrder::Ten)] {
-        let (coarse, fine) = (defect(preprocessing, 0.8), defect(preprocessing, 0.4));
-        let measured = (coarse / fine).log2();
-        println!("order {order}: defects {coarse:.1e} and {fine:.1e}, order {measured:.2}");
-        assert!(measured > f64::from(order), "order {order}: {coarse:e}, {fine:e}");
-    }
-    for h in [0.1, 0.2] {
-        let defect = defect(PreprocessedOrder::Ten, h);
-        println!("h = {h}: {defect:.1e}");
-        assert!(defect < TOLERANCE, "{defect:e}");
     }
 }
 
@@ -364,7 +305,8 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }
 
-/// `p_3` is constant, but its square isn't rounded in the same way at each step: that would change `|w|²` by 9e-14 here.
+/// `p_3` is constant, but its square isn't rounded in the same way at each step: that would change `|w|²` by 9e-14
+/// here.
 #[test]
 fn the_exact_flow_keeps_lengths() {
     let motion = looping();

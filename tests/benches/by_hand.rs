@@ -8,8 +8,9 @@
 //! R⁺    = R + R D,    w⁺ = w + Dᵀ w,    p⁺ = p + Dᵀ a + the two half kicks
 //! ```
 //!
-//! The guess is the library's, and so is Newton's iteration, with its last update by the Jacobian before. It stops where the
-//! library stops and refuses what the library refuses, but it knows one body and one force only, and has no second attempt.
+//! The guess is the library's, and so is Newton's iteration, with its last update by the Jacobian before. It stops
+//! where the library stops and refuses what the library refuses, but it knows one body and one force only, and has no
+//! second attempt.
 
 /// A heavy top with its step folded in.
 pub(crate) struct Top {

@@ -6,9 +6,9 @@
 //!
 //! Each source is the `main.rs` of a crate that depends on liestep: a file in `compile_time/`, or a declaration of the
 //! examples with the `main` of `compile_time/top.rs`. A number in it is changed, then the crate is checked or built
-//! without optimisation, as `cargo check` and `cargo build` do for the user; the whole command is timed, cargo and linker
-//! included. The crate `none` declares nothing: what a declaration costs is the difference. The first run compiles the
-//! dependencies. A new declaration is its line in [`DECLARATIONS`].
+//! without optimisation, as `cargo check` and `cargo build` do for the user; the whole command is timed, cargo and
+//! linker included. The crate `none` declares nothing: what a declaration costs is the difference. The first run
+//! compiles the dependencies. A new declaration is its line in [`DECLARATIONS`].
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

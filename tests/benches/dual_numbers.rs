@@ -219,7 +219,8 @@ fn heavy_top<T: Real + RealField>() -> HeavyTop<T> {
     HeavyTop { J_d: inertia, m: T::one(), g: convert(9.81), rho: Vector3::z(), up: Vector3::z() }
 }
 
-/// Of the fourth order, as in `examples/declarations/fourth_order_top.rs`; a generic scalar stands to the right of vectors.
+/// Of the fourth order, as in `examples/declarations/fourth_order_top.rs`; a generic scalar stands to the right of
+/// vectors.
 #[lagrangian(
     group = SO3,
     advected(w = up),

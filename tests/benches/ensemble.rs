@@ -3,19 +3,20 @@
 //! ```text
 //! cargo bench --bench ensemble                                    scalars by the target's common instructions
 //! RUSTFLAGS="-C target-cpu=native" cargo bench --bench ensemble   by those of this machine
-//! cargo bench --bench ensemble -- count f64-lanes 1000            1000 steps of all tops by one kernel and nothing else
+//! cargo bench --bench ensemble -- count f64-lanes 1000            1000 steps of all tops by one kernel, nothing else
 //! ```
 //!
 //! The last is for counting instructions, as in `heavy_top_step.rs`; the kernels are `f64`, `f64-lanes`, `f32` and
-//! `f32-lanes`. A step of lanes takes the instructions of the machine, whatever it was compiled for, but types of lanes differ
-//! in what they make of that. Those of simba that are arrays leave it to the compiler, which makes registers of four `f64`
-//! of most of `AutoF64x8` where there is AVX2, and of less of narrower ones. `WideF64x4` and `WideF32x8` are pairs of
-//! registers of x86-64's common instructions, two `f64` or four `f32` each, unless the program is compiled for more; AVX
-//! then only saves them moves between registers.
+//! `f32-lanes`. A step of lanes takes the instructions of the machine, whatever it was compiled for, but types of lanes
+//! differ in what they make of that. Those of simba that are arrays leave it to the compiler, which makes registers of
+//! four `f64` of most of `AutoF64x8` where there is AVX2, and of less of narrower ones. `WideF64x4` and `WideF32x8` are
+//! pairs of registers of x86-64's common instructions, two `f64` or four `f32` each, unless the program is compiled for
+//! more; AVX then only saves them moves between registers.
 //!
-//! The tops differ in body, tilt and spin about the looping case of \[RDAE, figure 3.8\], `h = 0.01 s`. All kernels make the
-//! same steps, which is asserted before they are timed, and take turns within one run. The fastest batch of each counts:
-//! what else the machine does only slows, and slows the longer batches more often, so that medians would flatter the lanes.
+//! The tops differ in body, tilt and spin about the looping case of \[RDAE, figure 3.8\], `h = 0.01 s`. All kernels
+//! make the same steps, which is asserted before they are timed, and take turns within one run. The fastest batch of
+//! each counts: what else the machine does only slows, and slows the longer batches more often, so that medians would
+//! flatter the lanes.
 
 use core::hint::black_box;
 use std::time::Instant;

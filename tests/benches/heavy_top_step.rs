@@ -10,7 +10,9 @@
 //!
 //! ```text
 //! cargo bench --no-run                        prints the path of the executable
-//! for n in 10000 20000; do valgrind --tool=callgrind --callgrind-out-file=/dev/null <executable> count derived $n; done
+//! for n in 10000 20000; do
+//!     valgrind --tool=callgrind --callgrind-out-file=/dev/null <executable> count derived $n
+//! done
 //! ```
 //!
 //! The scene is the looping case of \[RDAE, figure 3.8\] with `J_d = diag(2, 2, 1)` and `h = 0.01 s`.

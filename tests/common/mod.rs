@@ -5,6 +5,7 @@
 
 pub mod continuous;
 pub mod measure;
+pub mod order;
 pub mod random;
 pub mod reference;
 pub mod solvers;

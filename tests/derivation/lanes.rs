@@ -7,23 +7,8 @@ use liestep::{
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
+use crate::any_scalar::Top;
 use crate::common::random::Random;
-
-/// (3.13) in principal axes, for any scalar.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone, Debug)]
-#[allow(non_snake_case)] // the letters of the field
-struct Top<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
-    weight: T,
-    rho: Vector3<T>,
-    up: Vector3<T>,
-}
 
 /// One lane: a body, where it starts and how fast it turns.
 #[derive(Clone)]
@@ -75,7 +60,7 @@ fn together<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64) -
 }
 
 fn alone<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64) -> [Running<T::Element>; N] {
-    lanes.each_ref().map(|lane| start(lane.top.clone(), h, lane.attitude, lane.velocity))
+    lanes.each_ref().map(|lane| start(lane.top, h, lane.attitude, lane.velocity))
 }
 
 /// Each lane against a scalar run of its own, after every step; how often the lanes' iteration counts differed.
@@ -243,9 +228,9 @@ fn a_lane_that_is_not_finite_is_refused() {
     let mut attitude = *state.attitude().as_matrix();
     attitude.m11.replace(2, 0.0);
     assert!(stepper.start_with_momentum(SO3::from_matrix_unchecked(attitude), state.momentum()).is_err());
-    let top = stepper.lagrangian().clone();
+    let top = *stepper.lagrangian();
     for bad in [0.0, f64::NAN] {
-        assert!(Stepper::new(top.clone(), WideF64x4::from([0.01, 0.01, bad, 0.01])).is_err(), "{bad}");
+        assert!(Stepper::new(top, WideF64x4::from([0.01, 0.01, bad, 0.01])).is_err(), "{bad}");
     }
 }
 

@@ -3,6 +3,8 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+#[path = "../common/any_scalar.rs"]
+mod any_scalar;
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../../examples/declarations/mod.rs"]

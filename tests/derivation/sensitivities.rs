@@ -1,24 +1,11 @@
 //! Dual numbers through the stepper: derivatives of a whole trajectory with respect to a parameter.
 
 use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian as _, LieGroup as _};
-use liestep::{Real, SO3, State, Stepper, lagrangian};
+use liestep::{Real, SO3, State, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 
-/// (3.13) in principal axes, for any scalar.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
-)]
-#[allow(non_snake_case)] // the letters of the field
-struct Top<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
-    weight: T,
-    rho: Vector3<T>,
-    up: Vector3<T>,
-}
+use crate::any_scalar::Top;
 
 const STEPS: usize = 1000;
 const STEP: f64 = 0.01;

@@ -1,6 +1,7 @@
 //! The bodies that a scene can choose from: each adds with the other effects, and is of its order.
 
-use crate::common::measure::{four_halvings, order, relative, steps_in};
+use crate::common::measure::relative;
+use crate::common::order;
 use crate::common::random::Random;
 use crate::common::reference::Motion;
 use crate::common::tops::inertia;
@@ -49,48 +50,35 @@ fn body_and_gravity_are_the_top() {
     assert!(apart(CayleyBody { J }, GeodesicBody { J }) > 1e-6);
 }
 
-fn error<L: Regular<Scalar = f64, Group = SO3>>(scene: L, motion: &Motion, t: f64, h: f64) -> f64 {
-    let stepper = Stepper::new(scene, h).unwrap();
-    let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
-    for _ in 0..steps_in(t, h) {
-        stepper.step(&mut state).unwrap();
-    }
-    let (attitude, velocity) = motion.at(t);
-    relative(&state.attitude().matrix(), &attitude).hypot(relative(&stepper.velocity(&state), &velocity))
-}
-
 fn assert_order<L: Regular<Scalar = f64, Group = SO3>>(
-    motion: &Motion,
+    name: &str,
     expected: f64,
-    (t, coarsest): (f64, f64),
+    span: (f64, f64),
     scene: impl Fn(Inertia) -> L,
 ) {
-    let errors = four_halvings(coarsest).map(|h| (h, error(scene(inertia(&motion.top)), motion, t, h)));
-    let order = order(&errors, 2e-14);
-    println!("order {order:.3}, errors {:.2e} to {:.2e}", errors[0].1, errors[4].1);
-    assert!((order - expected).abs() < 0.1, "order {order}, errors {errors:?}");
+    order::assert_order(name, expected, span, |motion| scene(inertia(&motion.top)));
 }
 
 #[test]
 fn a_free_body_is_of_its_order() {
-    let motion = Motion::read("free_asymmetric_J123_intermediate");
-    assert_order(&motion, 2.0, (10.0, 1.0 / 20.0), |J| CayleyBody { J });
-    assert_order(&motion, 2.0, (10.0, 1.0 / 20.0), |J| GeodesicBody { J });
-    assert_order(&motion, 4.0, (10.0, 1.0 / 20.0), |J| FourthOrderBody { J });
-    let motion = Motion::read("free_axisymmetric_Jd221");
-    assert_order(&motion, 6.0, (10.0, 1.0 / 5.0), |J| SixthOrderBody { J });
+    let name = "free_asymmetric_J123_intermediate";
+    assert_order(name, 2.0, (10.0, 1.0 / 20.0), |J| CayleyBody { J });
+    assert_order(name, 2.0, (10.0, 1.0 / 20.0), |J| GeodesicBody { J });
+    assert_order(name, 4.0, (10.0, 1.0 / 20.0), |J| FourthOrderBody { J });
+    let name = "free_axisymmetric_Jd221";
+    assert_order(name, 6.0, (10.0, 1.0 / 5.0), |J| SixthOrderBody { J });
 }
 
 /// A potential at the two ends of a step is of second order with any body.
 #[test]
 fn a_heavy_body_is_of_second_order() {
-    let motion = Motion::read("thesis_looping_A_Jd221");
-    let top = &motion.top;
+    let name = "thesis_looping_A_Jd221";
+    let top = Motion::read(name).top;
     let gravity = Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up };
-    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| CayleyBody { J } + gravity);
-    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| GeodesicBody { J } + gravity);
-    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| FourthOrderBody { J } + gravity);
-    assert_order(&motion, 2.0, (1.0, 1.0 / 100.0), |J| SixthOrderBody { J } + gravity);
+    assert_order(name, 2.0, (1.0, 1.0 / 100.0), |J| CayleyBody { J } + gravity);
+    assert_order(name, 2.0, (1.0, 1.0 / 100.0), |J| GeodesicBody { J } + gravity);
+    assert_order(name, 2.0, (1.0, 1.0 / 100.0), |J| FourthOrderBody { J } + gravity);
+    assert_order(name, 2.0, (1.0, 1.0 / 100.0), |J| SixthOrderBody { J } + gravity);
 }
 
 /// With a rotor and drag the Newton system is a sum; all bodies do the same in the limit of small steps.

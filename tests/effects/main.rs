@@ -7,6 +7,8 @@
 mod common;
 #[path = "../../examples/declarations/mod.rs"]
 mod declarations;
+#[path = "../common/examples.rs"]
+mod examples;
 
 mod changing_scenes;
 mod control;

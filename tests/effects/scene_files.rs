@@ -11,6 +11,8 @@ use liestep::effects::{Drag, Gravity, PrincipalBody};
 use liestep::{Accuracy, DiagonalNonstandardInertia, NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::examples;
+
 const TOP: &str = r#"title = "A heavy top with drag"
 
 [body]
@@ -34,16 +36,10 @@ step = "10 ms"
 duration = 2
 "#;
 
-/// The example, built if it isn't yet: a scene's types are compiled once, and not a second time into this test.
+/// The example: a scene's types are compiled into it once, and not a second time into this test.
 fn example() -> &'static Path {
     static EXAMPLE: OnceLock<PathBuf> = OnceLock::new();
-    EXAMPLE.get_or_init(|| {
-        let built = Command::new(env!("CARGO")).args(["build", "--quiet", "--example", "scene"]).status().unwrap();
-        assert!(built.success());
-        let test = std::env::current_exe().unwrap();
-        let folder = test.parent().and_then(Path::parent).unwrap();
-        folder.join("examples").join(format!("scene{}", std::env::consts::EXE_SUFFIX))
-    })
+    EXAMPLE.get_or_init(|| examples::built(&["scene"]).remove("scene").unwrap())
 }
 
 /// A folder of a test's own.

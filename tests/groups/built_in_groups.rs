@@ -1,4 +1,5 @@
-//! What the laws don't say about each group: its basis, its constructors, what it refuses, and where its retractions end.
+//! What the laws don't say about each group: its basis, its constructors, what it refuses, and where its retractions
+//! end.
 
 use core::f64::consts::PI;
 

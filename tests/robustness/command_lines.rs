@@ -1,25 +1,17 @@
 //! Command lines that can't be meant, of examples: a message and an exit code, before anything is computed.
 
-use std::path::{Path, PathBuf};
+use std::collections::HashMap;
+use std::path::PathBuf;
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-/// The folder of the examples, once these are built.
-fn examples() -> &'static Path {
-    static EXAMPLES: OnceLock<PathBuf> = OnceLock::new();
-    EXAMPLES.get_or_init(|| {
-        let names = ["accuracy-cost", "derive", "free-rigid-body", "hard-cases", "heavy-top"];
-        let mut build = Command::new(env!("CARGO"));
-        build.args(["build", "--quiet"]).args(names.iter().flat_map(|name| ["--example", name]));
-        assert!(build.status().unwrap().success());
-        let test = std::env::current_exe().unwrap();
-        test.parent().and_then(Path::parent).unwrap().join("examples")
-    })
-}
+use crate::examples;
 
 /// Runs an example in a folder where it may leave nothing behind.
 fn run(example: &str, arguments: &[&str]) -> Output {
-    let program = examples().join(format!("{example}{}", std::env::consts::EXE_SUFFIX));
+    static EXAMPLES: OnceLock<HashMap<String, PathBuf>> = OnceLock::new();
+    let names = ["accuracy-cost", "derive", "free-rigid-body", "hard-cases", "heavy-top"];
+    let program = &EXAMPLES.get_or_init(|| examples::built(&names))[example];
     Command::new(program).current_dir(env!("CARGO_TARGET_TMPDIR")).args(arguments).output().unwrap()
 }
 

@@ -87,8 +87,8 @@ fn print_over(decades: [u64; 5], title: &str, growth: &[[f64; 3]]) {
     }
 }
 
-/// A walk of independent roundings has the exponent ½, a systematic one has 1. Of 24 motions a root mean square is known
-/// to a seventh, and so the exponent over four decades to some hundredths.
+/// A walk of independent roundings has the exponent ½, a systematic one has 1. Of 24 motions a root mean square is
+/// known to a seventh, and so the exponent over four decades to some hundredths.
 #[test]
 fn t3_rounding_grows_like_the_square_root_of_the_steps() {
     let plain = growth(0.01, 24, false);
@@ -136,7 +136,8 @@ fn t3_compensated_sums_lose_nothing_at_small_steps() {
     assert!(plain[4].iter().zip(compensated[4]).all(|(plain, compensated)| compensated < 0.02 * plain));
 }
 
-/// `h = 10⁻⁸` and a million steps: the momentum against a thousand steps of `10⁻⁵`, whose own error is below `10⁻¹¹ h²`.
+/// `h = 10⁻⁸` and a million steps: the momentum against a thousand steps of `10⁻⁵`, whose own error is below
+/// `10⁻¹¹ h²`.
 #[test]
 fn t4_tiny_steps() {
     let motion = looping();

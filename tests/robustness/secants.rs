@@ -1,32 +1,18 @@
 //! Where the Jacobian is dear a step is solved without it: to the same root, to rounding, and where that is in doubt by
 //! Newton's iteration.
 
+use crate::any_scalar::Top;
 use crate::common::measure::{derivative, slope};
 use crate::common::random::Random;
 use crate::common::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use crate::declarations::{self, FourthOrderTop, SixthOrderTop};
 use liestep::{
     CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia,
-    LieGroup as _, Real, Regular, SO3, StepError, Stepper, lagrangian,
+    LieGroup as _, Regular, SO3, StepError, Stepper, lagrangian,
 };
 use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use simba::simd::WideF64x4;
-
-/// (3.13) in principal axes, for any scalar.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Top<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
-    weight: T,
-    rho: Vector3<T>,
-    up: Vector3<T>,
-}
 
 fn top(moments: Vector3<f64>, weight: f64, rho: Vector3<f64>) -> Top<f64> {
     Top { J_d: DiagonalNonstandardInertia::from_principal_moments(moments).unwrap(), weight, rho, up: Vector3::z() }
@@ -93,7 +79,8 @@ fn the_residual_alone_is_the_systems() {
     }
 }
 
-/// How far a step's root is from what Newton's iteration from there on makes of it, in roundings of `ξ`, and iterations.
+/// How far a step's root is from what Newton's iteration from there on makes of it, in roundings of `ξ`, and
+/// iterations.
 fn missing<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone>(
     lagrangian: &L,
     h: f64,
@@ -126,7 +113,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / f64::from(u32::try_from(values.len()).unwrap())
 }
 
-/// The residual's own rounding is all that is missing, as it is with the Jacobian; from the last coordinates for a guess.
+/// The residual's own rounding is all that is missing, as it is with the Jacobian; from the last coordinates for a
+/// guess.
 #[test]
 fn solves_end_at_the_level_of_rounding() {
     for (h, speed) in [(0.01, 8.0), (0.02, 8.0), (0.05, 8.0), (0.05, 2.0), (1e-4, 8.0)] {
@@ -142,8 +130,8 @@ fn solves_end_at_the_level_of_rounding() {
     }
 }
 
-/// What `steps` random momenta of each size come to with both solvers: the largest difference relative to `ξ`, and how many
-/// were solved without the Jacobian, with it after all, and not at all.
+/// What `steps` random momenta of each size come to with both solvers: the largest difference relative to `ξ`, and how
+/// many were solved without the Jacobian, with it after all, and not at all.
 fn compared<L>(without: &WithoutJacobian<L, f64>, h: f64, angle: f64) -> (f64, [u32; 3])
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>

@@ -1,5 +1,5 @@
-//! What many steps without the Jacobian keep: energy without drift, Casimirs and momenta, and the way back, no worse than
-//! Newton's iteration does.
+//! What many steps without the Jacobian keep: energy without drift, Casimirs and momenta, and the way back, no worse
+//! than Newton's iteration does.
 
 use crate::common::solvers::WithJacobian;
 use crate::declarations::{self, FourthOrderTop, SixthOrderTop};
@@ -21,7 +21,8 @@ fn sixth() -> SixthOrderTop {
     body()
 }
 
-/// Relative changes: of the energy's mean between the first and the last tenth, and at the end of `w·w`, `p·w` and `p₃`.
+/// Relative changes: of the energy's mean between the first and the last tenth, and at the end of `w·w`, `p·w` and
+/// `p₃`.
 #[derive(Debug)]
 struct Kept {
     energy: f64,

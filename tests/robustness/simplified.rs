@@ -1,25 +1,12 @@
-//! A last iteration with the Jacobian of the one before ends where Newton's iteration does, and is made only where it will.
+//! A last iteration with the Jacobian of the one before ends where Newton's iteration does, and is made only where it
+//! will.
 
+use crate::any_scalar::Top;
 use crate::common::measure::relative;
 use crate::common::solvers::{WithJacobian, jacobians};
-use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Real, SO3, Stepper, lagrangian};
+use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use num_dual::Dual64;
-
-/// (3.13) in principal axes, for any scalar.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Top<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
-    weight: T,
-    rho: Vector3<T>,
-    up: Vector3<T>,
-}
 
 fn any<T: RealField>(v: Vector3<f64>) -> Vector3<T> {
     v.map(convert)
@@ -30,9 +17,9 @@ fn top<T: RealField + Copy>(moments: [f64; 3]) -> Top<T> {
     Top { J_d, weight: convert(9.81), rho: any(Vector3::new(0.3, 0.2, 0.4)), up: any(Vector3::z()) }
 }
 
-/// How far the roots of a thousand steps are from what Newton's iteration from there on makes of them, in roundings of `ξ`: those
-/// of `f64`, and those of numbers with a derivative, which are solved by Newton's iteration alone. In how many steps one
-/// Jacobian was enough.
+/// How far the roots of a thousand steps are from what Newton's iteration from there on makes of them, in roundings of
+/// `ξ`: those of `f64`, and those of numbers with a derivative, which are solved by Newton's iteration alone. In how
+/// many steps one Jacobian was enough.
 fn missing(moments: [f64; 3], h: f64, speed: f64) -> ([f64; 2], u32) {
     let plain = DiscreteLiePoisson::new(WithJacobian(top::<f64>(moments)), h).unwrap();
     let dual = DiscreteLiePoisson::new(top::<Dual64>(moments), h.into()).unwrap();
@@ -79,8 +66,8 @@ fn solves_end_at_the_level_of_rounding() {
     assert!(with_one.chunks(7).all(|single| single[1] > 900 && single[6] == 0), "{with_one:?}");
 }
 
-/// The determinant falls to zero at a right angle. Where it is less than a sixteenth of that at rest each iteration has its own
-/// Jacobian, however good the guess.
+/// The determinant falls to zero at a right angle. Where it is less than a sixteenth of that at rest each iteration has
+/// its own Jacobian, however good the guess.
 #[test]
 fn near_the_fold_every_iteration_has_its_jacobian() {
     let body = Top { weight: 0.0, ..top::<f64>([3.0, 3.0, 4.0]) };

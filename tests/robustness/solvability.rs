@@ -121,8 +121,8 @@ fn s1_the_largest_step_of_extreme_momenta() {
     }
 }
 
-/// A weight so large that the Jacobian is lost in its rounding, with numbers whose products cancel to the last digit: an
-/// update then vanishes far from any solution, and the determinant looks like any other.
+/// A weight so large that the Jacobian is lost in its rounding, with numbers whose products cancel to the last digit:
+/// an update then vanishes far from any solution, and the determinant looks like any other.
 #[test]
 fn s1_a_lost_jacobian_is_no_solution() {
     let size = 7.477_080_264_543_605e20;

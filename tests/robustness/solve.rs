@@ -1,4 +1,5 @@
-//! `Coordinates` in all dimensions that a group may have: the solution of a linear system, and what a singular one gives.
+//! `Coordinates` in all dimensions that a group may have: the solution of a linear system, and what a singular one
+//! gives.
 
 use liestep::Coordinates;
 use liestep::laws::samples::Random;

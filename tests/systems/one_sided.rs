@@ -1,5 +1,5 @@
-//! Controls: kinetic terms that aren't self-adjoint, where the ones of the declarations are. The scheme is of first order
-//! and a step of `−h` doesn't undo one of `h`.
+//! Controls: kinetic terms that aren't self-adjoint, where the ones of the declarations are. The scheme is of first
+//! order and a step of `−h` doesn't undo one of `h`.
 
 // The letters of the field.
 #![allow(non_snake_case)]

@@ -140,8 +140,8 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         }
     }
 
-    /// The cheapest of these methods that comes within the accuracy, with its step, for the motion from an attitude (body
-    /// to space) and a body velocity; see [`Stepper::for_accuracy`].
+    /// The cheapest of these methods that comes within the accuracy, with its step, for the motion from an attitude
+    /// (body to space) and a body velocity; see [`Stepper::for_accuracy`].
     ///
     /// # Errors
     ///

@@ -18,8 +18,8 @@ pub enum AccuracyError {
         /// What was asked for, s.
         horizon: f64,
     },
-    /// No method comes so near to the motion in double precision: rounding, as much as the motion magnifies it until the
-    /// horizon, is larger.
+    /// No method comes so near to the motion in double precision: rounding, as much as the motion magnifies it until
+    /// the horizon, is larger.
     Unreachable {
         /// What was asked for.
         tolerance: f64,

@@ -21,8 +21,8 @@ pub(super) struct Start<G: LieGroup> {
     pub(super) horizon: f64,
 }
 
-/// How far apart two starts are that rounding doesn't tell apart in a run: about what the roundings of its first hundred
-/// stages add up to.
+/// How far apart two starts are that rounding doesn't tell apart in a run: about what the roundings of its first
+/// hundred stages add up to.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// Rounding may grow to this part of the tolerance.
 const OF_ROUNDING: f64 = 0.25;
@@ -67,8 +67,8 @@ pub(super) struct Estimate {
 
 /// Errors that are larger fall by no law of powers.
 pub(super) const LARGEST_ERROR: f64 = 0.05;
-/// Errors may fall by so much more than the order promised, where a potential is small or a low order's share of the error
-/// is; and by no more than differences of doubles show.
+/// Errors may fall by so much more than the order promised, where a potential is small or a low order's share of the
+/// error is; and by no more than differences of doubles show.
 const BEYOND_THE_ORDER: f64 = 4.0;
 const HIGHEST_ORDER: f64 = 12.0;
 /// Below this a difference is zero.
@@ -178,7 +178,8 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     pub(super) fn estimate(&self, error: f64) -> Estimate {
         let points = self.points();
         let Some(last) = points.last() else {
-            // At least the next trial; far more, if the last but one has had a larger error than any that says something.
+            // At least the next trial; far more, if the last but one has had a larger error than any that says
+            // something.
             let (next, falls) = (self.next_steps(), (LARGEST_ERROR / error).max(1.0).powf(self.most().recip()));
             let steps = if self.last_difference().is_some() { next.max(0.25 * next * falls) } else { next };
             return Estimate { steps, cost: steps * self.candidate.least, is_bound: true };

@@ -16,16 +16,16 @@ use crate::stepper::Stepper;
 
 /// Besides what an effect counts, a solve and its reconstruction make so many operations on SO(3).
 const OF_A_STAGE: f64 = 150.0;
-/// Besides the Newton system, an iteration solves it and looks whether it has settled. These wait for each other, as the
-/// products of matrices don't.
+/// Besides the Newton system, an iteration solves it and looks whether it has settled. These wait for each other, as
+/// the products of matrices don't.
 const OF_AN_ITERATION: f64 = 90.0;
 
 /// What a force gradient takes besides another kick: products with `J⁻¹`, and that the torque is waited for.
 const OF_A_FORCE_GRADIENT: f64 = 120.0;
 
 /// An iteration of collocation makes so many at each of its stages: for the rates of quaternion and momentum, for the
-/// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count as
-/// one, here and below.
+/// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count
+/// as one, here and below.
 const OF_RATES: f64 = 75.0;
 const OF_PARAMETERS: f64 = 35.0;
 const OF_A_SUM: f64 = 10.0;
@@ -187,8 +187,8 @@ impl Method<SO3, ()> for PreprocessedBody {
 
 /// From state to state: what collocation keeps besides attitude and momentum lasts for one call.
 ///
-/// So [`advance`](Method::advance) iterates from the stages of the step before, and [`step`](Method::step), which has none,
-/// somewhat longer to the same stages.
+/// So [`advance`](Method::advance) iterates from the stages of the step before, and [`step`](Method::step), which has
+/// none, somewhat longer to the same stages.
 impl<L, const PAIRS: usize> Method<SO3, L::Advected> for Gauss<L, PAIRS>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,

@@ -103,8 +103,8 @@ impl CompositionScheme {
         Self::SUZUKI_8,
     ];
 
-    /// Other coefficients: the first half of them and the middle one, the order that they have, and the (even) order that
-    /// the composed method must have for that.
+    /// Other coefficients: the first half of them and the middle one, the order that they have, and the (even) order
+    /// that the composed method must have for that.
     ///
     /// # Panics
     ///

@@ -4,8 +4,9 @@
 //!
 //! In the transport form a step is `(μ, w) ↦ (Ad*_F (μ + δl_d/δw ⋄ w), F⁻¹·w)`: the coadjoint action of an element of
 //! the semidirect product of `G` and `V`. What that action leaves alone is exact, whatever Lagrangian is declared.
-//! "Exact" means up to rounding, which grows like the square root of the number of steps. Only a body that turns steadily
-//! rounds in the same way step by step; its attitude, and what it sees, are put back where that has taken them far.
+//! "Exact" means up to rounding, which grows like the square root of the number of steps. Only a body that turns
+//! steadily rounds in the same way step by step; its attitude, and what it sees, are put back where that has taken them
+//! far.
 //!
 //! | quantity | conserved | for |
 //! |---|---|---|
@@ -31,8 +32,8 @@
 //!
 //! # As types
 //!
-//! What a scene conserves follows from its terms, so it is said in traits; asking a scene for what it hasn't got doesn't
-//! compile, and the message names the term in the way.
+//! What a scene conserves follows from its terms, so it is said in traits; asking a scene for what it hasn't got
+//! doesn't compile, and the message names the term in the way.
 //!
 //! | scene | trait | what it gives |
 //! |---|---|---|
@@ -57,5 +58,6 @@
 //! determinant of the Jacobian `tr(F J_d) I − F J_d` keeps its sign up to the fold. A step beyond it is the error
 //! [`StepError::BeyondSolvable`](crate::StepError::BeyondSolvable), which names the largest step that would do.
 //!
-//! A `J_d` with a negative eigenvalue has no such limit at 90°, but one that may lie anywhere; it isn't the inertia of a
-//! body and is refused. A rod or a point (`J` singular) has no solution for a momentum along the axis, and is refused.
+//! A `J_d` with a negative eigenvalue has no such limit at 90°, but one that may lie anywhere; it isn't the inertia of
+//! a body and is refused. A rod or a point (`J` singular) has no solution for a momentum along the axis, and is
+//! refused.

@@ -2,8 +2,8 @@
 
 use crate::{Inertia, SO3, lagrangian};
 
-/// A rigid body with the geodesic kinetic term `ξ·Jξ/(2h)`, `F = exp(ξ̂)`: of second order, and exact for a sphere and for
-/// a spin about a principal axis.
+/// A rigid body with the geodesic kinetic term `ξ·Jξ/(2h)`, `F = exp(ξ̂)`: of second order, and exact for a sphere and
+/// for a spin about a principal axis.
 ///
 /// The error is several times below that of [`RigidBody`](super::RigidBody), and a spin may turn by more than a
 /// quarter a step; the energy of a free body oscillates.

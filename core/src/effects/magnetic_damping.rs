@@ -6,12 +6,13 @@ use crate::{Inertia, SO3, force};
 
 /// The torque `m × B` of a magnetic moment `m = −k dB/dt` against the change of the field that the body sees, `−Ω × B`.
 ///
-/// It is what magnetorquers do to detumble a satellite (the B-dot law), and what eddy currents do in a sphere. The power
-/// is `−k |B × Ω|²`, so a turn about the field isn't damped, and the momentum along it is conserved.
+/// It is what magnetorquers do to detumble a satellite (the B-dot law), and what eddy currents do in a sphere. The
+/// power is `−k |B × Ω|²`, so a turn about the field isn't damped, and the momentum along it is conserved.
 ///
 /// With the field `(b + Fᵀb)/2` of the middle of a step at both of its ends that momentum is conserved to rounding, and
-/// the energy of a free body with the kinetic term of (3.13) never rises. The gain is `k/√(1 + y²)` with `y = (h/2) k |B|² tr J⁻¹`: of second order
-/// where the step resolves the damping, and too little to turn a spin over where it doesn't.
+/// the energy of a free body with the kinetic term of (3.13) never rises. The gain is `k/√(1 + y²)` with
+/// `y = (h/2) k |B|² tr J⁻¹`: of second order where the step resolves the damping, and too little to turn a spin over
+/// where it doesn't.
 #[force(
     group = SO3,
     advected(b = field),

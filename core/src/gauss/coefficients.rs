@@ -2,9 +2,9 @@
 
 /// Coefficients of a collocation with `2 PAIRS` stages on the unit interval.
 ///
-/// Stage `k` of the first half has the node `c_k < 1/2`, its mirror image `k̄` the node `1 − c_k`. With `L_j = h b_j f(Y_j)`
-/// a step is `Y_i = y + Σ (1/2 + σ_ij) L_j`, `y⁺ = y + Σ L_j`, where `σ` is skew and changes its sign when both stages are
-/// mirrored. So one matrix `β` says it all:
+/// Stage `k` of the first half has the node `c_k < 1/2`, its mirror image `k̄` the node `1 − c_k`. With
+/// `L_j = h b_j f(Y_j)` a step is `Y_i = y + Σ (1/2 + σ_ij) L_j`, `y⁺ = y + Σ L_j`, where `σ` is skew and changes its
+/// sign when both stages are mirrored. So one matrix `β` says it all:
 ///
 /// ```text
 /// Y_i, Y_ī = y + Σ L/2 − Σ_k β_ki (L_k − L_k̄) ± Σ_k β_ik (L_k + L_k̄)
@@ -16,7 +16,8 @@
 /// # Source
 ///
 /// \[HW96\], theorem IV.5.6: `σ_ij = Σ ξ_k (P̃_k(c_i) P̃_{k−1}(c_j) − P̃_{k−1}(c_i) P̃_k(c_j))` with the normalised shifted
-/// Legendre polynomials; in Legendre's own, `ξ_k` and the norms multiply to `1/2`. The form in `L` is that of \[AMM17\].
+/// Legendre polynomials; in Legendre's own, `ξ_k` and the norms multiply to `1/2`. The form in `L` is that of
+/// \[AMM17\].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Coefficients<const PAIRS: usize> {
     /// `b_k`, of both stages of a pair.

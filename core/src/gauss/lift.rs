@@ -19,8 +19,9 @@ pub(super) fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
 
 /// `H(q, p) = ½ (Π − s)·J⁻¹(Π − s) + V(R(q)ᵀ·a_0)` with `Π = ½ Im(q̄ p)` and the rotation `R` of `q/|q|`.
 ///
-/// `Π` is the momentum map of the right multiplication by unit quaternions, and `w = R(q)ᵀ·a_0` what that multiplication
-/// carries along; so `(q, p) ↦ (Π, w)` is a Poisson map to the dual of the semidirect product. The equations are
+/// `Π` is the momentum map of the right multiplication by unit quaternions, and `w = R(q)ᵀ·a_0` what that
+/// multiplication carries along; so `(q, p) ↦ (Π, w)` is a Poisson map to the dual of the semidirect product. The
+/// equations are
 ///
 /// ```text
 /// q' = ½ q Ω        p' = ½ p Ω + 2 q τ(w)/|q|²        Ω = J⁻¹(Π − s)

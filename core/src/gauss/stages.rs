@@ -21,8 +21,8 @@ pub(super) trait WeightedRates {
     fn weighted_rate(&self, stage: usize, place: &Lifted) -> Lifted;
 }
 
-/// Changes as small as these, relative to the unknowns, may be rounding: the iteration has settled where they don't fall
-/// any more.
+/// Changes as small as these, relative to the unknowns, may be rounding: the iteration has settled where they don't
+/// fall any more.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Where each iteration takes at least a factor of two, which is at the edge of convergence, they are enough.
@@ -72,8 +72,8 @@ impl<const PAIRS: usize> Stages<PAIRS> {
             if last {
                 return Ok(iteration);
             }
-            // What is kept is kept as well as the last change is small. Changes fall by nearly the same factor each time,
-            // so that this one's factor tells whether the next change is rounding; that iteration is still made.
+            // What is kept is kept as well as the last change is small. Changes fall by nearly the same factor each
+            // time, so that this one's factor tells whether the next change is rounding; that iteration is still made.
             last = change * change <= f64::EPSILON * f64::EPSILON * before;
             if change <= ROUNDING * ROUNDING && change >= before {
                 return Ok(iteration);

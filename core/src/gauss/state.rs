@@ -10,8 +10,8 @@ use crate::state::State;
 
 /// Attitude and momentum at one time as [`Gauss`](super::Gauss) integrates them.
 ///
-/// What rounding has left behind and the stages of the last step, from which the next ones are guessed, are part of it. A
-/// state belongs to the step that it was made with: with another one the guess is worse, and the first step longer.
+/// What rounding has left behind and the stages of the last step, from which the next ones are guessed, are part of it.
+/// A state belongs to the step that it was made with: with another one the guess is worse, and the first step longer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussState<const PAIRS: usize> {
     pub(super) lifted: Lifted,

@@ -11,8 +11,8 @@ use crate::scalar::{Real, real};
 /// `N` is the size of the matrices and `D` the dimension of the group. Implement it for an empty marker type; the group
 /// is then [`MatrixGroup`](crate::MatrixGroup) of that marker, best under an alias.
 ///
-/// The basis must be orthogonal, `tr(E_jᵀ E_k) = 0` for `j ≠ k`, of any lengths, and span a Lie algebra. Both are checked
-/// when the user's crate is compiled. That the elements satisfy the relation is a law to be tested:
+/// The basis must be orthogonal, `tr(E_jᵀ E_k) = 0` for `j ≠ k`, of any lengths, and span a Lie algebra. Both are
+/// checked when the user's crate is compiled. That the elements satisfy the relation is a law to be tested:
 /// [`lie_group_laws`](crate::lie_group_laws).
 ///
 /// # Examples

@@ -225,8 +225,8 @@ impl<T: Real> LieGroup for SO3<T> {
         gram.norm_squared().simd_sqrt()
     }
 
-    /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar decomposition,
-    /// `½ R (3 I − RᵀR)`, which squares the defect.
+    /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
+    /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
     fn restored(&self) -> Option<(Self, Mask<T>)> {
         let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
         far.any().then(|| {

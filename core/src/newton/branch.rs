@@ -17,9 +17,10 @@ const DEPARTURE: f64 = 0.5;
 /// The largest of some radii up to which the model `B` is near the Jacobian `A`, whatever the direction of `ξ` and
 /// however the body stands: zero if it isn't up to the smallest.
 ///
-/// It is looked at with the advected parameters as they are seen after quarter turns about the axes of the basis, and `ξ` along these
-/// axes and the diagonals between them. That is no proof for what lies between; but `A` and `B` are smooth on the scale
-/// of a radian, apart from potentials with features narrower than that, and nothing rests on this alone.
+/// It is looked at with the advected parameters as they are seen after quarter turns about the axes of the basis, and
+/// `ξ` along these axes and the diagonals between them. That is no proof for what lies between; but `A` and `B` are
+/// smooth on the scale of a radian, apart from potentials with features narrower than that, and nothing rests on this
+/// alone.
 pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
     let inertia = lagrangian.inertia();
     let standing: Vec<L::StepTerms> = elements::<L>()

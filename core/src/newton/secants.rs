@@ -2,17 +2,17 @@
 //!
 //! In its place stands that of the free body with the same inertia,
 //! [`free_momentum_tangent`](Retraction::free_momentum_tangent), made once a solve at the guess, and Broyden's
-//! good updates correct it along the steps made (in the form that keeps the steps and no matrix; C. T. Kelley, *Iterative Methods for
-//! Linear and Nonlinear Equations*, SIAM 1995, section 7.3). For a Lagrangian of order four or more the first step already gains a
-//! factor of `h²|ξ|²` and `h²` times the curvature of the potential.
+//! good updates correct it along the steps made (in the form that keeps the steps and no matrix; C. T. Kelley,
+//! *Iterative Methods for Linear and Nonlinear Equations*, SIAM 1995, section 7.3). For a Lagrangian of order four or
+//! more the first step already gains a factor of `h²|ξ|²` and `h²` times the curvature of the potential.
 //!
 //! # When to stop
 //!
 //! Newton's updates tell by their size, as they square. Here they shrink by a factor that has to be watched: `θ`, the
 //! largest ratio of an update to the one before in this solve. What is missing after the update `s` is
-//! `θ|s| + θ²|s| + …`, so the iteration ends when `θ|s| ≤ ε|ξ|/16`, the residual of that being below its own rounding. Broyden's
-//! iteration is faster than linear, but not evenly: a ratio can be small by chance, as when an update happens to lie where
-//! the model is good. So the largest of them counts, and no solve ends with one update.
+//! `θ|s| + θ²|s| + …`, so the iteration ends when `θ|s| ≤ ε|ξ|/16`, the residual of that being below its own rounding.
+//! Broyden's iteration is faster than linear, but not evenly: a ratio can be small by chance, as when an update happens
+//! to lie where the model is good. So the largest of them counts, and no solve ends with one update.
 //!
 //! Updates of some roundings of `ξ` are made of roundings, and their ratios mean nothing; after two such there is
 //! nothing more to gain.
@@ -29,11 +29,12 @@
 //!
 //! - `ξ` lies in a ball where, as has been looked at when the flow was made, the model is near the Jacobian in all
 //!   directions, see [`trusted_radius`](super::branch::trusted_radius). Where `‖I − B⁻¹A‖ < 1` for the model `B` and
-//!   the Jacobian `A`, `det A` has the sign of `det B`, which on that ball is that at the identity. A ball that contains
-//!   the identity has no fold to cross, then, and a solution in it is the one that Newton's iteration would have accepted.
+//!   the Jacobian `A`, `det A` has the sign of `det B`, which on that ball is that at the identity. A ball that
+//!   contains the identity has no fold to cross, then, and a solution in it is the one that Newton's iteration would
+//!   have accepted.
 //! - Each update has been shorter than a quarter of the last. Updates alone couldn't tell: those of a
-//!   motion with a symmetry, such as a planar pendulum's, lie in one plane, and say nothing about the directions across it.
-//!   But what the samples of the ball have missed is seen by these.
+//!   motion with a symmetry, such as a planar pendulum's, lie in one plane, and say nothing about the directions across
+//!   it. But what the samples of the ball have missed is seen by these.
 
 use super::simplified::is_plain;
 use super::{Lanes, Problem};
@@ -165,8 +166,8 @@ impl<L: Effect> Problem<'_, L> {
         (lanes, iterations)
     }
 
-    /// Whether this update changes the kick by less than its rounding, judged by what those before have changed; the last of
-    /// them has made the change that is given.
+    /// Whether this update changes the kick by less than its rounding, judged by what those before have changed; the
+    /// last of them has made the change that is given.
     #[inline(always)]
     fn kick_has_settled(&self, change: &Vector<L>, update: &Vector<L>, updates: &mut Updates<L>) -> Mask<Scalar<L>> {
         let Some(last) = updates.count.checked_sub(1) else { return nowhere::<Scalar<L>>() };

@@ -1,22 +1,22 @@
 //! A last iteration without a Jacobian of its own.
 //!
-//! Most solves take two of Newton's iterations: one from the guess, and one that brings the rest to rounding. The second
-//! needs no better Jacobian than the first had. With that it takes the residual alone and no inverse, and what is left to
-//! wait for is shorter. It converges at a rate, not quadratically, so whether it was enough has to be seen.
+//! Most solves take two of Newton's iterations: one from the guess, and one that brings the rest to rounding. The
+//! second needs no better Jacobian than the first had. With that it takes the residual alone and no inverse, and what
+//! is left to wait for is shorter. It converges at a rate, not quadratically, so whether it was enough has to be seen.
 //!
 //! # What is missing
 //!
-//! Let `C` bound how fast the Jacobian changes, relative to itself: `|A⁻¹(A(y + e) − A)| ≤ 2C|e|`. After an update `u₁` by
-//! Newton's iteration `C|u₁|²` are missing; the next, `u₂`, finds what they are; and after it, with the same Jacobian,
-//! `2C|u₁||u₂|`. The two updates tell `C` along the first as `|u₂|/|u₁|²`. In other directions it may be larger: in Cayley
-//! coordinates it is of the order of one, times the ratio of the largest to the least inertia, by which roundings of the
-//! residual are magnified too. So it is taken as one where the updates tell less.
+//! Let `C` bound how fast the Jacobian changes, relative to itself: `|A⁻¹(A(y + e) − A)| ≤ 2C|e|`. After an update `u₁`
+//! by Newton's iteration `C|u₁|²` are missing; the next, `u₂`, finds what they are; and after it, with the same
+//! Jacobian, `2C|u₁||u₂|`. The two updates tell `C` along the first as `|u₂|/|u₁|²`. In other directions it may be
+//! larger: in Cayley coordinates it is of the order of one, times the ratio of the largest to the least inertia, by
+//! which roundings of the residual are magnified too. So it is taken as one where the updates tell less.
 //!
 //! # The branch
 //!
-//! The determinant is that at the iterate before both updates, and they are short: to have changed its sign on the way it
-//! would have to change by all of itself within a ten-thousandth of `|y|`. Where it is a sixteenth or less of what it is
-//! at rest, as very near a fold, that isn't relied on, and every iteration has its own Jacobian.
+//! The determinant is that at the iterate before both updates, and they are short: to have changed its sign on the way
+//! it would have to change by all of itself within a ten-thousandth of `|y|`. Where it is a sixteenth or less of what
+//! it is at rest, as very near a fold, that isn't relied on, and every iteration has its own Jacobian.
 
 use core::any::TypeId;
 
@@ -26,8 +26,8 @@ use crate::effect::{Effect, Scalar, Square, Vector};
 use crate::scalar::{Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
 
-/// What may be missing at the end, in roundings of `y`: below the rounding of the residual that the last update was made
-/// of.
+/// What may be missing at the end, in roundings of `y`: below the rounding of the residual that the last update was
+/// made of.
 const MISSING: f64 = 1.0 / 16.0;
 /// Of the determinant at rest.
 const SAFE: f64 = 1.0 / 16.0;
@@ -40,8 +40,8 @@ pub(crate) fn safe<T: Real>(at_rest: T) -> T {
     at_rest * real(SAFE)
 }
 
-/// Whether iterations that converge at a rate will do: only with plain floating-point numbers. The derivatives that a dual
-/// number carries converge with the quadratic iteration as its values do, but lag behind them in others.
+/// Whether iterations that converge at a rate will do: only with plain floating-point numbers. The derivatives that a
+/// dual number carries converge with the quadratic iteration as its values do, but lag behind them in others.
 #[inline(always)]
 pub(super) fn is_plain<T: Real>() -> bool {
     let element = TypeId::of::<<T as SimdValue>::Element>();
@@ -56,9 +56,9 @@ pub(super) struct Made<L: Effect> {
 }
 
 impl<L: Effect> Problem<'_, L> {
-    /// An iteration of the lanes that haven't settled, and in those that it has brought near enough one more with the same
-    /// Jacobian, if it may be used `AGAIN`: where steps are so long that it seldom can, asking costs more. Whether a lane
-    /// has settled by that.
+    /// An iteration of the lanes that haven't settled, and in those that it has brought near enough one more with the
+    /// same Jacobian, if it may be used `AGAIN`: where steps are so long that it seldom can, asking costs more. Whether
+    /// a lane has settled by that.
     #[inline(always)]
     pub(super) fn refine<const AGAIN: bool>(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
         let made = self.newton(terms, &lanes.half);

@@ -13,8 +13,8 @@ const MOST_DOUBLINGS: u32 = 30;
 /// `sin θ/θ` and `(1 − cos θ)/θ²` as functions of `q = θ²`.
 ///
 /// Up to `q = 0.5` these are Taylor polynomials. A larger angle is halved until it is that small; doubling it again is
-/// two products and doesn't cancel: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each doubles the
-/// absolute error, as the angle's own rounding does.
+/// two products and doesn't cancel: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each doubles
+/// the absolute error, as the angle's own rounding does.
 #[inline(always)]
 pub(super) fn rotation_coefficients<T: Real>(q: T) -> (T, T) {
     if q.simd_le(real(SMALL)).all() { small(q) } else { large(q) }

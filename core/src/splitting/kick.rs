@@ -53,8 +53,8 @@ where
     }
 }
 
-/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`, or for a multiple of `J⁻¹` as many
-/// times that; `None` where the derivative of the torque isn't known.
+/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`, or for a multiple of `J⁻¹` as
+/// many times that; `None` where the derivative of the torque isn't known.
 ///
 /// With the velocity `v = J⁻¹τ`, held fixed, and a turn `η` of the body,
 ///
@@ -62,8 +62,8 @@ where
 /// −dU·η = v·∂_η τ = η·∂_v τ + τ·(η × v) = η·(∂_v τ + v × τ)
 /// ```
 ///
-/// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket; the
-/// commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` makes it a momentum.
+/// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket;
+/// the commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` makes it a momentum.
 #[inline(always)]
 pub(super) fn force_gradient<L>(
     torque: &L::Constants,

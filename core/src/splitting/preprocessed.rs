@@ -13,10 +13,10 @@ use crate::scalar::{Real, real};
 
 /// The free motion of an asymmetric body by [`PreprocessedBody`](crate::PreprocessedBody)'s map.
 ///
-/// For many digits it is the cheapest for such a body, but it isn't symplectic: between kicks the Poisson structure is kept
-/// as well as the flow is approximated. Where a share of the step turns the body by less than a tenth of a radian, order
-/// 10 does both to rounding; at coarse steps energy drifts. [`SplitBody`](crate::SplitBody) and declared kinetic flows,
-/// such as that of a Lagrangian of order 6, are Poisson at any step.
+/// For many digits it is the cheapest for such a body, but it isn't symplectic: between kicks the Poisson structure is
+/// kept as well as the flow is approximated. Where a share of the step turns the body by less than a tenth of a radian,
+/// order 10 does both to rounding; at coarse steps energy drifts. [`SplitBody`](crate::SplitBody) and declared kinetic
+/// flows, such as that of a Lagrangian of order 6, are Poisson at any step.
 #[derive(Clone, Copy, Debug)]
 pub struct PreprocessedFlow<T = f64> {
     inertia: DiagonalNonstandardInertia<T>,
@@ -41,7 +41,8 @@ pub struct PreprocessedDrift<T> {
 impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
     type Drift = PreprocessedDrift<T>;
 
-    // The series to order ten, 120, and their moments, which the solve waits for; a guess, and what becomes of the momentum.
+    // The series to order ten, 120, and their moments, which the solve waits for; a guess, and what becomes of the
+    // momentum.
     const OPERATIONS: Operations =
         Operations { step: 195, iteration: <FreeBody<T> as crate::effect::Effect>::OPERATIONS.iteration };
 

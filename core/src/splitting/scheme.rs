@@ -16,15 +16,15 @@ pub enum Flow {
 
 /// The coefficients of a symmetric splitting: shares of the step for kinetic flow and kicks by turns.
 ///
-/// The Nyström schemes use that the kinetic energy is quadratic in the momentum, so that kicks change their own effect on
-/// it only linearly. The near-integrable ones are for a potential that is small beside the kinetic energy: of `(8, 6, 4)`
-/// the error is of the orders `ε h⁸`, `ε² h⁶`, `ε³ h⁴` where `ε` is the ratio of the two, so the order in `h` alone is
-/// the last of the numbers, while what is seen at common steps is the first.
+/// The Nyström schemes use that the kinetic energy is quadratic in the momentum, so that kicks change their own effect
+/// on it only linearly. The near-integrable ones are for a potential that is small beside the kinetic energy: of
+/// `(8, 6, 4)` the error is of the orders `ε h⁸`, `ε² h⁶`, `ε³ h⁴` where `ε` is the ratio of the two, so the order in
+/// `h` alone is the last of the numbers, while what is seen at common steps is the first.
 ///
-/// Kicks may have a share of the *force gradient*, too: beside `b_i h τ` that of `g_i h³ U`, the potential's own commutator
-/// with the kinetic energy, `U = −½ τ·J⁻¹τ`. That is a function of the attitude like the potential, so the kick is as
-/// explicit and as symplectic as without it; it costs one [derivative](crate::Effect::kick_derivative) of the torque, and
-/// takes away an error that is otherwise paid for with more kinetic flows, and with negative ones.
+/// Kicks may have a share of the *force gradient*, too: beside `b_i h τ` that of `g_i h³ U`, the potential's own
+/// commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`. That is a function of the attitude like the potential, so the
+/// kick is as explicit and as symplectic as without it; it costs one [derivative](crate::Effect::kick_derivative) of
+/// the torque, and takes away an error that is otherwise paid for with more kinetic flows, and with negative ones.
 ///
 /// # Examples
 ///
@@ -172,8 +172,8 @@ impl SplittingScheme {
     )
     .with_gradients(&[0.0, 0.0111645496846301127696897357705886513774]);
 
-    /// Order 4 in four stages, `(8, 4)` for a small potential: Gauss's nodes and weights, \[LR01\], with force gradients in
-    /// the inner two kicks, as many as their commutator asks for.
+    /// Order 4 in four stages, `(8, 4)` for a small potential: Gauss's nodes and weights, \[LR01\], with force
+    /// gradients in the inner two kicks, as many as their commutator asks for.
     pub const FORCE_GRADIENT_4: Self = Self::new(
         "force gradient 4-4",
         4,
@@ -231,8 +231,8 @@ impl SplittingScheme {
         Self { name, order, first, half, gradients: &[] }
     }
 
-    /// With these shares `g_i` of the force gradient: one for each drift and kick, from the first on as far as there are
-    /// any; those of drifts count for nothing.
+    /// With these shares `g_i` of the force gradient: one for each drift and kick, from the first on as far as there
+    /// are any; those of drifts count for nothing.
     #[must_use]
     pub const fn with_gradients(self, gradients: &'static [f64]) -> Self {
         Self { gradients, ..self }
@@ -298,8 +298,8 @@ impl SplittingScheme {
     }
 }
 
-/// The shares of half a kick, the kinetic flow and half a kick for each `γ`, neighbouring kicks joined: `N` of them from
-/// the first to the middle one, twice as many as there are `γ`.
+/// The shares of half a kick, the kinetic flow and half a kick for each `γ`, neighbouring kicks joined: `N` of them
+/// from the first to the middle one, twice as many as there are `γ`.
 const fn composed_strang<const N: usize>(gammas: &[f64]) -> [f64; N] {
     let (mut shares, mut stage, mut before) = ([0.0; N], 0, 0.0);
     while 2 * stage < N {

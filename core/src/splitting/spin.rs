@@ -1,8 +1,8 @@
 //! The rotation of a symmetric body about its own axis, once a step.
 //!
-//! Under a potential that is symmetric about that axis too, `p_3` is constant and so is the angle. The sine and cosine of
-//! one and the same angle are rounded in the same way at each step, and what they miss of `s² + c² = 1` would lengthen or
-//! shorten `w`, `p` and the attitude in proportion to the number of steps. So that, too, is made good.
+//! Under a potential that is symmetric about that axis too, `p_3` is constant and so is the angle. The sine and cosine
+//! of one and the same angle are rounded in the same way at each step, and what they miss of `s² + c² = 1` would
+//! lengthen or shorten `w`, `p` and the attitude in proportion to the number of steps. So that, too, is made good.
 
 use nalgebra::{Matrix3, Vector3};
 

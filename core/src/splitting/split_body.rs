@@ -23,11 +23,11 @@ use crate::scalar::{Mask, Real, is_finite, real, reported};
 /// ½ p·J⁻¹p = |p|²/(2 J_c) + (1/J_a − 1/J_c) p_a²/2 + (1/J_b − 1/J_c) p_b²/2
 /// ```
 ///
-/// The flow of the first term is `F = exp(h p/J_c)`, `p⁺ = p`; it commutes with the others and is made once. The flow of
-/// each of the others is a rotation of the body about one of its axes, `F = exp(h (1/J_a − 1/J_c) p_a E_a)`, `p⁺ = Fᵀp`,
-/// which doesn't change `p_a`. They are composed symmetrically, so that a drift is a Poisson map for any step and keeps
-/// `R p`, that of `−h` undoes that of `h`, and there is no step it has no solution for. The energy isn't exact, but has
-/// no drift.
+/// The flow of the first term is `F = exp(h p/J_c)`, `p⁺ = p`; it commutes with the others and is made once. The flow
+/// of each of the others is a rotation of the body about one of its axes, `F = exp(h (1/J_a − 1/J_c) p_a E_a)`,
+/// `p⁺ = Fᵀp`, which doesn't change `p_a`. They are composed symmetrically, so that a drift is a Poisson map for any
+/// step and keeps `R p`, that of `−h` undoes that of `h`, and there is no step it has no solution for. The energy isn't
+/// exact, but has no drift.
 ///
 /// # Rotations
 ///
@@ -62,8 +62,8 @@ use crate::scalar::{Mask, Real, is_finite, real, reported};
 ///
 /// # Source
 ///
-/// \[TW94\], \[ML93\], \[Fa03\] for splittings of the free body; \[FR90\] for the seven rotations, \[ML95\] for the order
-/// of the nine. See [`conventions`](crate::conventions).
+/// \[TW94\], \[ML93\], \[Fa03\] for splittings of the free body; \[FR90\] for the seven rotations, \[ML95\] for the
+/// order of the nine. See [`conventions`](crate::conventions).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SplitBody<const ROTATIONS: usize, T = f64> {
     moments: Vector3<T>,
@@ -75,8 +75,8 @@ impl<const ROTATIONS: usize, T: Real> SplitBody<ROTATIONS, T> {
     ///
     /// # Errors
     ///
-    /// [`SetupError::Parameter`] where the body axes aren't the principal ones, and where lanes disagree about which axis
-    /// has the middle moment and which of the others the moment that is farther from it.
+    /// [`SetupError::Parameter`] where the body axes aren't the principal ones, and where lanes disagree about which
+    /// axis has the middle moment and which of the others the moment that is farther from it.
     pub fn new(inertia: &Inertia<T>) -> Result<Self, SetupError> {
         const { assert!(ROTATIONS == 7 || ROTATIONS == 9, "a body is split into 7 or 9 rotations") };
         let refused = |cause| SetupError::Parameter { field: "inertia", cause };
@@ -120,8 +120,8 @@ pub struct SplitDrift<T> {
 impl<const ROTATIONS: usize, T: Real> KineticFlow<T> for SplitBody<ROTATIONS, T> {
     type Drift = SplitDrift<T>;
 
-    // A rotation is 52, 23 of them for its sine and cosine; that about the momentum, the matrix of all and what it does to
-    // the momentum are 91, and what the last rotation does to it, 16, isn't asked for.
+    // A rotation is 52, 23 of them for its sine and cosine; that about the momentum, the matrix of all and what it does
+    // to the momentum are 91, and what the last rotation does to it, 16, isn't asked for.
     #[allow(clippy::cast_possible_truncation)] // seven or nine
     const OPERATIONS: Operations = Operations { step: 75 + 52 * ROTATIONS as u32, iteration: 0 };
 
@@ -158,7 +158,8 @@ impl<const ROTATIONS: usize, T: Real> KineticFlow<T> for SplitBody<ROTATIONS, T>
     }
 }
 
-/// Where a rotation is too large for the polynomials in one lane at least; lanes in which none is take them all the same.
+/// Where a rotation is too large for the polynomials in one lane at least; lanes in which none is take them all the
+/// same.
 #[cold]
 #[inline(never)]
 fn far<const ROTATIONS: usize, T: Real>(
@@ -183,8 +184,8 @@ type Quaternion<T> = [T; 4];
 
 /// The product of all rotations, that about the momentum first, for the momentum `(a, b, c)` in units of `J_c/h`.
 ///
-/// What takes the time is that each angle waits for the rotation before; the quaternion is multiplied meanwhile. That is
-/// half of the arithmetic of products of matrices, and what roundings do to its length is divided out in the end.
+/// What takes the time is that each angle waits for the rotation before; the quaternion is multiplied meanwhile. That
+/// is half of the arithmetic of products of matrices, and what roundings do to its length is divided out in the end.
 #[inline(always)]
 fn rotated<const ROTATIONS: usize, T: Real>(
     drift: &SplitDrift<T>,
@@ -220,13 +221,14 @@ fn rotated<const ROTATIONS: usize, T: Real>(
     q
 }
 
-/// What a rotation about the first of three axes makes of the other two components of the momentum and of the quaternion,
-/// given the sine of half its angle over the first component, and the cosine.
+/// What a rotation about the first of three axes makes of the other two components of the momentum and of the
+/// quaternion, given the sine of half its angle over the first component, and the cosine.
 #[inline(always)]
 fn turned<T: Real>([a, b, c]: [T; 3], (s, cosine): (T, T), [w, x, y, z]: Quaternion<T>) -> (T, T, Quaternion<T>) {
     let sine = s * a;
     let quaternion = [w * cosine - x * sine, x * cosine + w * sine, y * cosine + z * sine, z * cosine - y * sine];
-    // Fᵀp − p with sin θ = 2 s a cos(θ/2) and 1 − cos θ = 2 s² a²; products without s and the cosine don't wait for them.
+    // Fᵀp − p with sin θ = 2 s a cos(θ/2) and 1 − cos θ = 2 s² a²; products without s and the cosine don't wait for
+    // them.
     let twice = a + a;
     let square = twice * a;
     let of_b = s * (cosine * (twice * c) - s * (square * b));

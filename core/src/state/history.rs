@@ -3,8 +3,8 @@
 use crate::coordinates::Coordinates;
 use crate::scalar::Real;
 
-/// Of increments at equal times eight tell the next to some `(h ω)⁸` for the fastest frequency `ω` in them. Each more would
-/// double the roundings in the guess, and gains little where `h ω` is near one.
+/// Of increments at equal times eight tell the next to some `(h ω)⁸` for the fastest frequency `ω` in them. Each more
+/// would double the roundings in the guess, and gains little where `h ω` is near one.
 pub(crate) const DIFFERENCES: usize = 7;
 
 /// What increments are continued by to guess the next one.
@@ -41,12 +41,13 @@ impl<V: Copy> History<V> {
         Self { differences: [V::zero(); DIFFERENCES], increments: 0 }
     }
 
-    /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y`: where the parabola through three of them goes
-    /// next. Increments change by `O(h²)` from step to step, and their second differences by `O(h⁴)`: for (3.13) at common
-    /// steps Newton's iteration is left with an error that a second one, with the Jacobian of the first, brings to rounding.
+    /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y`: where the parabola through three of
+    /// them goes next. Increments change by `O(h²)` from step to step, and their second differences by `O(h⁴)`: for
+    /// (3.13) at common steps Newton's iteration is left with an error that a second one, with the Jacobian of the
+    /// first, brings to rounding.
     ///
-    /// The first increment of all has no difference to the one before, which counts as zero; the guess after the second is that
-    /// much worse.
+    /// The first increment of all has no difference to the one before, which counts as zero; the guess after the second
+    /// is that much worse.
     #[inline(always)]
     pub(crate) fn parabola<T: Real>(&mut self, last: V, y: V) -> V
     where
@@ -58,8 +59,8 @@ impl<V: Copy> History<V> {
         y + (difference + (difference - before))
     }
 
-    /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y + …`: where the polynomial through all of
-    /// them goes next.
+    /// Takes notice of the increment after `last`, and returns `y + ∇ y + ∇² y + …`: where the polynomial through all
+    /// of them goes next.
     #[inline(always)]
     pub(crate) fn next<T: Real>(&mut self, last: V, y: V) -> V
     where

@@ -1,8 +1,8 @@
 //! Dormand and Prince's method of order 8, unrolled for the seven numbers of a top, with its own step control.
 //!
 //! Coefficients, error estimate and controller are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential
-//! Equations I*, 2nd edition, II.5 and II.10. There is no dense output. With a fixed step the error isn't estimated, which
-//! saves what that costs.
+//! Equations I*, 2nd edition, II.5 and II.10. There is no dense output. With a fixed step the error isn't estimated,
+//! which saves what that costs.
 
 // The digits are those of the source, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]

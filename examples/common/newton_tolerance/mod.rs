@@ -1,7 +1,7 @@
 //! The step with a Newton iteration that stops where it is told to, and what that costs.
 //!
-//! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by a
-//! loop of a few lines.
+//! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by
+//! a loop of a few lines.
 
 pub(crate) mod tenths;
 

@@ -16,8 +16,8 @@ pub(super) trait Scene:
 
 impl<S: Effect<Scalar = f64, Group = SO3, Retraction = CayleyRetraction, Kinetic = WithKinetic>> Scene for S {}
 
-/// How many effects a scene can have beside its body. All subsets of all eight would be 256 types and minutes of compiling;
-/// these are 93.
+/// How many effects a scene can have beside its body. All subsets of all eight would be 256 types and minutes of
+/// compiling; these are 93.
 pub(super) const MOST_EFFECTS: usize = 3;
 
 /// Simulates the sum of the body and those effects that the file has.

@@ -23,7 +23,8 @@ const H: f64 = 0.05;
 /// Below, in J, squares of Newton's unknown are no longer numbers.
 const NOTHING: f64 = 1e-280;
 
-/// Whether the energy falls in every step until nothing is left, and how often a component of the velocity changes sign.
+/// Whether the energy falls in every step until nothing is left, and how often a component of the velocity changes
+/// sign.
 fn decay<L>(scene: L) -> Result<(bool, u32), Failure>
 where
     L: Effect<Scalar = f64, Group = SO3> + Regular,

@@ -11,7 +11,8 @@ use crate::row::{Effort, Failure, Row};
 
 const STEPS: u32 = 1000;
 
-/// The flow (2.5) takes `μ` from `F` itself, and so rounds it to `ε J/h` in every step: such errors walk to `n^{3/2} ε`.
+/// The flow (2.5) takes `μ` from `F` itself, and so rounds it to `ε J/h` in every step: such errors walk to
+/// `n^{3/2} ε`.
 const ROUNDING: f64 = 4.0 * 31_623.0 * f64::EPSILON;
 
 pub(crate) fn p5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {

@@ -15,7 +15,8 @@ use crate::row::{Effort, Failure, Row};
 
 const H: f64 = 0.05;
 
-/// How far `left = Ad* right` and `μ⁺ = Ad*(μ + diamond)` are from holding, relative, and the Casimirs `|w|²` and `μ·w`.
+/// How far `left = Ad* right` and `μ⁺ = Ad*(μ + diamond)` are from holding, relative, and the Casimirs `|w|²` and
+/// `μ·w`.
 fn laws<L>(lagrangian: L) -> Result<[f64; 3], Failure>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular,

@@ -1,10 +1,10 @@
 //! R1 to R4: where roundings would add up instead of walking at random.
 //!
 //! `D = F − I` is formed from rounded coefficients, and `D + Dᵀ + DᵀD`, zero but for that, is of the size `ε θ²` for a
-//! turn by `θ`. Where the turn is always the same, so is this, and would grow in proportion to `N`; the roundings of the
-//! sum `R + R D` walk, like `ε √N`, and hide it up to about `θ⁻⁴` steps. Compensated sums take the walk away, not this.
-//! The library takes one step towards the polar factor, `R (3I − RᵀR)/2`, once an attitude is 2¹¹ ε away; a step in every
-//! thousand, beside it, is what more of that would give.
+//! turn by `θ`. Where the turn is always the same, so is this, and would grow in proportion to `N`; the roundings of
+//! the sum `R + R D` walk, like `ε √N`, and hide it up to about `θ⁻⁴` steps. Compensated sums take the walk away, not
+//! this. The library takes one step towards the polar factor, `R (3I − RᵀR)/2`, once an attitude is 2¹¹ ε away; a step
+//! in every thousand, beside it, is what more of that would give.
 
 use liestep::{
     CompensatedState, CompensatedStepper, Composition, CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3,

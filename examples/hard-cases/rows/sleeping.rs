@@ -54,7 +54,8 @@ fn rk4_tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
     Ok(tilts)
 }
 
-/// The rate at which the tilt grows from 1e-6 to 1e-4 rad, between which the decaying mode is gone and the motion linear.
+/// The rate at which the tilt grows from 1e-6 to 1e-4 rad, between which the decaying mode is gone and the motion
+/// linear.
 fn growth_rate(tilts: &[f64]) -> f64 {
     let reached = |tilt: f64| tilts.iter().position(|&t| t > tilt);
     let (Some(start), Some(end)) = (reached(1e-6), reached(1e-4)) else { return f64::NAN };

@@ -60,7 +60,8 @@ pub(crate) fn p1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
 
     let mut theirs = 0.0;
     for z in &phases {
-        // Runge–Kutta moves the attitude; the vertical of a nearby `w` is reached by turning `R`, of any length by scaling.
+        // Runge–Kutta moves the attitude; the vertical of a nearby `w` is reached by turning `R`, of any length by
+        // scaling.
         let map = |(momentum, w): &Phase| {
             let length = w.norm();
             let body = rk4_body(&top);

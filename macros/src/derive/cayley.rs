@@ -1,8 +1,8 @@
 //! The momentum equation on SO(3) in Cayley coordinates with the denominators cleared.
 //!
 //! `F = cay(2y) = ((1 − |y|²) I + 2 yyᵀ + 2 ŷ) / (1 + |y|²)`. Where `U(F, w)` is polynomial in `F`, multiplying
-//! `U(F, w) − a` by a power of `D = 1 + |y|²` leaves a polynomial in `y`: for (3.13) a quadratic one. A factor `h/2` leaves
-//! the moments of inertia for its coefficients.
+//! `U(F, w) − a` by a power of `D = 1 + |y|²` leaves a polynomial in `y`: for (3.13) a quadratic one. A factor `h/2`
+//! leaves the moments of inertia for its coefficients.
 
 use std::collections::BTreeMap;
 

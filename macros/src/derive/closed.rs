@@ -7,9 +7,9 @@
 //! L = l_d + Σ ⟨λ_i, d_i⟩,      ⟨λ_i, δv_i⟩ = δL along δv_i,      from the last to the first
 //! ```
 //!
-//! the first variation of `l_d` is that of `L` with `v` and `λ` held fixed, so that all momentum maps come from the rules
-//! that they come from elsewhere. This is differentiation in the reverse mode: a gradient costs a few evaluations. The
-//! second variation goes through `v` and `λ` as well, forwards.
+//! the first variation of `l_d` is that of `L` with `v` and `λ` held fixed, so that all momentum maps come from the
+//! rules that they come from elsewhere. This is differentiation in the reverse mode: a gradient costs a few
+//! evaluations. The second variation goes through `v` and `λ` as well, forwards.
 
 use super::Context;
 use crate::symbolic::{Expression, Structure, SymbolId, Symbols, Variations, stage_of, variation};

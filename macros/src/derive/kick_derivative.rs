@@ -4,8 +4,8 @@
 //! d/dt k₀(exp(−tE)·w),      δw = −E·w
 //! ```
 //!
-//! is its derivative along the motion `R exp(tE)` of a body from which `w` is seen. For a potential's torque that is its
-//! second derivative but for a bracket, which the splittings add.
+//! is its derivative along the motion `R exp(tE)` of a body from which `w` is seen. For a potential's torque that is
+//! its second derivative but for a bracket, which the splittings add.
 
 use super::{Context, action};
 use crate::symbolic::{Expression, Rational, Variations, variation};

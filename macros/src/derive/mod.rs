@@ -101,8 +101,8 @@ pub(crate) struct Derived {
     pub(crate) limit: Limit,
     /// The part of the diamond without `F`.
     pub(crate) kick_before: Expression,
-    /// Its derivative along `w ↦ exp(−t E_j)·w`, where kinetic-potential splittings may ask for it: on SO(3), of a Lagrangian
-    /// without closed `let`s.
+    /// Its derivative along `w ↦ exp(−t E_j)·w`, where kinetic-potential splittings may ask for it: on SO(3), of a
+    /// Lagrangian without closed `let`s.
     pub(crate) kick_derivative: Option<Expression>,
     /// The part of `μ` with `F`, written in `D = F − I`: its constants cancel exactly, so that a small step keeps its
     /// digits.

@@ -30,7 +30,8 @@ pub(crate) struct Kernel {
     pub(crate) residual: Vec<NodeId>,
     pub(crate) jacobian: Vec<NodeId>,
     pub(crate) kick_after: Vec<NodeId>,
-    /// The part of the diamond with `F`, where the system is that in `F` rebuilt from `y`; `kick_after` is `Ad*_F` of it.
+    /// The part of the diamond with `F`, where the system is that in `F` rebuilt from `y`; `kick_after` is `Ad*_F` of
+    /// it.
     pub(crate) moved: Vec<NodeId>,
     /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
     /// Cayley coordinates.
@@ -318,8 +319,8 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
 
 /// `(h/2) (U(F) − a)` with `F = cay(2y)`, and its Jacobian `(h/2) ∂U/∂E_j · T_j`, with the tangent `T` in `y`.
 ///
-/// With them the part of the diamond that depends on `F`, if it is asked for, and the nodes that are left as they are when
-/// the system is multiplied out.
+/// With them the part of the diamond that depends on `F`, if it is asked for, and the nodes that are left as they are
+/// when the system is multiplied out.
 fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);
     let d = denominator(graph, &y);

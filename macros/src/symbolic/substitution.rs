@@ -6,8 +6,8 @@ use super::expression::{Atom, Expression, Monomial};
 use super::symbols::{SymbolId, Symbols};
 use super::word::Factor;
 
-/// The expression with every symbol of the map replaced, in normal form again. A matrix and its inverse are replaced each
-/// for itself, the inverse by what the map has for the [symbol](Symbols::inverse_of) of its entries.
+/// The expression with every symbol of the map replaced, in normal form again. A matrix and its inverse are replaced
+/// each for itself, the inverse by what the map has for the [symbol](Symbols::inverse_of) of its entries.
 pub(crate) fn substitute(
     expression: &Expression,
     map: &BTreeMap<SymbolId, Expression>,

@@ -1,4 +1,5 @@
-//! How large the degrees of a declared expression can be, as a rational function of the numbers that it is evaluated at.
+//! How large the degrees of a declared expression can be, as a rational function of the numbers that it is evaluated
+//! at.
 //!
 //! By Schwartz and Zippel, such a function that isn't zero vanishes at a random point of a field of `p` elements with a
 //! probability of at most its degree over `p`.

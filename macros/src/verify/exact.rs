@@ -1,7 +1,7 @@
 //! Self-adjointness at random points of a finite field, where nothing is rounded.
 //!
-//! `F` is a product of Cayley transforms `cay(tE_k) = (I − tE_k)⁻¹(I + tE_k)`. Where `E³ = c E`, they are elements of the
-//! one-parameter group of `E`, rational in `t`: for all of the built-in groups' generators. The products for all
+//! `F` is a product of Cayley transforms `cay(tE_k) = (I − tE_k)⁻¹(I + tE_k)`. Where `E³ = c E`, they are elements of
+//! the one-parameter group of `E`, rational in `t`: for all of the built-in groups' generators. The products for all
 //! generators have elements near the identity for all that the group has there, so that an identity that holds for them
 //! holds for the connected group; and being an identity of rational functions with rational coefficients, it holds in
 //! the field as well.

@@ -2,8 +2,8 @@
 //!
 //! In a double the error of a method of order 10 and more falls by its first power alone only where rounding already
 //! shows. Here the same maps are written down from their equations in unevaluated sums of two doubles, where there are
-//! sixteen digits more, and each is compared with the library's at the steps that a double has the digits for. So what is
-//! measured here is the order of what the library does, and none of its code is in it.
+//! sixteen digits more, and each is compared with the library's at the steps that a double has the digits for. So what
+//! is measured here is the order of what the library does, and none of its code is in it.
 //!
 //! The library itself can't run on such a scalar in these tests: nalgebra's real fields have unsafe functions to be
 //! implemented, and there is no unsafe code here.

@@ -36,8 +36,8 @@ fn assert_second_order(errors: &[(f64, f64)]) {
     assert!((order - 2.0).abs() < 0.05, "order {order}, {errors:?}");
 }
 
-/// From `Ω_2 = 0` the body comes to rest about its middle axis and never turns back, `Ω_2 = Ω tanh λt` and `Ω_1`, `Ω_3` in
-/// the proportion of `sech λt`, with `λ² = Ω² (J_2 − J_1)(J_3 − J_2)/(J_1 J_3)`.
+/// From `Ω_2 = 0` the body comes to rest about its middle axis and never turns back, `Ω_2 = Ω tanh λt` and `Ω_1`, `Ω_3`
+/// in the proportion of `sech λt`, with `λ² = Ω² (J_2 − J_1)(J_3 − J_2)/(J_1 J_3)`.
 #[test]
 fn b8_separatrix() {
     let (j, limit, t) = (Vector3::new(1.0, 2.0, 3.0_f64), 2.0, 5.0);

@@ -1,5 +1,5 @@
-//! Dzhanibekov's body, `J = (1, 2, 3)` turning about its middle axis: two flips bring the body momentum back to where it
-//! was. Their time is `4K(k)/ω` with
+//! Dzhanibekov's body, `J = (1, 2, 3)` turning about its middle axis: two flips bring the body momentum back to where
+//! it was. Their time is `4K(k)/ω` with
 //!
 //! ```text
 //! ω² = (J_3 − J_2)(|p|² − 2H J_1)/(J_1 J_2 J_3),      k² = (J_2 − J_1)(2H J_3 − |p|²)/((J_3 − J_2)(|p|² − 2H J_1))
@@ -27,9 +27,9 @@ fn velocity() -> Vector3<f64> {
     Vector3::new(0.01, 2.0, 0.02)
 }
 
-/// When a monotone function passes zero, from its values at the times `0, 1, …`: Neville's interpolation of the time as a
-/// function of the value. Near the passage `p_2` is a hyperbolic tangent, and the remainder is below rounding for steps
-/// up to 0.02 s.
+/// When a monotone function passes zero, from its values at the times `0, 1, …`: Neville's interpolation of the time as
+/// a function of the value. Near the passage `p_2` is a hyperbolic tangent, and the remainder is below rounding for
+/// steps up to 0.02 s.
 #[allow(clippy::cast_precision_loss)] // ten points
 fn passage(values: &[f64]) -> f64 {
     let mut times: Vec<f64> = (0..values.len()).map(|k| k as f64).collect();
@@ -42,8 +42,8 @@ fn passage(values: &[f64]) -> f64 {
     times[0]
 }
 
-/// The time of two flips: from one passage of the second component through zero to the next but one. `next` makes a step
-/// and returns that component.
+/// The time of two flips: from one passage of the second component through zero to the next but one. `next` makes a
+/// step and returns that component.
 #[allow(clippy::cast_precision_loss)] // some thousand steps
 fn two_flips(h: f64, mut next: impl FnMut() -> f64) -> f64 {
     let mut values = vec![next()];
@@ -92,8 +92,8 @@ fn b7_the_time_of_two_flips_of_the_sixth_order_body() {
     assert!(error.abs() < 1e-12, "{error:e}");
 }
 
-/// Near the intermediate axis roundings grow: those of some 30 000 stages to 2e-12, a half of the time to more than 1.4e-12.
-/// One step size would say little, so it is a mean of neighbouring ones that is right to 1e-12.
+/// Near the intermediate axis roundings grow: those of some 30 000 stages to 2e-12, a half of the time to more than
+/// 1.4e-12. One step size would say little, so it is a mean of neighbouring ones that is right to 1e-12.
 #[test]
 fn b7_the_time_of_two_flips_of_a_composition() {
     let body = FreeBody::with_moments(moments().into());

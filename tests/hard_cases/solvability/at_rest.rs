@@ -1,5 +1,5 @@
-//! Where nothing acts nothing happens, exactly: no formula divides by the angle of a step, by the momentum, by `w` or by
-//! the weight.
+//! Where nothing acts nothing happens, exactly: no formula divides by the angle of a step, by the momentum, by `w` or
+//! by the weight.
 
 use crate::common::tops::{FreeBody, HeavyTop};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};

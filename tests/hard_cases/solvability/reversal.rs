@@ -1,5 +1,5 @@
-//! (3.13) is self-adjoint, `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, so the step of `−h` undoes that of `h`; that of zero is
-//! the identity.
+//! (3.13) is self-adjoint, `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, so the step of `−h` undoes that of `h`; that of zero
+//! is the identity.
 
 use crate::common::measure::relative;
 use crate::common::random::Random;

@@ -1,6 +1,7 @@
 //! P6: damping takes energy and turns nothing over, however strong it is against the inertia and the step, and keeps
-//! the second order. Halves of a viscous torque at the two ends of a step, as the discrete Lagrange–d'Alembert principle
-//! has them at first sight, multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from `x = 2` on.
+//! the second order. Halves of a viscous torque at the two ends of a step, as the discrete Lagrange–d'Alembert
+//! principle has them at first sight, multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from
+//! `x = 2` on.
 
 use crate::common::measure::{four_halvings, order, relative, steps_in};
 use crate::common::random::Random;

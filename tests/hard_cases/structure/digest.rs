@@ -1,4 +1,5 @@
-//! A fixed run has fixed bytes: from one build to the next, from debug to release, from the generic to the native target.
+//! A fixed run has fixed bytes: from one build to the next, from debug to release, from the generic to the native
+//! target.
 //!
 //! ```text
 //! cargo test --test hard_cases digest
@@ -46,8 +47,8 @@ fn of_steps<L: Effect<Scalar = f64, Group = SO3>>(stepper: &Stepper<L>, start: S
     digest.0
 }
 
-/// The looping top of the thesis, (3.13), `h = 0.01`. The start is read from a file and multiplied, so no library function
-/// has a part in it.
+/// The looping top of the thesis, (3.13), `h = 0.01`. The start is read from a file and multiplied, so no library
+/// function has a part in it.
 #[test]
 fn p7_heavy_top() {
     let motion = looping();

@@ -1,5 +1,5 @@
-//! P2 for tops and free bodies: the momenta of a declared `l_d` are its derivatives, hang together as the theory says, and
-//! the step in stages says the same. `tests/systems/momenta.rs` has the other declarations.
+//! P2 for tops and free bodies: the momenta of a declared `l_d` are its derivatives, hang together as the theory says,
+//! and the step in stages says the same. `tests/systems/momenta.rs` has the other declarations.
 //!
 //! `(μ, w)` moves on a coadjoint orbit of the semidirect product, so `|w|²` and `μ·w` are exact.
 

@@ -128,8 +128,8 @@ fn p8_a_million_steps_stay_on_the_group() {
     assert!(units[0] <= 9000.0 && units[1] <= 13_500.0 && units[2] <= 13_500.0, "{units:?} ε");
 }
 
-/// S1: up to 0.999 of the fold a step is solved, in as many iterations as in `f64`, under 91°; above it is refused, and the
-/// error names a step that would do.
+/// S1: up to 0.999 of the fold a step is solved, in as many iterations as in `f64`, under 91°; above it is refused, and
+/// the error names a step that would do.
 #[test]
 fn p8_step_scan() {
     let motion = looping();
@@ -191,8 +191,8 @@ fn there_and_back(motion: &Motion, h: f64) -> [f64; 3] {
     errors.map(|error| error / EPSILON)
 }
 
-/// S5: there and back. It is a walk of roundings, and of neighbouring step sizes one comes back ten times nearer than another:
-/// so the median over an octave.
+/// S5: there and back. It is a walk of roundings, and of neighbouring step sizes one comes back ten times nearer than
+/// another: so the median over an octave.
 #[test]
 fn p8_a_million_steps_there_and_back() {
     let motion = looping();

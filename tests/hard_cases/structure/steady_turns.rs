@@ -1,6 +1,7 @@
-//! A body that turns steadily makes the same increment `F` in every step, or the same few by turns, and with it the same
-//! rounding: `FᵀF − I` is some `ε |hΩ|²` that doesn't average out, and `RᵀR − I` and `|w|² − 1` would grow like `N` where
-//! roundings at random make `√N` of them. The momentum has no such term: the error of `F` is across the axis of the turn.
+//! A body that turns steadily makes the same increment `F` in every step, or the same few by turns, and with it the
+//! same rounding: `FᵀF − I` is some `ε |hΩ|²` that doesn't average out, and `RᵀR − I` and `|w|² − 1` would grow like
+//! `N` where roundings at random make `√N` of them. The momentum has no such term: the error of `F` is across the axis
+//! of the turn.
 //!
 //! An attitude that is found far from the group is put back, and what is advected with it.
 

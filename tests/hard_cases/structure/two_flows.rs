@@ -11,8 +11,8 @@ use nalgebra::Vector3;
 
 const STEPS: u32 = 1000;
 
-/// The flow on increments takes `μ` from `F` itself and so rounds it to `ε J/h`, relatively `ε/(hΩ)`, in every step. Such
-/// errors walk to `√n ε/(hΩ)` in the rate and to `n^{3/2} ε` in the angle after `n` steps, for any `h`.
+/// The flow on increments takes `μ` from `F` itself and so rounds it to `ε J/h`, relatively `ε/(hΩ)`, in every step.
+/// Such errors walk to `√n ε/(hΩ)` in the rate and to `n^{3/2} ε` in the angle after `n` steps, for any `h`.
 fn rounding_after(steps: u32) -> f64 {
     4.0 * f64::from(steps).powf(1.5) * f64::EPSILON
 }

@@ -1,5 +1,5 @@
-//! A chaotic asymmetric top: neighbouring motions part by `e^{0.2 t}`, so after some minutes no digit of the state is that
-//! of the continuous motion; energy and Casimirs stay all the same.
+//! A chaotic asymmetric top: neighbouring motions part by `e^{0.2 t}`, so after some minutes no digit of the state is
+//! that of the continuous motion; energy and Casimirs stay all the same.
 
 use crate::common::reference::Motion;
 use liestep::{CompensatedState, Stepper};
@@ -41,8 +41,8 @@ fn errors(steps: u64) -> Vec<[f64; 3]> {
     parts
 }
 
-/// `within` is by how much the largest error of the energy may differ from part to part: a shorter one meets fewer of the
-/// rare extremes.
+/// `within` is by how much the largest error of the energy may differ from part to part: a shorter one meets fewer of
+/// the rare extremes.
 fn assert_nothing_grows(parts: &[[f64; 3]], within: f64) {
     let largest = |half: &[[f64; 3]], k: usize| half.iter().map(|errors| errors[k]).fold(0.0, f64::max);
     let (first, second) = parts.split_at(parts.len() / 2);

@@ -1,6 +1,6 @@
-//! Ten million steps of the looping top at `h = 0.01`, on request a hundred million, keep the group, the Casimirs `|w|²`
-//! and `p·w`, the energy's mean and extremes, and the momentum about the axis of symmetry. What rounding leaves is a random
-//! walk, not a drift; with compensated sums it is the walk of what is added alone.
+//! Ten million steps of the looping top at `h = 0.01`, on request a hundred million, keep the group, the Casimirs
+//! `|w|²` and `p·w`, the energy's mean and extremes, and the momentum about the axis of symmetry. What rounding leaves
+//! is a random walk, not a drift; with compensated sums it is the walk of what is added alone.
 
 use crate::common::reference::looping;
 use crate::common::tops::HeavyTop;
@@ -139,8 +139,8 @@ fn t3_a_hundred_million_steps_neither_drift_nor_leave_the_group() {
     assert!(worst.w == 0.0, "p_3 has changed by {:e}", worst.w);
 }
 
-/// The same, with compensated sums, and that they gain something. They carry even what plain ones drop of `p_3`: the change
-/// of it is zero but for the roundings of its three products, some last digits in all these steps.
+/// The same, with compensated sums, and that they gain something. They carry even what plain ones drop of `p_3`: the
+/// change of it is zero but for the roundings of its three products, some last digits in all these steps.
 #[allow(clippy::cast_precision_loss)] // a hundred million
 fn assert_kept_better(steps: u64) {
     let (stepper, start) = looping_top();

@@ -1,37 +1,21 @@
 //! The flow of (3.13) with `μ_0 = JΩ_0` converges to the heavy top and to the free body at second order in the step:
 //! its momentum is that of the continuous body at the same time, the half kick being inside (2.7).
 
-use crate::common::measure::{four_halvings, order, relative, steps_in};
+use crate::common::measure::order;
+use crate::common::order::errors;
 use crate::common::reference::Motion;
 use crate::common::tops::FreeBody;
-use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 
 /// Well above what 10⁵ steps lose to rounding in attitude and velocity.
 const PLATEAU: f64 = 1e-11;
 
-/// Errors of attitude and body velocity together, relative to the sizes of both.
-fn error<L>(lagrangian: L, motion: &Motion, t: f64, h: f64) -> f64
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
-{
-    let stepper = Stepper::new(lagrangian, h).unwrap();
-    let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
-    for _ in 0..steps_in(t, h) {
-        stepper.step(&mut state).unwrap();
-    }
-    let (attitude, velocity) = motion.at(t);
-    relative(&state.attitude().matrix(), &attitude).hypot(relative(&stepper.velocity(&state), &velocity))
-}
-
 fn assert_second_order(name: &str, t: f64, coarsest: f64) {
     let motion = Motion::read(name);
-    let errors = four_halvings(coarsest).map(|h| {
-        if motion.top.g == 0.0 {
-            (h, error(FreeBody { J_d: motion.top.J_d.into() }, &motion, t, h))
-        } else {
-            (h, error(motion.top.clone(), &motion, t, h))
-        }
-    });
+    let errors = if motion.top.g == 0.0 {
+        errors(&motion, (t, coarsest), || FreeBody { J_d: motion.top.J_d.into() })
+    } else {
+        errors(&motion, (t, coarsest), || motion.top.clone())
+    };
     let order = order(&errors, PLATEAU);
     println!("{name} t = {t}: order {order:.4}, errors {:.2e} to {:.2e}", errors[0].1, errors[4].1);
     assert!((order - 2.0).abs() < 0.05, "order {order}, errors {errors:?}");

@@ -31,8 +31,8 @@ impl Axes {
         }
     }
 
-    /// Components along these axes of a vector that turns. To the left-handed three all rotations are the other way, which
-    /// is made good by the signs of all of them: in these components each three are right-handed.
+    /// Components along these axes of a vector that turns. To the left-handed three all rotations are the other way,
+    /// which is made good by the signs of all of them: in these components each three are right-handed.
     #[inline(always)]
     pub(super) fn of<T: Real>(self, v: &Vector3<T>) -> [T; 3] {
         let (x, y, z) = (v.x, v.y, v.z);

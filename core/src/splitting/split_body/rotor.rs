@@ -7,9 +7,9 @@ use crate::splitting::angle::rotation_coefficients;
 pub(super) const SEVEN: [f64; 5] =
     [0.675_603_595_979_828_8, 1.351_207_191_959_657_6, -0.175_603_595_979_828_8, -1.702_414_383_919_315_3, 0.0];
 
-/// Likewise. Of order 4, and of order 6 in the term of the first axis: its shares `b` at the times `c` that those of the
-/// second, `a`, add up to have `Σ b c² = 1/3` and `Σ b c⁴ = 1/5`; with `Σ a d² = 1/3`, where `d` are the sums of the `b`
-/// before each, these are three conditions for three unknowns, and solved. The kind is that of \[ML95\].
+/// Likewise. Of order 4, and of order 6 in the term of the first axis: its shares `b` at the times `c` that those of
+/// the second, `a`, add up to have `Σ b c² = 1/3` and `Σ b c⁴ = 1/5`; with `Σ a d² = 1/3`, where `d` are the sums of
+/// the `b` before each, these are three conditions for three unknowns, and solved. The kind is that of \[ML95\].
 pub(super) const NINE: [f64; 5] = [
     0.095_364_558_526_317_94,
     0.627_486_550_465_928_5,

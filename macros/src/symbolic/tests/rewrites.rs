@@ -1,5 +1,5 @@
-//! Each rewrite on numbers, and on numbers that break its hypothesis, where it has to be wrong: otherwise the test could
-//! not tell a rewrite from no rewrite.
+//! Each rewrite on numbers, and on numbers that break its hypothesis, where it has to be wrong: otherwise the test
+//! could not tell a rewrite from no rewrite.
 
 use super::numeric::{Matrix, Values, value};
 use super::random::{Both, Random, World, both};

@@ -1,0 +1,19 @@
+//! A top of any scalar: of SIMD lanes, dual numbers or plain ones.
+
+use liestep::{DiagonalNonstandardInertia, Real, SO3, lagrangian};
+use nalgebra::Vector3;
+
+/// (3.13) in principal axes, for any scalar.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Top<T: Real> {
+    pub(crate) J_d: DiagonalNonstandardInertia<T>,
+    pub(crate) weight: T,
+    pub(crate) rho: Vector3<T>,
+    pub(crate) up: Vector3<T>,
+}
