@@ -1,6 +1,6 @@
 //! What states are made of, scalar by scalar: what a sum with a carry, a checkpoint and the laws' samples need.
 
-use nalgebra::{SMatrix, SimdValue as _};
+use nalgebra::SMatrix;
 
 use crate::scalar::Real;
 

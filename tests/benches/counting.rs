@@ -3,19 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const STEPS: u64 = 10_000;
-
 /// Why nothing was counted.
 pub(crate) type Uncounted = Box<dyn std::error::Error>;
 
-/// Instructions a step of a program whose last argument is a number of steps.
+/// Instructions a step of a program whose last argument is a number of steps, from so many and twice as many.
 #[allow(clippy::cast_precision_loss)] // far below 2⁵³
-pub(crate) fn instructions(program: &Path, arguments: &[&str]) -> Result<f64, Uncounted> {
-    let [once, twice] = [STEPS, 2 * STEPS].map(|steps| count(program, arguments, steps));
-    Ok((twice? - once?) as f64 / STEPS as f64)
+pub(crate) fn instructions(program: &Path, arguments: &[&str], steps: u32) -> Result<f64, Uncounted> {
+    let [once, twice] = [steps, 2 * steps].map(|steps| count(program, arguments, steps));
+    Ok((twice? - once?) as f64 / f64::from(steps))
 }
 
-fn count(program: &Path, arguments: &[&str], steps: u64) -> Result<u64, Uncounted> {
+fn count(program: &Path, arguments: &[&str], steps: u32) -> Result<u64, Uncounted> {
     let mut valgrind = Command::new("valgrind");
     valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]);
     let output = valgrind.arg(program).args(arguments).arg(steps.to_string()).output();

@@ -81,13 +81,15 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body, full inertia", RigidBody { J_d: J.to_nonstandard() });
 }
 
+const COUNTED: u32 = 10_000;
+
 /// Counts the instructions of every scene, each in a process of its own.
 struct Instructions(Result<(), Uncounted>);
 
 impl Visit for Instructions {
     fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, _: L) {
         let count = || -> Result<(), Uncounted> {
-            let steps = instructions(&std::env::current_exe()?, &["count", name])?;
+            let steps = instructions(&std::env::current_exe()?, &["count", name], COUNTED)?;
             println!("{name:<28}{steps:>8.1} instructions a step");
             Ok(())
         };
@@ -99,8 +101,8 @@ impl Visit for Instructions {
 
 /// The free body beside all other effects and in a program without them.
 fn zero_cost() -> Result<(), Uncounted> {
-    let beside = instructions(&std::env::current_exe()?, &["count", "body"])?;
-    let alone = instructions(&built("free-body-alone")?, &["count", "body"])?;
+    let beside = instructions(&std::env::current_exe()?, &["count", "body"], COUNTED)?;
+    let alone = instructions(&built("free-body-alone")?, &["count", "body"], COUNTED)?;
     println!("free body beside the other effects{beside:>10.1} instructions a step");
     println!("free body alone                   {alone:>10.1} instructions a step");
     // Counts of whole programs, and not estimates: they are the same or they aren't.
