@@ -122,8 +122,8 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
             1 => b / det,
             2 | 3 => {
                 let inverse = T::one() / det;
-                // A loop, here and in `sum`: the compiler doesn't always inline `from_fn` and `fold`, and what isn't inlined has
-                // no vector instructions of the machine.
+                // A loop, here and in `sum`: the compiler doesn't always inline `from_fn` and `fold`, and what isn't
+                // inlined has no vector instructions of the machine.
                 let mut z = *b;
                 for i in 0..D {
                     z[i] = sum::<T, D>(|k| factors[(i, k)] * b[k]) * inverse;

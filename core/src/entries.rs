@@ -38,7 +38,8 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
         if T::LANES == 1 {
             return self.zip_map(other, combine);
         }
-        // The compiler doesn't inline `zip_map` for lanes, and what isn't inlined has no vector instructions of the machine.
+        // The compiler doesn't inline `zip_map` for lanes, and what isn't inlined has no vector instructions of the
+        // machine.
         let mut combined = *self;
         for column in 0..C {
             for row in 0..R {

@@ -1,8 +1,8 @@
 //! A solve of SIMD lanes that all take the same way.
 //!
-//! They nearly always do: bodies of one kind at one step need as many iterations. Then no lane has to be kept from what the
-//! others do, and nothing is selected. That matters most for lanes which are arrays: a mask of theirs is a truth value for
-//! each lane, and selecting by it takes vectors apart and puts them together again.
+//! They nearly always do: bodies of one kind at one step need as many iterations. Then no lane has to be kept from what
+//! the others do, and nothing is selected. That matters most for lanes which are arrays: a mask of theirs is a truth
+//! value for each lane, and selecting by it takes vectors apart and puts them together again.
 //!
 //! Where the lanes part, they go on by masks from where they are.
 
@@ -40,7 +40,8 @@ impl<L: Effect> Problem<'_, L> {
                 }
             }
         }
-        // Through memory: what is made of lanes by masks would otherwise be mixed with the code above, which is slower by half.
+        // Through memory: what is made of lanes by masks would otherwise be mixed with the code above, which takes half
+        // as long again.
         let made = black_box(made);
         let mut lanes = Lanes::starting_at(guess);
         lanes.advance(&made.update, made.det, &made.update);
