@@ -46,7 +46,7 @@ impl<L: Effect> Problem<'_, L> {
         let mut lanes = Lanes::starting_at(guess);
         lanes.advance(&made.update, made.det, &made.update);
         let mut again = self.again::<AGAIN>(terms, &made, &mut lanes);
-        for iteration in 1..MAX_ITERATIONS {
+        for iteration in 1..=MAX_ITERATIONS {
             if lanes.settled.all() {
                 return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
             }
