@@ -1,0 +1,111 @@
+//! What a step of every method costs that `accuracy-cost` compares: nanoseconds and instructions.
+//!
+//! ```text
+//! cargo bench --bench methods                                  times a step of each, in three scenes
+//! cargo bench --bench methods -- chaotic                       in one of looping, cuspidal, third, chaotic and free
+//! cargo bench --bench methods -- instructions chaotic          counts instructions instead, by valgrind
+//! cargo bench --bench methods -- count chaotic NAME 1000       runs 1000 steps of one method and nothing else
+//! ```
+//!
+//! The steps are of `h = 0.01 s`. Valgrind has AVX2 where the machine has, and Gauss collocation takes it: its stages lie
+//! in vector registers, so that eight cost less than six under gravity. Should they ever fall apart, they will cost twice
+//! as much.
+
+// What the example has and isn't run here.
+#![allow(dead_code)]
+
+mod counting;
+#[path = "../../examples/accuracy-cost/methods.rs"]
+mod methods;
+#[path = "../../examples/accuracy-cost/rivals/mod.rs"]
+mod rivals;
+#[path = "../../examples/accuracy-cost/scenes.rs"]
+mod scenes;
+#[path = "../../examples/accuracy-cost/systems.rs"]
+mod systems;
+#[path = "../../examples/common/top_equations.rs"]
+mod top_equations;
+
+use core::hint::black_box;
+use std::error::Error;
+use std::time::Instant;
+
+use counting::instructions;
+use methods::{Method, Prepared};
+use scenes::Scene;
+
+const STEP: f64 = 0.01;
+/// Long enough to hide the clock, short enough that some batches meet no other process.
+const BATCH: u32 = 500;
+const ROUNDS: u32 = 40;
+/// Enough to count, and of the dearest method no more than takes a second.
+const COUNTED: u32 = 500;
+
+/// A run of so many steps.
+fn prepared(method: &Method, scene: &Scene, steps: u32) -> Result<Prepared, Box<dyn Error>> {
+    let prepared = (method.prepare)(scene, f64::from(steps) * STEP, STEP);
+    prepared.ok_or_else(|| format!("{} can't be set up", method.name).into())
+}
+
+/// Nanoseconds a step, by the fastest batch.
+fn time(method: &Method, scene: &Scene) -> Result<f64, Box<dyn Error>> {
+    let run = prepared(method, scene, BATCH)?;
+    let mut best = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let start = Instant::now();
+        black_box(run()).ok_or_else(|| format!("a step of {} failed", method.name))?;
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    Ok(best * 1e9 / f64::from(BATCH))
+}
+
+/// Those whose steps are of one length.
+fn methods(scene: &Scene) -> impl Iterator<Item = Method> {
+    methods::all(scene).into_iter().filter(Method::steps_are_equal)
+}
+
+/// A line for each method: its cost, and that as a multiple of the first one's.
+fn compare(
+    scene: &Scene,
+    unit: &str,
+    cost: impl Fn(&Method) -> Result<f64, Box<dyn Error>>,
+) -> Result<(), Box<dyn Error>> {
+    println!("\n{:<44}{unit:>14} a step{:>12}", scene.name, "(3.13) = 1");
+    let mut first = None;
+    for method in methods(scene) {
+        let cost = cost(&method)?;
+        println!("{:<44}{cost:>21.1}{:>12.2}", method.name, cost / *first.get_or_insert(cost));
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    // Cargo adds `--bench`.
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let all = Scene::all()?;
+    let called =
+        |name: &str| all.iter().find(|scene| scene.short == name).ok_or_else(|| format!("there is no scene `{name}`"));
+    match arguments.as_slice() {
+        [] => ["looping", "chaotic", "free"].into_iter().try_for_each(|name| {
+            let scene = called(name)?;
+            compare(scene, "ns", |method| time(method, scene))
+        }),
+        ["instructions", name] => {
+            let (scene, program) = (called(name)?, std::env::current_exe()?);
+            compare(scene, "instructions", |method| instructions(&program, &["count", name, &method.name], COUNTED))
+        }
+        ["count", scene, name, steps] => {
+            let scene = called(scene)?;
+            let method = methods(scene).find(|method| method.name == *name);
+            let method = method.ok_or_else(|| format!("there is no method `{name}`"))?;
+            black_box(prepared(&method, scene, steps.parse()?)?()).ok_or("a step failed")?;
+            Ok(())
+        }
+        [name] => {
+            let scene = called(name)?;
+            compare(scene, "ns", |method| time(method, scene))
+        }
+        _ => Err("see the head of tests/benches/methods.rs".into()),
+    }
+}
