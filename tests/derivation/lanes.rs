@@ -108,13 +108,13 @@ fn each_lane_moves_as_alone() {
 fn composed_and_compensated_lanes_move_as_alone() {
     let lanes: [Lane<f64>; 8] = spread(12, 16.0);
     let composed = |(stepper, state): Running<f64>| {
-        let composition = Composition::new(stepper.lagrangian().clone(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
+        let composition = Composition::new(*stepper.lagrangian(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
         (composition, state)
     };
     let (wide, mut all) = together::<AutoF64x8, 8>(&lanes, 0.01);
     let mut compensated_all = CompensatedState::from(all);
     let step = wide.step_size();
-    let wide_composition = Composition::new(wide.lagrangian().clone(), step, CompositionScheme::SUZUKI_4).unwrap();
+    let wide_composition = Composition::new(*wide.lagrangian(), step, CompositionScheme::SUZUKI_4).unwrap();
     let wide = wide.compensated();
     let mut compositions = alone::<AutoF64x8, 8>(&lanes, 0.01).map(composed);
     let mut singles = alone::<AutoF64x8, 8>(&lanes, 0.01).map(|(s, state)| (s.compensated(), state.into()));
