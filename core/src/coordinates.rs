@@ -122,13 +122,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
             1 => b / det,
             2 | 3 => {
                 let inverse = T::one() / det;
-                // A loop, here and in `sum`: the compiler doesn't always inline `from_fn` and `fold`, and what isn't
-                // inlined has no vector instructions of the machine.
-                let mut z = *b;
-                for i in 0..D {
-                    z[i] = sum::<T, D>(|k| factors[(i, k)] * b[k]) * inverse;
-                }
-                z
+                entries::<T, D>(|i| sum::<T, D>(|k| factors[(i, k)] * b[k]) * inverse)
             }
             _ => substitute(factors, *b),
         }
@@ -140,17 +134,36 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 }
 
+// The compiler doesn't always inline `fold` and `from_fn` for lanes, and what isn't inlined has no vector instructions
+// of the machine. With loops, on the other hand, steps of single bodies are up to a sixth slower.
+
 /// `term(0) + term(1) + …`, in that order.
 #[inline(always)]
 fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
     if D == 0 {
         return T::zero();
     }
+    if T::LANES == 1 {
+        return (1..D).fold(term(0), |sum, k| sum + term(k));
+    }
     let mut sum = term(0);
     for k in 1..D {
         sum += term(k);
     }
     sum
+}
+
+/// `entry(0), entry(1), …`.
+#[inline(always)]
+fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D> {
+    if T::LANES == 1 {
+        return SVector::from_fn(|i, _| entry(i));
+    }
+    let mut entries = SVector::<T, D>::zeros();
+    for i in 0..D {
+        entries[i] = entry(i);
+    }
+    entries
 }
 
 #[inline(always)]
