@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo bench --bench methods                                  times a step of each, in three scenes
-//! cargo bench --bench methods -- chaotic                       in one of looping, cuspidal, third, chaotic and free
+//! cargo bench --bench methods -- chaotic                       in any of looping, cuspidal, third, chaotic and free
 //! cargo bench --bench methods -- instructions chaotic          counts instructions instead, by valgrind
 //! cargo bench --bench methods -- count chaotic NAME 1000       runs 1000 steps of one method and nothing else
 //! ```
@@ -87,10 +87,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let called =
         |name: &str| all.iter().find(|scene| scene.short == name).ok_or_else(|| format!("there is no scene `{name}`"));
     match arguments.as_slice() {
-        [] => ["looping", "chaotic", "free"].into_iter().try_for_each(|name| {
-            let scene = called(name)?;
-            compare(scene, "ns", |method| time(method, scene))
-        }),
         ["instructions", name] => {
             let (scene, program) = (called(name)?, std::env::current_exe()?);
             compare(scene, "instructions", |method| instructions(&program, &["count", name, &method.name], COUNTED))
@@ -102,10 +98,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             black_box(prepared(&method, scene, steps.parse()?)?()).ok_or("a step failed")?;
             Ok(())
         }
-        [name] => {
-            let scene = called(name)?;
-            compare(scene, "ns", |method| time(method, scene))
+        names => {
+            let names = if names.is_empty() { &["looping", "chaotic", "free"] } else { names };
+            names.iter().try_for_each(|name| {
+                let scene = called(name)?;
+                compare(scene, "ns", |method| time(method, scene))
+            })
         }
-        _ => Err("see the head of tests/benches/methods.rs".into()),
     }
 }
