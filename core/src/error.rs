@@ -118,7 +118,7 @@ pub enum StepError {
         /// The largest step that this state allows, s.
         largest: f64,
     },
-    /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::Gauss).
+    /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::methods::Gauss).
     NotConverged {
         /// How many iterations were made.
         iterations: u32,

@@ -5,19 +5,14 @@ use super::ladder::Start;
 use super::method::Method;
 use super::search::search;
 use super::{Accuracy, AccurateStepper, Choice};
-use crate::advected::Advected;
-use crate::composition::{Composition, CompositionScheme};
-use crate::effect::{Effect, Group, Scalar, Vector};
 use crate::error::SetupError;
-use crate::gauss::Gauss;
-use crate::groups::{LieGroup, SO3};
-use crate::inertia::DiagonalNonstandardInertia;
-use crate::kinetic::Regular;
-use crate::lagrangian::DiscreteLagrangian;
-use crate::preprocessed::{PreprocessedBody, PreprocessedOrder};
-use crate::retraction::Retraction as _;
-use crate::splitting::{KineticFlow, Splitting, SplittingScheme, has_force_gradient};
-use crate::stepper::Stepper;
+use crate::groups::{Advected, LieGroup, Retraction as _, SO3};
+use crate::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Group, Regular, Scalar, Vector};
+use crate::methods::{
+    Composition, CompositionScheme, Gauss, KineticFlow, PreprocessedBody, PreprocessedOrder, Splitting,
+    SplittingScheme, has_force_gradient,
+};
+use crate::motion::Stepper;
 
 /// A method, to be made for a step.
 pub(super) struct Candidate<G: LieGroup, A: Advected<G>> {
@@ -233,7 +228,7 @@ impl Candidates<SO3, ()> {
                 name: format!("preprocessed, {number}"),
                 order: number,
                 stages: 1,
-                least: super::method::least(<crate::PreprocessedFlow as KineticFlow<f64>>::OPERATIONS),
+                least: super::method::least(<crate::methods::PreprocessedFlow as KineticFlow<f64>>::OPERATIONS),
                 make: Box::new(move |h| Ok(Box::new(PreprocessedBody::new(body, h, order)?))),
             });
         }
@@ -248,8 +243,8 @@ fn count(stages: usize) -> u32 {
 fn inertia<L: Effect<Scalar = f64>>(scene: &L) -> Vec<f64> {
     let mut entries = Vec::new();
     for k in 0..<Group<L> as LieGroup>::DIMENSION {
-        let column: Vector<L> = scene.inertia() * <Vector<L> as crate::coordinates::Coordinates<Scalar<L>>>::axis(k);
-        crate::entries::Entries::each(&column, &mut |entry| entries.push(entry));
+        let column: Vector<L> = scene.inertia() * <Vector<L> as crate::numbers::Coordinates<Scalar<L>>>::axis(k);
+        crate::numbers::Entries::each(&column, &mut |entry| entries.push(entry));
     }
     entries
 }
@@ -267,14 +262,14 @@ struct Seen {
 
 /// At places enough to tell the potentials of a body apart.
 fn seen<L: Effect<Scalar = f64>>(scene: &L) -> Vec<Seen> {
-    use crate::coordinates::Coordinates as _;
+    use crate::numbers::Coordinates as _;
     let dimension = <Group<L> as LieGroup>::DIMENSION;
     let turned = (0..dimension).map(|k| L::Retraction::retract(&(Vector::<L>::axis(k) * 0.7)));
     let places = core::iter::once(Group::<L>::identity()).chain(turned);
     let look = |place| {
         let w = scene.advected().seen_from(&place);
         let mut bias = Vec::new();
-        crate::entries::Entries::each(&scene.momentum_bias(&w), &mut |entry| bias.push(entry));
+        crate::numbers::Entries::each(&scene.momentum_bias(&w), &mut |entry| bias.push(entry));
         Seen { potential: scene.potential(&w), bias }
     };
     places.map(look).collect()

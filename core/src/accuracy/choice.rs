@@ -6,8 +6,7 @@ use super::Accuracy;
 use super::candidates::Candidate;
 use super::ladder::Estimate;
 use super::search::Found;
-use crate::advected::Advected;
-use crate::groups::LieGroup;
+use crate::groups::{Advected, LieGroup};
 
 /// A method for an accuracy.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +23,7 @@ pub struct Offer {
     pub is_bound: bool,
 }
 
-/// What [`Stepper::for_accuracy`](crate::Stepper::for_accuracy) has chosen, with its reasons; as text, a table.
+/// What [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy) has chosen, with its reasons; as text, a table.
 ///
 /// # Examples
 ///

@@ -2,10 +2,8 @@
 
 use super::error::AccuracyError;
 use super::{Accuracy, Candidate};
-use crate::advected::Advected;
-use crate::coordinates::Coordinates as _;
-use crate::entries::Entries;
-use crate::groups::LieGroup;
+use crate::groups::{Advected, LieGroup};
+use crate::numbers::{Coordinates as _, Entries};
 
 /// Attitude and velocity.
 #[derive(Clone, Copy, Debug)]

@@ -1,18 +1,10 @@
 //! The integrators behind one interface, with the arithmetic that their steps are.
 
-use crate::advected::Advected;
-use crate::composition::Composition;
-use crate::effect::{Effect, Group, Vector};
 use crate::error::{SetupError, StepError};
-use crate::gauss::{Gauss, GaussState};
-use crate::groups::{LieGroup, SO3};
-use crate::kinetic::Regular;
-use crate::lagrangian::DiscreteLagrangian;
-use crate::operations::Operations;
-use crate::preprocessed::PreprocessedBody;
-use crate::splitting::{KineticFlow, PreprocessedFlow, Splitting};
-use crate::state::State;
-use crate::stepper::Stepper;
+use crate::groups::{Advected, LieGroup, SO3};
+use crate::mechanics::{DiscreteLagrangian, Effect, Group, Operations, Regular, Vector};
+use crate::methods::{Composition, Gauss, GaussState, KineticFlow, PreprocessedBody, PreprocessedFlow, Splitting};
+use crate::motion::{State, Stepper};
 
 /// Besides what an effect counts, a solve and its reconstruction make so many operations on SO(3).
 const OF_A_STAGE: f64 = 150.0;
@@ -42,7 +34,7 @@ pub(super) trait Method<G: LieGroup, A: Advected<G>> {
     fn advance(&self, state: &mut State<G, A>, steps: u64) -> Result<f64, StepError>;
 
     /// As [`advance`](Self::advance) by one; on an error the state is unchanged.
-    fn step(&self, state: &mut State<G, A>) -> Result<crate::StepReport, StepError>;
+    fn step(&self, state: &mut State<G, A>) -> Result<crate::motion::StepReport, StepError>;
 
     fn velocity(&self, state: &State<G, A>) -> G::Vector;
 
@@ -72,7 +64,7 @@ where
         Ok(solves(L::OPERATIONS, steps, iterations))
     }
 
-    fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<crate::StepReport, StepError> {
+    fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<crate::motion::StepReport, StepError> {
         self.step(state)
     }
 
@@ -102,7 +94,7 @@ where
         Ok(solves(L::OPERATIONS, steps * stages, iterations))
     }
 
-    fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<crate::StepReport, StepError> {
+    fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<crate::motion::StepReport, StepError> {
         self.step(state)
     }
 
@@ -146,7 +138,7 @@ where
         Ok(solves(drift, steps * drifts, steps * iterations) + kicks + steps as f64 * turn)
     }
 
-    fn step(&self, state: &mut State<SO3, L::Advected>) -> Result<crate::StepReport, StepError> {
+    fn step(&self, state: &mut State<SO3, L::Advected>) -> Result<crate::motion::StepReport, StepError> {
         self.step(state)
     }
 
@@ -172,7 +164,7 @@ impl Method<SO3, ()> for PreprocessedBody {
         Ok(solves(<PreprocessedFlow as KineticFlow<f64>>::OPERATIONS, steps, iterations))
     }
 
-    fn step(&self, state: &mut State<SO3, ()>) -> Result<crate::StepReport, StepError> {
+    fn step(&self, state: &mut State<SO3, ()>) -> Result<crate::motion::StepReport, StepError> {
         self.step(state)
     }
 
@@ -206,7 +198,7 @@ where
         Ok(collocation::<L, PAIRS>(steps, iterations))
     }
 
-    fn step(&self, state: &mut State<SO3, L::Advected>) -> Result<crate::StepReport, StepError> {
+    fn step(&self, state: &mut State<SO3, L::Advected>) -> Result<crate::motion::StepReport, StepError> {
         let mut lifted = GaussState::from(*state);
         let report = self.step(&mut lifted)?;
         *state = lowered(self, &lifted, state);

@@ -1,11 +1,9 @@
 //! The search for the cheapest method: the one that looks cheapest is tried a step finer, until it is near enough.
 
-use super::Accuracy;
-use super::Candidate;
 use super::error::AccuracyError;
 use super::ladder::{AIM, Estimate, Ladder, Start};
-use crate::advected::Advected;
-use crate::groups::LieGroup;
+use super::{Accuracy, Candidate};
+use crate::groups::{Advected, LieGroup};
 
 /// A run with more stages isn't tried.
 const MOST_STAGES: f64 = 2e8;

@@ -4,7 +4,7 @@
 
 use super::{SetupError, StepError};
 use crate::groups::{NotARotation, NotInGroup};
-use crate::inertia::InertiaError;
+use crate::mechanics::InertiaError;
 
 /// What a user can do begins with one of these.
 const ADVICE: [&str; 12] =
@@ -103,7 +103,7 @@ fn matrices_that_are_not_in_a_group() {
 #[cfg(feature = "serde")]
 #[test]
 fn checkpoint_errors() {
-    use crate::checkpoint::CheckpointError;
+    use crate::with::CheckpointError;
     let errors = [
         CheckpointError::AnotherFormat { found: 7, known: 1 },
         CheckpointError::AnotherScene,

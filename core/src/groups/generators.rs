@@ -4,12 +4,12 @@ use core::fmt::Debug;
 
 use nalgebra::{RealField, SMatrix};
 
-use crate::scalar::{Real, real};
+use crate::numbers::{Real, real};
 
 /// The declaration of a matrix group: the basis `E_k` of its Lie algebra, and the relation its elements satisfy.
 ///
 /// `N` is the size of the matrices and `D` the dimension of the group. Implement it for an empty marker type; the group
-/// is then [`MatrixGroup`](crate::MatrixGroup) of that marker, best under an alias.
+/// is then [`MatrixGroup`](crate::groups::MatrixGroup) of that marker, best under an alias.
 ///
 /// The basis must be orthogonal, `tr(E_jᵀ E_k) = 0` for `j ≠ k`, of any lengths, and span a Lie algebra. Both are
 /// checked when the user's crate is compiled. That the elements satisfy the relation is a law to be tested:

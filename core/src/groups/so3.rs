@@ -5,8 +5,8 @@ use core::fmt;
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
-use crate::scalar::{Mask, Real, gathered, real};
-use crate::solvability::{self, TurningLimits};
+use crate::numbers::{Mask, Real, gathered, real};
+use crate::solving::{TurningLimits, solvability};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -116,8 +116,8 @@ impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
             Ok(candidate)
         } else {
             Err(NotARotation {
-                defect: crate::scalar::reported(defect),
-                determinant: crate::scalar::reported(determinant),
+                defect: crate::numbers::reported(defect),
+                determinant: crate::numbers::reported(determinant),
             })
         }
     }
