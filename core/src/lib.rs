@@ -43,18 +43,15 @@ pub use mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, Nonstanda
 pub use mechanics::{DiscreteLagrangian, Force, Operations, SceneVisitor, SharedBy, Sum};
 pub use mechanics::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
 pub use mechanics::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
-pub use methods::{Composition, CompositionScheme, Gauss, GaussState, PreprocessedBody, PreprocessedOrder};
-pub use methods::{
-    DeclaredDrift, Flow, KineticFlow, PreprocessedDrift, PreprocessedFlow, SplitBody, SplitDrift, Splitting,
-    SplittingScheme, SymmetricBody, SymmetricDrift, Turn,
-};
+pub use methods::{CompositionScheme, Gauss, PreprocessedOrder};
+pub use methods::{Flow, KineticFlow, PreprocessedFlow, SplitBody, SplittingScheme, SymmetricBody, Turn};
+pub use motion::Remedy;
 pub use motion::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use motion::{Solvability, State, StepReport, Stepper};
 pub use numbers::{Coordinates, Entries, Mask, Real};
 pub use solving::TurningLimits;
 #[cfg(feature = "serde")]
 pub use with::{Checkpoint, CheckpointError, Stored};
-pub use with::{CompensatedState, CompensatedStepper, Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

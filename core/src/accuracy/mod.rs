@@ -13,7 +13,6 @@ mod candidates;
 mod choice;
 mod error;
 mod ladder;
-mod method;
 mod search;
 
 use candidates::Candidate;
@@ -21,13 +20,12 @@ pub use candidates::Candidates;
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
 
-use core::fmt;
+use core::ops::Deref;
 
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{DiscreteLagrangian, Group, Regular, Vector};
-use crate::motion::{State, StepReport, Stepper};
-use method::Method;
+use crate::mechanics::{Effect, Group, Scene, Vector};
+use crate::motion::{AnyState, AnyStepper, Stepper};
 
 /// How near to the true motion, and until when.
 ///
@@ -65,11 +63,7 @@ impl Accuracy {
     }
 }
 
-impl<L> Stepper<L>
-where
-    L: DiscreteLagrangian<Scalar = f64> + Regular + Clone + 'static,
-    L::Advected: 'static,
-{
+impl<S: Effect> Stepper<S> {
     /// The cheapest way to an accuracy that a scene of order 2 has by itself: its own step, or a symmetric composition
     /// of order 4, 6, 8 or 10, with the step that is just short enough for the motion from this attitude (body to
     /// space) and body velocity.
@@ -99,36 +93,33 @@ where
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn for_accuracy(
-        scene: L,
+        scene: S,
         accuracy: Accuracy,
-        attitude: impl Into<Group<L>>,
-        velocity: Vector<L>,
-    ) -> Result<AccurateStepper<Group<L>, L::Advected>, AccuracyError> {
+        attitude: impl Into<Group<S>>,
+        velocity: Vector<S>,
+    ) -> Result<AccurateStepper<Group<S>, S::Advected>, AccuracyError>
+    where
+        S: Scene<Scalar = f64>,
+    {
         Candidates::of(scene, 2).for_accuracy(accuracy, attitude, velocity)
     }
 }
 
-/// A method of a fixed step, chosen for an accuracy by [`Stepper::for_accuracy`] or [`Candidates::for_accuracy`].
-pub struct AccurateStepper<G: LieGroup, A: Advected<G>> {
-    method: Box<dyn Method<G, A>>,
-    start: State<G, A>,
+/// A stepper chosen for an accuracy by [`Stepper::for_accuracy`] or [`Candidates::for_accuracy`].
+///
+/// It steps, tells time, velocity and energy as the [`AnyStepper`] that it holds.
+#[derive(Debug)]
+pub struct AccurateStepper<G: LieGroup, A> {
+    stepper: AnyStepper<G, A>,
+    start: AnyState<G, A>,
     choice: Choice,
 }
 
-impl<G: LieGroup<Scalar = f64>, A: Advected<G>> AccurateStepper<G, A> {
+impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
     /// The motion that the accuracy was asked for, at its start.
     #[must_use]
-    pub fn start(&self) -> State<G, A> {
-        self.start
-    }
-
-    /// One step. On an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`] as of the method; not before the horizon.
-    pub fn step(&self, state: &mut State<G, A>) -> Result<StepReport, StepError> {
-        self.method.step(state)
+    pub fn start(&self) -> AnyState<G, A> {
+        self.start.clone()
     }
 
     /// All steps from the state to the horizon; none where it is there or beyond. On an error the state is unchanged.
@@ -136,11 +127,8 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G>> AccurateStepper<G, A> {
     /// # Errors
     ///
     /// [`StepError`] as of the method; none for the motion from [`start`](Self::start).
-    pub fn run(&self, state: &mut State<G, A>) -> Result<(), StepError> {
-        let mut next = *state;
-        self.method.advance(&mut next, self.choice.steps.saturating_sub(state.steps()))?;
-        *state = next;
-        Ok(())
+    pub fn run(&self, state: &mut AnyState<G, A>) -> Result<(), StepError> {
+        self.stepper.run(state, self.choice.steps.saturating_sub(state.steps())).map(|_| ())
     }
 
     /// What was chosen, and what else there was.
@@ -148,35 +136,12 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G>> AccurateStepper<G, A> {
     pub fn choice(&self) -> &Choice {
         &self.choice
     }
-
-    /// The step `h`, s.
-    #[must_use]
-    pub fn step_size(&self) -> f64 {
-        self.choice.chosen().step
-    }
-
-    /// The time since the start, `n h`, s; never accumulated.
-    #[must_use]
-    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
-    pub fn time(&self, state: &State<G, A>) -> f64 {
-        self.step_size() * state.steps() as f64
-    }
-
-    /// The body velocity, on SO(3) in rad/s.
-    #[must_use]
-    pub fn velocity(&self, state: &State<G, A>) -> G::Vector {
-        self.method.velocity(state)
-    }
-
-    /// The energy of the continuous system, J; see [`Stepper::energy`].
-    #[must_use]
-    pub fn energy(&self, state: &State<G, A>) -> f64 {
-        self.method.energy(state)
-    }
 }
 
-impl<G: LieGroup, A: Advected<G>> fmt::Debug for AccurateStepper<G, A> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("AccurateStepper").field("choice", &self.choice).finish_non_exhaustive()
+impl<G: LieGroup, A> Deref for AccurateStepper<G, A> {
+    type Target = AnyStepper<G, A>;
+
+    fn deref(&self) -> &AnyStepper<G, A> {
+        &self.stepper
     }
 }

@@ -64,13 +64,13 @@ use crate::solving::TurningLimits;
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
 /// Covectors are given by their components `μ_k = ⟨μ, E_k⟩`, so that no factor ½ appears anywhere.
-pub trait LieGroup: Copy + Debug + PartialEq {
+pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// The scalar of the matrices.
     type Scalar: Real;
     /// Components of algebra elements and of covectors.
-    type Vector: Coordinates<Self::Scalar>;
+    type Vector: Coordinates<Self::Scalar> + 'static;
     /// The ambient matrices.
-    type Matrix: Entries<Self::Scalar> + Debug + PartialEq;
+    type Matrix: Entries<Self::Scalar> + Debug + PartialEq + 'static;
 
     /// The dimension of the group.
     const DIMENSION: usize;

@@ -1,6 +1,8 @@
 //! The trait of reduced discrete Lagrangians that `#[lagrangian]` implements, and that can be implemented by hand.
 
+use crate::groups::SO3;
 use crate::mechanics::effect::{Effect, Matrix, Vector};
+use crate::mechanics::kinetic_part::Regular;
 
 /// A reduced discrete Lagrangian `l_d(F, w)` with all that an integrator needs of it.
 ///
@@ -54,3 +56,13 @@ pub trait DiscreteLagrangian: Effect {
     /// The discrete energy `−∂l_d/∂h`, in J.
     fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
 }
+
+/// A scene on SO(3) that can be stepped: a body with a fixed point, or one whose motion about its centre is looked at.
+pub trait RigidScene: DiscreteLagrangian + Regular + Effect<Group = SO3<<Self as Effect>::Scalar>> {}
+
+impl<S> RigidScene for S where S: DiscreteLagrangian + Regular + Effect<Group = SO3<<S as Effect>::Scalar>> {}
+
+/// A scene that can be stepped, and that a chooser among methods may keep and copy.
+pub trait Scene: DiscreteLagrangian<Advected: 'static> + Regular + Clone + 'static {}
+
+impl<S> Scene for S where S: DiscreteLagrangian<Advected: 'static> + Regular + Clone + 'static {}

@@ -19,7 +19,7 @@ pub(crate) use effect::{energy, momentum_of_velocity, velocity_of_momentum};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use kinetic_part::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
-pub use lagrangian::DiscreteLagrangian;
+pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub use operations::Operations;
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};

@@ -1,4 +1,4 @@
-//! The stepper: a flow on momenta with reconstruction.
+//! The stepper: a scene, a method, and all that is put around a step.
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup, SO3};
@@ -6,27 +6,31 @@ use crate::mechanics::{
     AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Vector, energy,
     momentum_of_velocity, velocity_of_momentum,
 };
-use crate::motion::flows::{DiscreteLiePoisson, Stepped};
+use crate::motion::declared::Declared;
+use crate::motion::plan::Plan;
+use crate::motion::report::StepReport;
 use crate::motion::state::State;
-use crate::numbers::{Coordinates as _, Work, at_best_in_lanes, real, reported};
-use crate::solving::{Continued, Solvability};
-use crate::with::Remedy;
+use crate::motion::summation::Motion;
+use crate::numbers::{Coordinates as _, Kernel, dispatch, real, reported};
+use crate::solving::Solvability;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
-/// What a step did.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct StepReport {
-    /// Newton iterations, of several lanes those of the slowest; above 20 where the first guess had to be given up. The
-    /// last may have been made with the Jacobian of the one before.
-    ///
-    /// Where the [Jacobian is dear](Effect::JACOBIAN_IS_DEAR) they are residuals, up to eight, to which come
-    /// the iterations with the Jacobian where these weren't enough.
-    pub iterations: u32,
-    /// What was done in the place of this step; only by a [`RemediedStepper`](crate::with::RemediedStepper).
-    pub remedy: Option<Remedy>,
-}
+/// The state of a scene `S` that is stepped by the plan `P`.
+pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as Plan<S>>::Kept>;
 
-/// An integrator with a fixed step for a declared Lagrangian.
+/// An integrator with a fixed step: a scene, and a method whose constants are folded for it.
+///
+/// ```text
+/// Stepper::new(scene, h)                          its own step, of the order of the declared Lagrangian
+/// Stepper::composed(scene, h, scheme)             symmetric compositions of it, to order 10
+/// Stepper::split(scene, h, flow, scheme)          kinetic flow and kicks by turns, to order 10
+/// Stepper::collocated::<PAIRS>(scene, h)          Gauss collocation, to any order
+/// Stepper::preprocessed(body, h, order)           a free body, to order 10 in one solve
+/// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of them for an error
+/// ```
+///
+/// Whatever the method `P`, a motion is [started](Self::start), [stepped](Self::step) and read in the same way, and
+/// [compensated](Self::compensated) sums, [substeps](Self::or_substeps), control forces and checkpoints go with it.
 ///
 /// # Contract
 ///
@@ -61,23 +65,36 @@ pub struct StepReport {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Stepper<L: Effect> {
-    flow: DiscreteLiePoisson<L>,
+pub struct Stepper<S: Effect, P = Declared<S>> {
+    pub(crate) scene: S,
+    pub(crate) plan: P,
 }
 
-impl<L: Effect> Stepper<L> {
+impl<S: Effect> Stepper<S> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
+    ///
+    /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity.
     ///
     /// # Errors
     ///
-    /// As [`DiscreteLiePoisson::new`].
-    pub fn new(lagrangian: L, h: Scalar<L>) -> Result<Self, SetupError>
+    /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part.
+    pub fn new(scene: S, h: Scalar<S>) -> Result<Self, SetupError>
     where
-        L: Regular,
+        S: Regular,
     {
-        DiscreteLiePoisson::new(lagrangian, h).map(|flow| Self { flow })
+        let plan = Declared::new(&scene, h)?;
+        Ok(Self { scene, plan })
     }
 
+    /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
+    /// see [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
+    #[must_use]
+    pub fn solvability<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Solvability {
+        self.plan.solvability(&self.scene, &state.motion.momentum, &state.motion.advected)
+    }
+}
+
+impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// A motion from an attitude (body to space) and a body velocity, on SO(3) in rad/s.
     ///
     /// The momentum is that of the continuous Lagrangian, `μ_0 = J Ω_0` for a rigid body: the half kick of the
@@ -86,17 +103,13 @@ impl<L: Effect> Stepper<L> {
     /// # Errors
     ///
     /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
-    pub fn start(
-        &self,
-        attitude: impl Into<Group<L>>,
-        velocity: Vector<L>,
-    ) -> Result<State<Group<L>, L::Advected>, SetupError> {
+    pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
         let attitude = attitude.into();
-        let w = self.lagrangian().advected().seen_from(&attitude);
-        let momentum = momentum_of_velocity(self.lagrangian(), &velocity, &w);
+        let w = self.scene.advected().seen_from(&attitude);
+        let momentum = momentum_of_velocity(&self.scene, &velocity, &w);
         self.start_with_momentum(attitude, momentum)
     }
 
@@ -107,12 +120,12 @@ impl<L: Effect> Stepper<L> {
     /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
     pub fn start_with_momentum(
         &self,
-        attitude: impl Into<Group<L>>,
-        momentum: Vector<L>,
-    ) -> Result<State<Group<L>, L::Advected>, SetupError> {
+        attitude: impl Into<Group<S>>,
+        momentum: Vector<S>,
+    ) -> Result<StateOf<S, P>, SetupError> {
         let attitude = attitude.into();
         // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
-        let allowed = Scalar::<L>::simd_default_epsilon() * real(1e4);
+        let allowed = Scalar::<S>::simd_default_epsilon() * real(1e4);
         let defect = attitude.defect();
         if !defect.simd_le(allowed).all() {
             return Err(SetupError::NotInGroup { defect: reported(defect) });
@@ -120,11 +133,112 @@ impl<L: Effect> Stepper<L> {
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        Ok(self.at(attitude, momentum))
+        Ok(self.begin(attitude, momentum))
     }
 
-    /// The state of another scene on the same group, to go on in this one: its attitude and momentum are kept to the
-    /// bit, and time counts from here.
+    /// One step. On an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
+    /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
+    #[inline]
+    pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
+        match dispatch(P::DISPATCHED, Step(self, state)) {
+            Ok(report) => Ok(report),
+            Err(error) => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
+        }
+    }
+
+    /// So many steps, of which the states between aren't asked for; returns all their iterations. On an error the state
+    /// is unchanged.
+    ///
+    /// A [splitting](Self::split) makes the last flow of a step and the first of the next as one: where its kinetic flow
+    /// is exact the result is that of as many [steps](Self::step) to rounding; elsewhere they differ by some of its
+    /// error.
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step).
+    pub fn run(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
+        let mut next = *state;
+        let iterations = self
+            .run_unexplained(&mut next, steps)
+            .map_err(|error| self.plan.explained(error, &self.scene, &next.motion, &next.kept))?;
+        *state = next;
+        Ok(iterations)
+    }
+
+    /// As [`run`](Self::run), but after an error the state may be anywhere, and what would do isn't looked for.
+    pub(crate) fn run_unexplained(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
+        dispatch(P::DISPATCHED, Run(self, state, steps))
+    }
+
+    /// The states after each step from here on; after an error, nothing more.
+    pub fn steps(&self, state: StateOf<S, P>) -> impl Iterator<Item = Result<StateOf<S, P>, StepError>> {
+        let mut current = Some(state);
+        core::iter::from_fn(move || {
+            let mut next = current.take()?;
+            Some(self.step(&mut next).map(|_| {
+                current = Some(next);
+                next
+            }))
+        })
+    }
+
+    /// One step under a control force, which is held over the step; on an error the state is unchanged.
+    ///
+    /// It is a covector in the body's axes: on SO(3) a torque in N m. By the discrete Lagrange–d'Alembert principle
+    /// half of its impulse `h f` is added to the momentum at either end of the step, as by
+    /// [`Torque`](crate::effects::Torque), so the scheme stays of second order for inputs that are smooth in time and
+    /// taken in the middle of each step. Without a force the momentum is that of [`step`](Self::step), bit for bit.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where the force isn't finite, and as [`step`](Self::step); the largest step that an error names is
+    /// that for the momentum with half of the impulse.
+    ///
+    /// # Examples
+    ///
+    /// A rotation is braked by a torque against the body velocity.
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5))?;
+    /// let stepper = Stepper::new(RigidBody { J_d }, 0.01)?;
+    /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.5, -1.0, 2.0))?;
+    /// for _ in 0..1000 {
+    ///     let torque = stepper.velocity(&state) * -2.0;
+    ///     stepper.step_forced(&mut state, &torque)?;
+    /// }
+    /// assert!(stepper.velocity(&state).norm() < 0.1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Source
+    ///
+    /// \[MW01\], section 3.2.
+    pub fn step_forced(&self, state: &mut StateOf<S, P>, force: &Vector<S>) -> Result<StepReport, StepError> {
+        if !force.is_finite() {
+            return Err(StepError::NonFinite { what: "control force" });
+        }
+        let half = *force * (self.step_size() * real(0.5));
+        let mut next = *state;
+        self.plan.push(&mut next.motion, &mut next.kept, &half);
+        let report = self.step(&mut next)?;
+        self.plan.push(&mut next.motion, &mut next.kept, &half);
+        if !next.motion.momentum.is_finite() {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        *state = next;
+        Ok(report)
+    }
+
+    /// The state of another scene or of another method on the same group, to go on in this one: its attitude and momentum
+    /// are kept to the bit, and time counts from here.
     ///
     /// What both scenes conserve goes on being conserved, as the discrete momentum belongs to a time, not to a step.
     ///
@@ -149,114 +263,60 @@ impl<L: Effect> Stepper<L> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn adopt<A: Advected<Group<L>>>(&self, state: &State<Group<L>, A>) -> State<Group<L>, L::Advected> {
-        self.at(state.attitude, state.momentum)
+    pub fn adopt<A: Advected<Group<S>>, K>(&self, state: &State<Group<S>, A, K>) -> StateOf<S, P> {
+        self.begin(state.motion.attitude, state.motion.momentum)
     }
 
     /// The motion that begins with this attitude and momentum.
-    fn at(&self, attitude: Group<L>, momentum: Vector<L>) -> State<Group<L>, L::Advected> {
-        let advected = self.lagrangian().advected().seen_from(&attitude);
-        // Every retraction has the identity as its derivative at zero, so this is near the first increment.
-        let half_step = self.step_size() * real(0.5);
-        let half = velocity_of_momentum(self.lagrangian(), &momentum, &advected) * half_step;
-        State::new(attitude, momentum, advected, half)
+    fn begin(&self, attitude: Group<S>, momentum: Vector<S>) -> StateOf<S, P> {
+        let advected = self.scene.advected().seen_from(&attitude);
+        let motion = Motion { attitude, momentum, advected, steps: 0 };
+        State { motion, kept: self.plan.keep(&self.scene, &motion) }
     }
 
-    /// One step. On an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`] where the momentum equation (2.7) has no solution on the branch of the identity, or a value
-    /// isn't finite.
-    #[inline]
-    pub fn step(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        at_best_in_lanes::<Scalar<L>, _>(Step(self, state))
-    }
-
-    #[inline(always)]
-    fn step_as_compiled(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        match self.flow.step_directly(&state.momentum, &state.advected, &state.guess()) {
-            Some(stepped) => Ok(self.taken(state, &stepped)),
-            None => self.step_carefully(state),
-        }
-    }
-
-    /// What is rare, to its end: if it came back to the common way, that would have to keep in memory what it has in
-    /// registers.
-    #[cold]
-    #[inline(never)]
-    fn step_carefully(&self, state: &mut State<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        let stepped = self.flow.step_carefully(&state.momentum, &state.advected, &state.guess())?;
-        Ok(self.taken(state, &stepped))
-    }
-
-    #[inline(always)]
-    fn taken(&self, state: &mut State<Group<L>, L::Advected>, stepped: &Stepped<L>) -> StepReport {
-        let Stepped { step, half, far } = stepped;
-        state.attitude = state.attitude.advance(&step.increment);
-        state.momentum = step.momentum;
-        state.advected = step.advected;
-        state.proceed(*half, *far, Continued::for_jacobian(L::JACOBIAN_IS_DEAR), || self.lagrangian().advected());
-        StepReport { iterations: step.iterations, remedy: None }
-    }
-
-    /// The states after each step from here on; after an error, nothing more.
-    pub fn steps(
-        &self,
-        state: State<Group<L>, L::Advected>,
-    ) -> impl Iterator<Item = Result<State<Group<L>, L::Advected>, StepError>> {
-        let mut current = Some(state);
-        core::iter::from_fn(move || {
-            let mut next = current.take()?;
-            Some(self.step(&mut next).map(|_| {
-                current = Some(next);
-                next
-            }))
-        })
-    }
-
-    /// The declared Lagrangian.
+    /// The scene.
     #[must_use]
-    pub fn lagrangian(&self) -> &L {
-        self.flow.lagrangian()
+    pub fn scene(&self) -> &S {
+        &self.scene
     }
 
-    /// The flow on momenta, (2.8).
+    /// The method, folded.
     #[must_use]
-    pub fn flow(&self) -> &DiscreteLiePoisson<L> {
-        &self.flow
+    pub fn plan(&self) -> &P {
+        &self.plan
     }
 
     /// The step `h`, s.
     #[must_use]
-    pub fn step_size(&self) -> Scalar<L> {
-        self.flow.step_size()
+    pub fn step_size(&self) -> Scalar<S> {
+        self.plan.step_size()
     }
 
     /// The time since the start, `n h`, s; never accumulated.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
-    pub fn time(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
-        self.step_size() * real(state.steps as f64)
+    pub fn time<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Scalar<S> {
+        self.step_size() * real(state.motion.steps as f64)
     }
 
     /// The body velocity, on SO(3) in rad/s.
     #[must_use]
-    pub fn velocity(&self, state: &State<Group<L>, L::Advected>) -> Vector<L> {
-        velocity_of_momentum(self.lagrangian(), &state.momentum, &state.advected)
+    pub fn velocity<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Vector<S> {
+        velocity_of_momentum(&self.scene, &state.motion.momentum, &state.motion.advected)
     }
 
     /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. Where the scene is a [`DiscreteLagrangian`] it
     /// oscillates about its initial value, at the order of the scheme, and doesn't drift.
     #[must_use]
-    pub fn energy(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
-        energy(self.lagrangian(), &state.momentum, &state.advected)
+    pub fn energy<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Scalar<S> {
+        energy(&self.scene, &state.motion.momentum, &state.motion.advected)
     }
 
-    /// What is proved about the next step; see [`DiscreteLiePoisson::solvability`].
+    /// The largest step from this state up to the stepper's own, s, to six digits: that fraction of it whose equations
+    /// all have solutions. It is found by bisection, which takes some dozens of steps.
     #[must_use]
-    pub fn solvability(&self, state: &State<Group<L>, L::Advected>) -> Solvability {
-        self.flow.solvability(&state.momentum, &state.advected)
+    pub fn max_step(&self, state: &StateOf<S, P>) -> Scalar<S> {
+        self.plan.max_step(&self.scene, &state.motion, &state.kept)
     }
 
     /// The stepper of `−h`, which undoes the steps of this one exactly.
@@ -284,22 +344,23 @@ impl<L: Effect> Stepper<L> {
     ///
     /// # Errors
     ///
-    /// As [`DiscreteLiePoisson::new`].
+    /// [`SetupError`] where the scene has no step of `−h`.
     pub fn inverse(&self) -> Result<Self, SetupError>
     where
-        L: DiscreteLagrangian + Regular + Clone,
+        S: DiscreteLagrangian + Clone,
     {
         const {
-            assert!(L::SELF_ADJOINT, "a step of -h undoes one of h only where l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
+            assert!(S::SELF_ADJOINT, "a step of -h undoes one of h only where l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
         }
-        Self::new(self.lagrangian().clone(), -self.step_size())
+        let plan = self.plan.refolded(&self.scene, -self.step_size())?;
+        Ok(Self { scene: self.scene.clone(), plan })
     }
 
     /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected.
     #[must_use]
-    pub fn spatial_momentum(&self, state: &State<Group<L>, L::Advected>) -> Vector<L>
+    pub fn spatial_momentum<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Vector<S>
     where
-        L: LeftInvariant,
+        S: LeftInvariant,
     {
         state.spatial_momentum()
     }
@@ -307,28 +368,34 @@ impl<L: Effect> Stepper<L> {
     /// The momentum along the advected vector, `Π·w` (`e₃·R Π` for the vertical), in a scene that conserves it: one
     /// vector is advected, (3.20).
     #[must_use]
-    pub fn momentum_along_advected(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L>
+    pub fn momentum_along_advected<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Scalar<S>
     where
-        L: AxiallyInvariant<Group = SO3<Scalar<L>>>,
+        S: AxiallyInvariant<Group = SO3<Scalar<S>>>,
     {
-        state.momentum().dot(&L::axis(&state.advected))
-    }
-
-    /// The largest step from this state up to the stepper's own, s; see [`DiscreteLiePoisson::max_step`].
-    #[must_use]
-    pub fn max_step(&self, state: &State<Group<L>, L::Advected>) -> Scalar<L> {
-        self.flow.max_step(&state.momentum, &state.advected)
+        state.momentum().dot(&S::axis(&state.motion.advected))
     }
 }
 
 /// A step of this state.
-struct Step<'a, L: Effect>(&'a Stepper<L>, &'a mut State<Group<L>, L::Advected>);
+struct Step<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>);
 
-impl<L: Effect> Work for Step<'_, L> {
+impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.0.step_as_compiled(self.1)
+        self.0.plan.step(&self.0.scene, &mut self.1.motion, &mut self.1.kept)
+    }
+}
+
+/// So many of them.
+struct Run<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>, u64);
+
+impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
+    type Output = Result<u64, StepError>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.0.plan.run(&self.0.scene, &mut self.1.motion, &mut self.1.kept, self.2)
     }
 }

@@ -14,4 +14,4 @@ pub use scalar::real;
 pub use scalar::{Mask, Real};
 pub(crate) use scalar::{gathered, is_finite, nowhere, reported};
 
-pub(crate) use simd::{Work, at_best, at_best_in_lanes};
+pub(crate) use simd::{Kernel, dispatch};

@@ -2,39 +2,31 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::numbers::scalar::Real;
-
 /// What is worth compiling for several instruction sets.
 ///
 /// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions
 /// only. No instruction set changes a digit: the compiler neither fuses nor reorders operations on floating-point
 /// numbers.
-pub(crate) trait Work {
+pub(crate) trait Kernel {
     type Output;
 
     /// Does it; marked `#[inline(always)]`.
     fn run(self) -> Self::Output;
 }
 
-/// Does it with the best instructions there are.
+/// Does it with the best instructions there are, if that is asked for.
 #[inline(always)]
-pub(crate) fn at_best<W: Work>(work: W) -> W::Output {
-    Arch::new().dispatch(Dispatched(work))
+pub(crate) fn dispatch<K: Kernel>(best: bool, kernel: K) -> K::Output {
+    if best { Arch::new().dispatch(Dispatched(kernel)) } else { kernel.run() }
 }
 
-/// The same, if the scalar has several lanes; a body alone gains nothing.
-#[inline(always)]
-pub(crate) fn at_best_in_lanes<T: Real, W: Work>(work: W) -> W::Output {
-    if T::LANES > 1 { at_best(work) } else { work.run() }
-}
+struct Dispatched<K>(K);
 
-struct Dispatched<W>(W);
-
-impl<W: Work> WithSimd for Dispatched<W> {
-    type Output = W::Output;
+impl<K: Kernel> WithSimd for Dispatched<K> {
+    type Output = K::Output;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> W::Output {
+    fn with_simd<S: Simd>(self, _: S) -> K::Output {
         self.0.run()
     }
 }

@@ -1,6 +1,8 @@
 //! Increments that have been, to guess the next one.
 
-use crate::numbers::{Coordinates, Real};
+use nalgebra::SimdBool as _;
+
+use crate::numbers::{Coordinates, Mask, Real};
 
 /// Of increments at equal times eight tell the next to some `(h ω)⁸` for the fastest frequency `ω` in them. Each more
 /// would double the roundings in the guess, and gains little where `h ω` is near one.
@@ -9,8 +11,6 @@ pub(crate) const DIFFERENCES: usize = 7;
 /// What increments are continued by to guess the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Continued {
-    /// The line through two, for steps so long that a parabola strays farther.
-    Line,
     /// The parabola through three.
     Parabola,
     /// The polynomial through as many as are known, where an iteration is dear.
@@ -24,12 +24,110 @@ impl Continued {
     }
 }
 
+/// Half the coordinates of the last increment, and a guess of half the next ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guess<V> {
+    pub(crate) half: V,
+    pub(crate) next: V,
+}
+
+impl<V: Copy> Guess<V> {
+    /// Before the first step, of an estimate.
+    pub(crate) fn of(half: V) -> Self {
+        Self { half, next: half }
+    }
+
+    /// Guesses by the line through the last two increments, the later of which has half these coordinates.
+    #[inline(always)]
+    pub(crate) fn follow<T: Real>(&mut self, half: V, far: Mask<T>)
+    where
+        V: Coordinates<T>,
+    {
+        let last = core::mem::replace(&mut self.half, half);
+        self.next = near_of(half, half + (half - last), far);
+    }
+}
+
+/// The guess, but where the last increment is `far`: there it is that increment.
+///
+/// Those are the lanes in which coordinates are no longer near the identity at 3/2 of their length. Near the fold they
+/// change too fast for a guess by what has been; a factor of 3/2 keeps well away from it. A selection without the branch
+/// would lie on the way to the next iteration, and cost a tenth of a step.
+#[inline(always)]
+fn near_of<T: Real, V: Coordinates<T>>(half: V, guess: V, far: Mask<T>) -> V {
+    if far.any() { half.select(far, guess) } else { guess }
+}
+
+/// What a declared Lagrangian's step keeps for the next solve: a guess, and the last increments that it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Warm<V> {
+    pub(crate) guess: Guess<V>,
+    /// Of many increments where the Jacobian is expensive, elsewhere of the last three.
+    pub(crate) history: History<V>,
+}
+
+impl<V: Copy> Warm<V> {
+    /// Before the first step, of an estimate of half its coordinates.
+    pub(crate) fn of<T: Real>(half: V) -> Self
+    where
+        V: Coordinates<T>,
+    {
+        Self { guess: Guess::of(half), history: History::new() }
+    }
+
+    /// Guesses the next increment by continuing the last ones, the latest of which has half these coordinates.
+    #[inline(always)]
+    pub(crate) fn follow<T: Real>(&mut self, half: V, far: Mask<T>, continued: Continued)
+    where
+        V: Coordinates<T>,
+    {
+        let last = core::mem::replace(&mut self.guess.half, half);
+        let next = match continued {
+            Continued::Parabola => self.history.parabola(last, half),
+            Continued::Polynomial => self.history.next(last, half),
+        };
+        self.guess.next = near_of(half, next, far);
+    }
+
+    /// After the first step: before it there was no increment but an estimate, which a parabola would go through.
+    pub(crate) fn forget_the_estimate<T: Real>(&mut self, continued: Continued)
+    where
+        V: Coordinates<T>,
+    {
+        self.guess.next = self.guess.half;
+        if continued == Continued::Parabola {
+            self.history = History::new();
+        }
+    }
+
+    /// The guess for the next solve, as a solve had better read it.
+    ///
+    /// A processor hands on what has just been stored to a load of the same place, but a load of two components that
+    /// were stored apart waits until both stores are done. The compiler stores them and loads them in pairs, and in
+    /// different ones if it may. With the last component loaded for itself they are the same; it was a tenth of a step
+    /// of (3.13).
+    #[inline(always)]
+    pub(crate) fn guess<T: Real>(&self, dimension: usize) -> V
+    where
+        V: Coordinates<T>,
+    {
+        if T::LANES > 1 {
+            return self.guess.next;
+        }
+        let mut left = dimension;
+        self.guess.next.zip(&self.guess.next, &mut |component, _| {
+            left -= 1;
+            if left == 0 { core::hint::black_box(component) } else { component }
+        })
+    }
+}
+
 /// The backward differences `∇ y, ∇² y, …` of the last increments `y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct History<V> {
-    differences: [V; DIFFERENCES],
+    pub(crate) differences: [V; DIFFERENCES],
     /// How many increments have been taken notice of; more than there are differences count as one more.
-    increments: usize,
+    pub(crate) increments: usize,
 }
 
 impl<V: Copy> History<V> {
@@ -73,24 +171,6 @@ impl<V: Copy> History<V> {
         }
         self.increments = (self.increments + 1).min(DIFFERENCES + 1);
         guess
-    }
-}
-
-#[cfg(feature = "serde")]
-impl<V: Copy> History<V> {
-    /// The differences that are known, after how many increments.
-    pub(crate) fn parts(&self) -> (usize, &[V]) {
-        (self.increments, self.differences.get(..self.increments.saturating_sub(1)).unwrap_or_default())
-    }
-
-    /// Of as many differences as [`parts`](Self::parts) gives for these increments.
-    pub(crate) fn of<T: Real>(increments: usize, known: &[V]) -> Self
-    where
-        V: Coordinates<T>,
-    {
-        let mut history = Self { increments, ..Self::new() };
-        history.differences.iter_mut().zip(known).for_each(|(place, &difference)| *place = difference);
-        history
     }
 }
 

@@ -13,9 +13,8 @@ mod secants;
 pub(crate) mod solvability;
 
 pub(crate) use branch::trusted_radius;
-#[cfg(feature = "serde")]
-pub(crate) use guess::DIFFERENCES;
-pub(crate) use guess::{Continued, History};
+pub(crate) use guess::{Continued, DIFFERENCES, History};
+pub use guess::{Guess, Warm};
 pub(crate) use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Kick, Problem, Root};
 pub(crate) use reused_jacobian::safe;

@@ -102,7 +102,7 @@ impl<L: Effect> Lanes<L> {
 
 /// One momentum equation to be solved.
 pub(crate) struct Problem<'a, L: Effect> {
-    pub(crate) lagrangian: &'a L,
+    pub(crate) scene: &'a L,
     pub(crate) constants: &'a L::Constants,
     pub(crate) a: Vector<L>,
     pub(crate) w: &'a L::Advected,
@@ -247,7 +247,7 @@ impl<L: Effect> Problem<'_, L> {
     pub(super) fn look_closer(&self, half: &Vector<L>) -> Mask<Scalar<L>> {
         use crate::groups::LieGroup as _;
         let f = L::Retraction::retract(&(*half + *half)).matrix();
-        let jacobian = self.lagrangian.momentum_jacobian(&f, self.w, self.h) * self.h;
+        let jacobian = self.scene.momentum_jacobian(&f, self.w, self.h) * self.h;
         let (_, det) = Vector::<L>::solve(&jacobian, &self.a);
         is_positive(det) & is_positive(Vector::<L>::trace(&jacobian))
     }

@@ -7,20 +7,21 @@
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, Group, Scalar, Vector};
-use crate::motion::{State, StepReport, Stepper};
-use crate::numbers::{Coordinates as _, Entries, Real, Work, at_best_in_lanes, nowhere, real, zero};
-use crate::solving::Continued;
+use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
+use crate::methods::{Composed, KineticFlow, Preprocessed, Split};
+use crate::motion::{Cost, Declared, Kept, Motion, Plan, Proceeded, StepReport, Stepper, Summation, restored};
+use crate::numbers::{Entries, Real, zero};
+use crate::with::remedies::{OrFallback, OrSubsteps};
 use nalgebra::SimdValue as _;
 
-/// A [`Stepper`] with compensated sums, by [`Stepper::compensated`].
+/// A plan whose sums are compensated, by [`Stepper::compensated`].
 ///
 /// The step is the same map; only its rounding differs. `cargo bench` shows what it costs.
 ///
 /// # Examples
 ///
 /// ```
-/// use liestep::{DiagonalNonstandardInertia, LieGroup, SO3, Stepper, lagrangian};
+/// use liestep::{DiagonalNonstandardInertia, SO3, Stepper, lagrangian};
 /// use nalgebra::Vector3;
 ///
 /// /// A free rigid body.
@@ -35,142 +36,217 @@ use nalgebra::SimdValue as _;
 /// for _ in 0..1000 {
 ///     stepper.step(&mut state)?;
 /// }
-/// assert!(state.state().orthogonality_defect() < 1e-15);
+/// assert!(state.orthogonality_defect() < 1e-15);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct CompensatedStepper<L: Effect> {
-    stepper: Stepper<L>,
-}
+pub struct Compensated<P>(P);
 
-/// A [`State`] and what the rounding of its sums has left behind.
+/// What a plan keeps, and what the rounding of its sums has left behind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CompensatedState<G: LieGroup, A: Advected<G>> {
-    pub(crate) state: State<G, A>,
-    pub(crate) carry: Carry<G, A>,
+pub struct Carried<K, G: LieGroup, A> {
+    kept: K,
+    carry: Carry<G, A>,
 }
 
 /// The exact sums less the rounded ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Carry<G: LieGroup, A: Advected<G>> {
-    pub(crate) attitude: G::Matrix,
-    pub(crate) momentum: G::Vector,
-    pub(crate) advected: A,
+struct Carry<G: LieGroup, A> {
+    attitude: G::Matrix,
+    momentum: G::Vector,
+    advected: A,
 }
 
-impl<G: LieGroup, A: Advected<G>> CompensatedState<G, A> {
-    /// The state, rounded.
+impl<G: LieGroup, A: Advected<G>> Carry<G, A> {
+    fn nothing() -> Self {
+        Self { attitude: zero(), momentum: zero(), advected: zero() }
+    }
+}
+
+/// A plan that leaves the sums of its steps to others, so that they can be compensated.
+///
+/// Collocation isn't one: its sums are compensated already, in quaternion and momentum.
+#[diagnostic::on_unimplemented(
+    message = "the sums of `{Self}` can't be compensated",
+    label = "not with this method",
+    note = "Gauss collocation compensates its own sums, and compensated sums needn't be compensated again"
+)]
+pub trait Compensable {}
+
+impl<S: Effect> Compensable for Declared<S> {}
+impl<S: Effect> Compensable for Composed<S> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
+impl<T: Real> Compensable for Preprocessed<T> {}
+impl<P: Compensable> Compensable for OrSubsteps<P> {}
+impl<P: Compensable, Q> Compensable for OrFallback<P, Q> {}
+
+impl<S: Effect, P: Plan<S>> Stepper<S, P> {
+    /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept
+    /// and added to the next step's changes.
+    ///
+    /// Collocation compensates its sums anyway, and is refused:
+    ///
+    /// ```compile_fail,E0277
+    /// use liestep::effects::RigidBody;
+    /// use liestep::{NonstandardInertia, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap() };
+    /// let _ = Stepper::collocated::<4>(body, 0.1).unwrap().compensated();
+    /// ```
     #[must_use]
-    pub fn state(&self) -> &State<G, A> {
-        &self.state
+    pub fn compensated(self) -> Stepper<S, Compensated<P>>
+    where
+        P: Compensable,
+    {
+        Stepper { scene: self.scene, plan: Compensated(self.plan) }
     }
 }
 
-impl<G: LieGroup, A: Advected<G>> From<State<G, A>> for CompensatedState<G, A> {
-    fn from(state: State<G, A>) -> Self {
-        Self { state, carry: Carry { attitude: zero(), momentum: zero(), advected: zero() } }
-    }
-}
+impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
+    type Kept = Carried<P::Kept, Group<S>, S::Advected>;
 
-impl<L: Effect> Stepper<L> {
-    /// The same step with compensated summation.
-    #[must_use]
-    pub fn compensated(self) -> CompensatedStepper<L> {
-        CompensatedStepper { stepper: self }
-    }
-}
+    const DISPATCHED: bool = P::DISPATCHED;
 
-impl<L: Effect> CompensatedStepper<L> {
-    /// The stepper without compensation, for what can be read off a state.
-    #[must_use]
-    pub fn stepper(&self) -> &Stepper<L> {
-        &self.stepper
+    fn step_size(&self) -> Scalar<S> {
+        self.0.step_size()
     }
 
-    /// As [`Stepper::start`].
-    ///
-    /// # Errors
-    ///
-    /// As [`Stepper::start`].
-    pub fn start(
-        &self,
-        attitude: impl Into<Group<L>>,
-        velocity: Vector<L>,
-    ) -> Result<CompensatedState<Group<L>, L::Advected>, SetupError> {
-        self.stepper.start(attitude, velocity).map(Into::into)
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        self.0.refolded(scene, h).map(Self)
     }
 
-    /// As [`Stepper::start_with_momentum`].
-    ///
-    /// # Errors
-    ///
-    /// As [`Stepper::start_with_momentum`].
-    pub fn start_with_momentum(
-        &self,
-        attitude: impl Into<Group<L>>,
-        momentum: Vector<L>,
-    ) -> Result<CompensatedState<Group<L>, L::Advected>, SetupError> {
-        self.stepper.start_with_momentum(attitude, momentum).map(Into::into)
-    }
-
-    /// One step. On an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// As [`Stepper::step`].
-    #[inline]
-    pub fn step(&self, state: &mut CompensatedState<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        at_best_in_lanes::<Scalar<L>, _>(Step(self, state))
+    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+        Carried { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
     }
 
     #[inline(always)]
-    fn step_as_compiled(&self, state: &mut CompensatedState<Group<L>, L::Advected>) -> Result<StepReport, StepError> {
-        let CompensatedState { state: now, carry } = state;
-        let flow = self.stepper.flow();
-        if flow.step_size() == real(0.0) {
-            now.proceed(zero(), nowhere::<Scalar<L>>(), Continued::for_jacobian(L::JACOBIAN_IS_DEAR), || {
-                self.stepper.lagrangian().advected()
-            });
-            return Ok(StepReport { iterations: 0, remedy: None });
-        }
-        let solved = flow.solve(&now.momentum, &now.advected, &now.guess())?;
-        let increment = &solved.root.increment;
-        let advected = sum(&now.advected, &now.advected.change(increment), &carry.advected);
-        // The kicks are added for themselves: in `a` they are rounded to the digits of the momentum.
-        let change = Group::<L>::adjoint_transpose_increment(increment, &solved.a)
-            + flow.kicks(&now.advected, increment, &advected.0, &solved.root.kick);
-        let momentum = sum(&now.momentum, &change, &carry.momentum);
-        if !momentum.0.is_finite() || !advected.0.is_finite() {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
-        }
-        let attitude = sum(&now.attitude.matrix(), &now.attitude.change(increment), &carry.attitude);
-        *carry = Carry { attitude: attitude.1, momentum: momentum.1, advected: advected.1 };
-        now.attitude = Group::<L>::from_matrix_unchecked(attitude.0);
-        now.momentum = momentum.0;
-        now.advected = advected.0;
-        let root = &solved.root;
-        // What is carried belongs to the state before.
-        let restored = now.proceed(root.half, root.far, Continued::for_jacobian(L::JACOBIAN_IS_DEAR), || {
-            self.stepper.lagrangian().advected()
-        });
-        if let Some(far) = restored {
-            let mut kept = |carry: Scalar<L>, nothing: Scalar<L>| nothing.select(far, carry);
-            carry.attitude = carry.attitude.zip(&zero(), &mut kept);
-            carry.advected = carry.advected.zip(&zero(), &mut kept);
-        }
-        Ok(StepReport { iterations: solved.root.iterations, remedy: None })
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
+        let report = self.0.step(scene, &mut sums, &mut kept.kept)?;
+        motion.replace(sums.motion);
+        kept.carry = sums.carry;
+        Ok(report)
+    }
+
+    #[inline(always)]
+    fn run<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
+        let iterations = self.0.run(scene, &mut sums, &mut kept.kept, steps)?;
+        motion.replace(sums.motion);
+        kept.carry = sums.carry;
+        Ok(iterations)
+    }
+
+    fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, impulse: &Vector<S>) {
+        let mut sums = Sums { motion: *motion, carry: kept.carry };
+        Summation::push(&mut sums, impulse);
+        (*motion, kept.carry) = (sums.motion, sums.carry);
+    }
+
+    fn explained(
+        &self,
+        error: StepError,
+        scene: &S,
+        motion: &Motion<Group<S>, S::Advected>,
+        kept: &Self::Kept,
+    ) -> StepError {
+        self.0.explained(error, scene, motion, &kept.kept)
+    }
+
+    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
+        self.0.max_step(scene, motion, &kept.kept)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
+        visitor.term("compensated");
+        self.0.describe(visitor);
+    }
+
+    fn cost(&self) -> Cost {
+        self.0.cost()
     }
 }
 
-/// A step of this state.
-struct Step<'a, L: Effect>(&'a CompensatedStepper<L>, &'a mut CompensatedState<Group<L>, L::Advected>);
+impl<K: Kept<G::Scalar>, G: LieGroup, A: Advected<G>> Kept<G::Scalar> for Carried<K, G, A> {
+    fn each(&self, mut visit: &mut dyn FnMut(G::Scalar)) {
+        self.kept.each(visit);
+        self.carry.attitude.each(&mut visit);
+        self.carry.momentum.each(&mut visit);
+        self.carry.advected.each(&mut visit);
+    }
 
-impl<L: Effect> Work for Step<'_, L> {
-    type Output = Result<StepReport, StepError>;
+    fn from_numbers(mut next: &mut dyn FnMut() -> G::Scalar) -> Option<Self> {
+        let kept = K::from_numbers(next)?;
+        let (attitude, momentum) = (Entries::from_entries(&mut next), Entries::from_entries(&mut next));
+        Some(Self { kept, carry: Carry { attitude, momentum, advected: Entries::from_entries(&mut next) } })
+    }
+}
+
+/// A motion and what the rounding of its sums has left behind.
+#[derive(Clone, Copy)]
+struct Sums<G: LieGroup, A> {
+    motion: Motion<G, A>,
+    carry: Carry<G, A>,
+}
+
+impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
+    const CARRIES: bool = true;
 
     #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.0.step_as_compiled(self.1)
+    fn now(&self) -> &Motion<G, A> {
+        &self.motion
+    }
+
+    #[inline(always)]
+    fn turn(&mut self, increment: &G::Matrix) {
+        let Self { motion, carry } = self;
+        let attitude = sum(&motion.attitude.matrix(), &motion.attitude.change(increment), &carry.attitude);
+        let advected = sum(&motion.advected, &motion.advected.change(increment), &carry.advected);
+        motion.attitude = G::from_matrix_unchecked(attitude.0);
+        motion.advected = advected.0;
+        (carry.attitude, carry.advected) = (attitude.1, advected.1);
+    }
+
+    #[inline(always)]
+    fn push(&mut self, change: &G::Vector) {
+        let momentum = sum(&self.motion.momentum, change, &self.carry.momentum);
+        (self.motion.momentum, self.carry.momentum) = momentum;
+    }
+
+    #[inline(always)]
+    fn proceed(&mut self, step: &Proceeded<G, A>) {
+        self.turn(&step.increment);
+        Summation::push(self, &step.change);
+    }
+
+    #[inline(always)]
+    fn recount(&mut self, steps: u64) {
+        self.motion.steps = steps;
+    }
+
+    /// What is carried belongs to the attitude before.
+    #[cold]
+    fn restore(&mut self, spatial: &A) {
+        let Some(far) = restored(&mut self.motion, spatial) else { return };
+        let mut kept = |carry: G::Scalar, nothing: G::Scalar| nothing.select(far, carry);
+        self.carry.attitude = self.carry.attitude.zip(&zero(), &mut kept);
+        self.carry.advected = self.carry.advected.zip(&zero(), &mut kept);
+    }
+
+    fn replace(&mut self, motion: Motion<G, A>) {
+        *self = Self { motion, carry: Carry::nothing() };
     }
 }
 

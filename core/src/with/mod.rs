@@ -1,4 +1,6 @@
 //! What is put around a method: compensated sums, remedies for steps without a solution, checkpoints.
+//!
+//! Each goes with every method for which it makes sense, and with each other.
 
 #[cfg(feature = "serde")]
 mod checkpoint;
@@ -7,5 +9,5 @@ mod remedies;
 
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
-pub use compensated::{CompensatedState, CompensatedStepper};
-pub use remedies::{Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
+pub use compensated::{Carried, Compensable, Compensated};
+pub use remedies::{OrFallback, OrSubsteps};

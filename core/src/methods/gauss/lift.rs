@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::groups::{Advected as _, SO3};
-use crate::mechanics::{DiscreteLagrangian, velocity_of_momentum};
+use crate::mechanics::{Effect, RigidScene, velocity_of_momentum};
 use crate::methods::splitting::inverse_inertia;
 
 /// The quaternion `q`, scalar part first, and its momentum `p`.
@@ -27,7 +27,7 @@ pub(super) fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
 ///
 /// from which follow `Π' = Π × Ω + τ` and `|q| = const`.
 #[derive(Clone, Debug)]
-pub(super) struct Lift<L: DiscreteLagrangian<Group = SO3, Scalar = f64>> {
+pub(super) struct Lift<L: Effect> {
     /// From `2 Π` to `½ Ω`.
     half_velocity: Matrix3<f64>,
     /// `½ J⁻¹ s`.
@@ -36,7 +36,7 @@ pub(super) struct Lift<L: DiscreteLagrangian<Group = SO3, Scalar = f64>> {
     torque: L::Constants,
 }
 
-impl<L: DiscreteLagrangian<Group = SO3, Scalar = f64>> Lift<L> {
+impl<L: RigidScene<Scalar = f64>> Lift<L> {
     /// Of a Lagrangian that can be split, with the constants of its torque.
     pub(super) fn new(lagrangian: &L, torque: L::Constants) -> Self {
         let spatial = lagrangian.advected();
@@ -45,6 +45,12 @@ impl<L: DiscreteLagrangian<Group = SO3, Scalar = f64>> Lift<L> {
         // J⁻¹ is symmetric, but for the rounding of its columns, which would make of H another function.
         let half_velocity = (inverse + inverse.transpose()) * 0.125;
         Self { half_velocity, half_bias, spatial, torque }
+    }
+
+    /// What is advected, as a body with this attitude sees it.
+    #[inline(always)]
+    pub(super) fn seen_from(&self, attitude: &SO3) -> L::Advected {
+        self.spatial.seen_from(attitude)
     }
 
     /// The rates of change.
@@ -101,7 +107,7 @@ pub(super) fn twice_momentum(&[a, b, c, d, e, f, g, h]: &Lifted) -> Vector3<f64>
 
 /// The product of a quaternion and an imaginary one.
 #[inline(always)]
-fn times(&[a, b, c, d]: &[f64; 4], v: &Vector3<f64>) -> [f64; 4] {
+pub(super) fn times(&[a, b, c, d]: &[f64; 4], v: &Vector3<f64>) -> [f64; 4] {
     [
         -(b * v.x + c * v.y + d * v.z),
         a * v.x + (c * v.z - d * v.y),

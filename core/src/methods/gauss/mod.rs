@@ -1,29 +1,27 @@
 //! Gauss collocation in the quaternion and its momentum: the cheapest Poisson map for high accuracy.
 //!
-//! [`Candidates::and_gauss`](crate::accuracy::Candidates::and_gauss) makes it one of the methods to be chosen by accuracy, and
-//! then finds the step.
+//! [`Candidates::and_gauss`](crate::accuracy::Candidates::and_gauss) makes it one of the methods to be chosen by
+//! accuracy, and then finds the step.
 
 mod coefficients;
 mod lift;
 mod stages;
 mod state;
 
-pub use state::GaussState;
+pub use state::Collocated;
 
 use coefficients::Coefficients;
 use lift::{Lift, Lifted, each, length_squared};
 use stages::{Stages, WeightedRates};
 
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected as _, SO3};
-use crate::mechanics::{DiscreteLagrangian, Regular, energy, velocity_of_momentum};
+use crate::groups::SO3;
+use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor};
 use crate::methods::splitting::torque;
-use crate::numbers::{Work, at_best};
-
-use crate::motion::{StepReport, Stepper};
+use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation};
 use nalgebra::Vector3;
 
-/// An integrator of order `4 PAIRS` for a body on SO(3) under a potential, by Gauss collocation with `2 PAIRS` stages.
+/// The plan of [`Stepper::collocated`](crate::Stepper::collocated), of order `4 PAIRS`, for a body on SO(3) under a potential, by Gauss collocation with `2 PAIRS` stages.
 ///
 /// The continuous Lagrangian `½ Ω·JΩ + s·Ω − V(w)` of the declared one, which must be `K(F) − (h/2) (V(w) + V(F⁻¹·w))`,
 /// is integrated in the quaternion and its conjugate momentum. Of the declared `K` only the inertia `J` and the bias
@@ -51,26 +49,26 @@ use nalgebra::Vector3;
 ///
 /// # Contract
 ///
-/// As [`Stepper`]'s, for one `f64`. The sums over steps are compensated. The stages of the last step are part of the
+/// As [`Stepper`](crate::Stepper)'s, for one `f64`. The sums over steps are compensated. The stages of the last step are part of the
 /// state, so a copy goes on with the same bits.
 ///
 /// # Examples
 ///
 /// ```
 /// use liestep::effects::{Gravity, RigidBody};
-/// use liestep::{Gauss, SO3, Sum, lagrangian, NonstandardInertia};
+/// use liestep::{NonstandardInertia, Stepper};
 /// use nalgebra::{UnitQuaternion, Vector3};
 ///
 /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.5, 1.0))? };
 /// let top = body + Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.1, 0.0, 1.0), up: Vector3::z() };
-/// let gauss = Gauss::<_, 4>::new(top, 0.1)?;
+/// let stepper = Stepper::collocated::<4>(top, 0.1)?;
 /// let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-/// let mut state = gauss.start(attitude, Vector3::new(0.5, 2.0, 3.0))?;
-/// let (energy, vertical) = (gauss.energy(&state), state.momentum_along(&Vector3::z()));
+/// let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 3.0))?;
+/// let (energy, vertical) = (stepper.energy(&state), state.momentum_along(&Vector3::z()));
 /// for _ in 0..1000 {
-///     gauss.step(&mut state)?;
+///     stepper.step(&mut state)?;
 /// }
-/// assert!((gauss.energy(&state) - energy).abs() < 1e-11);
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-11);
 /// assert!((state.momentum_along(&Vector3::z()) - vertical).abs() < 1e-13);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -79,56 +77,83 @@ use nalgebra::Vector3;
 ///
 /// \[HLW06\], theorems IV.2.2 and VI.4.2; \[AMM17\] for rounding; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug)]
-pub struct Gauss<L: DiscreteLagrangian<Group = SO3, Scalar = f64>, const PAIRS: usize> {
-    /// Of the same step; it starts motions.
-    stepper: Stepper<L>,
-    lift: Lift<L>,
+pub struct Gauss<S: Effect, const PAIRS: usize> {
+    h: f64,
+    lift: Lift<S>,
     coefficients: Coefficients<PAIRS>,
     /// `h b_k`, of the first half of the stages and of their mirror images.
     weights: [[f64; PAIRS]; 2],
 }
 
-impl<L, const PAIRS: usize> Gauss<L, PAIRS>
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
-{
-    /// Checks that the Lagrangian has a potential apart from its kinetic part, and folds the constants of the step `h`,
-    /// in seconds.
+impl<S: Effect> Stepper<S> {
+    /// Gauss collocation with `2 PAIRS` stages, of order `4 PAIRS`; see [`Gauss`].
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotSeparable`] where that isn't so; otherwise as
-    /// [`DiscreteLiePoisson::new`](crate::motion::DiscreteLiePoisson::new).
-    pub fn new(lagrangian: L, h: f64) -> Result<Self, SetupError> {
+    /// [`SetupError::NotSeparable`] where the Lagrangian has no potential apart from its kinetic part; otherwise as
+    /// [`Stepper::new`].
+    pub fn collocated<const PAIRS: usize>(scene: S, h: f64) -> Result<Stepper<S, Gauss<S, PAIRS>>, SetupError>
+    where
+        S: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+    {
         const {
             assert!(
                 PAIRS > 0 && PAIRS <= 8,
                 "collocation needs a pair of stages, and doubles have no use for more than 8"
             );
         }
-        let stepper = Stepper::new(lagrangian, h)?;
-        let torque = torque(stepper.lagrangian())?;
-        let lift = Lift::new(stepper.lagrangian(), torque);
+        // For its checks of the scene and the step.
+        Declared::new(&scene, h)?;
+        let plan = Gauss::new(&scene, h)?;
+        Ok(Stepper { scene, plan })
+    }
+}
+
+impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
+    pub(crate) const COST: Cost = {
+        #[allow(clippy::cast_precision_loss)] // at most eight
+        let pairs = PAIRS as f64;
+        // Half of both kicks, and half of that in lanes.
+        let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.25 * (S::OPERATIONS.step as f64) } else { 0.0 };
+        let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
+        Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3 }
+    };
+
+    fn new(scene: &S, h: f64) -> Result<Self, SetupError> {
+        let lift = Lift::new(scene, torque(scene)?);
         let coefficients = Coefficients::new();
         let weights = [coefficients.weights.map(|weight| h * weight); 2];
-        Ok(Self { stepper, lift, coefficients, weights })
+        Ok(Self { h, lift, coefficients, weights })
+    }
+}
+
+impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS> {
+    type Kept = Collocated<PAIRS>;
+
+    const DISPATCHED: bool = true;
+
+    fn step_size(&self) -> f64 {
+        self.h
     }
 
-    /// One step. On an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError::NotConverged`] where the step is too long for the iteration, [`StepError::NonFinite`] where a value
-    /// isn't finite.
-    #[inline]
-    pub fn step(&self, state: &mut GaussState<PAIRS>) -> Result<StepReport, StepError> {
-        at_best(Step(self, state))
+    fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
+        Self::new(scene, h)
     }
 
+    fn keep(&self, _: &S, motion: &Motion<SO3, S::Advected>) -> Self::Kept {
+        Collocated::of(motion.attitude, &motion.momentum)
+    }
+
+    /// [`StepError::NotConverged`] where the step is too long for the iteration.
     #[inline(always)]
-    fn step_as_compiled(&self, state: &mut GaussState<PAIRS>) -> Result<StepReport, StepError> {
-        let (y, carry) = (&state.lifted, &state.carry);
-        let mut stages = match &state.stages {
+    fn step<M: Summation<SO3, S::Advected>>(
+        &self,
+        _: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        let Collocated { lifted: y, carry, stages } = &*kept;
+        let mut stages = match stages {
             Some(stages) => stages.continued(&self.coefficients),
             None => Stages::constant(&self.lift.rate(y), &self.weights[0]),
         };
@@ -137,94 +162,43 @@ where
         if !next.iter().all(|component| component.is_finite()) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        *state = GaussState { lifted: next, carry: left, stages: Some(stages), steps: state.steps + 1 };
-        Ok(StepReport { iterations, remedy: None })
+        *kept = Collocated { lifted: next, carry: left, stages: Some(stages) };
+        let (attitude, momentum) = (kept.attitude(), kept.momentum());
+        let advected = self.lift.seen_from(&attitude);
+        motion.replace(Motion { attitude, momentum, advected, steps: motion.now().steps + 1 });
+        Ok(StepReport::of(iterations))
     }
 
-    /// A motion from an attitude (body to space) and a body velocity, rad/s.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] where the attitude isn't a rotation or something isn't finite.
-    pub fn start(&self, attitude: impl Into<SO3>, velocity: Vector3<f64>) -> Result<GaussState<PAIRS>, SetupError> {
-        self.stepper.start(attitude, velocity).map(Into::into)
+    fn push(&self, motion: &mut Motion<SO3, S::Advected>, kept: &mut Self::Kept, impulse: &Vector3<f64>) {
+        motion.momentum += impulse;
+        kept.push(impulse);
     }
 
-    /// A motion from an attitude (body to space) and a body momentum, kg m²/s.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] where the attitude isn't a rotation or something isn't finite.
-    pub fn start_with_momentum(
-        &self,
-        attitude: impl Into<SO3>,
-        momentum: Vector3<f64>,
-    ) -> Result<GaussState<PAIRS>, SetupError> {
-        self.stepper.start_with_momentum(attitude, momentum).map(Into::into)
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term("Gauss");
+        visitor.parameter("pairs of stages", crate::motion::count(PAIRS));
     }
 
-    /// A step of the same Lagrangian by its own solve: what starts motions and reads states off.
-    pub(crate) fn stepper(&self) -> &Stepper<L> {
-        &self.stepper
-    }
-
-    /// The declared Lagrangian.
-    #[must_use]
-    pub fn lagrangian(&self) -> &L {
-        self.stepper.lagrangian()
-    }
-
-    /// The step `h`, s.
-    #[must_use]
-    pub fn step_size(&self) -> f64 {
-        self.stepper.step_size()
-    }
-
-    /// The advected parameters `w = g⁻¹ · a_0`.
-    #[must_use]
-    pub fn advected(&self, state: &GaussState<PAIRS>) -> L::Advected {
-        self.lagrangian().advected().seen_from(&state.attitude())
-    }
-
-    /// The body velocity, rad/s.
-    #[must_use]
-    pub fn velocity(&self, state: &GaussState<PAIRS>) -> Vector3<f64> {
-        velocity_of_momentum(self.lagrangian(), &state.momentum(), &self.advected(state))
-    }
-
-    /// The energy `½ Ω·JΩ + V(w)`, J; see [`Stepper::energy`].
-    #[must_use]
-    pub fn energy(&self, state: &GaussState<PAIRS>) -> f64 {
-        energy(self.lagrangian(), &state.momentum(), &self.advected(state))
+    fn cost(&self) -> Cost {
+        Self::COST
     }
 }
 
-impl<L, const PAIRS: usize> WeightedRates for Gauss<L, PAIRS>
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3>,
-{
+/// An iteration makes so many operations at each of its stages: for the rates of quaternion and momentum, for the
+/// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count
+/// as one, here and below.
+const OF_RATES: f64 = 75.0;
+const OF_PARAMETERS: f64 = 35.0;
+const OF_A_SUM: f64 = 10.0;
+/// Besides its iterations, a step makes so many, and so many for each pair of pairs in its guess.
+const OF_AN_UPDATE: f64 = 50.0;
+const OF_A_GUESS: f64 = 32.0;
+
+impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S, PAIRS> {
     #[inline(always)]
     fn weighted_rate(&self, stage: usize, place: &Lifted) -> Lifted {
         let (weight, rate) = (self.weights.as_flattened()[stage], self.lift.rate(place));
         each(|component| weight * rate[component])
-    }
-}
-
-/// A step of this state.
-struct Step<'a, L: DiscreteLagrangian<Group = SO3, Scalar = f64>, const PAIRS: usize>(
-    &'a Gauss<L, PAIRS>,
-    &'a mut GaussState<PAIRS>,
-);
-
-impl<L, const PAIRS: usize> Work for Step<'_, L, PAIRS>
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
-{
-    type Output = Result<StepReport, StepError>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.0.step_as_compiled(self.1)
     }
 }
 
@@ -250,18 +224,19 @@ fn compensated(y: &Lifted, change: &Lifted, carry: &Lifted) -> (Lifted, Lifted) 
 
 #[cfg(test)]
 mod tests {
-    use super::{Gauss, Vector3};
+    use super::{Plan as _, Stepper, Vector3};
     use crate::effects::{Gravity, RigidBody};
     use crate::groups::{LieGroup as _, SO3};
     use crate::mechanics::{NonstandardInertia, Sum};
 
     fn assert_same_digits<const PAIRS: usize>(top: Sum<RigidBody, Gravity>) {
-        let gauss = Gauss::<_, PAIRS>::new(top, 0.05).unwrap();
-        let mut state = gauss.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap();
+        let stepper = Stepper::collocated::<PAIRS>(top, 0.05).unwrap();
+        let mut state = stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap();
         let mut as_compiled = state;
         for step in 0..1000 {
-            let found = gauss.step(&mut state);
-            assert_eq!(found, gauss.step_as_compiled(&mut as_compiled), "step {step}");
+            let found = stepper.step(&mut state);
+            let here = stepper.plan().step(stepper.scene(), &mut as_compiled.motion, &mut as_compiled.kept);
+            assert_eq!(found, here, "step {step}");
             assert_eq!(state, as_compiled, "{} stages, step {step}", 2 * PAIRS);
         }
     }

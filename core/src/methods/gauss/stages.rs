@@ -11,7 +11,7 @@ pub(super) type Numbers<const PAIRS: usize> = [[[f64; PAIRS]; 2]; 8];
 
 /// The `L_j = h b_j f(Y_j)` of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stages<const PAIRS: usize>(Numbers<PAIRS>);
+pub(super) struct Stages<const PAIRS: usize>(pub(super) Numbers<PAIRS>);
 
 /// The equations of motion, as the iteration needs them.
 ///

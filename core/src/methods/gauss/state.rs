@@ -1,68 +1,68 @@
-//! The state of a motion in quaternion and momentum.
+//! What collocation keeps: quaternion and momentum, of which attitude and body momentum are functions.
 
 use nalgebra::Vector3;
 
-use super::lift::{Lifted, length_squared, lifted, rotation, twice_momentum};
+use super::lift::{Lifted, length_squared, lifted, rotation, times, twice_momentum};
 use super::stages::Stages;
-use crate::groups::{Advected, LieGroup as _, SO3};
-use crate::motion::State;
+use crate::groups::SO3;
+use crate::motion::{Kept, count, counted};
 
-/// Attitude and momentum at one time as [`Gauss`](super::Gauss) integrates them.
-///
-/// What rounding has left behind and the stages of the last step, from which the next ones are guessed, are part of it.
-/// A state belongs to the step that it was made with: with another one the guess is worse, and the first step longer.
+/// The motion as [`Gauss`](super::Gauss) integrates it: the unit quaternion and its momentum, what rounding has left
+/// behind of their sums, and the stages of the last step, from which the next ones are guessed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GaussState<const PAIRS: usize> {
+pub struct Collocated<const PAIRS: usize> {
     pub(super) lifted: Lifted,
     pub(super) carry: Lifted,
     pub(super) stages: Option<Stages<PAIRS>>,
-    pub(super) steps: u64,
 }
 
-impl<const PAIRS: usize> GaussState<PAIRS> {
-    /// The attitude, body to space: the rotation of `q/|q|`.
-    #[must_use]
-    pub fn attitude(&self) -> SO3 {
+impl<const PAIRS: usize> Collocated<PAIRS> {
+    pub(super) fn of(attitude: SO3, momentum: &Vector3<f64>) -> Self {
+        let q = attitude.to_quaternion();
+        Self { lifted: lifted(&[q.w, q.i, q.j, q.k], momentum), carry: [0.0; 8], stages: None }
+    }
+
+    /// The rotation of `q/|q|`.
+    #[inline(always)]
+    pub(super) fn attitude(&self) -> SO3 {
         let [a, b, c, d, ..] = self.lifted;
         SO3::from_matrix_unchecked(rotation(&[a, b, c, d], 2.0 / length_squared(&self.lifted)))
     }
 
-    /// The momentum `Π`, body frame, kg m²/s.
-    #[must_use]
-    pub fn momentum(&self) -> Vector3<f64> {
+    /// `Π`, body frame.
+    #[inline(always)]
+    pub(super) fn momentum(&self) -> Vector3<f64> {
         twice_momentum(&self.lifted) * 0.5
     }
 
-    /// The momentum in space, `R Π`; constant where nothing is advected.
-    #[must_use]
-    pub fn spatial_momentum(&self) -> Vector3<f64> {
-        *self.attitude().as_matrix() * self.momentum()
-    }
-
-    /// The spatial momentum's component along a direction given in space, `e₃ · R Π` for the vertical, (3.20).
-    #[must_use]
-    pub fn momentum_along(&self, direction: &Vector3<f64>) -> f64 {
-        self.spatial_momentum().dot(direction)
-    }
-
-    /// `‖RᵀR − I‖`: the attitude is a rotation but for the rounding of its entries.
-    #[must_use]
-    pub fn orthogonality_defect(&self) -> f64 {
-        self.attitude().defect()
-    }
-
-    /// The number of steps made.
-    #[must_use]
-    pub fn steps(&self) -> u64 {
-        self.steps
+    /// Adds to `Π`.
+    pub(super) fn push(&mut self, impulse: &Vector3<f64>) {
+        let [q @ .., _, _, _, _] = self.lifted;
+        let change = times(&q, &(impulse * 2.0));
+        self.lifted[4..].iter_mut().zip(change).for_each(|(component, change)| *component += change);
     }
 }
 
-impl<const PAIRS: usize, A: Advected<SO3>> From<State<SO3, A>> for GaussState<PAIRS> {
-    /// The attitude and momentum of a state; its steps are counted on.
-    fn from(state: State<SO3, A>) -> Self {
-        let q = state.attitude.to_quaternion();
-        let lifted = lifted(&[q.w, q.i, q.j, q.k], &state.momentum);
-        Self { lifted, carry: [0.0; 8], stages: None, steps: state.steps }
+impl<const PAIRS: usize> Kept<f64> for Collocated<PAIRS> {
+    fn each(&self, visit: &mut dyn FnMut(f64)) {
+        self.lifted.iter().chain(&self.carry).for_each(|&number| visit(number));
+        visit(count(usize::from(self.stages.is_some())));
+        let stages = self.stages.map_or([[[0.0; PAIRS]; 2]; 8], |stages| stages.0);
+        stages.as_flattened().as_flattened().iter().for_each(|&number| visit(number));
+    }
+
+    fn from_numbers(next: &mut dyn FnMut() -> f64) -> Option<Self> {
+        let lifted = core::array::from_fn(|_| next());
+        let carry = core::array::from_fn(|_| next());
+        let has_stages = match counted(next())? {
+            0 => false,
+            1 => true,
+            _ => return None,
+        };
+        let mut stages = [[[0.0; PAIRS]; 2]; 8];
+        stages.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|number| *number = next());
+        // A unit quaternion, to some roundings.
+        let is_unit = (length_squared(&lifted) - 1.0).abs() < f64::EPSILON.sqrt();
+        is_unit.then_some(Self { lifted, carry, stages: has_stages.then_some(Stages(stages)) })
     }
 }

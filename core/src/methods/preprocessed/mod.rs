@@ -3,19 +3,19 @@
 mod coefficients;
 mod modified;
 
-pub(crate) use modified::{FreeBody, ModifiedBody};
+pub(crate) use modified::ModifiedBody;
 
 use nalgebra::Vector3;
 
+use crate::effects::PrincipalBody;
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
-use crate::mechanics::DiagonalNonstandardInertia;
-use crate::motion::{State, StepReport, Stepper};
-use crate::numbers::{Coordinates, Real, real, reported};
-use crate::solving::Continued;
-use crate::solving::{largest_fraction, six_digits};
+use crate::mechanics::{Effect, Operations, SceneVisitor};
+use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation, half_coordinates};
+use crate::numbers::{Coordinates, Real, reported};
+use crate::solving::{Guess, six_digits};
 
-/// The order of a [`PreprocessedBody`].
+/// The order of a [`Preprocessed`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum PreprocessedOrder {
     /// Order 4.
@@ -29,6 +29,15 @@ pub enum PreprocessedOrder {
 }
 
 impl PreprocessedOrder {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Four => "preprocessed, 4",
+            Self::Six => "preprocessed, 6",
+            Self::Eight => "preprocessed, 8",
+            Self::Ten => "preprocessed, 10",
+        }
+    }
+
     /// The degree in `h² H` and `h² C` that the series are taken to.
     pub(crate) fn degree(self) -> usize {
         match self {
@@ -40,7 +49,7 @@ impl PreprocessedOrder {
     }
 }
 
-/// An integrator for the free rigid body: (3.13) with moments of inertia that make up for its error.
+/// The plan of [`Stepper::preprocessed`](crate::Stepper::preprocessed), for the free rigid body: (3.13) with moments of inertia that make up for its error.
 ///
 /// To all orders in the step, the discrete free body of (3.13) goes through the points of the exact motion at other
 /// times and of another body: with
@@ -57,17 +66,19 @@ impl PreprocessedOrder {
 /// # Examples
 ///
 /// ```
-/// use liestep::{DiagonalNonstandardInertia, LieGroup, PreprocessedBody, PreprocessedOrder, SO3};
+/// use liestep::effects::PrincipalBody;
+/// use liestep::methods::PreprocessedOrder;
+/// use liestep::{DiagonalNonstandardInertia, SO3, Stepper};
 /// use nalgebra::Vector3;
 ///
-/// let inertia = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
-/// let body = PreprocessedBody::new(inertia, 0.1, PreprocessedOrder::Ten)?;
-/// let mut state = body.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
-/// let energy: f64 = body.energy(&state);
+/// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
+/// let stepper = Stepper::preprocessed(PrincipalBody { J_d }, 0.1, PreprocessedOrder::Ten)?;
+/// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
+/// let energy = stepper.energy(&state);
 /// for _ in 0..1000 {
-///     body.step(&mut state)?;
+///     stepper.step(&mut state)?;
 /// }
-/// assert!((body.energy(&state) - energy).abs() < 1e-12 * energy);
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-12 * energy);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -75,104 +86,104 @@ impl PreprocessedOrder {
 ///
 /// \[HV06\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug)]
-pub struct PreprocessedBody<T: Real = f64> {
-    stepper: Stepper<FreeBody<T>>,
+pub struct Preprocessed<T: Real = f64> {
     modified: ModifiedBody<T>,
+    order: PreprocessedOrder,
     h: T,
 }
 
-impl<T: Real> PreprocessedBody<T> {
-    /// Checks the step, in seconds, and computes the coefficients of the series.
+impl<T: Real> Stepper<PrincipalBody<T>> {
+    /// The free body to high order in one solve; see [`Preprocessed`].
     ///
     /// # Errors
     ///
-    /// As [`DiscreteLiePoisson::new`](crate::motion::DiscreteLiePoisson::new).
-    pub fn new(inertia: DiagonalNonstandardInertia<T>, h: T, order: PreprocessedOrder) -> Result<Self, SetupError> {
-        let stepper = Stepper::new(FreeBody { J_d: inertia }, h)?;
-        Ok(Self { stepper, modified: ModifiedBody::new(&inertia, order.degree()), h })
+    /// As [`Stepper::new`].
+    pub fn preprocessed(
+        body: PrincipalBody<T>,
+        h: T,
+        order: PreprocessedOrder,
+    ) -> Result<Stepper<PrincipalBody<T>, Preprocessed<T>>, SetupError> {
+        // For its checks of the body and the step.
+        Declared::new(&body, h)?;
+        let plan = Preprocessed::new(&body, h, order);
+        Ok(Stepper { scene: body, plan })
+    }
+}
+
+impl<T: Real> Preprocessed<T> {
+    /// The series to order ten, 120, and their moments, which the solve waits for; a guess, and what becomes of the
+    /// momentum.
+    pub(crate) const OPERATIONS: Operations =
+        Operations { step: 195, iteration: PrincipalBody::<T>::OPERATIONS.iteration };
+
+    fn new(body: &PrincipalBody<T>, h: T, order: PreprocessedOrder) -> Self {
+        Self { modified: ModifiedBody::new(&body.J_d, order.degree()), order, h }
+    }
+}
+
+impl<T: Real> Plan<PrincipalBody<T>> for Preprocessed<T> {
+    type Kept = Guess<Vector3<T>>;
+
+    fn step_size(&self) -> T {
+        self.h
     }
 
-    /// One step. On an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`] where the momentum equation has no solution on the branch of the identity, or a value isn't
-    /// finite.
-    #[inline]
-    pub fn step(&self, state: &mut State<SO3<T>, ()>) -> Result<StepReport, StepError> {
+    fn refolded(&self, scene: &PrincipalBody<T>, h: T) -> Result<Self, SetupError> {
+        Ok(Self::new(scene, h, self.order))
+    }
+
+    fn keep(&self, scene: &PrincipalBody<T>, motion: &Motion<SO3<T>, ()>) -> Self::Kept {
+        Guess::of(half_coordinates(scene, motion, self.h))
+    }
+
+    #[inline(always)]
+    fn step<M: Summation<SO3<T>, ()>>(
+        &self,
+        _: &PrincipalBody<T>,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         if self.h == T::zero() {
-            state.steps += 1;
-            return Ok(StepReport { iterations: 0, remedy: None });
+            motion.count();
+            return Ok(StepReport::of(0));
         }
-        let root = match self.modified.solve(self.h, &state.momentum, &state.half_guess) {
-            Ok(root) => root,
-            Err(error) => return Err(self.explain(error, state)),
-        };
-        state.attitude = state.attitude.advance(&root.increment);
-        state.momentum += SO3::adjoint_transpose_increment(&root.increment, &state.momentum);
-        state.proceed(root.half, root.far, Continued::Line, || ());
-        Ok(StepReport { iterations: root.iterations, remedy: None })
-    }
-
-    /// The largest step from this state up to the body's own, s, to six digits.
-    #[must_use]
-    pub fn max_step(&self, state: &State<SO3<T>, ()>) -> T {
-        let solvable = |fraction: f64| {
-            let h = self.h * real(fraction);
-            self.modified.solve(h, &state.momentum, &(state.half_guess * real::<T>(fraction))).is_ok()
-        };
-        largest_fraction(solvable).map_or(T::zero(), |fraction| self.h * real(fraction))
+        let momentum = motion.now().momentum;
+        let root = self.modified.solve(self.h, &momentum, &kept.next)?;
+        motion.turn(&root.increment);
+        motion.push(&SO3::adjoint_transpose_increment(&root.increment, &momentum));
+        // Of steps so long a parabola would stray farther than the line.
+        let is_first = motion.now().steps == 0;
+        kept.follow(root.half, root.far);
+        if is_first {
+            kept.next = kept.half;
+        }
+        motion.finish(|| ());
+        Ok(StepReport::of(root.iterations))
     }
 
     #[cold]
-    fn explain(&self, error: StepError, state: &State<SO3<T>, ()>) -> StepError {
-        if !Coordinates::is_finite(&state.momentum) {
+    fn explained(
+        &self,
+        error: StepError,
+        scene: &PrincipalBody<T>,
+        motion: &Motion<SO3<T>, ()>,
+        kept: &Self::Kept,
+    ) -> StepError {
+        if !Coordinates::is_finite(&motion.momentum) {
             return StepError::NonFinite { what: "momentum" };
         }
-        let largest = self.max_step(state);
+        let largest = self.max_step(scene, motion, kept);
         if largest == T::zero() {
             return error;
         }
         StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(reported(largest)) }
     }
 
-    /// A motion from an attitude (body to space) and a body velocity, rad/s.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] where the attitude isn't a rotation or something isn't finite.
-    pub fn start(&self, attitude: impl Into<SO3<T>>, velocity: Vector3<T>) -> Result<State<SO3<T>, ()>, SetupError> {
-        self.stepper.start(attitude, velocity)
+    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+        visitor.term(self.order.name());
     }
 
-    /// A motion from an attitude (body to space) and a body momentum, kg m²/s.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] where the attitude isn't a rotation or something isn't finite.
-    pub fn start_with_momentum(
-        &self,
-        attitude: impl Into<SO3<T>>,
-        momentum: Vector3<T>,
-    ) -> Result<State<SO3<T>, ()>, SetupError> {
-        self.stepper.start_with_momentum(attitude, momentum)
-    }
-
-    /// The step `h`, s.
-    #[must_use]
-    pub fn step_size(&self) -> T {
-        self.h
-    }
-
-    /// The body velocity, rad/s.
-    #[must_use]
-    pub fn velocity(&self, state: &State<SO3<T>, ()>) -> Vector3<T> {
-        state.momentum.component_mul(&self.modified.inverse_moments)
-    }
-
-    /// The energy `½ Ω·JΩ`, J, constant to rounding.
-    #[must_use]
-    pub fn energy(&self, state: &State<SO3<T>, ()>) -> T {
-        self.stepper.energy(state)
+    fn cost(&self) -> Cost {
+        Cost::of_stages(Self::OPERATIONS, 1)
     }
 }

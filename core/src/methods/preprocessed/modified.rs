@@ -3,19 +3,11 @@
 use nalgebra::{SimdBool as _, Vector3};
 
 use super::coefficients::{TERMS, series, sum};
+use crate::effects::PrincipalBody;
 use crate::error::StepError;
-use crate::groups::SO3;
 use crate::mechanics::{DiagonalNonstandardInertia, Effect as _};
 use crate::numbers::{Real, real};
 use crate::solving::{Problem, Root, safe};
-
-/// The kinetic term of (3.13).
-#[liestep_macros::lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
-#[allow(non_snake_case)] // the letters of the field
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FreeBody<T: Real> {
-    pub(crate) J_d: DiagonalNonstandardInertia<T>,
-}
 
 /// A body and the series for its modified moments.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +30,12 @@ impl<T: Real> ModifiedBody<T> {
 
     /// The increment over the time `h`, s, from the body momentum `y`; the guess is of half the coordinates.
     #[inline(always)]
-    pub(crate) fn solve(&self, h: T, y: &Vector3<T>, half_guess: &Vector3<T>) -> Result<Root<FreeBody<T>>, StepError> {
+    pub(crate) fn solve(
+        &self,
+        h: T,
+        y: &Vector3<T>,
+        half_guess: &Vector3<T>,
+    ) -> Result<Root<PrincipalBody<T>>, StepError> {
         let (yy, half_squared) = (y.component_mul(y), h * h * real(0.5));
         let energy = yy.dot(&self.inverse_moments) * half_squared;
         let casimir = (yy.x + yy.y + yy.z) * half_squared;
@@ -49,11 +46,10 @@ impl<T: Real> ModifiedBody<T> {
             return Err(StepError::Singular);
         }
         let moments = inverse.map(|inverse| T::one() / inverse);
-        let lagrangian = FreeBody { J_d: DiagonalNonstandardInertia::of_moments_unchecked(&moments) };
-        let constants = lagrangian.constants(h);
+        let scene = PrincipalBody { J_d: DiagonalNonstandardInertia::of_moments_unchecked(&moments) };
+        let constants = scene.constants(h);
         let safe = safe(moments.x * moments.y * moments.z);
-        let problem =
-            Problem { lagrangian: &lagrangian, constants: &constants, a: *y, w: &(), h, trusted: real(0.0), safe };
+        let problem = Problem { scene: &scene, constants: &constants, a: *y, w: &(), h, trusted: real(0.0), safe };
         // With a momentum so large that the determinant is doubtful, the moments above aren't positive.
         match problem.solve_directly::<false>(half_guess, real(f64::MAX)) {
             Some(root) => Ok(root),

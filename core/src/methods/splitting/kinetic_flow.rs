@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 use super::angle::rotation_coefficients;
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
-use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular};
+use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular, SceneVisitor};
 use crate::motion::{DiscreteLiePoisson, Stepped};
 use crate::numbers::{Coordinates as _, Real, real, reported};
 
@@ -19,6 +19,9 @@ pub trait KineticFlow<T: Real> {
 
     /// How much of that [`take_spin`](Self::take_spin) takes out.
     const OPERATIONS_OF_SPIN: u32 = 0;
+
+    /// Shows its name and every constant: two flows that show the same move a body in the same way.
+    fn describe(&self, visitor: &mut dyn SceneVisitor<T>);
 
     /// The inertia `J` of the body, kg m².
     fn inertia(&self) -> Matrix3<T>;
@@ -109,6 +112,12 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     // The other rotation's sine and cosine, its product with the first and what it does to the momentum.
     const OPERATIONS_OF_SPIN: u32 = 69;
 
+    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+        visitor.term("exact flow of a symmetric body");
+        visitor.parameter("transverse", self.transverse);
+        visitor.parameter("axial", self.axial);
+    }
+
     fn inertia(&self) -> Matrix3<T> {
         Matrix3::from_diagonal(&Vector3::new(self.transverse, self.transverse, self.axial))
     }
@@ -179,6 +188,11 @@ where
     // And a guess, 49, and the difference of the momenta.
     const OPERATIONS: Operations =
         Operations { step: L::OPERATIONS.step.saturating_add(52), iteration: L::OPERATIONS.iteration };
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+        visitor.term("declared flow");
+        Effect::describe(self, visitor);
+    }
 
     fn inertia(&self) -> Matrix3<T> {
         Effect::inertia(self)

@@ -11,19 +11,19 @@ mod split_body;
 
 pub(crate) use kick::{has_force_gradient, torque};
 pub(crate) use kinetic_flow::inverse_inertia;
-pub use kinetic_flow::{DeclaredDrift, KineticFlow, SymmetricBody, SymmetricDrift, Turn};
-pub use preprocessed_flow::{PreprocessedDrift, PreprocessedFlow};
+pub use kinetic_flow::{KineticFlow, SymmetricBody, Turn};
+pub use preprocessed_flow::PreprocessedFlow;
 pub use scheme::{Flow, SplittingScheme};
-pub use split_body::{SplitBody, SplitDrift};
+pub use split_body::SplitBody;
 
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected, LieGroup as _, SO3};
-use crate::mechanics::{DiscreteLagrangian, Regular, energy, velocity_of_momentum};
-use crate::motion::{LOOKS, State, StepReport, Stepper};
-use crate::numbers::{Coordinates, Real, real, reported};
-use nalgebra::{Matrix3, SimdBool as _, Vector3};
+use crate::groups::{Advected, SO3};
+use crate::mechanics::{DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor};
+use crate::motion::{Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, StepReport, Stepper, Summation, is_due};
+use crate::numbers::{Coordinates, real, reported};
+use nalgebra::{Matrix3, SimdBool as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
 
-/// An integrator for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
+/// The plan of [`Stepper::split`](crate::Stepper::split), for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
 /// The shares `a_i` and `b_i` of a [`SplittingScheme`] go to the kinetic flow over `a_i h` and to kicks
 /// `p ← p + b_i h τ(w)` by turns. The kinetic part of the declared Lagrangian is replaced by a [`KineticFlow`], exact
@@ -34,13 +34,14 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 ///
 /// # Contract
 ///
-/// As [`Stepper`]'s. Neighbouring flows of one kind are one flow: over many steps ([`advance`](Self::advance)) the last
+/// As [`Stepper`](crate::Stepper)'s. Neighbouring flows of one kind are one flow: over many steps ([`Stepper::run`](crate::Stepper::run)) the last
 /// of a step and the first of the next are made together.
 ///
 /// # Examples
 ///
 /// ```
-/// use liestep::{Inertia, SO3, Splitting, SplittingScheme, SymmetricBody, lagrangian};
+/// use liestep::methods::{SplittingScheme, SymmetricBody};
+/// use liestep::{Inertia, SO3, Stepper, lagrangian};
 /// use nalgebra::{UnitQuaternion, Vector3};
 ///
 /// /// A heavy top.
@@ -62,12 +63,12 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 ///
 /// let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
 /// let top = Top { J, weight: 9.81, rho: Vector3::z(), up: Vector3::z() };
-/// let splitting = Splitting::new(top, SymmetricBody::new(&J)?, 0.05, SplittingScheme::NYSTROM_11)?;
+/// let stepper = Stepper::split(top, 0.05, SymmetricBody::new(&J)?, SplittingScheme::NYSTROM_11)?;
 /// let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-/// let mut state = splitting.start(attitude, Vector3::new(0.5, 2.0, 12.0))?;
-/// let energy = splitting.energy(&state);
-/// splitting.advance(&mut state, 200)?;
-/// assert!((splitting.energy(&state) - energy).abs() < 1e-6);
+/// let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 12.0))?;
+/// let energy = stepper.energy(&state);
+/// stepper.run(&mut state, 200)?;
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -75,22 +76,20 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 ///
 /// \[BM02\], \[ML95\], \[BCF13\], with force gradients \[Ch97\], \[OMF02\]; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug)]
-pub struct Splitting<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, K: KineticFlow<T>, T: Real = f64> {
+pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
     scheme: SplittingScheme,
-    /// Of the whole step; it starts motions.
-    stepper: Stepper<L>,
-    torque: L::Constants,
+    torque: S::Constants,
     /// `J⁻¹`, for force gradients.
-    inverse_inertia: Matrix3<T>,
+    inverse_inertia: Matrix3<Scalar<S>>,
     kinetic: K,
-    h: T,
+    h: Scalar<S>,
     /// The first share of a step, which is the last one too.
-    outer: Share<K::Drift, T>,
-    inner: Vec<Share<K::Drift, T>>,
+    outer: Share<K::Drift, Scalar<S>>,
+    inner: Vec<Share<K::Drift, Scalar<S>>>,
     /// The last share of a step and the first of the next.
-    joint: Share<K::Drift, T>,
+    joint: Share<K::Drift, Scalar<S>>,
     /// What all the drifts of a step turn about the third body axis, in units of `p_3`, where that can be done at once.
-    spin: Option<T>,
+    spin: Option<Scalar<S>>,
 }
 
 /// A share of the step, its constants folded.
@@ -103,34 +102,45 @@ enum Share<D, T> {
     GradientKick(T, Matrix3<T>),
 }
 
-impl<T, L, K> Splitting<L, K, T>
-where
-    T: Real,
-    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Regular,
-    K: KineticFlow<T>,
-{
-    /// Checks that the Lagrangian can be split and that the flow is that of its body, and folds the constants of all
-    /// the shares of the step `h`, in seconds.
+impl<S: Effect> Stepper<S> {
+    /// A kinetic-potential splitting with this flow of the free body and the coefficients of a scheme; see [`Split`].
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotSeparable`], [`SetupError::AnotherInertia`] and [`SetupError::AnotherBias`] where that isn't
-    /// so; [`SetupError::NoForceGradient`] where the scheme asks for one and the scene was written without; otherwise
-    /// as [`DiscreteLiePoisson::new`](crate::motion::DiscreteLiePoisson::new).
-    pub fn new(lagrangian: L, kinetic: K, h: T, scheme: SplittingScheme) -> Result<Self, SetupError> {
-        let stepper = Stepper::new(lagrangian, h)?;
-        let inertia = stepper.lagrangian().inertia();
+    /// [`SetupError::NotSeparable`], [`SetupError::InertiaMismatch`] and [`SetupError::BiasMismatch`] where the
+    /// Lagrangian can't be split or the flow isn't that of its body; [`SetupError::NoForceGradient`] where the scheme
+    /// asks for one and the scene was written without; otherwise as [`Stepper::new`].
+    pub fn split<K>(
+        scene: S,
+        h: Scalar<S>,
+        flow: K,
+        scheme: SplittingScheme,
+    ) -> Result<Stepper<S, Split<S, K>>, SetupError>
+    where
+        S: DiscreteLagrangian<Group = SO3<<S as Effect>::Scalar>> + Regular,
+        K: KineticFlow<Scalar<S>> + Clone,
+    {
+        // For its checks of the scene and the step.
+        Declared::new(&scene, h)?;
+        let plan = Split::new(&scene, h, flow, scheme)?;
+        Ok(Stepper { scene, plan })
+    }
+}
+
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
+    fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
+        let inertia = scene.inertia();
         let differences = (inertia - kinetic.inertia()).map(nalgebra::SimdComplexField::simd_abs);
-        let difference = differences.fold(T::zero(), nalgebra::SimdPartialOrd::simd_max);
-        if !difference.simd_le(inertia.trace() * T::simd_default_epsilon() * real(64.0)).all() {
-            return Err(SetupError::AnotherInertia { difference: reported(difference) });
+        let difference = differences.fold(real(0.0), nalgebra::SimdPartialOrd::simd_max);
+        if !difference.simd_le(inertia.trace() * Scalar::<S>::simd_default_epsilon() * real(64.0)).all() {
+            return Err(SetupError::InertiaMismatch { difference: reported(difference) });
         }
-        if !bias::is_shared(stepper.lagrangian(), &kinetic) {
-            return Err(SetupError::AnotherBias);
+        if !bias::is_shared(scene, &kinetic) {
+            return Err(SetupError::BiasMismatch);
         }
-        let torque = torque(stepper.lagrangian())?;
-        let inverse_inertia = inverse_inertia(stepper.lagrangian());
-        if scheme.has_gradients() && !has_force_gradient(stepper.lagrangian()) {
+        let torque = torque(scene)?;
+        let inverse_inertia = inverse_inertia(scene);
+        if scheme.has_gradients() && !has_force_gradient(scene) {
             return Err(SetupError::NoForceGradient);
         }
         let share = |((flow, part), gradient): ((Flow, f64), f64)| -> Result<_, SetupError> {
@@ -146,11 +156,10 @@ where
         let outer = share(((flow, part), gradient))?;
         let joint = share(((flow, 2.0 * part), 2.0 * gradient))?;
         let inner = all[1..all.len() - 1].iter().copied().map(share).collect::<Result<_, _>>()?;
-        let mut splitting =
-            Self { scheme, stepper, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None };
+        let mut splitting = Self { scheme, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None };
         // A turn for itself costs about what three others save.
         let drifts = splitting.scheme.shares().filter(|(flow, _)| *flow == Flow::Drift).count();
-        if drifts > 3 && splitting.is_without_torque() {
+        if drifts > 3 && splitting.is_without_torque(scene) {
             splitting.take_spin();
         }
         Ok(splitting)
@@ -158,12 +167,12 @@ where
 
     /// Whether no kick has a third component, to the last bit: then a rotation about the third axis doesn't change the
     /// potential.
-    fn is_without_torque(&self) -> bool {
-        spin::all_samples(self.stepper.lagrangian(), |w| {
-            let torque: Vector3<T> = L::kick_before(&self.torque, w);
-            let gradient = kick::force_gradient::<L>(&self.torque, &self.inverse_inertia, w);
+    fn is_without_torque(&self, scene: &S) -> bool {
+        spin::all_samples(scene, |w| {
+            let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, w);
+            let gradient = kick::force_gradient::<S>(&self.torque, &self.inverse_inertia, w);
             let gradient = gradient.filter(|_| self.scheme.has_gradients()).unwrap_or_else(Vector3::zeros);
-            torque.z.simd_eq(T::zero()).all() && gradient.z.simd_eq(T::zero()).all()
+            torque.z.simd_eq(real(0.0)).all() && gradient.z.simd_eq(real(0.0)).all()
         })
     }
 
@@ -171,7 +180,7 @@ where
     /// a symmetric body does; `p_3` is constant.
     fn take_spin(&mut self) {
         let (mut outer, mut joint, mut inner) = (self.outer.clone(), self.joint.clone(), self.inner.clone());
-        let mut spin = T::zero();
+        let mut spin = real(0.0);
         let shares = inner.iter_mut().map(|share| (share, 1.0));
         for (share, times) in shares.chain([(&mut outer, 2.0), (&mut joint, 0.0)]) {
             if let Share::Drift(drift) = share {
@@ -182,117 +191,10 @@ where
         (self.outer, self.joint, self.inner, self.spin) = (outer, joint, inner, Some(spin));
     }
 
-    /// One step. On an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`] where an equation of the kinetic flow has no solution, or a value isn't finite.
-    #[inline]
-    pub fn step(&self, state: &mut State<SO3<T>, L::Advected>) -> Result<StepReport, StepError> {
-        self.advance(state, 1)
-    }
-
-    /// So many steps, of which the states between aren't asked for. On an error the state is unchanged.
-    ///
-    /// The last drift of a step and the first of the next are made as one. Where the kinetic flow is exact the result is
-    /// that of as many [steps](Self::step) to rounding; elsewhere they differ by some of its error. The iterations of the
-    /// report are those of the last step.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`] where an equation of the kinetic flow has no solution, or a value isn't finite.
-    pub fn advance(&self, state: &mut State<SO3<T>, L::Advected>, steps: u64) -> Result<StepReport, StepError> {
-        let mut next = *state;
-        let mut iterations = 0;
-        if steps > 0 {
-            self.make(&self.outer, &mut next, &mut iterations)?;
-        }
-        for remaining in (0..steps).rev() {
-            iterations = 0;
-            for share in &self.inner {
-                self.make(share, &mut next, &mut iterations)?;
-            }
-            let last = if remaining == 0 { &self.outer } else { &self.joint };
-            self.make(last, &mut next, &mut iterations)?;
-            if let Some(spin) = self.spin {
-                spin::turn(spin * next.momentum.z, &mut next);
-            }
-            next.steps += 1;
-            if next.is_due() {
-                if let Some(spin) = self.spin {
-                    spin::make_good(spin * next.momentum.z, LOOKS, &mut next);
-                }
-                next.restore(&self.lagrangian().advected());
-            }
-        }
-        if !(Coordinates::is_finite(&next.momentum) && Advected::is_finite(&next.advected)) {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
-        }
-        *state = next;
-        Ok(StepReport { iterations, remedy: None })
-    }
-
-    #[inline(always)]
-    fn make(
-        &self,
-        share: &Share<K::Drift, T>,
-        state: &mut State<SO3<T>, L::Advected>,
-        iterations: &mut u32,
-    ) -> Result<(), StepError> {
-        match share {
-            Share::Kick(time) => state.momentum += L::kick_before(&self.torque, &state.advected) * *time,
-            Share::GradientKick(time, mobility) => {
-                let torque: Vector3<T> = L::kick_before(&self.torque, &state.advected);
-                let gradient = kick::force_gradient::<L>(&self.torque, mobility, &state.advected);
-                // That there is one was asked when the step was set up.
-                state.momentum += torque * *time + gradient.unwrap_or_else(Vector3::zeros);
-            }
-            Share::Drift(drift) => {
-                let turn = K::advance(drift, &state.momentum)?;
-                state.attitude = state.attitude.advance(&turn.increment);
-                state.advected = state.advected.advect(&turn.increment);
-                state.momentum += turn.change;
-                *iterations += turn.iterations;
-            }
-        }
-        Ok(())
-    }
-
-    /// A motion from an attitude (body to space) and a body velocity, rad/s.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] where the attitude isn't a rotation or something isn't finite.
-    pub fn start(
-        &self,
-        attitude: impl Into<SO3<T>>,
-        velocity: Vector3<T>,
-    ) -> Result<State<SO3<T>, L::Advected>, SetupError> {
-        self.stepper.start(attitude, velocity)
-    }
-
-    /// A motion from an attitude (body to space) and a body momentum, kg m²/s.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] where the attitude isn't a rotation or something isn't finite.
-    pub fn start_with_momentum(
-        &self,
-        attitude: impl Into<SO3<T>>,
-        momentum: Vector3<T>,
-    ) -> Result<State<SO3<T>, L::Advected>, SetupError> {
-        self.stepper.start_with_momentum(attitude, momentum)
-    }
-
-    /// Whether the drifts' rotations about the third body axis are made at once, after the others of a step.
-    pub(crate) fn has_spin_apart(&self) -> bool {
-        self.spin.is_some()
-    }
-
-    /// The declared Lagrangian.
+    /// The coefficients.
     #[must_use]
-    pub fn lagrangian(&self) -> &L {
-        self.stepper.lagrangian()
+    pub fn scheme(&self) -> &SplittingScheme {
+        &self.scheme
     }
 
     /// The kinetic flow.
@@ -301,27 +203,119 @@ where
         &self.kinetic
     }
 
-    /// The coefficients.
-    #[must_use]
-    pub fn scheme(&self) -> &SplittingScheme {
-        &self.scheme
+    #[inline(always)]
+    fn make<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        share: &Share<K::Drift, Scalar<S>>,
+        motion: &mut M,
+        iterations: &mut u32,
+    ) -> Result<(), StepError> {
+        match share {
+            Share::Kick(time) => motion.push(&(S::kick_before(&self.torque, &motion.now().advected) * *time)),
+            Share::GradientKick(time, mobility) => {
+                let advected = motion.now().advected;
+                let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, &advected);
+                let gradient = kick::force_gradient::<S>(&self.torque, mobility, &advected);
+                // That there is one was asked when the step was set up.
+                motion.push(&(torque * *time + gradient.unwrap_or_else(Vector3::zeros)));
+            }
+            Share::Drift(drift) => {
+                let turn = K::advance(drift, &motion.now().momentum)?;
+                motion.turn(&turn.increment);
+                motion.push(&turn.change);
+                *iterations += turn.iterations;
+            }
+        }
+        Ok(())
     }
+}
 
-    /// The step `h`, s.
-    #[must_use]
-    pub fn step_size(&self) -> T {
+impl<S: RigidScene, K: KineticFlow<Scalar<S>> + Clone> Plan<S> for Split<S, K> {
+    type Kept = ();
+
+    fn step_size(&self) -> Scalar<S> {
         self.h
     }
 
-    /// The body velocity, rad/s.
-    #[must_use]
-    pub fn velocity(&self, state: &State<SO3<T>, L::Advected>) -> Vector3<T> {
-        velocity_of_momentum(self.lagrangian(), &state.momentum, &state.advected)
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        Self::new(scene, h, self.kinetic.clone(), self.scheme)
     }
 
-    /// The energy `½ Ω·JΩ + V(w)`, J; see [`Stepper::energy`].
-    #[must_use]
-    pub fn energy(&self, state: &State<SO3<T>, L::Advected>) -> T {
-        energy(self.lagrangian(), &state.momentum, &state.advected)
+    fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) {}
+
+    #[inline(always)]
+    fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut (),
+    ) -> Result<StepReport, StepError> {
+        let iterations = self.run(scene, motion, kept, 1)?;
+        Ok(StepReport::of(u32::try_from(iterations).unwrap_or(u32::MAX)))
+    }
+
+    /// The last drift of a step and the first of the next are made as one.
+    #[inline(always)]
+    fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        _: &mut (),
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        let mut next = *motion;
+        let (mut all, mut iterations) = (0, 0);
+        if steps > 0 {
+            self.make(&self.outer, &mut next, &mut iterations)?;
+        }
+        for remaining in (0..steps).rev() {
+            for share in &self.inner {
+                self.make(share, &mut next, &mut iterations)?;
+            }
+            let last = if remaining == 0 { &self.outer } else { &self.joint };
+            self.make(last, &mut next, &mut iterations)?;
+            if let Some(spin) = self.spin {
+                spin::turn(spin * next.now().momentum.z, &mut next);
+                if is_due(next.now().steps + 1) {
+                    spin::make_good(spin * next.now().momentum.z, STEPS_BETWEEN_CHECKS, &mut next);
+                }
+            }
+            next.finish(|| scene.advected());
+            all += u64::from(core::mem::take(&mut iterations));
+        }
+        let end = next.now();
+        if !(Coordinates::is_finite(&end.momentum) && Advected::is_finite(&end.advected)) {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        *motion = next;
+        Ok(all)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
+        visitor.term(self.scheme.name());
+        for ((_, share), gradient) in self.scheme.shares().zip(self.scheme.gradients()) {
+            visitor.parameter("share", real(share));
+            visitor.parameter("gradient", real(gradient));
+        }
+        self.kinetic.describe(visitor);
+    }
+
+    fn cost(&self) -> Cost {
+        let kicks = self.scheme.kicks() as f64;
+        let kick = 0.5 * f64::from(S::OPERATIONS.step);
+        let gradients = self.scheme.gradient_kicks() as f64 * (kick + OF_A_FORCE_GRADIENT);
+        let Operations { step, iteration } = K::OPERATIONS;
+        let (step, turn) = match self.spin {
+            Some(_) => (step.saturating_sub(K::OPERATIONS_OF_SPIN), OF_A_TURN + f64::from(K::OPERATIONS_OF_SPIN)),
+            None => (step, 0.0),
+        };
+        let drifts =
+            Cost::of_stages(Operations { step, iteration }, u32::try_from(self.scheme.drifts()).unwrap_or(u32::MAX));
+        Cost { step: drifts.step + kicks * kick + gradients + turn, ..drifts }
     }
 }
+
+/// What a force gradient takes besides another kick: products with `J⁻¹`, and that the torque is waited for.
+const OF_A_FORCE_GRADIENT: f64 = 120.0;
+/// What a rotation that is made apart takes, besides its own operations.
+const OF_A_TURN: f64 = 150.0;

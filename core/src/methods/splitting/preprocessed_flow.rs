@@ -3,14 +3,15 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::{KineticFlow, Turn};
+use crate::effects::PrincipalBody;
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
-use crate::mechanics::{DiagonalNonstandardInertia, Operations};
-use crate::methods::preprocessed::{FreeBody, ModifiedBody, PreprocessedOrder};
+use crate::mechanics::{DiagonalNonstandardInertia, Operations, SceneVisitor};
+use crate::methods::preprocessed::{ModifiedBody, Preprocessed, PreprocessedOrder};
 use crate::motion::DiscreteLiePoisson;
 use crate::numbers::{Real, real};
 
-/// The free motion of an asymmetric body by [`PreprocessedBody`](crate::methods::PreprocessedBody)'s map.
+/// The free motion of an asymmetric body by [`Preprocessed`]'s map.
 ///
 /// For many digits it is the cheapest for such a body, but it isn't symplectic: between kicks the Poisson structure is
 /// kept as well as the flow is approximated. Where a share of the step turns the body by less than a tenth of a radian,
@@ -40,10 +41,12 @@ pub struct PreprocessedDrift<T> {
 impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
     type Drift = PreprocessedDrift<T>;
 
-    // The series to order ten, 120, and their moments, which the solve waits for; a guess, and what becomes of the
-    // momentum.
-    const OPERATIONS: Operations =
-        Operations { step: 195, iteration: <FreeBody<T> as crate::mechanics::Effect>::OPERATIONS.iteration };
+    const OPERATIONS: Operations = Preprocessed::<T>::OPERATIONS;
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+        visitor.term(self.order.name());
+        self.inertia.diagonal().iter().for_each(|&entry| visitor.parameter("J_d", entry));
+    }
 
     fn inertia(&self) -> Matrix3<T> {
         let d = self.inertia.diagonal();
@@ -52,7 +55,7 @@ impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
         // For its checks of the step.
-        DiscreteLiePoisson::new(FreeBody { J_d: self.inertia }, h)?;
+        DiscreteLiePoisson::new(PrincipalBody { J_d: self.inertia }, h)?;
         Ok(PreprocessedDrift { modified: ModifiedBody::new(&self.inertia, self.order.degree()), h })
     }
 

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::angle::{rotation_coefficients, square};
 use crate::groups::{Advected, CayleyRetraction, LieGroup, Retraction as _, SO3};
 use crate::mechanics::DiscreteLagrangian;
-use crate::motion::State;
+use crate::motion::Summation;
 use crate::numbers::{Real, real};
 
 /// Attitudes without anything special about them.
@@ -29,9 +29,9 @@ where
 
 /// Turns the body by `−θ` about its third axis.
 #[inline(always)]
-pub(super) fn turn<T: Real, A: Advected<SO3<T>>>(angle: T, state: &mut State<SO3<T>, A>) {
+pub(super) fn turn<T: Real, A: Advected<SO3<T>>>(angle: T, motion: &mut impl Summation<SO3<T>, A>) {
     let (s, v) = sine_and_versine(angle);
-    move_by(&diagonal_block(v, s), state);
+    move_by(&diagonal_block(v, s), motion);
 }
 
 /// `sin θ` and `cos θ − 1`, without cancellation.
@@ -44,23 +44,22 @@ fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
 /// Makes good what so many turns by one angle have added to lengths across the axis, or taken from them.
 #[cold]
 #[inline(never)]
-pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, state: &mut State<SO3<T>, A>) {
+pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, motion: &mut impl Summation<SO3<T>, A>) {
     let (s, v) = sine_and_versine(angle);
     let ((ss, ss_rest), (vv, vv_rest)) = (square(s), square(v));
     // s² + (1 + v)² − 1, of which the large parts cancel.
     let (twice, lost) = two_sum(ss, v + v);
     let (small, lost_again) = two_sum(twice, vv);
     let excess = small + ((lost + lost_again) + (ss_rest + vv_rest));
-    move_by(&diagonal_block(-excess * real(0.5 * f64::from(turns)), T::zero()), state);
+    move_by(&diagonal_block(-excess * real(0.5 * f64::from(turns)), T::zero()), motion);
 }
 
 #[inline(always)]
-fn move_by<T: Real, A: Advected<SO3<T>>>(increment: &Matrix3<T>, state: &mut State<SO3<T>, A>) {
-    state.attitude = state.attitude.advance(increment);
-    state.advected = state.advected.advect(increment);
-    let change = SO3::adjoint_transpose_increment(increment, &state.momentum);
+fn move_by<T: Real, A: Advected<SO3<T>>>(increment: &Matrix3<T>, motion: &mut impl Summation<SO3<T>, A>) {
+    motion.turn(increment);
+    let change = SO3::adjoint_transpose_increment(increment, &motion.now().momentum);
     // The third component isn't even added to.
-    state.momentum += Vector3::new(change.x, change.y, T::zero());
+    motion.push(&Vector3::new(change.x, change.y, T::zero()));
 }
 
 /// `a + b` rounded and what the rounding left behind, by Knuth's sum.

@@ -31,7 +31,7 @@ impl<L: DiscreteLagrangian> DiscreteEulerPoincare<L> {
     ///
     /// [`StepError`] where that equation has no solution on the branch of the identity.
     pub fn step(&self, f: &Group<L>, w: &L::Advected) -> Result<(Group<L>, L::Advected), StepError> {
-        let momentum = self.flow.lagrangian.legendre_plus(&f.matrix(), w, self.flow.h);
+        let momentum = self.flow.scene().legendre_plus(&f.matrix(), w, self.flow.step_size());
         let next = w.advect(&f.increment());
         let guess = L::Retraction::local_coordinates(f).unwrap_or_else(Vector::<L>::zero);
         let step = self.flow.step(&momentum, &next, &guess)?;

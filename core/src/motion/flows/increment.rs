@@ -2,6 +2,7 @@
 
 use crate::groups::LieGroup;
 use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::motion::summation::Proceeded;
 use crate::numbers::{Entries as _, Mask, real};
 
 /// One application of a flow.
@@ -22,11 +23,20 @@ pub struct Increment<L: Effect> {
 /// A step, with what its successor needs of the [`Root`](crate::solving::Root).
 pub(crate) struct Stepped<L: Effect> {
     pub(crate) step: Increment<L>,
+    /// `μ⁺ − μ`, before it was rounded to the digits of `μ`.
+    pub(crate) change: Vector<L>,
     pub(crate) half: Vector<L>,
     pub(crate) far: Mask<Scalar<L>>,
 }
 
 impl<L: Effect> Stepped<L> {
+    /// As it is added to a motion.
+    #[inline(always)]
+    pub(crate) fn proceeded(&self) -> Proceeded<Group<L>, L::Advected> {
+        let Increment { increment, momentum, advected, .. } = self.step;
+        Proceeded { increment, change: self.change, momentum, advected }
+    }
+
     /// The sum of all that the step has made.
     #[inline(always)]
     pub(crate) fn total(&self) -> Scalar<L> {

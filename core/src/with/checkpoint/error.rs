@@ -31,10 +31,12 @@ pub enum CheckpointError {
         /// Here, s.
         own: f64,
     },
-    /// One of the two steppers has compensated sums and the other hasn't.
-    AnotherSummation {
-        /// Whether the checkpoint's has.
-        compensated: bool,
+    /// The checkpoint was made by another method, or one with other coefficients.
+    AnotherMethod {
+        /// The name of the checkpoint's.
+        stored: String,
+        /// The name of the stepper's.
+        own: String,
     },
     /// A list doesn't have the length that it has in this scene.
     WrongSize {
@@ -60,6 +62,8 @@ pub enum CheckpointError {
         /// How far they are.
         distance: f64,
     },
+    /// What the method keeps from step to step can't be this.
+    NotKept,
     /// The digest doesn't fit the numbers.
     Altered,
 }
@@ -83,12 +87,10 @@ impl fmt::Display for CheckpointError {
                 f,
                 "the step is {stored:e} s in the checkpoint and {own:e} s here; build the stepper with the checkpoint's step"
             ),
-            Self::AnotherSummation { compensated: true } => {
-                write!(f, "the checkpoint is that of a compensated stepper; resume it with `Stepper::compensated`")
-            }
-            Self::AnotherSummation { compensated: false } => {
-                write!(f, "the checkpoint has no compensation terms; resume it with the plain `Stepper`")
-            }
+            Self::AnotherMethod { stored, own } => write!(
+                f,
+                "the checkpoint was made by the method \"{stored}\", this stepper's is \"{own}\"; resume it with the checkpoint's method and let the stepper `adopt` the state"
+            ),
             Self::WrongSize { what, found, expected } => {
                 write!(
                     f,
@@ -110,6 +112,10 @@ impl fmt::Display for CheckpointError {
             Self::NotAdvected { distance } => write!(
                 f,
                 "the checkpoint's advected parameters differ by {distance:e} from what its attitude sees; take another file, this one is damaged"
+            ),
+            Self::NotKept => write!(
+                f,
+                "the checkpoint's numbers that the method keeps from step to step can't be such; take another file, this one is damaged"
             ),
             Self::Altered => write!(
                 f,

@@ -6,7 +6,8 @@ use serde::de::{Error as _, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Stored;
-use crate::mechanics::{Effect, Scalar, SceneVisitor};
+use crate::mechanics::{Effect, SceneVisitor};
+use crate::motion::Plan;
 
 /// A hash by FNV-1a, 64 bits, of Fowler, Noll and Vo: it tells what has changed by accident, not what was forged.
 ///
@@ -31,7 +32,7 @@ impl Fingerprint {
     }
 
     /// The length goes first, so that two texts don't run into each other.
-    fn text(&mut self, text: &str) {
+    pub(super) fn text(&mut self, text: &str) {
         self.number(text.len() as u64);
         self.bytes(text.as_bytes());
     }
@@ -65,28 +66,54 @@ impl<'de> Deserialize<'de> for Fingerprint {
     }
 }
 
-/// A scene by its terms and its parameters.
+/// A scene or a method by its terms and its parameters.
 pub(super) struct Parameters<T> {
-    pub(super) scene: Fingerprint,
+    /// Of the terms and the names of the parameters.
+    pub(super) fingerprint: Fingerprint,
     pub(super) values: Vec<(&'static str, T)>,
+    names: Vec<&'static str>,
 }
 
 impl<T: Stored> Parameters<T> {
-    pub(super) fn of<L: Effect<Scalar = T>>(lagrangian: &L) -> Self {
-        let mut parameters = Self { scene: Fingerprint::default(), values: Vec::new() };
-        parameters.scene.number(size_of::<Scalar<L>>() as u64);
-        lagrangian.describe(&mut parameters);
+    fn nothing() -> Self {
+        Self { fingerprint: Fingerprint::default(), values: Vec::new(), names: Vec::new() }
+    }
+
+    pub(super) fn of_scene<S: Effect<Scalar = T>>(scene: &S) -> Self {
+        let mut parameters = Self::nothing();
+        parameters.fingerprint.number(size_of::<T>() as u64);
+        scene.describe(&mut parameters);
         parameters
+    }
+
+    pub(super) fn of_plan<S: Effect<Scalar = T>, P: Plan<S>>(plan: &P) -> Self {
+        let mut parameters = Self::nothing();
+        plan.describe(&mut parameters);
+        parameters
+    }
+
+    /// The terms that are names; that of a declared kinetic flow is its derivation.
+    pub(super) fn name(&self) -> String {
+        let names: Vec<_> = self.names.iter().copied().filter(|name| !name.contains('\n')).collect();
+        names.join(", ")
+    }
+
+    /// Of the values, too.
+    pub(super) fn of_all(&self) -> Fingerprint {
+        let mut fingerprint = self.fingerprint;
+        self.values.iter().for_each(|(_, value)| fingerprint.number(value.bits()));
+        fingerprint
     }
 }
 
 impl<T> SceneVisitor<T> for Parameters<T> {
     fn term(&mut self, derivation: &'static str) {
-        self.scene.text(derivation);
+        self.fingerprint.text(derivation);
+        self.names.push(derivation);
     }
 
     fn parameter(&mut self, field: &'static str, value: T) {
-        self.scene.text(field);
+        self.fingerprint.text(field);
         self.values.push((field, value));
     }
 }

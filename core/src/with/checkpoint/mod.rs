@@ -7,23 +7,19 @@
 mod error;
 mod fingerprint;
 
-use core::fmt::Debug;
-
 use nalgebra::{SimdComplexField as _, SimdRealField as _};
 use serde::{Deserialize, Serialize};
 
 pub use error::CheckpointError;
 
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{Effect, Group, Matrix, Scalar, Vector};
-use crate::motion::{State, Stepper};
+use crate::mechanics::{Effect, Group, Scalar};
+use crate::motion::{Kept, Motion, Plan, State, StateOf, Stepper};
 use crate::numbers::{Entries, Real, real, reported};
-use crate::solving::{DIFFERENCES, History};
-use crate::with::compensated::{Carry, CompensatedState, CompensatedStepper};
 use fingerprint::{Fingerprint, Parameters};
 
 /// What the numbers below mean; another layout has another number.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// A scalar that is stored by its bits: `f64` or `f32`.
 pub trait Stored: Real + PartialOrd + Serialize + for<'de> Deserialize<'de> {
@@ -48,8 +44,8 @@ impl Stored for f32 {
 /// # Format
 ///
 /// A map of names to numbers and lists of numbers, matrices row by row; units are those of the [`State`]. The lists
-/// have the length that the scene calls for. A text format must read floats to the last bit, as `serde_json` does with
-/// its feature `float_roundtrip`; one that doesn't is found out by the digest.
+/// have the length that the scene and the method call for. A text format must read floats to the last bit, as
+/// `serde_json` does with its feature `float_roundtrip`; one that doesn't is found out by the digest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Checkpoint<T> {
@@ -57,24 +53,19 @@ pub struct Checkpoint<T> {
     /// Of the terms' derivations and the scalar.
     scene: Fingerprint,
     parameters: Vec<T>,
+    /// The method's name, and all its constants.
+    method: String,
+    coefficients: Fingerprint,
     step_size: T,
     steps: u64,
     attitude: Vec<T>,
     momentum: Vec<T>,
     advected: Vec<T>,
-    coordinates: Vec<T>,
-    guess: Vec<T>,
-    /// How many increments the guess is made of, and their differences; where nothing is dear, none.
-    increments: u64,
-    differences: Vec<T>,
-    /// What a compensated stepper carries for attitude, momentum and advected parameters; otherwise nothing.
-    carry: Vec<T>,
+    /// What the method keeps from step to step.
+    kept: Vec<T>,
     /// Of everything above.
     digest: Fingerprint,
 }
-
-/// The carries of attitude and momentum, and of the advected parameters.
-type CarryParts<L> = ((Matrix<L>, Vector<L>), <L as Effect>::Advected);
 
 impl<T: Stored> Checkpoint<T> {
     /// The number of steps made.
@@ -87,9 +78,10 @@ impl<T: Stored> Checkpoint<T> {
         let mut digest = Fingerprint::default();
         digest.number(u64::from(self.format));
         digest.number(self.scene.value());
+        digest.text(&self.method);
+        digest.number(self.coefficients.value());
         digest.number(self.step_size.bits());
         digest.number(self.steps);
-        digest.number(self.increments);
         for (_, numbers) in self.lists() {
             digest.number(numbers.len() as u64);
             for number in numbers {
@@ -99,179 +91,120 @@ impl<T: Stored> Checkpoint<T> {
         digest
     }
 
-    fn lists(&self) -> [(&'static str, &Vec<T>); 8] {
+    fn lists(&self) -> [(&'static str, &Vec<T>); 5] {
         [
             ("parameters", &self.parameters),
             ("attitude", &self.attitude),
             ("momentum", &self.momentum),
             ("advected", &self.advected),
-            ("coordinates", &self.coordinates),
-            ("guess", &self.guess),
-            ("differences", &self.differences),
-            ("carry", &self.carry),
+            ("kept", &self.kept),
         ]
     }
 }
 
-impl<L: Effect<Scalar: Stored>> Stepper<L> {
-    /// The state for a file.
+impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
+    /// The state for a file, with all that its method keeps.
     #[must_use]
-    pub fn checkpoint(&self, state: &State<Group<L>, L::Advected>) -> Checkpoint<Scalar<L>> {
-        written(self, state, Vec::new())
+    pub fn checkpoint(&self, state: &StateOf<S, P>) -> Checkpoint<Scalar<S>> {
+        let State { motion, kept } = state;
+        let (own, method) = (Parameters::of_scene(&self.scene), Parameters::of_plan(&self.plan));
+        let mut numbers = Vec::new();
+        kept.each(&mut |number| numbers.push(number));
+        let mut checkpoint = Checkpoint {
+            format: FORMAT,
+            scene: own.fingerprint,
+            parameters: own.values.iter().map(|(_, value)| *value).collect(),
+            method: method.name(),
+            coefficients: method.of_all(),
+            step_size: self.step_size(),
+            steps: motion.steps,
+            attitude: list(&motion.attitude.matrix()),
+            momentum: list(&motion.momentum),
+            advected: list(&motion.advected),
+            kept: numbers,
+            digest: Fingerprint::default(),
+        };
+        checkpoint.digest = checkpoint.digested();
+        checkpoint
     }
 
     /// The state of a checkpoint, which goes on with the same bits as the one that was written.
     ///
     /// # Errors
     ///
-    /// [`CheckpointError`] where the checkpoint is of another scene, has other parameters or another step, or was made
-    /// by a compensated stepper; where it isn't a state of this scene; and where a digit of it has changed.
-    pub fn resume(&self, checkpoint: &Checkpoint<Scalar<L>>) -> Result<State<Group<L>, L::Advected>, CheckpointError> {
-        let state = read(self, checkpoint)?;
-        if !checkpoint.carry.is_empty() {
-            return Err(CheckpointError::AnotherSummation { compensated: true });
+    /// [`CheckpointError`] where the checkpoint is of another scene or method, has other parameters or another step;
+    /// where it isn't a state of this scene; and where a digit of it has changed.
+    pub fn resume(&self, checkpoint: &Checkpoint<Scalar<S>>) -> Result<StateOf<S, P>, CheckpointError> {
+        self.belongs(checkpoint)?;
+        let attitude = Group::<S>::from_matrix_unchecked(unlisted("attitude", &checkpoint.attitude)?);
+        let motion = Motion {
+            attitude,
+            momentum: unlisted("momentum", &checkpoint.momentum)?,
+            advected: unlisted::<_, S::Advected>("advected", &checkpoint.advected)?,
+            steps: checkpoint.steps,
+        };
+        let kept = remembered::<Scalar<S>, P::Kept>(&checkpoint.kept)?;
+        // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
+        let allowed = Scalar::<S>::simd_default_epsilon().simd_sqrt();
+        let defect = attitude.defect();
+        let is_in_group = defect < allowed;
+        if !is_in_group {
+            return Err(CheckpointError::NotInGroup { defect: reported(defect) });
         }
-        intact(checkpoint).map(|()| state)
-    }
-}
-
-impl<L: Effect<Scalar: Stored>> CompensatedStepper<L> {
-    /// The state for a file, with what its sums carry.
-    #[must_use]
-    pub fn checkpoint(&self, state: &CompensatedState<Group<L>, L::Advected>) -> Checkpoint<Scalar<L>> {
-        let Carry { attitude, momentum, advected } = &state.carry;
-        let carry = [list(attitude), list(momentum), list(advected)].concat();
-        written(self.stepper(), &state.state, carry)
-    }
-
-    /// As [`Stepper::resume`].
-    ///
-    /// # Errors
-    ///
-    /// As [`Stepper::resume`], and where the checkpoint was made by a stepper without compensation, whose state
-    /// [`CompensatedState::from`] takes.
-    pub fn resume(
-        &self,
-        checkpoint: &Checkpoint<Scalar<L>>,
-    ) -> Result<CompensatedState<Group<L>, L::Advected>, CheckpointError> {
-        let state = read(self.stepper(), checkpoint)?;
-        if checkpoint.carry.is_empty() {
-            return Err(CheckpointError::AnotherSummation { compensated: false });
+        let expected = self.scene.advected().seen_from(&attitude);
+        let (mut squared, mut size) = (real::<Scalar<S>>(0.0), real::<Scalar<S>>(0.0));
+        for (stored, expected) in list(&motion.advected).into_iter().zip(list(&expected)) {
+            squared += (stored - expected) * (stored - expected);
+            size += expected * expected;
         }
-        let ((attitude, momentum), advected) = unlisted::<Scalar<L>, CarryParts<L>>("carry", &checkpoint.carry)?;
-        intact(checkpoint)?;
-        Ok(CompensatedState { state, carry: Carry { attitude, momentum, advected } })
-    }
-}
-
-fn written<L: Effect<Scalar: Stored>>(
-    stepper: &Stepper<L>,
-    state: &State<Group<L>, L::Advected>,
-    carry: Vec<Scalar<L>>,
-) -> Checkpoint<Scalar<L>> {
-    let own = Parameters::of(stepper.lagrangian());
-    let (increments, differences) = state.history.parts();
-    let mut checkpoint = Checkpoint {
-        format: FORMAT,
-        scene: own.scene,
-        parameters: own.values.iter().map(|(_, value)| *value).collect(),
-        step_size: stepper.step_size(),
-        steps: state.steps,
-        attitude: list(&state.attitude.matrix()),
-        momentum: list(&state.momentum),
-        advected: list(&state.advected),
-        coordinates: list(&(state.half + state.half)),
-        guess: list(&(state.half_guess + state.half_guess)),
-        increments: increments as u64,
-        differences: differences.iter().flat_map(list).collect(),
-        carry,
-        digest: Fingerprint::default(),
-    };
-    checkpoint.digest = checkpoint.digested();
-    checkpoint
-}
-
-fn read<L: Effect<Scalar: Stored>>(
-    stepper: &Stepper<L>,
-    checkpoint: &Checkpoint<Scalar<L>>,
-) -> Result<State<Group<L>, L::Advected>, CheckpointError> {
-    belongs(stepper, checkpoint)?;
-    let attitude = Group::<L>::from_matrix_unchecked(unlisted("attitude", &checkpoint.attitude)?);
-    let history = remembered::<L>(checkpoint)?;
-    let state = State {
-        attitude,
-        momentum: unlisted("momentum", &checkpoint.momentum)?,
-        advected: unlisted::<_, L::Advected>("advected", &checkpoint.advected)?,
-        half: unlisted::<_, Vector<L>>("coordinates", &checkpoint.coordinates)? * real(0.5),
-        half_guess: unlisted::<_, Vector<L>>("guess", &checkpoint.guess)? * real(0.5),
-        history,
-        steps: checkpoint.steps,
-    };
-    // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
-    let allowed = Scalar::<L>::simd_default_epsilon().simd_sqrt();
-    let defect = attitude.defect();
-    let is_in_group = defect < allowed;
-    if !is_in_group {
-        return Err(CheckpointError::NotInGroup { defect: reported(defect) });
-    }
-    let expected = stepper.lagrangian().advected().seen_from(&attitude);
-    let (mut squared, mut size) = (real::<Scalar<L>>(0.0), real::<Scalar<L>>(0.0));
-    for (stored, expected) in list(&state.advected).into_iter().zip(list(&expected)) {
-        squared += (stored - expected) * (stored - expected);
-        size += expected * expected;
-    }
-    let is_seen = squared <= size * allowed * allowed;
-    if !is_seen {
-        return Err(CheckpointError::NotAdvected { distance: reported(squared.simd_sqrt()) });
-    }
-    Ok(state)
-}
-
-/// What the guess is made of.
-fn remembered<L: Effect<Scalar: Stored>>(
-    checkpoint: &Checkpoint<Scalar<L>>,
-) -> Result<History<Vector<L>>, CheckpointError> {
-    let (what, found) = ("differences", checkpoint.differences.len());
-    let size = <Group<L> as LieGroup>::DIMENSION;
-    // Of more increments than these no more is remembered.
-    let increments = usize::try_from(checkpoint.increments).unwrap_or(usize::MAX).min(DIFFERENCES + 1);
-    let expected = size * increments.saturating_sub(1);
-    if found != expected {
-        return Err(CheckpointError::WrongSize { what, found, expected });
-    }
-    let differences: Result<Vec<Vector<L>>, _> =
-        checkpoint.differences.chunks(size).map(|chunk| unlisted(what, chunk)).collect();
-    Ok(History::of(increments, &differences?))
-}
-
-/// The checkpoint is of this scene, with these parameters and this step.
-fn belongs<L: Effect<Scalar: Stored>>(
-    stepper: &Stepper<L>,
-    checkpoint: &Checkpoint<Scalar<L>>,
-) -> Result<(), CheckpointError> {
-    if checkpoint.format != FORMAT {
-        return Err(CheckpointError::AnotherFormat { found: checkpoint.format, known: FORMAT });
-    }
-    let own = Parameters::of(stepper.lagrangian());
-    if checkpoint.scene != own.scene || checkpoint.parameters.len() != own.values.len() {
-        return Err(CheckpointError::AnotherScene);
-    }
-    for (&stored, &(field, value)) in checkpoint.parameters.iter().zip(&own.values) {
-        if stored.bits() != value.bits() {
-            let (stored, own) = (reported(stored), reported(value));
-            return Err(CheckpointError::AnotherParameter { field, stored, own });
+        let is_seen = squared <= size * allowed * allowed;
+        if !is_seen {
+            return Err(CheckpointError::NotAdvected { distance: reported(squared.simd_sqrt()) });
         }
+        // Last, as every other error says more.
+        if checkpoint.digest != checkpoint.digested() {
+            return Err(CheckpointError::Altered);
+        }
+        Ok(State { motion, kept: kept.ok_or(CheckpointError::NotKept)? })
     }
-    if checkpoint.step_size.bits() != stepper.step_size().bits() {
-        let (stored, own) = (reported(checkpoint.step_size), reported(stepper.step_size()));
-        return Err(CheckpointError::AnotherStep { stored, own });
+
+    /// The checkpoint is of this scene, with these parameters, this method and this step.
+    fn belongs(&self, checkpoint: &Checkpoint<Scalar<S>>) -> Result<(), CheckpointError> {
+        if checkpoint.format != FORMAT {
+            return Err(CheckpointError::AnotherFormat { found: checkpoint.format, known: FORMAT });
+        }
+        let own = Parameters::of_scene(&self.scene);
+        if checkpoint.scene != own.fingerprint || checkpoint.parameters.len() != own.values.len() {
+            return Err(CheckpointError::AnotherScene);
+        }
+        for (&stored, &(field, value)) in checkpoint.parameters.iter().zip(&own.values) {
+            if stored.bits() != value.bits() {
+                let (stored, own) = (reported(stored), reported(value));
+                return Err(CheckpointError::AnotherParameter { field, stored, own });
+            }
+        }
+        let method = Parameters::of_plan(&self.plan);
+        if checkpoint.method != method.name() || checkpoint.coefficients != method.of_all() {
+            return Err(CheckpointError::AnotherMethod { stored: checkpoint.method.clone(), own: method.name() });
+        }
+        if checkpoint.step_size.bits() != self.step_size().bits() {
+            let (stored, own) = (reported(checkpoint.step_size), reported(self.step_size()));
+            return Err(CheckpointError::AnotherStep { stored, own });
+        }
+        Ok(())
     }
-    Ok(())
 }
 
-/// Last, as every other error says more.
-fn intact<T: Stored>(checkpoint: &Checkpoint<T>) -> Result<(), CheckpointError> {
-    if checkpoint.digest == checkpoint.digested() { Ok(()) } else { Err(CheckpointError::Altered) }
+/// What a method keeps, if these numbers can be that.
+fn remembered<T: Stored, K: Kept<T>>(list: &[T]) -> Result<Option<K>, CheckpointError> {
+    let mut expected = 0;
+    let _ = K::from_numbers(&mut || {
+        expected += 1;
+        T::zero()
+    });
+    readable("kept", list, expected)?;
+    let mut numbers = list.iter();
+    Ok(K::from_numbers(&mut || numbers.next().copied().unwrap_or_else(T::zero)))
 }
 
 fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {
@@ -280,24 +213,23 @@ fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {
     list
 }
 
-/// How many scalars there are.
-fn count<T: Real, E: Entries<T>>() -> usize {
-    let mut count = 0;
+fn unlisted<T: Stored, E: Entries<T>>(what: &'static str, list: &[T]) -> Result<E, CheckpointError> {
+    let mut expected = 0;
     E::from_entries(&mut || {
-        count += 1;
+        expected += 1;
         T::zero()
     });
-    count
+    readable(what, list, expected)?;
+    let mut numbers = list.iter();
+    Ok(E::from_entries(&mut || numbers.next().copied().unwrap_or_else(T::zero)))
 }
 
-fn unlisted<T: Stored, E: Entries<T>>(what: &'static str, list: &[T]) -> Result<E, CheckpointError> {
-    let expected = count::<T, E>();
+fn readable<T: Stored>(what: &'static str, list: &[T], expected: usize) -> Result<(), CheckpointError> {
     if list.len() != expected {
         return Err(CheckpointError::WrongSize { what, found: list.len(), expected });
     }
     if !list.iter().all(|&number| crate::numbers::is_finite(number)) {
         return Err(CheckpointError::NonFinite { what });
     }
-    let mut numbers = list.iter();
-    Ok(E::from_entries(&mut || numbers.next().copied().unwrap_or_else(T::zero)))
+    Ok(())
 }

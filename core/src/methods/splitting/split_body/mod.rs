@@ -11,7 +11,7 @@ use super::angle::rotation_coefficients;
 use super::kinetic_flow::{KineticFlow, Turn};
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
-use crate::mechanics::{Inertia, Operations};
+use crate::mechanics::{Inertia, Operations, SceneVisitor};
 use crate::numbers::{Mask, Real, is_finite, real, reported};
 
 /// The free motion of a body with three different moments, split into rotations about body axes; of order 4.
@@ -123,6 +123,11 @@ impl<const ROTATIONS: usize, T: Real> KineticFlow<T> for SplitBody<ROTATIONS, T>
     // to the momentum are 91, and what the last rotation does to it, 16, isn't asked for.
     #[allow(clippy::cast_possible_truncation)] // seven or nine
     const OPERATIONS: Operations = Operations { step: 75 + 52 * ROTATIONS as u32, iteration: 0 };
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+        visitor.term(if ROTATIONS == 9 { "nine rotations" } else { "seven rotations" });
+        self.moments.iter().for_each(|&moment| visitor.parameter("moment", moment));
+    }
 
     fn inertia(&self) -> Matrix3<T> {
         Matrix3::from_diagonal(&self.moments)
