@@ -14,27 +14,22 @@
 //!
 //! Every figure names its reading of the thesis' `diag(2, 2, 1)`: as `J_d` (A, which (3.13) says) or as `J` (B).
 
-mod common;
-#[path = "common/heavy_top/mod.rs"]
-mod heavy_top;
-
 use std::error::Error;
 use std::process::ExitCode;
 
 use clap::Parser;
 use liestep::Stepper;
-
-use common::args::Schedule;
-use common::output::{Output, print};
-use common::plot::{BLUE, GREEN, ORANGE};
-use common::run::run;
-use common::table::{aligned, number, short};
-use common::variational::Variational;
-use heavy_top::cases::{Case, Reading};
-use heavy_top::figures::Figures;
-use heavy_top::overview::overview;
-use heavy_top::quantities::Series;
-use heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
+use workbench::args::Schedule;
+use workbench::heavy_top::cases::{Case, Reading};
+use workbench::heavy_top::figures::Figures;
+use workbench::heavy_top::overview::overview;
+use workbench::heavy_top::quantities::Series;
+use workbench::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
+use workbench::output::{Output, print};
+use workbench::plot::{BLUE, GREEN, ORANGE};
+use workbench::run::run;
+use workbench::table::{aligned, number, short};
+use workbench::variational::Variational;
 
 /// Simulates the heavy top of the thesis and draws its figures 3.4 to 3.10 again.
 #[derive(Parser)]
@@ -47,7 +42,7 @@ struct Arguments {
     #[arg(long, value_enum, ignore_case = true, default_value_t = Reading::A)]
     reading: Reading,
     #[command(flatten)]
-    common: common::args::Common,
+    common: workbench::args::Common,
 }
 
 fn main() -> ExitCode {

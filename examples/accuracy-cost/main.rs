@@ -16,42 +16,20 @@
 //! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
 //! fixed choice; the column `trials` says how many such runs the choice itself took.
 
-// What the other examples share, of which this one uses a part.
-#[allow(dead_code, unused_imports)]
-#[path = "../common/mod.rs"]
-mod common;
-#[allow(dead_code)]
-#[path = "../common/newton_tolerance/mod.rs"]
-mod newton_tolerance;
-#[path = "../common/top_equations.rs"]
-mod top_equations;
-
-mod asked;
-mod figure;
-mod invariants;
-mod measure;
-mod methods;
-mod newton;
-mod others;
-mod report;
-mod rivals;
-mod scenes;
-mod systems;
-
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use accuracy_cost::figure::{Panel, figure, invariants_figure};
+use accuracy_cost::measure::{Effort, ladder};
+use accuracy_cost::report::Measured;
+use accuracy_cost::scenes::Scene;
+use accuracy_cost::{invariants, methods, newton, report};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-
-use common::output::{Output, print};
-use figure::{Panel, figure, invariants_figure};
-use measure::{Effort, ladder};
-use report::Measured;
-use scenes::Scene;
+use workbench::output::{Output, print};
 
 /// Measures what each accuracy costs in time, with our methods and with others'.
 #[derive(Parser)]
@@ -103,7 +81,7 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
     }
     if arguments.asked {
-        print(&format!("{}\n", asked::compare(&scenes, effort)?))?;
+        print(&format!("{}\n", accuracy_cost::asked::compare(&scenes, effort)?))?;
         return Ok(());
     }
     let mut output = Output::new(arguments.out.clone())?;

@@ -5,42 +5,42 @@ use std::path::PathBuf;
 
 /// The step, the span and where the results go.
 #[derive(clap::Args, Clone, Debug)]
-pub(crate) struct Common {
+pub struct Common {
     /// The step, s.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.01, value_parser = positive)]
-    pub(crate) step: f64,
+    pub step: f64,
     /// The time to simulate, s.
     #[arg(long, value_name = "SECONDS", default_value_t = 200.0, value_parser = positive)]
-    pub(crate) time: f64,
+    pub time: f64,
     /// The folder for the figures [default: out/ and the example's name].
     #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Also write every series as CSV, next to the figures.
     #[arg(long)]
-    pub(crate) csv: bool,
+    pub csv: bool,
 }
 
 /// A finite number of equal steps.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Schedule {
+pub struct Schedule {
     /// The step, s.
-    pub(crate) step: f64,
+    pub step: f64,
     /// How many.
-    pub(crate) steps: u64,
+    pub steps: u64,
 }
 
 /// A stretch of a run whose samples are equally far apart.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stretch {
+pub struct Stretch {
     /// Where it ends, in steps from the start.
-    pub(crate) end: u64,
+    pub end: u64,
     /// A sample is kept every so many steps.
-    pub(crate) stride: u64,
+    pub stride: u64,
 }
 
 /// A span and a step that don't make a run.
 #[derive(Debug)]
-pub(crate) enum NoSchedule {
+pub enum NoSchedule {
     Empty { step: f64, time: f64 },
     Endless { steps: f64 },
 }
@@ -70,11 +70,11 @@ const MOST_SAMPLES: u64 = 20_000;
 const BEGINNING: f64 = 20.0;
 
 /// The end that is kept in detail, s: from 100 s to 200 s in the thesis.
-pub(crate) const ENDING: f64 = 100.0;
+pub const ENDING: f64 = 100.0;
 
 impl Common {
     /// The whole number of steps nearest to the time asked for.
-    pub(crate) fn schedule(&self) -> Result<Schedule, NoSchedule> {
+    pub fn schedule(&self) -> Result<Schedule, NoSchedule> {
         let (step, time) = (self.step, self.time);
         let steps = (time / step).round();
         if steps < 1.0 {
@@ -87,7 +87,7 @@ impl Common {
     }
 
     /// The folder asked for, or `out/` and the example's name.
-    pub(crate) fn folder(&self, example: &str) -> PathBuf {
+    pub fn folder(&self, example: &str) -> PathBuf {
         self.out.clone().unwrap_or_else(|| PathBuf::from("out").join(example))
     }
 }
@@ -95,17 +95,17 @@ impl Common {
 impl Schedule {
     /// The time after so many steps, s.
     #[allow(clippy::cast_precision_loss)] // MOST_STEPS is below 2⁵³
-    pub(crate) fn time_after(&self, steps: u64) -> f64 {
+    pub fn time_after(&self, steps: u64) -> f64 {
         self.step * steps as f64
     }
 
     /// The time at the end, s.
-    pub(crate) fn end(&self) -> f64 {
+    pub fn end(&self) -> f64 {
         self.time_after(self.steps)
     }
 
     /// The beginning, the middle and the end, each with as many samples as can be drawn.
-    pub(crate) fn stretches(&self) -> [Stretch; 3] {
+    pub fn stretches(&self) -> [Stretch; 3] {
         let beginning = whole(BEGINNING / self.step).min(self.steps);
         let ending = self.steps.saturating_sub(whole(ENDING / self.step)).max(beginning);
         let mut start = 0;

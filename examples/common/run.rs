@@ -16,13 +16,13 @@ use super::table::short;
 
 /// Attitude (body to space) and angular momentum (body frame, kg m²/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sample {
-    pub(crate) attitude: Matrix3<f64>,
-    pub(crate) momentum: Vector3<f64>,
+pub struct Sample {
+    pub attitude: Matrix3<f64>,
+    pub momentum: Vector3<f64>,
 }
 
 /// Something that steps.
-pub(crate) trait Method: Clone {
+pub trait Method: Clone {
     /// Makes so many steps, and returns how many Newton iterations that took; none for an explicit method.
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped>;
 
@@ -32,11 +32,11 @@ pub(crate) trait Method: Clone {
 
 /// A run that ended early.
 #[derive(Debug)]
-pub(crate) struct Stopped {
+pub struct Stopped {
     /// The last time that was reached, s.
-    pub(crate) time: f64,
+    pub time: f64,
     /// Why it wasn't passed.
-    pub(crate) cause: StepError,
+    pub cause: StepError,
 }
 
 impl fmt::Display for Stopped {
@@ -52,13 +52,13 @@ impl std::error::Error for Stopped {
 }
 
 /// What a run has left.
-pub(crate) struct Record {
+pub struct Record {
     /// Times in s, and the state at each.
-    pub(crate) samples: Vec<(f64, Sample)>,
+    pub samples: Vec<(f64, Sample)>,
     /// Newton iterations a step.
-    pub(crate) iterations: f64,
+    pub iterations: f64,
     /// The time of a step, ns: the median over the blocks, which other programs on the machine disturb least.
-    pub(crate) nanoseconds: f64,
+    pub nanoseconds: f64,
 }
 
 /// Long enough that reading the clock costs nothing beside it.
@@ -68,7 +68,7 @@ const BLOCK: u64 = 1000;
 const LONG: u64 = 2_000_000;
 
 /// Runs a method to the end of the schedule.
-pub(crate) fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<Record, Stopped> {
+pub fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<Record, Stopped> {
     let bar = progress(name, schedule.steps);
     let mut samples = vec![(0.0, method.sample())];
     let (mut done, mut iterations, mut costs) = (0, 0, Vec::new());

@@ -11,43 +11,16 @@
 //! that misses its criterion says so. Rows S to P are those of `tests/hard_cases`, R is what rounding does where it is
 //! always the same.
 
-// What the other examples share, of which this one uses a part.
-#[allow(dead_code, unused_imports)]
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../declarations/mod.rs"]
-mod declarations;
-#[allow(dead_code, unused_imports)]
-#[path = "../common/free_body/mod.rs"]
-mod free_body;
-#[allow(dead_code, unused_imports)]
-#[path = "../common/heavy_top/mod.rs"]
-mod heavy_top;
-#[path = "../common/newton_tolerance/mod.rs"]
-mod newton_tolerance;
-
-mod closed;
-mod curves;
-mod figure;
-mod measure;
-mod motion;
-mod poisson;
-mod report;
-mod rivals;
-mod row;
-mod rows;
-mod walk;
-
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use cases::curves::Curves;
+use cases::row::{Effort, Failure};
+use cases::{figure, report, rows};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-
-use common::output::{Output, print};
-use curves::Curves;
-use row::{Effort, Failure};
+use workbench::output::{Output, print};
 
 /// Runs the hard cases, and writes a table and a figure of what is left of each.
 #[derive(Parser)]

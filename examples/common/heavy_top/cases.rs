@@ -5,11 +5,11 @@ use std::fmt;
 use liestep::{DiagonalNonstandardInertia, InertiaError};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::lagrangian::HeavyTop;
+use super::declaration::HeavyTop;
 
 /// An initial condition, named as in the thesis.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Case {
+pub enum Case {
     /// Figure 3.8: φ' = 3, θ' = 0.5, ψ' = 10 rad/s.
     Looping,
     /// Figure 3.9: φ' = 0, θ' = 0, ψ' = 10 rad/s.
@@ -20,7 +20,7 @@ pub(crate) enum Case {
 
 /// What `diag(2, 2, 1)` stands for.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Reading {
+pub enum Reading {
     /// The nonstandard inertia `J_d`, as in (3.13).
     A,
     /// The ordinary inertia `J`, as the figures of the thesis need it.
@@ -47,10 +47,10 @@ impl fmt::Display for Reading {
 }
 
 impl Case {
-    pub(crate) const ALL: [Self; 3] = [Self::Looping, Self::Cuspidal, Self::Unidirectional];
+    pub const ALL: [Self; 3] = [Self::Looping, Self::Cuspidal, Self::Unidirectional];
 
     /// The figure of the thesis that shows it.
-    pub(crate) fn figure(self) -> &'static str {
+    pub fn figure(self) -> &'static str {
         match self {
             Self::Looping => "3.8",
             Self::Cuspidal => "3.9",
@@ -59,7 +59,7 @@ impl Case {
     }
 
     /// The attitude at `φ = ψ = 0`, and the body velocity in rad/s.
-    pub(crate) fn start(self) -> (UnitQuaternion<f64>, Vector3<f64>) {
+    pub fn start(self) -> (UnitQuaternion<f64>, Vector3<f64>) {
         let (precession, nutation, spin) = match self {
             Self::Looping => (3.0, 0.5, 10.0),
             Self::Cuspidal => (0.0, 0.0, 10.0),
@@ -71,7 +71,7 @@ impl Case {
     }
 
     /// Where the thesis' name for a case and its motion part.
-    pub(crate) fn caveat(self, reading: Reading) -> Option<&'static str> {
+    pub fn caveat(self, reading: Reading) -> Option<&'static str> {
         (self == Self::Unidirectional && reading == Reading::A).then_some(
             "Note: with J_d = diag(2, 2, 1) in (3.13) this third case of the thesis is looping: φ' runs from −0.60 to\n\
              1.00 rad/s. It is unidirectional with diag(2, 2, 1) as the ordinary inertia: --reading b.",
@@ -81,7 +81,7 @@ impl Case {
 
 impl Reading {
     /// The top of the thesis, m = 1 kg, ρ = e₃, g = 9.81 m/s².
-    pub(crate) fn top(self) -> Result<HeavyTop, InertiaError> {
+    pub fn top(self) -> Result<HeavyTop, InertiaError> {
         let printed = Vector3::new(2.0, 2.0, 1.0);
         let inertia = match self {
             Self::A => DiagonalNonstandardInertia::new(printed)?,

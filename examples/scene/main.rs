@@ -10,13 +10,6 @@
 //! there are is decided once a run: the step that then runs is that of the sum of just those, compiled as if it had
 //! been written by hand. A mistake in a file is reported with its line and column.
 
-#[path = "common/csv.rs"]
-mod csv;
-#[path = "common/output.rs"]
-mod output;
-#[path = "common/plot/mod.rs"]
-mod plot;
-#[path = "common/scene/mod.rs"]
 mod scene;
 
 use std::error::Error;
@@ -24,8 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-
-use output::{Output, print};
+use workbench::output::{Output, print};
 
 /// Simulates the scenes that files describe, and draws them.
 #[derive(Parser)]

@@ -8,9 +8,6 @@
 //! The same text stands in the documentation of the constant `DERIVATION` and, equation by equation, of each generated
 //! method.
 
-#[path = "declarations/mod.rs"]
-mod declarations;
-
 use std::io::{self, Write as _};
 
 use clap::Parser;
