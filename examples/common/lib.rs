@@ -13,6 +13,7 @@ pub mod heavy_top;
 pub mod newton_tolerance;
 pub mod output;
 pub mod plot;
+pub mod progress;
 pub mod run;
 pub mod table;
 pub mod top_equations;

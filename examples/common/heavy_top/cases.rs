@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::declaration::HeavyTop;
 
 /// An initial condition, named as in the thesis.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Case {
     /// Figure 3.8: φ' = 3, θ' = 0.5, ψ' = 10 rad/s.
     Looping,
@@ -19,7 +19,7 @@ pub enum Case {
 }
 
 /// What `diag(2, 2, 1)` stands for.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reading {
     /// The nonstandard inertia `J_d`, as in (3.13).
     A,
@@ -29,11 +29,7 @@ pub enum Reading {
 
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Looping => "looping",
-            Self::Cuspidal => "cuspidal",
-            Self::Unidirectional => "unidirectional",
-        })
+        Self::NAMED.iter().filter(|(_, case)| case == self).try_for_each(|(name, _)| f.write_str(name))
     }
 }
 
@@ -47,7 +43,9 @@ impl fmt::Display for Reading {
 }
 
 impl Case {
-    pub const ALL: [Self; 3] = [Self::Looping, Self::Cuspidal, Self::Unidirectional];
+    /// With their names on the command line.
+    pub const NAMED: [(&str, Self); 3] =
+        [("looping", Self::Looping), ("cuspidal", Self::Cuspidal), ("unidirectional", Self::Unidirectional)];
 
     /// The figure of the thesis that shows it.
     pub fn figure(self) -> &'static str {
@@ -80,6 +78,9 @@ impl Case {
 }
 
 impl Reading {
+    /// With their names on the command line.
+    pub const NAMED: [(&str, Self); 2] = [("a", Self::A), ("b", Self::B)];
+
     /// The top of the thesis, m = 1 kg, ρ = e₃, g = 9.81 m/s².
     pub fn top(self) -> Result<HeavyTop, InertiaError> {
         let printed = Vector3::new(2.0, 2.0, 1.0);
