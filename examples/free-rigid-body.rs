@@ -14,56 +14,51 @@
 //! (or shrink) while the motion nears (or leaves) the separatrix, where it lingers, and to first order in the step the
 //! two effects on the period cancel. The rescaled update stops the growth alone, and its flips come late.
 
-mod common;
-#[path = "common/free_body/mod.rs"]
-mod free_body;
-
-use std::error::Error;
 use std::process::ExitCode;
 
-use clap::Parser;
+use liestep::effects::PrincipalBody;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
-
-use common::output::{Output, print};
-use common::plot::{BLUE, GREEN, ORANGE, PURPLE};
-use common::run::run;
-use common::table::{aligned, number, short};
-use common::variational::Variational;
-use free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
-use free_body::figures::Figures;
-use free_body::lagrangian::FreeBody;
-use free_body::overview::overview;
-use free_body::quantities::Series;
+use workbench::args::{Common, Failure, example};
+use workbench::common_help;
+use workbench::free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
+use workbench::free_body::figures::Figures;
+use workbench::free_body::overview::overview;
+use workbench::free_body::quantities::Series;
+use workbench::output::{Output, print};
+use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
+use workbench::run::run;
+use workbench::table::{aligned, number, short};
+use workbench::variational::Variational;
 
 /// The period from J = diag(1, 2, 3) and Ω = (0.01, 2, 0.02), in s, there and back in two flips: that of the Jacobi
 /// elliptic function that the middle rate is.
 const PERIOD: f64 = 19.001_635_511_000_25;
 
-/// Simulates a free rigid body that flips, beside the updates of physics engines.
-#[derive(Parser)]
-#[command(name = "free-rigid-body")]
-struct Arguments {
-    #[command(flatten)]
-    common: common::args::Common,
-}
+const HELP: &str = concat!(
+    "Simulates a free rigid body that flips, beside the updates of physics engines
+
+Options:
+",
+    common_help!()
+);
 
 fn main() -> ExitCode {
-    match simulate(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
+    example(HELP, |words| {
+        let mut arguments = Common::default();
+        while let Some(option) = words.option()? {
+            arguments.take(&option, words)?;
         }
-    }
+        simulate(&arguments)
+    })
 }
 
-fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
-    let schedule = arguments.common.schedule()?;
-    let mut output = Output::new(arguments.common.folder("free-rigid-body"))?;
+fn simulate(arguments: &Common) -> Result<(), Failure> {
+    let schedule = arguments.schedule()?;
+    let mut output = Output::new(arguments.folder("free-rigid-body"))?;
 
     let inertia = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 3.0))?;
-    let stepper = Stepper::new(FreeBody { J_d: inertia }, schedule.step)?;
+    let stepper = Stepper::new(PrincipalBody { J_d: inertia }, schedule.step)?;
     let (attitude, rates) = (UnitQuaternion::identity(), Vector3::new(0.01, 2.0, 0.02));
     let state = stepper.start(attitude, rates)?;
     let body = Moments::of(stepper.lagrangian());
@@ -83,7 +78,7 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let figures = Figures { schedule, series: &series };
     output.write("free-rigid-body.svg", &overview(&figures)?)?;
     figures.write(&mut output)?;
-    if arguments.common.csv {
+    if arguments.csv {
         for method in &series {
             output.write(method.file, &method.csv())?;
         }

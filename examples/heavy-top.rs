@@ -14,53 +14,55 @@
 //!
 //! Every figure names its reading of the thesis' `diag(2, 2, 1)`: as `J_d` (A, which (3.13) says) or as `J` (B).
 
-mod common;
-#[path = "common/heavy_top/mod.rs"]
-mod heavy_top;
-
-use std::error::Error;
 use std::process::ExitCode;
 
-use clap::Parser;
 use liestep::Stepper;
+use workbench::args::{Common, Failure, Schedule, example};
+use workbench::common_help;
+use workbench::heavy_top::cases::{Case, Reading};
+use workbench::heavy_top::figures::Figures;
+use workbench::heavy_top::overview::overview;
+use workbench::heavy_top::quantities::Series;
+use workbench::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
+use workbench::output::{Output, print};
+use workbench::plot::{BLUE, GREEN, ORANGE};
+use workbench::run::run;
+use workbench::table::{aligned, number, short};
+use workbench::variational::Variational;
 
-use common::args::Schedule;
-use common::output::{Output, print};
-use common::plot::{BLUE, GREEN, ORANGE};
-use common::run::run;
-use common::table::{aligned, number, short};
-use common::variational::Variational;
-use heavy_top::cases::{Case, Reading};
-use heavy_top::figures::Figures;
-use heavy_top::overview::overview;
-use heavy_top::quantities::Series;
-use heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
+const HELP: &str = concat!(
+    "Simulates the heavy top of the thesis and draws its figures 3.4 to 3.10 again
 
-/// Simulates the heavy top of the thesis and draws its figures 3.4 to 3.10 again.
-#[derive(Parser)]
-#[command(name = "heavy-top")]
+Options:
+      --case <CASE>     The initial condition, named as in the thesis: looping, cuspidal or unidirectional
+                        [default: looping]
+      --reading <A|B>   What the thesis' diag(2, 2, 1) stands for: the nonstandard inertia J_d or the ordinary J
+                        [default: a]
+",
+    common_help!()
+);
+
 struct Arguments {
-    /// The initial condition, named as in the thesis.
-    #[arg(long, value_enum, default_value_t = Case::Looping)]
     case: Case,
-    /// What the thesis' diag(2, 2, 1) stands for.
-    #[arg(long, value_enum, ignore_case = true, default_value_t = Reading::A)]
     reading: Reading,
-    #[command(flatten)]
-    common: common::args::Common,
+    common: Common,
 }
 
 fn main() -> ExitCode {
-    match simulate(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
+    example(HELP, |words| {
+        let mut arguments = Arguments { case: Case::Looping, reading: Reading::A, common: Common::default() };
+        while let Some(option) = words.option()? {
+            match option.as_str() {
+                "case" => arguments.case = words.one_of(&Case::NAMED)?,
+                "reading" => arguments.reading = words.one_of(&Reading::NAMED)?,
+                other => arguments.common.take(other, words)?,
+            }
         }
-    }
+        simulate(&arguments)
+    })
 }
 
-fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+fn simulate(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { case, reading, .. } = *arguments;
     let schedule = arguments.common.schedule()?;
     let mut output = Output::new(arguments.common.folder("heavy-top"))?;
@@ -69,7 +71,7 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
     let figures = Figures { case, reading, schedule, series: &series };
     output.write("heavy-top.svg", &overview(&figures)?)?;
     figures.write(&mut output)?;
-    for other in Case::ALL.into_iter().filter(|other| *other != case) {
+    for other in Case::NAMED.map(|(_, case)| case).into_iter().filter(|other| *other != case) {
         match all_methods(other, reading, &schedule) {
             Ok(series) => Figures { case: other, reading, schedule, series: &series }.write_tip(&mut output)?,
             // The case that was asked for is done; another may turn too fast for the step.
@@ -92,7 +94,7 @@ fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
 }
 
 /// The variational run of a case and its two rivals.
-fn all_methods(case: Case, reading: Reading, schedule: &Schedule) -> Result<[Series; 3], Box<dyn Error>> {
+fn all_methods(case: Case, reading: Reading, schedule: &Schedule) -> Result<[Series; 3], Failure> {
     let stepper = Stepper::new(reading.top()?, schedule.step)?;
     let (attitude, velocity) = case.start();
     let state = stepper.start(attitude, velocity)?;

@@ -7,8 +7,8 @@ use liestep::{
     Accuracy, AccurateStepper, Candidates, PreprocessedFlow, PreprocessedOrder, SO3, SplitBody, SymmetricBody,
 };
 use nalgebra::Vector3;
+use workbench::table::{aligned, number};
 
-use crate::common::table::{aligned, number};
 use crate::measure::{Effort, cost_of, ladder, timed};
 use crate::methods::{self, Family, Prepared};
 use crate::others;
@@ -18,7 +18,7 @@ use crate::scenes::{Kind, Scene, error};
 const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 /// The table, and whether all choices are within their tolerance and twice the best time.
-pub(crate) fn compare(scenes: &[Scene], effort: impl Fn(f64) -> Effort) -> Result<String, Box<dyn Error>> {
+pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> Effort) -> Result<String, Box<dyn Error>> {
     let heading = ["scene", "t, s", "asked", "chosen", "step, s", "error", "µs", "best fixed", "µs", "ratio", "trials"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     for t in [10.0, 100.0] {
@@ -33,15 +33,15 @@ pub(crate) fn compare(scenes: &[Scene], effort: impl Fn(f64) -> Effort) -> Resul
 }
 
 /// A scene to be asked for, and the methods that the answer is compared with.
-pub(crate) struct Question {
+pub struct Question {
     /// The end of a run that has the accuracy, with the name of its method, its step and the cost of the trials in
     /// runs.
-    pub(crate) ask: Box<dyn Fn(Accuracy) -> Result<Answer, liestep::AccuracyError>>,
-    pub(crate) fixed: Vec<methods::Method>,
+    pub ask: Box<dyn Fn(Accuracy) -> Result<Answer, liestep::AccuracyError>>,
+    pub fixed: Vec<methods::Method>,
 }
 
 /// A choice ready to run.
-pub(crate) struct Answer {
+pub struct Answer {
     name: String,
     step: f64,
     trials: f64,
@@ -49,7 +49,7 @@ pub(crate) struct Answer {
 }
 
 impl Answer {
-    pub(crate) fn new<A>(stepper: AccurateStepper<SO3, A>) -> Self
+    pub fn new<A>(stepper: AccurateStepper<SO3, A>) -> Self
     where
         A: liestep::Advected<SO3> + 'static,
     {
@@ -108,7 +108,7 @@ fn split(candidates: Candidates<SO3, Vector3<f64>>, scene: &Scene) -> Candidates
 }
 
 /// Asks these candidates.
-pub(crate) fn asking<A>(
+pub fn asking<A>(
     candidates: Candidates<SO3, A>,
     attitude: SO3,
     velocity: Vector3<f64>,

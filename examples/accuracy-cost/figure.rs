@@ -1,16 +1,16 @@
 //! Error against time, a panel for each scene.
 
 use plotters::prelude::*;
+use workbench::plot::{Area, BLUE, Drawn, GREEN, ORANGE, heading, legend, px, render};
 
-use crate::common::plot::{Area, BLUE, Drawn, GREEN, ORANGE, heading, legend, px, render};
 use crate::invariants::{Kept, Lost};
 use crate::methods::Family;
 use crate::report::Measured;
 
 /// The runs of one scene over one time.
-pub(crate) struct Panel<'a> {
-    pub(crate) title: String,
-    pub(crate) methods: &'a [Measured],
+pub struct Panel<'a> {
+    pub title: String,
+    pub methods: &'a [Measured],
 }
 
 const FAMILIES: [(Family, &str, RGBColor); 3] = [
@@ -20,7 +20,7 @@ const FAMILIES: [(Family, &str, RGBColor); 3] = [
 ];
 
 /// The lower envelope of each family is what a user can have; all that make it up are drawn thin behind it.
-pub(crate) fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
+pub fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
     const COLUMNS: usize = 2;
     let rows = panels.len().div_ceil(COLUMNS);
     let height = 70 + 300 * u32::try_from(rows)?;
@@ -36,7 +36,7 @@ pub(crate) fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
 }
 
 /// Deviations of the invariants against the number of steps, a scene a row.
-pub(crate) fn invariants_figure(scenes: &[(&str, Vec<Kept>)]) -> Drawn<String> {
+pub fn invariants_figure(scenes: &[(&str, Vec<Kept>)]) -> Drawn<String> {
     let height = 70 + 260 * u32::try_from(scenes.len())?;
     render((1000, height), |area| {
         heading(

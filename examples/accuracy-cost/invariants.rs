@@ -3,8 +3,8 @@
 //! Each method makes as many steps, of the length with which it reached [`ERROR`] after ten seconds.
 
 use nalgebra::Matrix3;
+use workbench::table::{aligned, number};
 
-use crate::common::table::{aligned, number};
 use crate::measure::Run;
 use crate::methods::{Family, Method};
 use crate::report::Measured;
@@ -15,30 +15,30 @@ const ERROR: f64 = 1e-4;
 
 /// Deviations after a number of steps.
 #[derive(Clone, Copy)]
-pub(crate) struct Lost {
-    pub(crate) steps: f64,
+pub struct Lost {
+    pub steps: f64,
     /// Relative to the kinetic energy at the start.
-    pub(crate) energy: f64,
+    pub energy: f64,
     /// Of `e₃·RJΩ`, relative to the momentum's size at the start.
-    pub(crate) vertical: f64,
+    pub vertical: f64,
     /// `‖RᵀR − I‖`, Frobenius.
-    pub(crate) orthogonality: f64,
+    pub orthogonality: f64,
 }
 
 /// A method, its step in s, and what it lost after ever more steps; of one that failed, after those that it made.
-pub(crate) struct Kept {
-    pub(crate) name: String,
-    pub(crate) family: Family,
+pub struct Kept {
+    pub name: String,
+    pub family: Family,
     /// None where no step reached the error that sets it.
     step: Option<f64>,
     /// The number of steps that it should have made and didn't.
     failed: Option<f64>,
-    pub(crate) lost: Vec<Lost>,
+    pub lost: Vec<Lost>,
 }
 
 /// Runs those methods that a user would choose among: the first declared one, the cheapest of each family, and both
 /// rivals with steps of equal length.
-pub(crate) fn kept(scene: &Scene, methods: &[Method], measured: &[Measured], most: u32) -> Vec<Kept> {
+pub fn kept(scene: &Scene, methods: &[Method], measured: &[Measured], most: u32) -> Vec<Kept> {
     let cheapest = [Family::Poisson, Family::NearlyPoisson].map(|family| {
         let costs = measured.iter().enumerate().filter(|(_, method)| method.family == family);
         let costs = costs.filter_map(|(i, method)| Some((i, method.cost(ERROR)?)));
@@ -93,7 +93,7 @@ fn lost(scene: &Scene, steps: f64, (attitude, velocity): &End) -> Lost {
 }
 
 /// What the methods lost in all their steps.
-pub(crate) fn table(methods: &[Kept]) -> String {
+pub fn table(methods: &[Kept]) -> String {
     let steps = methods.iter().filter_map(|kept| kept.lost.last()).map(|lost| lost.steps).fold(0.0, f64::max);
     let heading = [&format!("after {steps:.0e} steps"), "h, s", "energy", "vertical momentum", "‖RᵀR − I‖"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];

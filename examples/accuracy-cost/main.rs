@@ -16,69 +16,51 @@
 //! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
 //! fixed choice; the column `trials` says how many such runs the choice itself took.
 
-// What the other examples share, of which this one uses a part.
-#[allow(dead_code, unused_imports)]
-#[path = "../common/mod.rs"]
-mod common;
-#[allow(dead_code)]
-#[path = "../common/newton_tolerance/mod.rs"]
-mod newton_tolerance;
-#[path = "../common/top_equations.rs"]
-mod top_equations;
-
-mod asked;
-mod figure;
-mod invariants;
-mod measure;
-mod methods;
-mod newton;
-mod others;
-mod report;
-mod rivals;
-mod scenes;
-mod systems;
-
-use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
+use accuracy_cost::figure::{Panel, figure, invariants_figure};
+use accuracy_cost::measure::{Effort, ladder};
+use accuracy_cost::report::Measured;
+use accuracy_cost::scenes::Scene;
+use accuracy_cost::{invariants, methods, newton, report};
+use workbench::args::{Failure, example};
+use workbench::output::{Output, print};
+use workbench::progress::Progress;
 
-use common::output::{Output, print};
-use figure::{Panel, figure, invariants_figure};
-use measure::{Effort, ladder};
-use report::Measured;
-use scenes::Scene;
+const HELP: &str = "Measures what each accuracy costs in time, with our methods and with others'
 
-/// Measures what each accuracy costs in time, with our methods and with others'.
-#[derive(Parser)]
-#[command(name = "accuracy-cost")]
+Options:
+      --quick         Fewer and shorter runs: all is done within a minute
+      --scene <NAME>  Only this scene: looping, cuspidal, third, chaotic or free
+      --asked         Ask for accuracies instead, and see what the choices take beside the best fixed ones
+      --out <DIR>     The folder for the figure and the runs [default: out/accuracy-cost]
+  -h, --help          Print this
+";
+
 struct Arguments {
-    /// Fewer and shorter runs: all is done within a minute.
-    #[arg(long)]
     quick: bool,
-    /// Only this scene: looping, cuspidal, third, chaotic or free.
-    #[arg(long)]
     scene: Option<String>,
-    /// Ask for accuracies instead, and see what the choices take beside the best fixed ones.
-    #[arg(long)]
     asked: bool,
-    /// The folder for the figure and the runs.
-    #[arg(long, value_name = "DIR", default_value = "out/accuracy-cost")]
     out: PathBuf,
 }
 
 fn main() -> ExitCode {
-    match compare(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
+    example(HELP, |words| {
+        let mut arguments = Arguments { quick: false, scene: None, asked: false, out: "out/accuracy-cost".into() };
+        while let Some(option) = words.option()? {
+            match option.as_str() {
+                "quick" => arguments.quick = true,
+                "scene" => arguments.scene = Some(words.text()?),
+                "asked" => arguments.asked = true,
+                "out" => arguments.out = words.folder()?,
+                _ => return Err(words.unknown()),
+            }
         }
-    }
+        compare(&arguments)
+    })
 }
 
 /// How long each scene is integrated, s.
@@ -87,7 +69,7 @@ const TIMES: [f64; 2] = [10.0, 100.0];
 /// The scene that the table of Newton's tolerance is made with.
 const TOLERANCE_SCENE: &str = "looping";
 
-fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+fn compare(arguments: &Arguments) -> Result<(), Failure> {
     let effort = |t: f64| {
         if arguments.quick {
             Effort { longest: 2e-4 * t, repeated: Duration::from_millis(2), ratio: 1.6 }
@@ -103,29 +85,29 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
         }
     }
     if arguments.asked {
-        print(&format!("{}\n", asked::compare(&scenes, effort)?))?;
+        print(&format!("{}\n", accuracy_cost::asked::compare(&scenes, effort)?))?;
         return Ok(());
     }
     let mut output = Output::new(arguments.out.clone())?;
     let (mut text, mut csv, mut results) = (String::new(), report::CSV_HEADING.to_owned(), Vec::new());
     let count: usize = scenes.iter().map(|scene| TIMES.len() * methods::all(scene).len()).sum();
-    let bar = progress(count.try_into()?);
+    let mut progress = Progress::new(count.try_into()?);
     let mut kept = Vec::new();
     for scene in &scenes {
         let methods = methods::all(scene);
         for t in TIMES {
             let mut measured = Vec::new();
             for method in &methods {
-                bar.set_message(format!("{}, {}", scene.name, method.name));
+                progress.add(0, &format!("{}, {}", scene.name, method.name));
                 measured.push(Measured::new(method, ladder(method, scene, t, effort(t))));
-                bar.inc(1);
+                progress.add(1, &format!("{}, {}", scene.name, method.name));
             }
             let title = format!("{}, t = {t} s", scene.name);
             // Writing to a string can't fail.
             let _ = write!(text, "{title}\n\n{}\n\n{}\n\n", report::costs(&measured), report::best(&measured));
             csv.push_str(&report::csv(scene.short, t, &measured));
             if t == TIMES[0] {
-                bar.set_message(format!("{}, invariants", scene.name));
+                progress.add(0, &format!("{}, invariants", scene.name));
                 let most = if arguments.quick { 50_000 } else { 1_000_000 };
                 let methods = invariants::kept(scene, &methods, &measured, most);
                 let _ = write!(text, "{}\n\n", invariants::table(&methods));
@@ -140,19 +122,11 @@ fn compare(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
             results.push((title, measured));
         }
     }
-    bar.finish_and_clear();
+    drop(progress);
     let panels: Vec<_> = results.iter().map(|(title, methods)| Panel { title: title.clone(), methods }).collect();
     output.write("accuracy-cost.svg", &figure(&panels)?)?;
     output.write("invariants.svg", &invariants_figure(&kept)?)?;
     output.write("accuracy-cost.csv", &csv)?;
     print(&format!("{text}{output}"))?;
     Ok(())
-}
-
-fn progress(length: u64) -> ProgressBar {
-    let bar = ProgressBar::new(length);
-    match ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left  {msg}") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

@@ -7,23 +7,23 @@ use crate::scenes::{Scene, error};
 
 /// One run.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Run {
+pub struct Run {
     /// The step, s, or the tolerance of a method that chooses its own.
-    pub(crate) parameter: f64,
-    pub(crate) error: f64,
+    pub parameter: f64,
+    pub error: f64,
     /// Of the processor, s.
-    pub(crate) cost: f64,
+    pub cost: f64,
 }
 
 /// How much is measured.
 #[derive(Clone, Copy)]
-pub(crate) struct Effort {
+pub struct Effort {
     /// A method's costlier runs are left out, s.
-    pub(crate) longest: f64,
+    pub longest: f64,
     /// Each run is repeated for about so long; the shortest counts, which other programs disturb least.
-    pub(crate) repeated: Duration,
+    pub repeated: Duration,
     /// Each step is shorter than the one before by this factor.
-    pub(crate) ratio: f64,
+    pub ratio: f64,
 }
 
 /// Errors at which a method is drawn at all.
@@ -33,7 +33,7 @@ const LARGEST_ERROR: f64 = 0.5;
 const SMALLEST_ERROR: f64 = 1e-14;
 
 /// All the runs of a method that say something, in the order of their steps.
-pub(crate) fn ladder(method: &Method, scene: &Scene, t: f64, effort: Effort) -> Vec<Run> {
+pub fn ladder(method: &Method, scene: &Scene, t: f64, effort: Effort) -> Vec<Run> {
     let Some(exact) = scene.reference(t) else { return Vec::new() };
     let mut runs: Vec<Run> = Vec::new();
     let mut worse = 0;
@@ -58,7 +58,7 @@ pub(crate) fn ladder(method: &Method, scene: &Scene, t: f64, effort: Effort) -> 
 }
 
 /// Where a run ends, and how long the fastest of its repetitions took, s.
-pub(crate) fn timed(prepared: &Prepared, repeated: Duration) -> Option<(crate::scenes::End, f64)> {
+pub fn timed(prepared: &Prepared, repeated: Duration) -> Option<(crate::scenes::End, f64)> {
     let started = Instant::now();
     let mut best = Duration::MAX;
     loop {
@@ -72,7 +72,7 @@ pub(crate) fn timed(prepared: &Prepared, repeated: Duration) -> Option<(crate::s
 }
 
 /// The least time in which the runs reach an error, s: on straight lines between the runs, both axes logarithmic.
-pub(crate) fn cost_of(runs: &[Run], wanted: f64) -> Option<f64> {
+pub fn cost_of(runs: &[Run], wanted: f64) -> Option<f64> {
     let reached = runs.iter().filter(|run| run.error <= wanted).map(|run| run.cost);
     let between = runs.windows(2).filter_map(|pair| {
         let [coarse, fine] = [pair[0], pair[1]];

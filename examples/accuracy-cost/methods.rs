@@ -5,27 +5,27 @@ use liestep::{
     PreprocessedOrder, Regular, SO3, SplitBody, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
-use crate::rivals::{Equations, dop853, library};
+use crate::rivals::{dop853, library};
 use crate::scenes::{End, Kind, Scene};
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
-pub(crate) type Prepared = Box<dyn Fn() -> Option<End>>;
+pub type Prepared = Box<dyn Fn() -> Option<End>>;
 
 /// Makes the run of a scene over a time with a step (or a tolerance) ready: all that doesn't depend on the state is
 /// done here.
 type Prepare = Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>;
 
 /// A way to integrate.
-pub(crate) struct Method {
-    pub(crate) name: String,
-    pub(crate) family: Family,
+pub struct Method {
+    pub name: String,
+    pub family: Family,
     control: Control,
-    pub(crate) prepare: Prepare,
+    pub prepare: Prepare,
 }
 
 /// What a method keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Family {
+pub enum Family {
     /// The Poisson structure and the momentum maps.
     Poisson,
     /// The momentum maps, and the Poisson structure to the order of the method.
@@ -53,12 +53,12 @@ impl Method {
     }
 
     /// Whether the method's steps are all of one length, which is what is varied.
-    pub(crate) fn steps_are_equal(&self) -> bool {
+    pub fn steps_are_equal(&self) -> bool {
         matches!(self.control, Control::Step(_))
     }
 
     /// Steps that divide the time, each shorter than the one before by the ratio; or tolerances.
-    pub(crate) fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
+    pub fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
         let (first, next, last) = match self.control {
             Control::Step(longest) => (longest, 1.0 / ratio, 1e-5),
             // An error of order 8 falls by the eighth power of the step.
@@ -78,12 +78,12 @@ fn count(t: f64, h: f64) -> u64 {
 }
 
 /// All the methods that a scene allows.
-pub(crate) fn all(scene: &Scene) -> Vec<Method> {
+pub fn all(scene: &Scene) -> Vec<Method> {
     ours(scene).into_iter().chain(rivals()).collect()
 }
 
 /// Of these, those that keep the structure.
-pub(crate) fn ours(scene: &Scene) -> Vec<Method> {
+pub fn ours(scene: &Scene) -> Vec<Method> {
     let mut methods = Vec::new();
     if scene.kind == Kind::Free {
         methods.extend(declared("(3.13)", Scene::free_body, 2));
@@ -172,7 +172,7 @@ fn preprocessed() -> [Method; 4] {
 }
 
 /// Splittings with a kinetic flow.
-pub(crate) fn splittings<L, K>(
+pub fn splittings<L, K>(
     name: &'static str,
     family: Family,
     lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
@@ -197,11 +197,7 @@ where
 }
 
 /// The step of a declared Lagrangian of this order, and its compositions.
-pub(crate) fn declared<L>(
-    name: &'static str,
-    lagrangian: impl Fn(&Scene) -> L + Copy + 'static,
-    order: u32,
-) -> Vec<Method>
+pub fn declared<L>(name: &'static str, lagrangian: impl Fn(&Scene) -> L + Copy + 'static, order: u32) -> Vec<Method>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
 {
@@ -237,7 +233,7 @@ where
 fn rivals() -> [Method; 4] {
     [
         Method::new("RK4", Family::Rival, Control::Step(0.5), |scene, t, h| {
-            let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
+            let (equations, start, steps) = (scene.equations(), scene.start(), count(t, h));
             Some(Box::new(move || {
                 let mut y = start;
                 for _ in 0..steps {
@@ -247,7 +243,7 @@ fn rivals() -> [Method; 4] {
             }))
         }),
         Method::new("DOP853, fixed step", Family::Rival, Control::Step(1.0), |scene, t, h| {
-            let (equations, start, steps) = (Equations::of(scene), Equations::start(scene), count(t, h));
+            let (equations, start, steps) = (scene.equations(), scene.start(), count(t, h));
             Some(Box::new(move || {
                 let mut y = start;
                 for _ in 0..steps {
@@ -257,11 +253,11 @@ fn rivals() -> [Method; 4] {
             }))
         }),
         Method::new("DOP853", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
-            let (equations, start) = (Equations::of(scene), Equations::start(scene));
+            let (equations, start) = (scene.equations(), scene.start());
             Some(Box::new(move || Some(equations.end(&dop853::integrate(&equations, t, tolerance, start)?))))
         }),
         Method::new("DOP853 of a library", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
-            let (equations, start) = (Equations::of(scene), Equations::start(scene));
+            let (equations, start) = (scene.equations(), scene.start());
             Some(Box::new(move || Some(equations.end(&library::integrate(&equations, t, tolerance, start)?))))
         }),
     ]

@@ -4,9 +4,9 @@ use std::error::Error;
 use std::fmt::Write as _;
 
 use liestep::{SO3, Stepper};
+use workbench::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
+use workbench::table::{aligned, number};
 
-use crate::common::table::{aligned, number};
-use crate::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
 use crate::scenes::Scene;
 
 /// The step, s.
@@ -16,7 +16,7 @@ const H: f64 = 0.01;
 type Line = (&'static str, String, Left);
 
 /// Of a top by (3.13).
-pub(crate) fn measure(scene: &Scene, steps: u64) -> Result<Vec<Line>, Box<dyn Error>> {
+pub fn measure(scene: &Scene, steps: u64) -> Result<Vec<Line>, Box<dyn Error>> {
     let top = scene.top();
     let stepper = Stepper::new(top.clone(), H)?;
     let state = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity)?;
@@ -32,7 +32,7 @@ pub(crate) fn measure(scene: &Scene, steps: u64) -> Result<Vec<Line>, Box<dyn Er
 }
 
 /// For the terminal.
-pub(crate) fn table(scene: &Scene, steps: u64, lines: &[Line]) -> String {
+pub fn table(scene: &Scene, steps: u64, lines: &[Line]) -> String {
     let title = format!("Newton's tolerance, {}, h = {H} s, {steps} steps; drifts are relative", scene.name);
     let heading = ["start", "tolerance", "iterations", "energy", "p·w", "p₃"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
@@ -45,7 +45,7 @@ pub(crate) fn table(scene: &Scene, steps: u64, lines: &[Line]) -> String {
 }
 
 /// As comma-separated values.
-pub(crate) fn csv(lines: &[Line]) -> String {
+pub fn csv(lines: &[Line]) -> String {
     let mut text = "start,tolerance,iterations,energy_drift,vertical_drift,axial_drift\n".to_owned();
     for (name, tolerance, left) in lines {
         let Left { energy, vertical, axial, iterations } = left;

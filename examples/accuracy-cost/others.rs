@@ -17,10 +17,10 @@ use crate::methods::{self, Family};
 use crate::scenes::{End, Scene};
 
 /// A scene that no file describes, and how it is asked for.
-pub(crate) type Other = (Scene, Question);
+pub type Other = (Scene, Question);
 
 /// All three.
-pub(crate) fn all() -> Result<Vec<Other>, Box<dyn Error>> {
+pub fn all() -> Result<Vec<Other>, Box<dyn Error>> {
     let body = |moments| DiagonalNonstandardInertia::from_principal_moments(moments).map(|J_d| PrincipalBody { J_d });
     let satellite = body(Vector3::new(1.0, 2.5, 3.0))?;
     let J = NonstandardInertia::from(satellite.J_d).to_inertia();

@@ -2,27 +2,28 @@
 
 use std::fmt::Write as _;
 
-use crate::common::table::aligned;
+use workbench::table::aligned;
+
 use crate::measure::{Run, cost_of};
 use crate::methods::{Family, Method};
 
 /// The errors asked for.
-pub(crate) const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
+pub const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
 /// A method and what was measured of it.
-pub(crate) struct Measured {
-    pub(crate) name: String,
-    pub(crate) family: Family,
-    pub(crate) runs: Vec<Run>,
+pub struct Measured {
+    pub name: String,
+    pub family: Family,
+    pub runs: Vec<Run>,
 }
 
 impl Measured {
-    pub(crate) fn new(method: &Method, runs: Vec<Run>) -> Self {
+    pub fn new(method: &Method, runs: Vec<Run>) -> Self {
         Self { name: method.name.clone(), family: method.family, runs }
     }
 
     /// The least time to an error, s.
-    pub(crate) fn cost(&self, error: f64) -> Option<f64> {
+    pub fn cost(&self, error: f64) -> Option<f64> {
         cost_of(&self.runs, error)
     }
 }
@@ -40,7 +41,7 @@ fn microseconds(cost: f64) -> String {
 }
 
 /// Microseconds to each error, a method a row.
-pub(crate) fn costs(methods: &[Measured]) -> String {
+pub fn costs(methods: &[Measured]) -> String {
     let heading = core::iter::once("µs to an error of".to_owned()).chain(ERRORS.map(|error| format!("{error:.0e}")));
     let mut rows = vec![heading.collect::<Vec<_>>()];
     for method in methods {
@@ -51,7 +52,7 @@ pub(crate) fn costs(methods: &[Measured]) -> String {
 }
 
 /// The cheapest of our methods for each error, beside the cheapest rival.
-pub(crate) fn best(methods: &[Measured]) -> String {
+pub fn best(methods: &[Measured]) -> String {
     let mut tables = vec![best_of(methods, Family::Poisson, "Poisson")];
     if methods.iter().any(|method| method.family == Family::NearlyPoisson) {
         tables.push(best_of(methods, Family::NearlyPoisson, "nearly Poisson"));
@@ -75,7 +76,7 @@ fn best_of(methods: &[Measured], family: Family, what: &str) -> String {
 }
 
 /// All runs, a line each.
-pub(crate) fn csv(scene: &str, t: f64, methods: &[Measured]) -> String {
+pub fn csv(scene: &str, t: f64, methods: &[Measured]) -> String {
     let mut text = String::new();
     for method in methods {
         for Run { parameter, error, cost } in &method.runs {
@@ -88,4 +89,4 @@ pub(crate) fn csv(scene: &str, t: f64, methods: &[Measured]) -> String {
 }
 
 /// The first line of the file.
-pub(crate) const CSV_HEADING: &str = "scene,t_s,method,step_s_or_tolerance,error,cost_s\n";
+pub const CSV_HEADING: &str = "scene,t_s,method,step_s_or_tolerance,error,cost_s\n";

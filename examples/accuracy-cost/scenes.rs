@@ -4,38 +4,38 @@
 
 use std::error::Error;
 
-use liestep::{DiagonalNonstandardInertia, Inertia};
+use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, SixthOrderBody, SixthOrderTop};
+use liestep::{DiagonalNonstandardInertia, Inertia, SO3};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
-
-use crate::systems::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, SixthOrderBody, SixthOrderTop};
+use workbench::top_equations::{Equations, State};
 
 /// A body, its start, and where it is later.
-pub(crate) struct Scene {
-    pub(crate) name: &'static str,
+pub struct Scene {
+    pub name: &'static str,
     /// For names of files and columns.
-    pub(crate) short: &'static str,
-    pub(crate) kind: Kind,
+    pub short: &'static str,
+    pub kind: Kind,
     /// Principal moments of the ordinary inertia, kg m².
-    pub(crate) moments: Vector3<f64>,
+    pub moments: Vector3<f64>,
     nonstandard: DiagonalNonstandardInertia,
     /// `m g`, N.
-    pub(crate) weight: f64,
+    pub weight: f64,
     /// Centre of mass from the pivot, body frame, m.
-    pub(crate) rho: Vector3<f64>,
+    pub rho: Vector3<f64>,
     /// At the start, body to space.
-    pub(crate) attitude: Matrix3<f64>,
+    pub attitude: Matrix3<f64>,
     /// At the start, body frame, rad/s.
-    pub(crate) velocity: Vector3<f64>,
+    pub velocity: Vector3<f64>,
     states: Vec<(f64, End)>,
 }
 
 /// Attitude (body to space) and body velocity at the end of a run.
-pub(crate) type End = (Matrix3<f64>, Vector3<f64>);
+pub type End = (Matrix3<f64>, Vector3<f64>);
 
 /// What methods a scene allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// A symmetric body under gravity along its axis.
     SymmetricTop,
     /// Any body under gravity.
@@ -52,7 +52,7 @@ macro_rules! data {
 
 impl Scene {
     /// All five.
-    pub(crate) fn all() -> Result<Vec<Self>, Box<dyn Error>> {
+    pub fn all() -> Result<Vec<Self>, Box<dyn Error>> {
         let symmetric = Kind::SymmetricTop;
         [
             ("looping top", "looping", symmetric, data!("thesis_looping_A_Jd221")),
@@ -85,7 +85,7 @@ impl Scene {
     }
 
     /// A body that something else than gravity acts on, with its states at the times of the runs.
-    pub(crate) fn bare(
+    pub fn bare(
         name: &'static str,
         nonstandard: DiagonalNonstandardInertia,
         attitude: Matrix3<f64>,
@@ -98,53 +98,65 @@ impl Scene {
     }
 
     /// The exact state at a time of the reference, s.
-    pub(crate) fn reference(&self, t: f64) -> Option<&End> {
+    pub fn reference(&self, t: f64) -> Option<&End> {
         self.states.iter().find(|(time, _)| (time - t).abs() < 1e-9).map(|(_, end)| end)
     }
 
+    /// In the variables of the rivals.
+    pub fn equations(&self) -> Equations {
+        Equations::new(self.moments.into(), (self.rho * self.weight).into())
+    }
+
+    /// Where the rivals start.
+    pub fn start(&self) -> State {
+        let q = SO3::from_matrix_unchecked(self.attitude).to_quaternion();
+        let p = self.moments.component_mul(&self.velocity);
+        [q.w, q.i, q.j, q.k, p.x, p.y, p.z]
+    }
+
     /// The body with the kinetic term of (3.13) under gravity.
-    pub(crate) fn top(&self) -> HeavyTop {
+    pub fn top(&self) -> HeavyTop {
         HeavyTop { J_d: self.nonstandard, m: 1.0, g: self.weight, rho: self.rho, up: Vector3::z() }
     }
 
     /// The body with the kinetic term of (3.13) alone.
-    pub(crate) fn free_body(&self) -> FreeBody {
+    pub fn free_body(&self) -> FreeBody {
         FreeBody { J_d: self.nonstandard.into() }
     }
 
     /// The top by the Lagrangian of order 4.
-    pub(crate) fn fourth_order_top(&self) -> FourthOrderTop {
+    pub fn fourth_order_top(&self) -> FourthOrderTop {
         FourthOrderTop { J: self.inertia(), weight: self.weight, rho: self.rho, up: Vector3::z() }
     }
 
     /// The top by the Lagrangian of order 6.
-    pub(crate) fn sixth_order_top(&self) -> SixthOrderTop {
+    pub fn sixth_order_top(&self) -> SixthOrderTop {
         SixthOrderTop { J: self.inertia(), weight: self.weight, rho: self.rho, up: Vector3::z() }
     }
 
     /// The body by the Lagrangian of order 4.
-    pub(crate) fn fourth_order_body(&self) -> FourthOrderBody {
+    pub fn fourth_order_body(&self) -> FourthOrderBody {
         FourthOrderBody { J: self.inertia() }
     }
 
     /// The body by the Lagrangian of order 6.
-    pub(crate) fn sixth_order_body(&self) -> SixthOrderBody {
+    pub fn sixth_order_body(&self) -> SixthOrderBody {
         SixthOrderBody { J: self.inertia() }
     }
 
     /// The nonstandard inertia.
-    pub(crate) fn nonstandard(&self) -> DiagonalNonstandardInertia {
+    pub fn nonstandard(&self) -> DiagonalNonstandardInertia {
         self.nonstandard
     }
 
     /// The ordinary inertia.
-    pub(crate) fn inertia(&self) -> Inertia {
+    pub fn inertia(&self) -> Inertia {
         liestep::NonstandardInertia::from(self.nonstandard).to_inertia()
     }
 }
 
 /// The error of attitude and body velocity together, each relative to the size of the exact one.
-pub(crate) fn error(end: &End, exact: &End) -> f64 {
+pub fn error(end: &End, exact: &End) -> f64 {
     let attitude = (end.0 - exact.0).norm() / exact.0.norm();
     attitude.hypot((end.1 - exact.1).norm() / exact.1.norm())
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 /// One line for every row; the names contain neither commas nor quotes, and numbers need no quoting.
-pub(crate) fn table<const N: usize>(names: [&str; N], rows: impl Iterator<Item = [f64; N]>) -> String {
+pub fn table<const N: usize>(names: [&str; N], rows: impl Iterator<Item = [f64; N]>) -> String {
     let mut text = names.join(",");
     text.push('\n');
     for row in rows {

@@ -6,14 +6,14 @@ use std::io::{self, Write as _};
 use std::path::PathBuf;
 
 /// A folder that exists and takes files, and what was written there.
-pub(crate) struct Output {
+pub struct Output {
     folder: PathBuf,
     written: Vec<(String, usize)>,
 }
 
 /// A folder or a file that couldn't be made.
 #[derive(Debug)]
-pub(crate) struct CannotWrite {
+pub struct CannotWrite {
     path: PathBuf,
     cause: io::Error,
 }
@@ -32,7 +32,7 @@ impl std::error::Error for CannotWrite {
 
 impl Output {
     /// Makes the folder and tries it, so that a long run doesn't end with nowhere to go.
-    pub(crate) fn new(folder: PathBuf) -> Result<Self, CannotWrite> {
+    pub fn new(folder: PathBuf) -> Result<Self, CannotWrite> {
         let probe = folder.join(".writable");
         fs::create_dir_all(&folder)
             .and_then(|()| fs::write(&probe, ""))
@@ -42,7 +42,7 @@ impl Output {
     }
 
     /// Writes one file.
-    pub(crate) fn write(&mut self, name: &str, content: &str) -> Result<(), CannotWrite> {
+    pub fn write(&mut self, name: &str, content: &str) -> Result<(), CannotWrite> {
         let path = self.folder.join(name);
         fs::write(&path, content).map_err(|cause| CannotWrite { path, cause })?;
         self.written.push((name.to_owned(), content.len()));
@@ -51,7 +51,7 @@ impl Output {
 }
 
 /// Prints the report. A reader that has gone away is an error and not a panic.
-pub(crate) fn print(report: &str) -> io::Result<()> {
+pub fn print(report: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(report.as_bytes())?;
     out.flush()

@@ -7,22 +7,22 @@
 use std::fmt;
 use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use liestep::StepError;
 use nalgebra::{Matrix3, Vector3};
 
-use super::args::{Schedule, Stretch};
-use super::table::short;
+use crate::args::{Schedule, Stretch};
+use crate::progress::Progress;
+use crate::table::short;
 
 /// Attitude (body to space) and angular momentum (body frame, kg m²/s).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sample {
-    pub(crate) attitude: Matrix3<f64>,
-    pub(crate) momentum: Vector3<f64>,
+pub struct Sample {
+    pub attitude: Matrix3<f64>,
+    pub momentum: Vector3<f64>,
 }
 
 /// Something that steps.
-pub(crate) trait Method: Clone {
+pub trait Method: Clone {
     /// Makes so many steps, and returns how many Newton iterations that took; none for an explicit method.
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped>;
 
@@ -32,11 +32,11 @@ pub(crate) trait Method: Clone {
 
 /// A run that ended early.
 #[derive(Debug)]
-pub(crate) struct Stopped {
+pub struct Stopped {
     /// The last time that was reached, s.
-    pub(crate) time: f64,
+    pub time: f64,
     /// Why it wasn't passed.
-    pub(crate) cause: StepError,
+    pub cause: StepError,
 }
 
 impl fmt::Display for Stopped {
@@ -52,28 +52,26 @@ impl std::error::Error for Stopped {
 }
 
 /// What a run has left.
-pub(crate) struct Record {
+pub struct Record {
     /// Times in s, and the state at each.
-    pub(crate) samples: Vec<(f64, Sample)>,
+    pub samples: Vec<(f64, Sample)>,
     /// Newton iterations a step.
-    pub(crate) iterations: f64,
+    pub iterations: f64,
     /// The time of a step, ns: the median over the blocks, which other programs on the machine disturb least.
-    pub(crate) nanoseconds: f64,
+    pub nanoseconds: f64,
 }
 
 /// Long enough that reading the clock costs nothing beside it.
 const BLOCK: u64 = 1000;
 
-/// Steps that take long enough for somebody to wonder.
-const LONG: u64 = 2_000_000;
-
 /// Runs a method to the end of the schedule.
-pub(crate) fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<Record, Stopped> {
-    let bar = progress(name, schedule.steps);
+pub fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<Record, Stopped> {
+    let mut progress = Progress::new(schedule.steps);
     let mut samples = vec![(0.0, method.sample())];
     let (mut done, mut iterations, mut costs) = (0, 0, Vec::new());
     for Stretch { end: stretch, stride } in schedule.stretches() {
         while done < stretch {
+            let before = done;
             let end = stretch.min(done + BLOCK.next_multiple_of(stride));
             let mut timed = method.clone();
             let start = Instant::now();
@@ -86,10 +84,9 @@ pub(crate) fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> 
                 samples.push((schedule.time_after(done), method.sample()));
             }
             debug_assert!(same(&method.sample(), &timed.sample()), "the same steps ended in different states");
-            bar.set_position(done);
+            progress.add(end - before, name);
         }
     }
-    bar.finish_and_clear();
     costs.sort_by(f64::total_cmp);
     let nanoseconds = costs[costs.len() / 2];
     Ok(Record { samples, iterations: float(iterations) / float(schedule.steps), nanoseconds })
@@ -103,16 +100,4 @@ fn float(count: u64) -> f64 {
 /// Bit for bit, where it is finite: an explicit method may have blown up, and NaN isn't equal to itself.
 fn same(a: &Sample, b: &Sample) -> bool {
     a == b || !(a.momentum + a.attitude.column(0)).iter().all(|x| x.is_finite())
-}
-
-fn progress(name: &str, steps: u64) -> ProgressBar {
-    if steps < LONG {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(steps).with_message(name.to_owned());
-    let template = "{msg:<28} {bar:40} {percent:>3} %  {eta} left";
-    match ProgressStyle::with_template(template) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

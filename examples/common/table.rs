@@ -1,7 +1,7 @@
 //! Aligned columns for the terminal.
 
 /// The rows below each other, the first column left and the others right aligned, a rule below the first row.
-pub(crate) fn aligned(rows: &[Vec<String>]) -> String {
+pub fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -21,11 +21,11 @@ pub(crate) fn aligned(rows: &[Vec<String>]) -> String {
 }
 
 /// A measured number, short; what isn't finite is said in words.
-pub(crate) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     if value.is_finite() { format!("{value:.1e}") } else { "not finite".to_owned() }
 }
 
 /// A number as a person would write it, without the rounding errors of the last digits.
-pub(crate) fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     format!("{value:.9e}").parse::<f64>().unwrap_or(value).to_string()
 }

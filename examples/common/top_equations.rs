@@ -3,12 +3,14 @@
 //!
 //! These variables are an explicit method's best: seven numbers, products only, and nothing to solve.
 
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
 /// Quaternion `(q_0, q)`, then body momentum.
-pub(crate) type State = [f64; 7];
+pub type State = [f64; 7];
 
 /// The body and the force, in the form that the right-hand side uses.
 #[derive(Clone, Copy)]
-pub(crate) struct Equations {
+pub struct Equations {
     inverse_moments: [f64; 3],
     /// `m g ρ`.
     lever: [f64; 3],
@@ -16,19 +18,27 @@ pub(crate) struct Equations {
 
 impl Equations {
     /// Of a body with these principal moments, kg m², and `m g ρ`, N m.
-    pub(crate) fn new(moments: [f64; 3], lever: [f64; 3]) -> Self {
+    pub fn new(moments: [f64; 3], lever: [f64; 3]) -> Self {
         Self { inverse_moments: moments.map(f64::recip), lever }
     }
 
     /// The body velocity, rad/s.
     #[inline(always)]
-    pub(crate) fn velocity(&self, &[.., p1, p2, p3]: &State) -> [f64; 3] {
+    pub fn velocity(&self, &[.., p1, p2, p3]: &State) -> [f64; 3] {
         let [i1, i2, i3] = self.inverse_moments;
         [i1 * p1, i2 * p2, i3 * p3]
     }
 
+    /// Attitude and body velocity.
+    pub fn end(&self, state: &State) -> (Matrix3<f64>, Vector3<f64>) {
+        let [a, b, c, d, ..] = *state;
+        // As it is: a rival that has lost the length of its quaternion shall show it.
+        let attitude = UnitQuaternion::new_unchecked(Quaternion::new(a, b, c, d)).to_rotation_matrix().into_inner();
+        (attitude, self.velocity(state).into())
+    }
+
     #[inline(always)]
-    pub(crate) fn rate(&self, state: &State) -> State {
+    pub fn rate(&self, state: &State) -> State {
         let [a, b, c, d, p1, p2, p3] = *state;
         let [l1, l2, l3] = self.lever;
         let [o1, o2, o3] = self.velocity(state);
@@ -46,7 +56,7 @@ impl Equations {
 
     /// A step of the classical method, with the quaternion brought back to unit length.
     #[inline]
-    pub(crate) fn rk4_step(&self, h: f64, y: &State) -> State {
+    pub fn rk4_step(&self, h: f64, y: &State) -> State {
         let plus = |h: f64, k: &State| -> State { core::array::from_fn(|i| y[i] + h * k[i]) };
         let k1 = self.rate(y);
         let k2 = self.rate(&plus(0.5 * h, &k1));

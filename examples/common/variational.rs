@@ -5,9 +5,9 @@ use liestep::{DiscreteLagrangian, SO3, State, Stepper};
 use super::run::{Method, Sample, Stopped};
 
 /// A motion, with the stepper that moves it.
-pub(crate) struct Variational<'a, L: DiscreteLagrangian<Scalar = f64, Group = SO3>> {
-    pub(crate) stepper: &'a Stepper<L>,
-    pub(crate) state: State<SO3, L::Advected>,
+pub struct Variational<'a, L: DiscreteLagrangian<Scalar = f64, Group = SO3>> {
+    pub stepper: &'a Stepper<L>,
+    pub state: State<SO3, L::Advected>,
 }
 
 impl<L: DiscreteLagrangian<Scalar = f64, Group = SO3>> Clone for Variational<'_, L> {

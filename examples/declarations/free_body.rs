@@ -9,3 +9,10 @@ pub struct FreeBody {
     /// Nonstandard inertia about the fixed point, kg m².
     pub J_d: NonstandardInertia,
 }
+
+impl FreeBody {
+    /// From the principal moments of the ordinary inertia.
+    pub fn with_moments(moments: [f64; 3]) -> Self {
+        Self { J_d: NonstandardInertia::from_principal_moments(moments.into()).unwrap() }
+    }
+}

@@ -2,6 +2,7 @@
 
 use liestep::Inertia;
 use nalgebra::Vector3;
+use workbench::heavy_top::declaration::HeavyTop;
 
 use super::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop};
 
@@ -10,6 +11,11 @@ use super::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop};
 pub trait Top: Sized {
     /// The top with these parameters.
     fn new(J: Inertia, weight: f64, rho: Vector3<f64>, up: Vector3<f64>) -> Self;
+
+    /// The same body under the same gravity.
+    fn of(top: &HeavyTop) -> Self {
+        Self::new(top.ordinary_inertia(), top.m * top.g, top.rho, top.up)
+    }
 }
 
 macro_rules! tops {

@@ -1,8 +1,8 @@
 //! One figure of all that the rows leave.
 
 use plotters::style::RGBColor;
+use workbench::plot::{Area, Drawn, Line, Panel, Vertical, heading, legend, px, render};
 
-use crate::common::plot::{Area, Drawn, Line, Panel, Vertical, heading, legend, px, render};
 use crate::curves::{Curve, Curves};
 use crate::rivals::GREY;
 
@@ -33,7 +33,7 @@ fn with_limits(mut place: Place<'_>, limits: [f64; 3], top: f64) -> Place<'_> {
     place
 }
 
-pub(crate) fn figure(curves: &Curves) -> Drawn<String> {
+pub fn figure(curves: &Curves) -> Drawn<String> {
     let count = ("log₁₀ of the number of steps", "‖RᵀR − I‖");
     let mut places: Vec<_> = curves
         .energies

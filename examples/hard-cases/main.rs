@@ -11,67 +11,44 @@
 //! that misses its criterion says so. Rows S to P are those of `tests/hard_cases`, R is what rounding does where it is
 //! always the same.
 
-// What the other examples share, of which this one uses a part.
-#[allow(dead_code, unused_imports)]
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../declarations/mod.rs"]
-mod declarations;
-#[allow(dead_code, unused_imports)]
-#[path = "../common/free_body/mod.rs"]
-mod free_body;
-#[allow(dead_code, unused_imports)]
-#[path = "../common/heavy_top/mod.rs"]
-mod heavy_top;
-#[path = "../common/newton_tolerance/mod.rs"]
-mod newton_tolerance;
-
-mod closed;
-mod curves;
-mod figure;
-mod measure;
-mod motion;
-mod poisson;
-mod report;
-mod rivals;
-mod row;
-mod rows;
-mod walk;
-
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
 
-use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
+use cases::curves::Curves;
+use cases::row::{Effort, Failure};
+use cases::{figure, report, rows};
+use workbench::args::example;
+use workbench::output::{Output, print};
+use workbench::progress::Progress;
 
-use common::output::{Output, print};
-use curves::Curves;
-use row::{Effort, Failure};
+const HELP: &str = "Runs the hard cases, and writes a table and a figure of what is left of each
 
-/// Runs the hard cases, and writes a table and a figure of what is left of each.
-#[derive(Parser)]
-#[command(name = "hard-cases")]
+Options:
+      --long       1e8 steps where the others have 1e6, and 3e7 of the chaotic top
+      --row <ROW>  Only this row, as in T3; the figure then has what that row measures
+      --out <DIR>  The folder for the table and the figure [default: out/hard-cases]
+  -h, --help       Print this
+";
+
 struct Arguments {
-    /// 1e8 steps where the others have 1e6, and 3e7 of the chaotic top.
-    #[arg(long)]
     long: bool,
-    /// Only this row, as in T3; the figure then has what that row measures.
-    #[arg(long, value_name = "ROW")]
     row: Option<String>,
-    /// The folder for the table and the figure.
-    #[arg(long, value_name = "DIR", default_value = "out/hard-cases")]
     out: PathBuf,
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
+    example(HELP, |words| {
+        let mut arguments = Arguments { long: false, row: None, out: "out/hard-cases".into() };
+        while let Some(option) = words.option()? {
+            match option.as_str() {
+                "long" => arguments.long = true,
+                "row" => arguments.row = Some(words.text()?),
+                "out" => arguments.out = words.folder()?,
+                _ => return Err(words.unknown()),
+            }
         }
-    }
+        run(&arguments)
+    })
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -84,13 +61,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let effort = Effort { long: arguments.long };
     let (mut done, mut curves) = (Vec::new(), Curves::default());
-    let bar = progress(rows.len().try_into()?);
+    let mut progress = Progress::new(rows.len().try_into()?);
     for (id, measure) in rows {
-        bar.set_message(id);
+        progress.add(0, id);
         done.push(measure(effort, &mut curves).map_err(|cause| format!("row {id}: {cause}"))?);
-        bar.inc(1);
+        progress.add(1, id);
     }
-    bar.finish_and_clear();
+    drop(progress);
     output.write("hard-cases.md", &report::markdown(&done))?;
     output.write("hard-cases.csv", &report::csv(&done))?;
     if !curves.is_empty() {
@@ -98,12 +75,4 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     print(&format!("{}\n\n{output}", report::text(&done)))?;
     Ok(())
-}
-
-fn progress(rows: u64) -> ProgressBar {
-    let bar = ProgressBar::new(rows);
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len}  {elapsed}  row {msg}");
-    let bar = if let Ok(style) = style { bar.with_style(style) } else { bar };
-    bar.enable_steady_tick(Duration::from_millis(500));
-    bar
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Dim, Matrix, RawStorage};
 
-pub(crate) use crate::newton_tolerance::tenths::{Tenths, float, greater};
+pub(crate) use workbench::newton_tolerance::tenths::{Tenths, float, greater};
 
 /// `|a − b| / |b|` in the Euclidean (Frobenius) norm.
 pub(crate) fn relative<R: Dim, C: Dim, A: RawStorage<f64, R, C>, B: RawStorage<f64, R, C>>(

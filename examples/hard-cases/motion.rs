@@ -2,11 +2,11 @@
 //!
 //! `tests/data/README.md` says how each was validated.
 
+use declarations::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, SO3};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
-use crate::declarations::HeavyTop;
 use crate::row::Failure;
 
 /// A top, its start, and where it is later.

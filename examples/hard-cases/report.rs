@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::row::Row;
 
 /// For the terminal: a line for each row, and below it what the others do.
-pub(crate) fn text(rows: &[Row]) -> String {
+pub fn text(rows: &[Row]) -> String {
     let mut text = String::new();
     for row in rows {
         let verdict = if row.is_met { "met   " } else { "MISSED" };
@@ -28,7 +28,7 @@ pub(crate) fn text(rows: &[Row]) -> String {
 }
 
 /// As a table in Markdown.
-pub(crate) fn markdown(rows: &[Row]) -> String {
+pub fn markdown(rows: &[Row]) -> String {
     let mut text = "| | case | criterion | measured | others | |\n|---|---|---|---|---|---|\n".to_owned();
     for row in rows {
         let cells = [row.id, row.case, row.criterion, &row.ours.join("; "), &row.others.join("; ")];
@@ -39,7 +39,7 @@ pub(crate) fn markdown(rows: &[Row]) -> String {
 }
 
 /// As comma-separated values, each in quotes.
-pub(crate) fn csv(rows: &[Row]) -> String {
+pub fn csv(rows: &[Row]) -> String {
     let mut text = "row,case,criterion,measured,others,verdict\n".to_owned();
     for row in rows {
         let cells = [row.id, row.case, row.criterion, &row.ours.join("; "), &row.others.join("; "), verdict(row)];

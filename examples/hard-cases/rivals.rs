@@ -1,16 +1,16 @@
 //! Other methods on the bodies of the rows.
 
+use declarations::HeavyTop;
+use liestep::effects::PrincipalBody;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use plotters::style::RGBColor;
+use workbench::free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
+use workbench::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
+use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
+use workbench::run::{Method, Sample, Stopped};
+use workbench::variational::Variational;
 
-use crate::common::plot::{BLUE, GREEN, ORANGE, PURPLE};
-use crate::common::run::{Method, Sample, Stopped};
-use crate::common::variational::Variational;
-use crate::declarations::HeavyTop;
-use crate::free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
-use crate::free_body::lagrangian::FreeBody;
-use crate::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
 use crate::motion::Motion;
 use crate::row::Failure;
 
@@ -43,8 +43,8 @@ pub(crate) struct Trace {
 }
 
 impl Spin {
-    pub(crate) fn body(&self) -> FreeBody {
-        FreeBody { J_d: self.inertia }
+    pub(crate) fn body(&self) -> PrincipalBody {
+        PrincipalBody { J_d: self.inertia }
     }
 
     /// Principal moments, kg m².

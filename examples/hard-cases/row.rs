@@ -3,61 +3,61 @@
 use std::error::Error;
 
 /// Why a row couldn't be measured at all.
-pub(crate) type Failure = Box<dyn Error>;
+pub type Failure = Box<dyn Error>;
 
 /// How many steps the long rows take.
 #[derive(Clone, Copy)]
-pub(crate) struct Effort {
-    pub(crate) long: bool,
+pub struct Effort {
+    pub long: bool,
 }
 
 impl Effort {
     /// The one number of steps, or with `--long` the other.
-    pub(crate) fn steps(self, default: u64, long: u64) -> u64 {
+    pub fn steps(self, default: u64, long: u64) -> u64 {
         if self.long { long } else { default }
     }
 }
 
 /// One claim.
-pub(crate) struct Row {
-    pub(crate) id: &'static str,
-    pub(crate) case: &'static str,
-    pub(crate) criterion: &'static str,
+pub struct Row {
+    pub id: &'static str,
+    pub case: &'static str,
+    pub criterion: &'static str,
     /// What was measured, and of what missed its bound also that.
-    pub(crate) ours: Vec<String>,
-    pub(crate) others: Vec<String>,
-    pub(crate) is_met: bool,
+    pub ours: Vec<String>,
+    pub others: Vec<String>,
+    pub is_met: bool,
 }
 
 impl Row {
-    pub(crate) fn new(id: &'static str, case: &'static str, criterion: &'static str) -> Self {
+    pub fn new(id: &'static str, case: &'static str, criterion: &'static str) -> Self {
         Self { id, case, criterion, ours: Vec::new(), others: Vec::new(), is_met: true }
     }
 
     /// A size that must not exceed a bound. NaN misses it.
-    pub(crate) fn at_most(self, what: &str, size: f64, bound: f64) -> Self {
+    pub fn at_most(self, what: &str, size: f64, bound: f64) -> Self {
         self.judged(&format!("{what} {}", short(size)), size <= bound, &format!("above {}", short(bound)))
     }
 
     /// A value that must be as near to the expected one as said.
-    pub(crate) fn near(self, what: &str, value: f64, expected: f64, allowed: f64) -> Self {
+    pub fn near(self, what: &str, value: f64, expected: f64, allowed: f64) -> Self {
         let is_near = (value - expected).abs() <= allowed;
         self.judged(&format!("{what} {value:.6}"), is_near, &format!("not {expected}"))
     }
 
     /// Something that must be so.
-    pub(crate) fn holds(self, what: &str, is_so: bool) -> Self {
+    pub fn holds(self, what: &str, is_so: bool) -> Self {
         self.judged(what, is_so, "not so")
     }
 
     /// Something that the criterion doesn't speak of.
-    pub(crate) fn shows(mut self, what: impl Into<String>) -> Self {
+    pub fn shows(mut self, what: impl Into<String>) -> Self {
         self.ours.push(what.into());
         self
     }
 
     /// What another method does.
-    pub(crate) fn other(mut self, what: impl Into<String>) -> Self {
+    pub fn other(mut self, what: impl Into<String>) -> Self {
         self.others.push(what.into());
         self
     }
@@ -70,10 +70,10 @@ impl Row {
 }
 
 /// A size in two digits, or three where it needs no power of ten.
-pub(crate) fn short(size: f64) -> String {
+pub fn short(size: f64) -> String {
     if size == 0.0 || (0.1..1e4).contains(&size.abs()) {
-        crate::common::table::short(format!("{size:.2e}").parse().unwrap_or(size))
+        workbench::table::short(format!("{size:.2e}").parse().unwrap_or(size))
     } else {
-        crate::common::table::number(size)
+        workbench::table::number(size)
     }
 }

@@ -1,15 +1,15 @@
 //! Symmetric compositions of declared Lagrangians.
 
+use checks::measure::relative;
+use checks::random::Random;
+use checks::reference::{Motion, looping};
+use checks::structure::poisson::{TOLERANCE, defect_of};
+use checks::tops::{FreeBody, HeavyTop};
+use declarations::{FourthOrderTop, SixthOrderTop, Top as _};
 use liestep::{Composition, CompositionScheme, DiscreteLagrangian, LieGroup as _, Regular, SO3, StepError};
 use nalgebra::Vector3;
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
-use crate::common::reference::{Motion, looping};
-use crate::common::structure::poisson::{TOLERANCE, defect_of};
-use crate::common::tops::{FreeBody, HeavyTop};
 use crate::convergence::{End, TOPS, assert_order, counts};
-use crate::declarations::{FourthOrderTop, SixthOrderTop};
 use crate::many_digits::heavy_top::Top;
 use crate::many_digits::{self, DoubleDouble};
 
@@ -84,7 +84,7 @@ fn sofroniou_spaletta_10_is_of_order_10() {
 fn suzuki_6_of_the_fourth_order_top_is_of_order_6() {
     let scheme = CompositionScheme::SUZUKI_6;
     assert_order((scheme.name(), 6), (TOPS[0], 1.0), &counts(40, 1.5, 5), |motion, h, steps| {
-        end(motion.top.declared_as::<FourthOrderTop>(), scheme, motion, h, steps)
+        end(FourthOrderTop::of(&motion.top), scheme, motion, h, steps)
     });
 }
 
@@ -92,7 +92,7 @@ fn suzuki_6_of_the_fourth_order_top_is_of_order_6() {
 fn suzuki_8_of_the_sixth_order_top_is_of_order_8() {
     let scheme = CompositionScheme::SUZUKI_8;
     assert_order((scheme.name(), 8), (TOPS[0], 1.0), &counts(10, 1.3, 5), |motion, h, steps| {
-        end(motion.top.declared_as::<SixthOrderTop>(), scheme, motion, h, steps)
+        end(SixthOrderTop::of(&motion.top), scheme, motion, h, steps)
     });
 }
 

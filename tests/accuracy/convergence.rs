@@ -1,10 +1,9 @@
 //! Measured orders.
 
+use checks::measure::{order, relative};
+use checks::reference::Motion;
 use liestep::SO3;
 use nalgebra::{Matrix3, Vector3};
-
-use crate::common::measure::{order, relative};
-use crate::common::reference::Motion;
 
 /// The tops whose equations are nonlinear in every variable: three of the thesis, and one without any symmetry.
 pub(crate) const TOPS: [&str; 4] =

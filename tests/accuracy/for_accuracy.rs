@@ -1,8 +1,8 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
-use crate::common::reference::Motion;
-use crate::common::tops::HeavyTop;
-use crate::declarations::FourthOrderTop;
+use checks::reference::Motion;
+use checks::tops::HeavyTop;
+use declarations::{FourthOrderTop, Top as _};
 use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
     Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, Composition, CompositionScheme,
@@ -340,7 +340,7 @@ fn candidates_of_another_scene_are_refused() {
     let mut longer = motion.top.clone();
     longer.rho *= 1.01;
     assert_eq!(ask(all(&motion).and_gauss(longer)), AccuracyError::Setup(SetupError::AnotherPotential));
-    let coupled: FourthOrderTop = motion.top.declared_as();
+    let coupled = FourthOrderTop::of(&motion.top);
     let refusal = ask(all(&motion).and_gauss(coupled));
     assert!(matches!(refusal, AccuracyError::Setup(SetupError::NotSeparable { .. })), "{refusal}");
     let mut rounder = motion.top.clone();

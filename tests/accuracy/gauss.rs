@@ -1,18 +1,18 @@
 //! Gauss collocation in quaternion and momentum.
 
+use checks::measure::relative;
+use checks::random::Random;
+use checks::reference::{Motion, looping};
+use checks::structure::poisson::{TOLERANCE, defect_of};
+use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::{FourthOrderTop, LogTop, Top as _};
 use liestep::{
     DiscreteLagrangian, Effect as _, Gauss, GaussState, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody,
     SO3, SetupError, StepError, effects,
 };
 use nalgebra::{Matrix3, Vector3};
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
-use crate::common::reference::{Motion, looping};
-use crate::common::structure::poisson::{TOLERANCE, defect_of};
-use crate::common::tops::{FreeBody, FullTop, HeavyTop};
 use crate::convergence::{End, TOPS, assert_order, counts};
-use crate::declarations::{FourthOrderTop, LogTop};
 use crate::many_digits;
 use crate::many_digits::collocation::{self, Tableau};
 
@@ -247,7 +247,7 @@ fn scenes_of_several_effects_are_integrated() {
 #[test]
 fn only_the_continuous_limit_matters() {
     let motion = looping();
-    let log: LogTop = motion.top.declared_as();
+    let log = LogTop::of(&motion.top);
     let full = FullTop::in_axes(&motion.top, &Matrix3::identity());
     let (a, b) = (Gauss::<_, 4>::new(log, 0.05).unwrap(), Gauss::<_, 4>::new(full, 0.05).unwrap());
     let [a, b] = [
@@ -301,7 +301,7 @@ fn a_step_too_long_is_an_error_and_leaves_the_state() {
 
 #[test]
 fn a_lagrangian_whose_potential_is_not_apart_is_refused() {
-    let coupled: FourthOrderTop = HeavyTop::thesis().declared_as();
+    let coupled = FourthOrderTop::of(&HeavyTop::thesis());
     let error = Gauss::<_, 4>::new(coupled, 0.01).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }

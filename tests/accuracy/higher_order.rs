@@ -1,35 +1,34 @@
 //! Declared Lagrangians of higher order: one solve a step, and the order that is claimed for them.
 
-use crate::common::order::assert_order;
-use crate::common::tops::inertia;
-use crate::declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderTop};
+use checks::order::assert_order;
+use declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderTop, Top as _};
 
 const TOPS: [&str; 3] = ["thesis_looping_A_Jd221", "thesis_cuspidal_B_J221", "thesis_unidirectional_A_Jd221"];
 
 #[test]
 fn the_geodesic_kinetic_term_is_of_second_order() {
     for name in TOPS {
-        assert_order(name, 2.0, (1.0, 1.0 / 40.0), |motion| motion.top.declared_as::<LogTop>());
+        assert_order(name, 2.0, (1.0, 1.0 / 40.0), |motion| LogTop::of(&motion.top));
     }
 }
 
 #[test]
 fn the_fourth_order_top_is_of_fourth_order() {
     for name in TOPS {
-        assert_order(name, 4.0, (1.0, 1.0 / 40.0), |motion| motion.top.declared_as::<FourthOrderTop>());
+        assert_order(name, 4.0, (1.0, 1.0 / 40.0), |motion| FourthOrderTop::of(&motion.top));
     }
 }
 
 #[test]
 fn the_sixth_order_top_is_of_sixth_order() {
     for name in TOPS {
-        assert_order(name, 6.0, (1.0, 1.0 / 20.0), |motion| motion.top.declared_as::<SixthOrderTop>());
+        assert_order(name, 6.0, (1.0, 1.0 / 20.0), |motion| SixthOrderTop::of(&motion.top));
     }
 }
 
 #[test]
 fn the_fourth_order_body_is_of_fourth_order() {
     for name in ["free_axisymmetric_Jd221", "free_asymmetric_J123_intermediate"] {
-        assert_order(name, 4.0, (10.0, 1.0 / 20.0), |motion| FourthOrderBody { J: inertia(&motion.top) });
+        assert_order(name, 4.0, (10.0, 1.0 / 20.0), |motion| FourthOrderBody { J: motion.top.ordinary_inertia() });
     }
 }

@@ -5,11 +5,6 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../examples/declarations/mod.rs"]
-mod declarations;
-
 mod composition;
 mod conditions;
 mod convergence;

@@ -1,13 +1,13 @@
 //! The free body with preprocessed moments of inertia.
 
+use checks::measure::relative;
+use checks::random::Random;
+use checks::reference::Motion;
+use checks::structure::poisson::{TOLERANCE, defect_of};
+use checks::tops::FreeBody;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, PreprocessedBody, PreprocessedOrder, SO3, StepError};
 use nalgebra::Vector3;
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
-use crate::common::reference::Motion;
-use crate::common::structure::poisson::{TOLERANCE, defect_of};
-use crate::common::tops::FreeBody;
 use crate::convergence::{assert_order, counts};
 
 const ORDERS: [(u32, PreprocessedOrder); 4] = [

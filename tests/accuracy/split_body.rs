@@ -1,5 +1,10 @@
 //! The asymmetric body by rotations about its axes.
 
+use checks::measure::{order, relative};
+use checks::random::Random;
+use checks::reference::Motion;
+use checks::structure::poisson::TOLERANCE;
+use checks::tops::HeavyTop;
 use liestep::{
     Inertia, KineticFlow, LieGroup as _, PreprocessedBody, PreprocessedOrder, Real, SO3, SetupError, SplitBody,
     Splitting, SplittingScheme, StepError, SymmetricBody, Turn,
@@ -7,11 +12,6 @@ use liestep::{
 use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
-use crate::common::measure::{order, relative};
-use crate::common::random::Random;
-use crate::common::reference::Motion;
-use crate::common::structure::poisson::TOLERANCE;
-use crate::common::tops::{HeavyTop, inertia};
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::poisson::poisson_defect;
 
@@ -32,7 +32,7 @@ fn drifted<K: KineticFlow<T>, T: Real>(body: &K, h: T, momentum: &Vector3<T>) ->
 }
 
 fn end<const N: usize>(scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
-    let kinetic = SplitBody::<N>::new(&inertia(&motion.top)).unwrap();
+    let kinetic = SplitBody::<N>::new(&motion.top.ordinary_inertia()).unwrap();
     let splitting = Splitting::new(motion.top.clone(), kinetic, h, scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
     splitting.advance(&mut state, steps.into()).unwrap();
@@ -212,7 +212,7 @@ fn p1_they_are_poisson_maps() {
 #[test]
 fn momenta_are_kept() {
     fn assert_kept<const N: usize>(motion: &Motion, scheme: SplittingScheme, h: f64) {
-        let kinetic = SplitBody::<N>::new(&inertia(&motion.top)).unwrap();
+        let kinetic = SplitBody::<N>::new(&motion.top.ordinary_inertia()).unwrap();
         let splitting = Splitting::new(motion.top.clone(), kinetic, h, scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
         let before = state.spatial_momentum();
@@ -324,7 +324,7 @@ fn other_axes_are_refused() {
 fn what_is_not_finite_is_refused() {
     assert!(matches!(split::<7>(MOMENTS[0]).drift(f64::NAN), Err(SetupError::InvalidStep { .. })));
     let top = HeavyTop::asymmetric();
-    let kinetic = SplitBody::<7>::new(&inertia(&top)).unwrap();
+    let kinetic = SplitBody::<7>::new(&top.ordinary_inertia()).unwrap();
     let splitting = Splitting::new(top, kinetic, 0.1, SplittingScheme::STRANG).unwrap();
     let mut state = splitting.start_with_momentum(SO3::identity(), Vector3::repeat(1e200)).unwrap();
     let before = state;

@@ -1,5 +1,10 @@
 //! Kinetic-potential splittings.
 
+use checks::measure::relative;
+use checks::random::Random;
+use checks::reference::{Motion, looping};
+use checks::tops::{FreeBody, HeavyTop};
+use declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBody, Top as _};
 use liestep::effects::{GravityGradient, Rotor, Spring};
 use liestep::{
     CompositionScheme, DiagonalNonstandardInertia, Effect, Flow, Inertia, KineticFlow, LieGroup as _, PreprocessedFlow,
@@ -7,17 +12,12 @@ use liestep::{
 };
 use nalgebra::Vector3;
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
-use crate::common::reference::{Motion, looping};
-use crate::common::tops::{FreeBody, HeavyTop, inertia};
 use crate::convergence::{End, TOPS, assert_order, counts};
-use crate::declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBody};
 use crate::many_digits::heavy_top::Top;
 use crate::many_digits::{self, DoubleDouble};
 
 pub(crate) fn symmetric(top: &HeavyTop) -> SymmetricBody {
-    SymmetricBody::new(&inertia(top)).unwrap()
+    SymmetricBody::new(&top.ordinary_inertia()).unwrap()
 }
 
 fn end<K: KineticFlow<f64>>(kinetic: K, scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
@@ -130,7 +130,7 @@ fn near_integrable_4_2_is_of_order_2() {
 fn near_integrable_8_6_4_and_10_6_4_are_of_order_4() {
     for scheme in [SplittingScheme::NEAR_INTEGRABLE_8_6_4, SplittingScheme::NEAR_INTEGRABLE_10_6_4] {
         assert_order((scheme.name(), 4), (TOPS[3], 10.0), &counts(200, 1.5, 5), |motion, h, steps| {
-            end(SixthOrderBody { J: inertia(&motion.top) }, scheme, motion, h, steps)
+            end(SixthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
         });
     }
 }
@@ -175,12 +175,12 @@ fn declared_kinetic_flows_keep_the_order() {
     let chaotic = (TOPS[3], 10.0);
     for scheme in [SplittingScheme::NYSTROM_11, SplittingScheme::NYSTROM_14] {
         assert_order((scheme.name(), 6), chaotic, &counts(60, 1.3, 5), |motion, h, steps| {
-            end(SixthOrderBody { J: inertia(&motion.top) }, scheme, motion, h, steps)
+            end(SixthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
         });
     }
     let scheme = SplittingScheme::NYSTROM_6;
     assert_order((scheme.name(), 4), chaotic, &counts(160, 1.5, 5), |motion, h, steps| {
-        end(FourthOrderBody { J: inertia(&motion.top) }, scheme, motion, h, steps)
+        end(FourthOrderBody { J: motion.top.ordinary_inertia() }, scheme, motion, h, steps)
     });
 }
 
@@ -300,7 +300,7 @@ fn a_body_without_symmetry_has_no_exact_flow() {
 #[test]
 fn a_lagrangian_that_cannot_be_split_is_refused() {
     let top = HeavyTop::thesis();
-    let coupled: FourthOrderTop = top.declared_as();
+    let coupled = FourthOrderTop::of(&top);
     let error = Splitting::new(coupled, symmetric(&top), 0.01, SplittingScheme::STRANG).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }
@@ -332,7 +332,7 @@ fn a_rotor_that_the_flow_does_not_have_is_refused() {
 #[test]
 fn the_kinetic_part_is_replaced() {
     let motion = looping();
-    let log: LogTop = motion.top.declared_as();
+    let log = LogTop::of(&motion.top);
     let scheme = SplittingScheme::NYSTROM_11;
     let (a, b) = (
         Splitting::new(log, symmetric(&motion.top), 0.05, scheme).unwrap(),

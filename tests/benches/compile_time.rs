@@ -55,10 +55,10 @@ impl Crate {
             "[package]\nname = \"user\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
              [dependencies]\nliestep = {{ path = {:?} }}\nnalgebra = {{ version = \"0.35\", default-features = false }}\n\n\
              [workspace]\n",
-            workspace.join("core")
+            workspace.join("../../core")
         );
         fs::write(directory.join("Cargo.toml"), manifest)?;
-        fs::copy(workspace.join("Cargo.lock"), directory.join("Cargo.lock"))?;
+        fs::copy(workspace.join("../../Cargo.lock"), directory.join("Cargo.lock"))?;
         Ok(Self { directory, source })
     }
 

@@ -18,17 +18,13 @@
 //! The scene is the looping case of \[RDAE, figure 3.8\] with `J_d = diag(2, 2, 1)` and `h = 0.01 s`.
 
 mod by_hand;
-// What an explicit method uses; the velocity is for those who ask.
-#[allow(dead_code)]
-#[path = "../../examples/common/top_equations.rs"]
-mod top_equations;
 
 use core::hint::black_box;
 use std::time::Instant;
 
 use liestep::{CompensatedState, CompensatedStepper, DiagonalNonstandardInertia, SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
-use top_equations::Equations;
+use workbench::top_equations::Equations;
 
 const STEP: f64 = 0.01;
 const MOMENTS: [f64; 3] = [3.0, 3.0, 4.0];
@@ -86,7 +82,7 @@ fn written_by_hand(start: &DerivedState) -> (by_hand::Top, by_hand::State) {
     (by_hand::Top::new(MOMENTS, WEIGHT, RHO, STEP), state)
 }
 
-fn runge_kutta(start: &DerivedState) -> (Equations, top_equations::State) {
+fn runge_kutta(start: &DerivedState) -> (Equations, workbench::top_equations::State) {
     let q = start.attitude().to_quaternion();
     let p = start.momentum();
     (Equations::new(MOMENTS, RHO.map(|entry| WEIGHT * entry)), [q.w, q.i, q.j, q.k, p.x, p.y, p.z])
@@ -114,7 +110,7 @@ fn run_by_hand(top: &by_hand::Top, state: &mut by_hand::State, steps: u32) {
 }
 
 #[inline(never)]
-fn run_runge_kutta(top: &Equations, state: &mut top_equations::State, steps: u32) {
+fn run_runge_kutta(top: &Equations, state: &mut workbench::top_equations::State, steps: u32) {
     for _ in 0..steps {
         *state = top.rk4_step(STEP, state);
     }

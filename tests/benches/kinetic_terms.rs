@@ -10,24 +10,10 @@
 
 // The letters of the field.
 #![allow(non_snake_case)]
-// The declarations are shared with the examples.
-#![allow(unreachable_pub)]
-
-#[path = "../../examples/declarations/cayley_top.rs"]
-mod cayley_top;
-#[path = "../../examples/declarations/fourth_order_top.rs"]
-mod fourth_order_top;
-#[allow(dead_code)] // its other top isn't run here
-#[path = "../../examples/declarations/heavy_top.rs"]
-mod heavy_top;
-#[path = "../../examples/declarations/log_top.rs"]
-mod log_top;
-#[path = "../../examples/declarations/sixth_order_top.rs"]
-mod sixth_order_top;
-
 use core::hint::black_box;
 use std::time::Instant;
 
+use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, SixthOrderTop};
 use liestep::{DiscreteLagrangian, Inertia, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -62,13 +48,13 @@ where
 fn all(h: f64) -> [(&'static str, Batch); 5] {
     let J = Inertia::from_principal_moments(MOMENTS).expect("a body");
     let (weight, rho, up) = (WEIGHT, Vector3::z(), Vector3::z());
-    let full = heavy_top::FullTop { J_d: J.to_nonstandard(), m: 1.0, g: weight, rho, up };
+    let full = FullTop { J_d: J.to_nonstandard(), m: 1.0, g: weight, rho, up };
     [
         ("(3.13)", batches(full, h)),
-        ("Cayley", batches(cayley_top::CayleyTop { J, weight, rho, up }, h)),
-        ("log", batches(log_top::LogTop { J, weight, rho, up }, h)),
-        ("L4", batches(fourth_order_top::FourthOrderTop { J, weight, rho, up }, h)),
-        ("L6", batches(sixth_order_top::SixthOrderTop { J, weight, rho, up }, h)),
+        ("Cayley", batches(CayleyTop { J, weight, rho, up }, h)),
+        ("log", batches(LogTop { J, weight, rho, up }, h)),
+        ("L4", batches(FourthOrderTop { J, weight, rho, up }, h)),
+        ("L6", batches(SixthOrderTop { J, weight, rho, up }, h)),
     ]
 }
 

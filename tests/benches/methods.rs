@@ -11,28 +11,16 @@
 //! in vector registers, so that eight cost less than six under gravity. Should they ever fall apart, they will cost twice
 //! as much.
 
-// What the example has and isn't run here.
-#![allow(dead_code)]
-
 mod counting;
-#[path = "../../examples/accuracy-cost/methods.rs"]
-mod methods;
-#[path = "../../examples/accuracy-cost/rivals/mod.rs"]
-mod rivals;
-#[path = "../../examples/accuracy-cost/scenes.rs"]
-mod scenes;
-#[path = "../../examples/accuracy-cost/systems.rs"]
-mod systems;
-#[path = "../../examples/common/top_equations.rs"]
-mod top_equations;
 
 use core::hint::black_box;
 use std::error::Error;
 use std::time::Instant;
 
+use accuracy_cost::methods::{self, Method, Prepared};
+use accuracy_cost::scenes::Scene;
+
 use counting::instructions;
-use methods::{Method, Prepared};
-use scenes::Scene;
 
 const STEP: f64 = 0.01;
 /// Long enough to hide the clock, short enough that some batches meet no other process.

@@ -11,9 +11,9 @@ use nalgebra::Vector3;
         - 0.5 * h * weight * w.dot(&(rho + F * rho)),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Top<T: Real> {
-    pub(crate) J_d: DiagonalNonstandardInertia<T>,
-    pub(crate) weight: T,
-    pub(crate) rho: Vector3<T>,
-    pub(crate) up: Vector3<T>,
+pub struct Top<T: Real> {
+    pub J_d: DiagonalNonstandardInertia<T>,
+    pub weight: T,
+    pub rho: Vector3<T>,
+    pub up: Vector3<T>,
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{SVector, Vector3};
 
-use super::tops::HeavyTop;
+use crate::tops::HeavyTop;
 
 /// Body momentum and `w`, one below the other.
 pub type Phase = SVector<f64, 6>;
@@ -14,7 +14,7 @@ pub fn phase(momentum: &Vector3<f64>, w: &Vector3<f64>) -> Phase {
 /// `ṗ = p × Ω + m g w × ρ`, `ẇ = w × Ω`.
 fn rate(top: &HeavyTop, z: &Phase) -> Phase {
     let (p, w): (Vector3<f64>, Vector3<f64>) = (z.fixed_rows::<3>(0).into(), z.fixed_rows::<3>(3).into());
-    let velocity = p.component_div(&super::tops::moments(top));
+    let velocity = p.component_div(&top.moments());
     phase(&(p.cross(&velocity) + w.cross(&top.rho) * (top.m * top.g)), &w.cross(&velocity))
 }
 

@@ -12,7 +12,7 @@ const PROFILE: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
 /// The executables of these examples, built where they aren't yet.
 ///
 /// Where a build puts them depends on its target, its profile and the settings of cargo, which is therefore asked.
-pub(crate) fn built(names: &[&str]) -> HashMap<String, PathBuf> {
+pub fn built(names: &[&str]) -> HashMap<String, PathBuf> {
     let mut build = Command::new(env!("CARGO"));
     build.args(["build", "--quiet", "--message-format=json-render-diagnostics", "--profile", PROFILE]);
     build.args(names.iter().flat_map(|name| ["--example", name]));

@@ -7,11 +7,11 @@ use liestep::{DiagonalNonstandardInertia, SO3};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
-use super::tops::HeavyTop;
+use crate::tops::HeavyTop;
 
 /// A file of `tests/data`.
 pub fn read(name: &str) -> Value {
-    let path = format!("{}/tests/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
     serde_json::from_str(&std::fs::read_to_string(&path).expect(&path)).expect(&path)
 }
 

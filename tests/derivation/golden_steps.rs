@@ -1,9 +1,9 @@
 //! One step and ten of (3.13) against values computed in binary128: the momentum equation (2.7), its solution, and the
 //! update (2.9) in the physical normalisation of the momentum.
 
-use crate::common::measure::relative;
-use crate::common::reference::{matrix, number, read, vector};
-use crate::common::tops::HeavyTop;
+use checks::measure::relative;
+use checks::reference::{matrix, number, read, vector};
+use checks::tops::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, LieGroup as _};
 use nalgebra::Vector3;
 

@@ -1,11 +1,10 @@
 //! Kinetic terms other than that of (3.13), declared as they stand in the literature.
 
-use crate::common::measure::relative;
-use crate::common::reference::{matrix, number, read, vector};
+use checks::measure::relative;
+use checks::reference::{matrix, number, read, vector};
+use declarations::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop, Top};
 use liestep::{DiscreteLiePoisson, Inertia, LieGroup as _, SO3};
 use nalgebra::Vector3;
-
-use crate::declarations::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop, Top};
 
 #[test]
 fn golden_entries_of_the_cayley_top_are_reproduced() {

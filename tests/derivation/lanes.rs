@@ -1,14 +1,13 @@
 //! Several tops at once in SIMD lanes: each lane is, bit for bit, a top of its own.
 
+use checks::any_scalar::Top;
+use checks::random::Random;
 use liestep::{
     CompensatedState, Composition, CompositionScheme, DiagonalNonstandardInertia, LieGroup as _, Real, SO3, State,
     StepError, Stepper, lagrangian,
 };
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
-
-use crate::any_scalar::Top;
-use crate::common::random::Random;
 
 /// One lane: a body, where it starts and how fast it turns.
 #[derive(Clone)]

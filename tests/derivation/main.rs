@@ -3,13 +3,6 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-#[path = "../common/any_scalar.rs"]
-mod any_scalar;
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../examples/declarations/mod.rs"]
-mod declarations;
-
 mod by_hand;
 mod golden_steps;
 mod kinetic_terms;

@@ -1,8 +1,8 @@
 //! Lagrangians on groups other than SO(3): every derived term against central differences of the declared `l_d`, the
 //! staged step against the unstaged terms, and what the discrete flow conserves exactly.
 
-use crate::common::random::Random;
-use crate::common::structure::{System, momenta, stages};
+use checks::random::Random;
+use checks::structure::{System, momenta, stages};
 use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use liestep::{
     Coordinates, DiscreteLiePoisson, Generators, Heisenberg, LieGroup, MatrixGroup, R2, Regular, SE2, SE3, SL2, SO2,

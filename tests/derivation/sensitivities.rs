@@ -1,11 +1,10 @@
 //! Dual numbers through the stepper: derivatives of a whole trajectory with respect to a parameter.
 
+use checks::any_scalar::Top;
 use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian as _, LieGroup as _};
 use liestep::{Real, SO3, State, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 use num_dual::Dual64;
-
-use crate::any_scalar::Top;
 
 const STEPS: usize = 1000;
 const STEP: f64 = 0.01;

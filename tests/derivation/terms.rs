@@ -1,7 +1,7 @@
 //! What the macro derives, against three truths that share none of its code: dual numbers of the declared `l_d`,
 //! central differences of it, and the thesis' formulas typed by hand.
 
-use crate::common::random::Random;
+use checks::random::Random;
 use liestep::{
     DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, Inertia, NonstandardInertia, Real, Retraction as _,
     SO3, lagrangian,

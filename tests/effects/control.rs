@@ -1,6 +1,6 @@
 //! Torques that are given anew each step.
 
-use crate::common::measure::relative;
+use checks::measure::relative;
 use liestep::effects::{Drag, Gravity, RigidBody, Thrust, Torque};
 use liestep::{LieGroup as _, NonstandardInertia, Regular, SO3, State, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};

@@ -1,7 +1,7 @@
 //! Forces by the discrete Lagrange–d'Alembert principle: what is derived from their virtual work, and what they do.
 
-use crate::common::measure::{derivative, relative};
-use crate::common::random::Random;
+use checks::measure::{derivative, relative};
+use checks::random::Random;
 use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Thrust, Torque};
 use liestep::{Advected as _, Force, LieGroup as _, NonstandardInertia, Retraction as _, SO3, Stepper, force};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -1,11 +1,10 @@
 //! The bodies that a scene can choose from: each adds with the other effects, and is of its order.
 
-use crate::common::measure::relative;
-use crate::common::order;
-use crate::common::random::Random;
-use crate::common::reference::Motion;
-use crate::common::tops::inertia;
-use crate::declarations::{CayleyTop, LogTop};
+use checks::measure::relative;
+use checks::order;
+use checks::random::Random;
+use checks::reference::Motion;
+use declarations::{CayleyTop, LogTop};
 use liestep::effects::{
     CayleyBody, Drag, FourthOrderBody, GeodesicBody, Gravity, PrincipalBody, RigidBody, Rotor, SixthOrderBody,
 };
@@ -56,7 +55,7 @@ fn assert_order<L: Regular<Scalar = f64, Group = SO3>>(
     span: (f64, f64),
     scene: impl Fn(Inertia) -> L,
 ) {
-    order::assert_order(name, expected, span, |motion| scene(inertia(&motion.top)));
+    order::assert_order(name, expected, span, |motion| scene(motion.top.ordinary_inertia()));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Each effect of the library against the physics that it stands for.
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
+use checks::measure::relative;
+use checks::random::Random;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
     AxiallyInvariant, DiagonalNonstandardInertia, Effect, Inertia, LieGroup as _, Regular, SO3, State, Stepper,

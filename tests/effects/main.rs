@@ -3,13 +3,6 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../examples/declarations/mod.rs"]
-mod declarations;
-#[path = "../common/examples.rs"]
-mod examples;
-
 mod changing_scenes;
 mod control;
 mod forces;

@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use checks::examples;
 use expect_test::expect;
 use liestep::effects::{Drag, Gravity, PrincipalBody};
 use liestep::{Accuracy, DiagonalNonstandardInertia, NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
-
-use crate::examples;
 
 const TOP: &str = r#"title = "A heavy top with drag"
 
@@ -282,7 +281,7 @@ fn a_step_that_is_too_large() {
 /// Every file that is there runs, moves, and has a picture and a table.
 #[test]
 fn the_scenes_run() {
-    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenes");
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/scenes");
     let gallery = fs::read_to_string(scenes.join("README.md")).unwrap();
     let mut files: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));

@@ -1,8 +1,8 @@
 //! Scenes are sums: a sum is the same integrator as the Lagrangian written in one piece, and costs what it holds.
 
-use crate::common::measure::{derivative, relative};
-use crate::common::random::Random;
-use crate::common::tops::{FreeBody, FullTop, HeavyTop};
+use checks::measure::{derivative, relative};
+use checks::random::Random;
+use checks::tops::{FreeBody, FullTop, HeavyTop};
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::{
     Advected, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia, Regular, Retraction as _, SO3,

@@ -3,11 +3,6 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../examples/declarations/mod.rs"]
-mod declarations;
-
 mod built_in_groups;
 mod laws;
 mod laws_can_fail;

@@ -1,9 +1,10 @@
 //! The laws of `Retraction` on SO(3): `τ(0) = e`, `τ(ξ)` is a rotation, `local_coordinates` is its inverse, the tangent
 //! is `dF F⁻¹ = (T dξ)^`, and `D = τ(ξ) − I` keeps the digits of a small `ξ`.
 
-use crate::common::measure::derivative;
-use crate::common::random::Random;
 use core::f64::consts::{FRAC_PI_2, PI};
+
+use checks::measure::derivative;
+use checks::random::Random;
 use liestep::{CayleyRetraction, ExponentialRetraction, LieGroup as _, Retraction, SO3};
 use nalgebra::{Matrix3, Vector3};
 

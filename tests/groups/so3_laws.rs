@@ -1,8 +1,8 @@
 //! The laws of `LieGroup` on SO(3): `Ad_F ξ = (F ξ̂ F⁻¹)^∨`, `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`, their transposes by the pairing,
 //! hat and vee, exp and log, and the reconstruction.
 
-use crate::common::measure::{derivative, relative};
-use crate::common::random::Random;
+use checks::measure::{derivative, relative};
+use checks::random::Random;
 use liestep::{ExponentialRetraction, LieGroup as _, Retraction as _, SO3, reconstruct};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 

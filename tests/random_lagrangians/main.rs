@@ -3,14 +3,9 @@
 //! A Lagrangian is known when this is compiled, its terms are not: each is multiplied by a random coefficient, which is
 //! zero for about a third of them.
 
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../examples/declarations/mod.rs"]
-mod declarations;
-
 mod family;
 
-use common::structure::{System, momenta, poisson, stages, symmetry};
+use checks::structure::{System, momenta, poisson, stages, symmetry};
 use liestep::laws::samples::{Random, along};
 use liestep::{Coordinates, DiscreteLiePoisson};
 use nalgebra::{SMatrix, SVector};

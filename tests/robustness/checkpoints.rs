@@ -1,10 +1,10 @@
 //! A motion goes on from a checkpoint as if it had never stopped, in whatever format it was kept; and goes on from
 //! nothing else than its own.
 
-use crate::common::random::Random;
-use crate::common::reference::looping;
-use crate::common::tops::{FreeBody, HeavyTop};
-use crate::declarations::SixthOrderTop;
+use checks::random::Random;
+use checks::reference::looping;
+use checks::tops::{FreeBody, HeavyTop};
+use declarations::{SixthOrderTop, Top as _};
 use liestep::{Checkpoint, CheckpointError, Effect, LieGroup as _, SO3, Scalar, Stepper, Stored};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ where
             // The text of a float has all its digits and the sign of zero.
             assert_eq!(format!("{on:?}"), format!("{resumed:?}"));
         }
-        for _ in 0..crate::common::measure::steps_in(random.signed().abs(), 0.01) {
+        for _ in 0..checks::measure::steps_in(random.signed().abs(), 0.01) {
             stepper.step(&mut state).unwrap();
         }
     }
@@ -49,7 +49,7 @@ fn p7_save_and_resume_at_random_steps() {
         let stepper = Stepper::new(motion.top.clone(), h).unwrap();
         assert_resumes(&stepper, stepper.start(motion.attitude, motion.velocity).unwrap(), 7);
     }
-    let sixth = Stepper::new(motion.top.declared_as::<SixthOrderTop>(), 0.01).unwrap();
+    let sixth = Stepper::new(SixthOrderTop::of(&motion.top), 0.01).unwrap();
     assert_resumes(&sixth, sixth.start(motion.attitude, motion.velocity).unwrap(), 9);
     let body = Stepper::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.01).unwrap();
     assert_resumes(&body, body.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02)).unwrap(), 8);

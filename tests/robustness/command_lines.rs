@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use crate::examples;
+use checks::examples;
 
 /// Runs an example in a folder where it may leave nothing behind.
 fn run(example: &str, arguments: &[&str]) -> Output {

@@ -1,9 +1,9 @@
 //! Rounding grows like `√N`, and with compensated sums it grows from the changes of a step instead of from the state.
 
-use crate::common::measure::{relative, slope, steps_in};
-use crate::common::random::Random;
-use crate::common::reference::looping;
-use crate::common::tops::HeavyTop;
+use checks::measure::{relative, slope, steps_in};
+use checks::random::Random;
+use checks::reference::looping;
+use checks::tops::HeavyTop;
 use liestep::{CompensatedState, CompensatedStepper, LieGroup as _, SO3, State, Stepper};
 use nalgebra::{SVector, Vector3};
 

@@ -3,15 +3,6 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-#[path = "../common/any_scalar.rs"]
-mod any_scalar;
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../examples/declarations/mod.rs"]
-mod declarations;
-#[path = "../common/examples.rs"]
-mod examples;
-
 mod checkpoints;
 mod command_lines;
 mod compensated;

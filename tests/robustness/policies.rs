@@ -1,9 +1,9 @@
 //! What a stepper with a policy does where there is no step, and that it says so.
 
-use crate::common::measure::relative;
-use crate::common::reference::{Motion, looping};
-use crate::common::tops::HeavyTop;
-use crate::declarations::CayleyTop;
+use checks::measure::relative;
+use checks::reference::{Motion, looping};
+use checks::tops::HeavyTop;
+use declarations::{CayleyTop, Top as _};
 use liestep::{Fallback, Remedy, SO3, State, StepError, StepReport, Stepper, Substeps};
 use nalgebra::Vector3;
 
@@ -54,7 +54,7 @@ fn s2_substeps_in_the_place_of_the_published_step() {
 #[test]
 fn s2_cayley_step_in_the_place_of_the_published_step() {
     let (stepper, start) = published();
-    let other = stepper.lagrangian().declared_as::<CayleyTop>();
+    let other = CayleyTop::of(stepper.lagrangian());
     let remedied = stepper.clone().on_failure(Fallback::new(other.clone(), &stepper).unwrap());
     let mut state = start;
     assert_eq!(remedied.step(&mut state).unwrap().remedy, Some(Remedy::Fallback));
@@ -76,8 +76,7 @@ fn s2_a_policy_does_nothing_where_there_is_a_step() {
     let Motion { top, attitude, velocity, .. } = looping();
     let stepper = Stepper::new(top, 0.01).unwrap();
     let substeps = stepper.clone().on_failure(Substeps { at_most: 16 });
-    let fallback =
-        stepper.clone().on_failure(Fallback::new(stepper.lagrangian().declared_as::<CayleyTop>(), &stepper).unwrap());
+    let fallback = stepper.clone().on_failure(Fallback::new(CayleyTop::of(stepper.lagrangian()), &stepper).unwrap());
     let start = stepper.start(attitude, velocity).unwrap();
     let (mut plain, mut first, mut second) = (start, start, start);
     for _ in 0..1000 {

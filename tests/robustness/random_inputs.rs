@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::common::random::Random;
-use crate::common::tops::HeavyTop;
+use checks::random::Random;
+use checks::tops::HeavyTop;
 use liestep::{
     DiagonalNonstandardInertia, DiscreteLagrangian as _, Effect as _, InertiaError, LieGroup as _, NonstandardInertia,
     SO3, SetupError, Solvability, State, StepError, Stepper,

@@ -1,11 +1,11 @@
 //! Where the Jacobian is dear a step is solved without it: to the same root, to rounding, and where that is in doubt by
 //! Newton's iteration.
 
-use crate::any_scalar::Top;
-use crate::common::measure::{derivative, slope};
-use crate::common::random::Random;
-use crate::common::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
-use crate::declarations::{self, FourthOrderTop, SixthOrderTop};
+use checks::any_scalar::Top;
+use checks::measure::{derivative, slope};
+use checks::random::Random;
+use checks::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
+use declarations::{self, FourthOrderTop, SixthOrderTop};
 use liestep::{
     CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia,
     LieGroup as _, Regular, SO3, StepError, Stepper, lagrangian,

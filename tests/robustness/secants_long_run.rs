@@ -1,8 +1,8 @@
 //! What many steps without the Jacobian keep: energy without drift, Casimirs and momenta, and the way back, no worse
 //! than Newton's iteration does.
 
-use crate::common::solvers::WithJacobian;
-use crate::declarations::{self, FourthOrderTop, SixthOrderTop};
+use checks::solvers::WithJacobian;
+use declarations::{self, FourthOrderTop, SixthOrderTop};
 use liestep::{DiscreteLagrangian, Inertia, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 

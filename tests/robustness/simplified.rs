@@ -1,9 +1,9 @@
 //! A last iteration with the Jacobian of the one before ends where Newton's iteration does, and is made only where it
 //! will.
 
-use crate::any_scalar::Top;
-use crate::common::measure::relative;
-use crate::common::solvers::{WithJacobian, jacobians};
+use checks::any_scalar::Top;
+use checks::measure::relative;
+use checks::solvers::{WithJacobian, jacobians};
 use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use num_dual::Dual64;

@@ -1,9 +1,9 @@
 //! What is proved about a step before it is solved agrees with what the solver finds.
 
-use crate::common::random::Random;
-use crate::common::reference::{Motion, looping};
-use crate::common::tops::{FreeBody, FullTop, HeavyTop, moments};
-use crate::declarations::CayleyTop;
+use checks::random::Random;
+use checks::reference::{Motion, looping};
+use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::{CayleyTop, Top as _};
 use liestep::effects::{Gravity, RigidBody};
 use liestep::{
     DiagonalNonstandardInertia, DiscreteLiePoisson, LieGroup as _, NonstandardInertia, Regular, SO3, Solvability,
@@ -89,7 +89,7 @@ fn s1_bounds_of_free_bodies() {
 #[test]
 fn s6_nothing_is_said_of_other_lagrangians() {
     let top = HeavyTop::asymmetric();
-    let flow = DiscreteLiePoisson::new(top.declared_as::<CayleyTop>(), 0.01).unwrap();
+    let flow = DiscreteLiePoisson::new(CayleyTop::of(&top), 0.01).unwrap();
     assert_eq!(flow.solvability(&Vector3::new(0.1, 0.2, 0.3), &Vector3::z()), Solvability::Open);
     assert_eq!(flow.solvability(&Vector3::new(1e6, 0.0, 0.0), &Vector3::z()), Solvability::Open);
 }
@@ -114,7 +114,7 @@ fn s1_the_largest_step_of_extreme_momenta() {
         let error = flow.step(&momentum, &Vector3::z(), &Vector3::zeros()).unwrap_err();
         let StepError::BeyondSolvable { largest, .. } = error else { panic!("{error:?}") };
         let size = largest * momentum.norm();
-        let j = moments(&top);
+        let j = top.moments();
         assert!(size >= j.min() * (1.0 - 1e-5) && size <= j.max(), "10^{exponent}: h|p| = {size}");
         let flow = DiscreteLiePoisson::new(top.clone(), largest).unwrap();
         assert!(flow.step(&momentum, &Vector3::z(), &Vector3::zeros()).is_ok(), "10^{exponent}: {largest:e}");

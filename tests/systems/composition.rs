@@ -1,10 +1,10 @@
 //! Symmetric compositions of the declared systems on other groups than SO(3): the order that their scheme has.
 
+use checks::measure::{four_halvings, order, relative, steps_in};
+use checks::structure::System;
 use liestep::{Composition, CompositionScheme, LieGroup as _};
 use nalgebra::SVector;
 
-use crate::common::measure::{four_halvings, order, relative, steps_in};
-use crate::common::structure::System;
 use crate::continuous::{Body, Phase};
 use crate::order::{PLATEAU, kirchhoff, orbit, tether};
 use crate::samples::{self, Start};

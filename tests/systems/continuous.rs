@@ -6,11 +6,10 @@
 //!
 //! Nothing of the derivation is used: no advected parameter, no diamond, and inertia and potential are written by hand.
 
+use checks::measure::derivative;
+use checks::structure::axis;
 use liestep::laws::samples::{MatrixLieGroup, along};
 use nalgebra::{SMatrix, SVector};
-
-use crate::common::measure::derivative;
-use crate::common::structure::axis;
 
 /// A body on a group: its inertia in the basis of the algebra, and its potential at a place, in J.
 pub(crate) struct Body<'a, const N: usize, const D: usize> {

@@ -1,8 +1,8 @@
 //! The energy of every declared system oscillates by an amount of order `h²`, and doesn't drift.
 
+use checks::structure::System;
 use liestep::Stepper;
 
-use crate::common::structure::System;
 use crate::samples::{self, Start};
 
 const STEP: f64 = 0.02;

@@ -2,11 +2,6 @@
 //!
 //! One crate, so that the declarations on SE(3) are expanded once.
 
-#[path = "../common/mod.rs"]
-mod common;
-#[path = "../../examples/declarations/mod.rs"]
-mod declarations;
-
 mod composition;
 mod continuous;
 mod energy;

@@ -1,9 +1,9 @@
 //! P2 for every declared system: its momenta, its step in stages, and the step.
 
+use checks::structure::{System, momenta, stages};
 use liestep::Coordinates;
 use nalgebra::{SMatrix, SVector};
 
-use crate::common::structure::{System, momenta, stages};
 use crate::samples::every_system;
 
 fn p2<L, const N: usize, const D: usize>(system: &L, _: &str)

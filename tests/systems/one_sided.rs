@@ -4,16 +4,16 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+use checks::measure::order;
+use checks::structure::reversal;
 use liestep::{CovariantTensor, DiscreteLagrangian, LieGroup as _, SE3, SL2, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
 
-use crate::common::measure::order;
-use crate::common::structure::reversal;
 use crate::continuous::Body;
 use crate::order::{PLATEAU, errors, kirchhoff, unshifted};
 use crate::samples;
 
-/// [`UnderwaterBody`](crate::declarations::UnderwaterBody) with its displacement in the frame before the step alone.
+/// [`UnderwaterBody`](declarations::UnderwaterBody) with its displacement in the frame before the step alone.
 #[lagrangian(
     group = SE3,
     advected(w = height),
@@ -33,7 +33,7 @@ struct OneSidedUnderwaterBody {
     height: Vector4<f64>,
 }
 
-/// [`ElasticFlow`](crate::declarations::ElasticFlow) with `F − I` in its kinetic term.
+/// [`ElasticFlow`](declarations::ElasticFlow) with `F − I` in its kinetic term.
 #[lagrangian(
     group = SL2,
     advected(C = metric),
@@ -60,7 +60,7 @@ fn assert_first_order(errors: &[(f64, f64)]) {
 fn underwater_body() {
     let body = samples::underwater_body();
     let (inertia, potential) = kirchhoff(&body);
-    let crate::declarations::UnderwaterBody { J, M, origin, weight, height } = body;
+    let declarations::UnderwaterBody { J, M, origin, weight, height } = body;
     let one_sided = OneSidedUnderwaterBody { J, M, origin, weight, height };
     let continuous = Body { inertia, potential: &potential };
     assert_first_order(&errors(&one_sided, &continuous, samples::on_se3(), unshifted));

@@ -3,13 +3,13 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+use checks::measure::{four_halvings, order, relative, steps_in};
+use checks::structure::System;
+use declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
 use liestep::{LieGroup as _, SL2, Stepper};
 use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3};
 
-use crate::common::measure::{four_halvings, order, relative, steps_in};
-use crate::common::structure::System;
 use crate::continuous::{Body, Phase};
-use crate::declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
 use crate::samples::{self, Start};
 
 /// Above what a thousand steps of the Runge–Kutta method leave of systems with rates of a few per second.

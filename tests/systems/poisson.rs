@@ -1,6 +1,7 @@
 //! P1 for every declared system.
 
-use crate::common::structure::{System, poisson};
+use checks::structure::{System, poisson};
+
 use crate::samples::every_system;
 
 fn p1<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, name: &str) {

@@ -1,6 +1,7 @@
 //! S5 for every declared system: the step of `−h` undoes that of `h`, if the declaration is self-adjoint.
 
-use crate::common::structure::{System, reversal};
+use checks::structure::{System, reversal};
+
 use crate::samples::{self, every_system};
 
 /// Some products of small matrices, both ways.

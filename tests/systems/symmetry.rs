@@ -4,11 +4,11 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+use checks::structure::System;
+use checks::structure::symmetry::{drift, symmetries};
 use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Inertia, NonstandardInertia, Stepper};
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, SVector, Vector3, Vector4};
 
-use crate::common::structure::System;
-use crate::common::structure::symmetry::{drift, symmetries};
 use crate::samples::{self, Start};
 
 const STEP: f64 = 0.02;

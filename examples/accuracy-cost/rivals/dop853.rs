@@ -7,7 +7,7 @@
 // The digits are those of the source, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
-use super::equations::{Equations, State};
+use workbench::top_equations::{Equations, State};
 
 /// Coefficients that aren't zero, each with the stage that it belongs to.
 type Row<const N: usize> = [(usize, f64); N];
@@ -133,7 +133,7 @@ fn stages(equations: &Equations, h: f64, y: &State, first: State) -> ([State; 12
 
 /// One step of fixed length.
 #[inline]
-pub(crate) fn step(equations: &Equations, h: f64, y: &State) -> State {
+pub fn step(equations: &Equations, h: f64, y: &State) -> State {
     let (_, mean) = stages(equations, h, y, equations.rate(y));
     plus(y, h, &mean)
 }
@@ -141,7 +141,7 @@ pub(crate) fn step(equations: &Equations, h: f64, y: &State) -> State {
 /// From `y` over the time `t` with the method's own step control; `None` where it gives up.
 ///
 /// The tolerance is relative and absolute at once, as all seven numbers are of the order of one or of the momentum.
-pub(crate) fn integrate(equations: &Equations, t: f64, tolerance: f64, mut y: State) -> Option<State> {
+pub fn integrate(equations: &Equations, t: f64, tolerance: f64, mut y: State) -> Option<State> {
     let mut rate = equations.rate(&y);
     let (mut done, mut h) = (0.0, initial_step(equations, &y, &rate, tolerance).min(t));
     let mut rejected = false;

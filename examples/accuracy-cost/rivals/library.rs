@@ -3,12 +3,11 @@
 use differential_equations::ode::ODE;
 use differential_equations::prelude::{ExplicitRungeKutta, IVP};
 use differential_equations::traits::State;
-
-use super::equations::{self, Equations};
+use workbench::top_equations::{Equations, State as Numbers};
 
 /// Quaternion and momentum, with what the library does to a state written out for seven numbers.
 #[derive(Clone, Copy, Debug)]
-struct Seven(equations::State);
+struct Seven(Numbers);
 
 impl State<f64> for Seven {
     fn len(&self) -> usize {
@@ -67,12 +66,7 @@ impl ODE<f64, Seven> for Equations {
 }
 
 /// From `y` over the time `t`; `None` where the library gives up.
-pub(crate) fn integrate(
-    equations: &Equations,
-    t: f64,
-    tolerance: f64,
-    y: equations::State,
-) -> Option<equations::State> {
+pub fn integrate(equations: &Equations, t: f64, tolerance: f64, y: Numbers) -> Option<Numbers> {
     let method = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(10_000_000);
     let solution = IVP::ode(equations, 0.0, t, Seven(y)).t_eval([t]).method(method).solve().ok()?;
     solution.y.last().map(|end| end.0)

@@ -1,7 +1,4 @@
 //! What others would use: explicit Runge–Kutta methods on the equations of the top, written for speed.
 
-pub(crate) mod dop853;
-mod equations;
-pub(crate) mod library;
-
-pub(crate) use equations::Equations;
+pub mod dop853;
+pub mod library;

@@ -1,14 +1,14 @@
 //! Energy, spatial momentum and body rates of every method.
 
 use super::quantities::Series;
-use crate::common::args::Schedule;
-use crate::common::output::Output;
-use crate::common::plot::{Area, BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
+use crate::args::Schedule;
+use crate::output::Output;
+use crate::plot::{Area, BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
 
 /// What the figures are of: the variational run first, then its rivals.
-pub(crate) struct Figures<'a> {
-    pub(crate) schedule: Schedule,
-    pub(crate) series: &'a [Series],
+pub struct Figures<'a> {
+    pub schedule: Schedule,
+    pub series: &'a [Series],
 }
 
 const HEADER: u32 = 84;
@@ -18,7 +18,7 @@ const DISTINCT: f64 = 200.0;
 
 impl Figures<'_> {
     /// Writes all of them.
-    pub(crate) fn write(&self, output: &mut Output) -> Drawn {
+    pub fn write(&self, output: &mut Output) -> Drawn {
         output.write("energy.svg", &self.energy()?)?;
         output.write("spatial-momentum.svg", &self.momentum()?)?;
         output.write("body-rates.svg", &self.body_rates()?)?;
@@ -60,7 +60,7 @@ impl Figures<'_> {
         })
     }
 
-    pub(crate) fn energy_ratio<'a>(&self, title: &'a str) -> Panel<'a> {
+    pub fn energy_ratio<'a>(&self, title: &'a str) -> Panel<'a> {
         self.panel(title, "E / E(0)", Vertical::Linear, Series::relative_energy)
     }
 
@@ -68,12 +68,12 @@ impl Figures<'_> {
         self.panel(title, "|E − E(0)| / E(0)", Vertical::Logarithmic, |s| s.energy_error().collect())
     }
 
-    pub(crate) fn momentum_error<'a>(&self, title: &'a str) -> Panel<'a> {
+    pub fn momentum_error<'a>(&self, title: &'a str) -> Panel<'a> {
         self.panel(title, "|RΠ − RΠ(0)| / |Π(0)|", Vertical::Logarithmic, |s| s.momentum_error().collect())
     }
 
     /// The rate about the middle axis, of all methods, while flips can be told apart.
-    pub(crate) fn flips<'a>(&self, title: &'a str) -> Panel<'a> {
+    pub fn flips<'a>(&self, title: &'a str) -> Panel<'a> {
         self.panel(title, "Ω_Y, rad/s", Vertical::Linear, |s| {
             let mut rates = s.bounded(|q| q.rates.y);
             rates.retain(|(time, _)| *time <= DISTINCT);
@@ -86,7 +86,7 @@ impl Figures<'_> {
     }
 
     /// Draws the title, the setting and the legend, and returns the rest.
-    pub(crate) fn header<'a>(&self, area: &Area<'a>, title: &str) -> Drawn<Area<'a>> {
+    pub fn header<'a>(&self, area: &Area<'a>, title: &str) -> Drawn<Area<'a>> {
         let (header, body) = area.split_vertically(px(HEADER));
         heading(&header, title, &self.setting())?;
         let entries: Vec<_> = self.series.iter().map(|s| (s.name, s.colour)).collect();

@@ -1,14 +1,14 @@
 //! One figure with all of it, for a front page.
 
 use super::figures::Figures;
-use crate::common::plot::{Drawn, Path, px, render, sphere};
-use crate::common::table::short;
+use crate::plot::{Drawn, Path, px, render, sphere};
+use crate::table::short;
 
 /// Two flips, s: more would cover their own path.
 const SHOWN: f64 = 19.0;
 
 /// The path of the middle axis on the sphere, the flips, and what is conserved.
-pub(crate) fn overview(figures: &Figures<'_>) -> Drawn<String> {
+pub fn overview(figures: &Figures<'_>) -> Drawn<String> {
     let Some(ours) = figures.series.first() else {
         return Err("no runs to draw".into());
     };

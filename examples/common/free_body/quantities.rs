@@ -4,42 +4,36 @@ use nalgebra::Vector3;
 use plotters::style::RGBColor;
 
 use super::engines::Moments;
-use crate::common::csv;
-use crate::common::run::Record;
+use crate::csv;
+use crate::run::Record;
 
 /// A state's invariants, and its rates.
 #[derive(Clone, Copy)]
-pub(crate) struct Quantities {
+pub struct Quantities {
     /// s
-    pub(crate) time: f64,
+    pub time: f64,
     /// J
-    pub(crate) energy: f64,
+    pub energy: f64,
     /// `RΠ`, kg m²/s
-    pub(crate) spatial: Vector3<f64>,
+    pub spatial: Vector3<f64>,
     /// Body frame, rad/s
-    pub(crate) rates: Vector3<f64>,
+    pub rates: Vector3<f64>,
     /// The middle axis in space, `R e₂`
-    pub(crate) axis: Vector3<f64>,
+    pub axis: Vector3<f64>,
 }
 
 /// A method's run, ready to be drawn.
-pub(crate) struct Series {
-    pub(crate) name: &'static str,
-    pub(crate) file: &'static str,
-    pub(crate) colour: RGBColor,
-    pub(crate) values: Vec<Quantities>,
-    pub(crate) iterations: f64,
-    pub(crate) nanoseconds: f64,
+pub struct Series {
+    pub name: &'static str,
+    pub file: &'static str,
+    pub colour: RGBColor,
+    pub values: Vec<Quantities>,
+    pub iterations: f64,
+    pub nanoseconds: f64,
 }
 
 impl Series {
-    pub(crate) fn new(
-        name: &'static str,
-        file: &'static str,
-        colour: RGBColor,
-        body: &Moments,
-        record: &Record,
-    ) -> Self {
+    pub fn new(name: &'static str, file: &'static str, colour: RGBColor, body: &Moments, record: &Record) -> Self {
         let quantities = record.samples.iter().map(|(time, sample)| {
             let rates = body.rates(&sample.momentum);
             let energy = 0.5 * rates.dot(&sample.momentum);
@@ -52,33 +46,33 @@ impl Series {
 
     /// A quantity of each sample, and nothing where the energy has quadrupled: a run that blows up would press all
     /// others flat.
-    pub(crate) fn bounded(&self, quantity: impl Fn(&Quantities) -> f64) -> Vec<(f64, f64)> {
+    pub fn bounded(&self, quantity: impl Fn(&Quantities) -> f64) -> Vec<(f64, f64)> {
         let most = 4.0 * self.values[0].energy;
         let shown = |q: &Quantities| if q.energy <= most { quantity(q) } else { f64::NAN };
         self.values.iter().map(|q| (q.time, shown(q))).collect()
     }
 
     /// `E/E(0)` of each sample.
-    pub(crate) fn relative_energy(&self) -> Vec<(f64, f64)> {
+    pub fn relative_energy(&self) -> Vec<(f64, f64)> {
         let start = self.values[0].energy;
         self.bounded(|q| q.energy / start)
     }
 
     /// `|E − E(0)|/E(0)` of each sample.
-    pub(crate) fn energy_error(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub fn energy_error(&self) -> impl Iterator<Item = (f64, f64)> {
         let start = self.values[0].energy;
         self.values.iter().map(move |q| (q.time, ((q.energy - start) / start).abs()))
     }
 
     /// `|RΠ − RΠ(0)|/|Π(0)|` of each sample.
-    pub(crate) fn momentum_error(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub fn momentum_error(&self) -> impl Iterator<Item = (f64, f64)> {
         let start = self.values[0].spatial;
         self.values.iter().map(move |q| (q.time, (q.spatial - start).norm() / start.norm()))
     }
 
     /// When the rate about the middle axis changes sign, interpolated linearly: it is odd about that moment, so the
     /// error is of third order in the samples' distance.
-    pub(crate) fn flips(&self) -> Vec<f64> {
+    pub fn flips(&self) -> Vec<f64> {
         let crossing = |pair: &[Quantities]| {
             let (before, after) = (pair[0].rates.y, pair[1].rates.y);
             let share = before / (before - after);
@@ -88,7 +82,7 @@ impl Series {
     }
 
     /// As comma-separated values.
-    pub(crate) fn csv(&self) -> String {
+    pub fn csv(&self) -> String {
         let names = [
             "time_s",
             "energy_J",

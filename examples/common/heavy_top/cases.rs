@@ -5,11 +5,11 @@ use std::fmt;
 use liestep::{DiagonalNonstandardInertia, InertiaError};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::lagrangian::HeavyTop;
+use super::declaration::HeavyTop;
 
 /// An initial condition, named as in the thesis.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Case {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Case {
     /// Figure 3.8: φ' = 3, θ' = 0.5, ψ' = 10 rad/s.
     Looping,
     /// Figure 3.9: φ' = 0, θ' = 0, ψ' = 10 rad/s.
@@ -19,8 +19,8 @@ pub(crate) enum Case {
 }
 
 /// What `diag(2, 2, 1)` stands for.
-#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Reading {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reading {
     /// The nonstandard inertia `J_d`, as in (3.13).
     A,
     /// The ordinary inertia `J`, as the figures of the thesis need it.
@@ -29,11 +29,7 @@ pub(crate) enum Reading {
 
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Looping => "looping",
-            Self::Cuspidal => "cuspidal",
-            Self::Unidirectional => "unidirectional",
-        })
+        Self::NAMED.iter().filter(|(_, case)| case == self).try_for_each(|(name, _)| f.write_str(name))
     }
 }
 
@@ -47,10 +43,12 @@ impl fmt::Display for Reading {
 }
 
 impl Case {
-    pub(crate) const ALL: [Self; 3] = [Self::Looping, Self::Cuspidal, Self::Unidirectional];
+    /// With their names on the command line.
+    pub const NAMED: [(&str, Self); 3] =
+        [("looping", Self::Looping), ("cuspidal", Self::Cuspidal), ("unidirectional", Self::Unidirectional)];
 
     /// The figure of the thesis that shows it.
-    pub(crate) fn figure(self) -> &'static str {
+    pub fn figure(self) -> &'static str {
         match self {
             Self::Looping => "3.8",
             Self::Cuspidal => "3.9",
@@ -59,7 +57,7 @@ impl Case {
     }
 
     /// The attitude at `φ = ψ = 0`, and the body velocity in rad/s.
-    pub(crate) fn start(self) -> (UnitQuaternion<f64>, Vector3<f64>) {
+    pub fn start(self) -> (UnitQuaternion<f64>, Vector3<f64>) {
         let (precession, nutation, spin) = match self {
             Self::Looping => (3.0, 0.5, 10.0),
             Self::Cuspidal => (0.0, 0.0, 10.0),
@@ -71,7 +69,7 @@ impl Case {
     }
 
     /// Where the thesis' name for a case and its motion part.
-    pub(crate) fn caveat(self, reading: Reading) -> Option<&'static str> {
+    pub fn caveat(self, reading: Reading) -> Option<&'static str> {
         (self == Self::Unidirectional && reading == Reading::A).then_some(
             "Note: with J_d = diag(2, 2, 1) in (3.13) this third case of the thesis is looping: φ' runs from −0.60 to\n\
              1.00 rad/s. It is unidirectional with diag(2, 2, 1) as the ordinary inertia: --reading b.",
@@ -80,8 +78,11 @@ impl Case {
 }
 
 impl Reading {
+    /// With their names on the command line.
+    pub const NAMED: [(&str, Self); 2] = [("a", Self::A), ("b", Self::B)];
+
     /// The top of the thesis, m = 1 kg, ρ = e₃, g = 9.81 m/s².
-    pub(crate) fn top(self) -> Result<HeavyTop, InertiaError> {
+    pub fn top(self) -> Result<HeavyTop, InertiaError> {
         let printed = Vector3::new(2.0, 2.0, 1.0);
         let inertia = match self {
             Self::A => DiagonalNonstandardInertia::new(printed)?,

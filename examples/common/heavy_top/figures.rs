@@ -4,18 +4,18 @@ use nalgebra::Vector3;
 
 use super::cases::{Case, Reading};
 use super::quantities::{Quantities, Series};
-use crate::common::args::{ENDING, Schedule};
-use crate::common::output::Output;
-use crate::common::plot::{Area, BLUE, Drawn, GREEN, Line, PURPLE, Panel, Path, Vertical, heading, legend, px};
-use crate::common::plot::{render, sphere};
-use crate::common::table::short;
+use crate::args::{ENDING, Schedule};
+use crate::output::Output;
+use crate::plot::{Area, BLUE, Drawn, GREEN, Line, PURPLE, Panel, Path, Vertical, heading, legend, px};
+use crate::plot::{render, sphere};
+use crate::table::short;
 
 /// What the figures are of: the variational run first, then its rivals.
-pub(crate) struct Figures<'a> {
-    pub(crate) case: Case,
-    pub(crate) reading: Reading,
-    pub(crate) schedule: Schedule,
-    pub(crate) series: &'a [Series],
+pub struct Figures<'a> {
+    pub case: Case,
+    pub reading: Reading,
+    pub schedule: Schedule,
+    pub series: &'a [Series],
 }
 
 /// What is drawn in close-up, s: ten nutations.
@@ -26,7 +26,7 @@ const HEADER: u32 = 62;
 
 impl Figures<'_> {
     /// Writes all but the overview.
-    pub(crate) fn write(&self, output: &mut Output) -> Drawn {
+    pub fn write(&self, output: &mut Output) -> Drawn {
         let whole = |panel: Panel<'_>, figure: &str, title: &str| self.single(&panel, figure, title);
         let end = self.schedule.end();
         let beginning = SHORT.min(end);
@@ -42,35 +42,35 @@ impl Figures<'_> {
     }
 
     /// Writes the path of the tip, figure 3.8, 3.9 or 3.10.
-    pub(crate) fn write_tip(&self, output: &mut Output) -> Drawn {
+    pub fn write_tip(&self, output: &mut Output) -> Drawn {
         output.write(&format!("tip-{}.svg", self.case), &self.tip()?)?;
         Ok(())
     }
 
     /// The case, the reading and the step: beside every figure.
-    pub(crate) fn setting(&self) -> String {
+    pub fn setting(&self) -> String {
         let in_fact = if self.case.caveat(self.reading).is_some() { " (here looping)" } else { "" };
         format!("{}{in_fact}, {}, h = {} s", self.case, self.reading, self.schedule.step)
     }
 
     /// The names and colours of all series.
-    pub(crate) fn legend(&self, area: &Area<'_>, place: (u32, u32)) -> Drawn {
+    pub fn legend(&self, area: &Area<'_>, place: (u32, u32)) -> Drawn {
         let entries: Vec<_> = self.series.iter().map(|s| (s.name, s.colour)).collect();
         legend(area, place, &entries)
     }
 
-    pub(crate) fn geometry<'a>(&self, title: &'a str) -> Panel<'a> {
+    pub fn geometry<'a>(&self, title: &'a str) -> Panel<'a> {
         let lines = self.lines(self.schedule.end(), |q, _| q.defect);
         Panel::over_time(title, "‖RᵀR − I‖", Vertical::Logarithmic, lines)
     }
 
-    pub(crate) fn vertical_momentum<'a>(&self, title: &'a str) -> Panel<'a> {
+    pub fn vertical_momentum<'a>(&self, title: &'a str) -> Panel<'a> {
         let lines = self.lines(self.schedule.end(), |q, start| (q.vertical - start.vertical).abs());
         Panel::over_time(title, "|e₃·RΠ − its start|, kg m²/s", Vertical::Logarithmic, lines)
     }
 
     /// The oscillation of the variational energy, which is of the order of the scheme.
-    pub(crate) fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
+    pub fn energy_short<'a>(&self, title: &'a str) -> Panel<'a> {
         let mut lines = self.lines(SHORT.min(self.schedule.end()), |q, start| q.energy - start.energy);
         // The rivals' lines coincide here.
         lines.iter_mut().take(1).for_each(|line| line.width = 7);
@@ -78,7 +78,7 @@ impl Figures<'_> {
     }
 
     /// Whether it stays an oscillation.
-    pub(crate) fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
+    pub fn energy_long<'a>(&self, title: &'a str) -> Panel<'a> {
         let mut lines = self.lines(self.schedule.end(), |q, start| (q.energy - start.energy).abs());
         // The oscillation would hide the rivals' drift.
         lines.reverse();
@@ -86,7 +86,7 @@ impl Figures<'_> {
     }
 
     /// The last seconds of the tip's path, in angles: where loops and cusps can be seen one by one.
-    pub(crate) fn close_up<'a>(&self, title: &'a str, series: &Series) -> Panel<'a> {
+    pub fn close_up<'a>(&self, title: &'a str, series: &Series) -> Panel<'a> {
         let end = self.schedule.end();
         let points = unwound(series.between((end - SHORT).max(0.0), end));
         Panel {
@@ -99,12 +99,12 @@ impl Figures<'_> {
         }
     }
 
-    pub(crate) fn close_up_title(&self) -> String {
+    pub fn close_up_title(&self) -> String {
         format!("Its last {} s", short(SHORT.min(self.schedule.end())))
     }
 
     /// The second half of the run, as the thesis' 100 to 200 s, but no more than is kept in detail.
-    pub(crate) fn late(&self) -> (f64, f64) {
+    pub fn late(&self) -> (f64, f64) {
         let end = self.schedule.end();
         ((end / 2.0).max(end - ENDING), end)
     }

@@ -4,34 +4,34 @@ use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
 
 use super::rk4::Body;
-use crate::common::csv;
-use crate::common::run::{Record, Sample};
+use crate::csv;
+use crate::run::{Record, Sample};
 
 /// A state's invariants and what else is drawn of it.
 #[derive(Clone, Copy)]
-pub(crate) struct Quantities {
+pub struct Quantities {
     /// s
-    pub(crate) time: f64,
+    pub time: f64,
     /// `‖RᵀR − I‖`, Frobenius
-    pub(crate) defect: f64,
+    pub defect: f64,
     /// `e₃·RΠ`, kg m²/s
-    pub(crate) vertical: f64,
+    pub vertical: f64,
     /// J
-    pub(crate) energy: f64,
+    pub energy: f64,
     /// Body frame, rad/s
-    pub(crate) rates: Vector3<f64>,
+    pub rates: Vector3<f64>,
     /// `R e₃`, of the length that the method's `R` gives it
-    pub(crate) tip: Vector3<f64>,
+    pub tip: Vector3<f64>,
 }
 
 /// A method's run, ready to be drawn.
-pub(crate) struct Series {
-    pub(crate) name: &'static str,
-    pub(crate) file: &'static str,
-    pub(crate) colour: RGBColor,
-    pub(crate) values: Vec<Quantities>,
-    pub(crate) iterations: f64,
-    pub(crate) nanoseconds: f64,
+pub struct Series {
+    pub name: &'static str,
+    pub file: &'static str,
+    pub colour: RGBColor,
+    pub values: Vec<Quantities>,
+    pub iterations: f64,
+    pub nanoseconds: f64,
 }
 
 impl Quantities {
@@ -49,38 +49,38 @@ impl Quantities {
 }
 
 impl Series {
-    pub(crate) fn new(name: &'static str, file: &'static str, colour: RGBColor, body: &Body, record: &Record) -> Self {
+    pub fn new(name: &'static str, file: &'static str, colour: RGBColor, body: &Body, record: &Record) -> Self {
         let values = record.samples.iter().map(|(time, sample)| Quantities::of(body, *time, sample)).collect();
         Self { name, file, colour, values, iterations: record.iterations, nanoseconds: record.nanoseconds }
     }
 
     /// At the start.
-    pub(crate) fn first(&self) -> Quantities {
+    pub fn first(&self) -> Quantities {
         self.values[0]
     }
 
     /// Those from one time to another.
-    pub(crate) fn between(&self, start: f64, end: f64) -> &[Quantities] {
+    pub fn between(&self, start: f64, end: f64) -> &[Quantities] {
         let from = self.values.partition_point(|q| q.time < start);
         let to = self.values.partition_point(|q| q.time <= end);
         &self.values[from..to]
     }
 
     /// The largest of a quantity; NaN if it is NaN anywhere, which `f64::max` would hide.
-    pub(crate) fn largest(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
+    pub fn largest(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
         self.values.iter().map(quantity).fold(0.0, |most: f64, x| if most.is_nan() || x <= most { most } else { x })
     }
 
     /// The largest of a quantity in the last tenth of the run, over that in the first: about 1 for an oscillation, 10
     /// for what grows in proportion to time.
-    pub(crate) fn growth(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
+    pub fn growth(&self, quantity: impl Fn(&Quantities) -> f64) -> f64 {
         let end = self.values.last().map_or(0.0, |q| q.time);
         let largest = |values: &[Quantities]| values.iter().map(&quantity).fold(0.0, f64::max);
         largest(self.between(0.9 * end, end)) / largest(self.between(0.0, 0.1 * end))
     }
 
     /// As comma-separated values.
-    pub(crate) fn csv(&self) -> String {
+    pub fn csv(&self) -> String {
         let names = [
             "time_s",
             "orthogonality_defect",

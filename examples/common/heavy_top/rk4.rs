@@ -7,21 +7,21 @@ use std::ops::{Add, Mul};
 use liestep::Effect as _;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use super::lagrangian::HeavyTop;
-use crate::common::run::{Method, Sample, Stopped};
+use super::declaration::HeavyTop;
+use crate::run::{Method, Sample, Stopped};
 
 /// The body, in the form that the right-hand sides use.
 #[derive(Clone, Copy)]
-pub(crate) struct Body {
+pub struct Body {
     /// The inverses of the principal moments, 1/(kg m²).
-    pub(crate) inverse_moments: Vector3<f64>,
+    pub inverse_moments: Vector3<f64>,
     /// `m g ρ`, J.
-    pub(crate) lever: Vector3<f64>,
+    pub lever: Vector3<f64>,
 }
 
 impl Body {
     /// The same body and the same weight as the declared top's.
-    pub(crate) fn of(top: &HeavyTop) -> Self {
+    pub fn of(top: &HeavyTop) -> Self {
         let inverse_moments = top.inertia().diagonal().map(f64::recip);
         Self { inverse_moments, lever: top.rho * (top.m * top.g) }
     }
@@ -68,7 +68,7 @@ fn step<V: Copy + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f: impl 
 
 /// In a unit quaternion, brought back to unit length after every step: how a careful user would do it.
 #[derive(Clone)]
-pub(crate) struct OnQuaternion {
+pub struct OnQuaternion {
     body: Body,
     h: f64,
     state: Pair<Quaternion<f64>>,
@@ -76,20 +76,20 @@ pub(crate) struct OnQuaternion {
 
 /// In the nine entries of `R`, which nothing keeps orthogonal: how the thesis did it.
 #[derive(Clone)]
-pub(crate) struct OnMatrix {
+pub struct OnMatrix {
     body: Body,
     h: f64,
     state: Pair<Matrix3<f64>>,
 }
 
 impl OnQuaternion {
-    pub(crate) fn new(body: Body, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
+    pub fn new(body: Body, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
         Self { body, h, state: Pair { attitude: *attitude.quaternion(), momentum } }
     }
 }
 
 impl OnMatrix {
-    pub(crate) fn new(body: Body, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
+    pub fn new(body: Body, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
         Self { body, h, state: Pair { attitude: attitude.to_rotation_matrix().into_inner(), momentum } }
     }
 }

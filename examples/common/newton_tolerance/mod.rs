@@ -3,7 +3,7 @@
 //! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by
 //! a loop of a few lines.
 
-pub(crate) mod tenths;
+pub mod tenths;
 
 use liestep::{
     Advected, Coordinates as _, DiscreteLagrangian, Effect, LieGroup as _, Retraction as _, SO3, State, StepError,
@@ -14,11 +14,11 @@ use nalgebra::Vector3;
 use tenths::{Tenths, float, greater};
 
 /// The tolerances of the table, as powers of ten.
-pub(crate) const EXPONENTS: [i32; 11] = [-12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 0];
+pub const EXPONENTS: [i32; 11] = [-12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 0];
 
 /// Where the iteration starts.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Guess {
+pub enum Guess {
     /// The increment of the last step.
     Last,
     /// The straight line through the last two.
@@ -27,7 +27,7 @@ pub(crate) enum Guess {
 
 /// How the new momentum is written.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Form {
+pub enum Form {
     /// `μ⁺ = Ad*_F (μ + diamond)`, from the old momentum; (2.9).
     Transport,
     /// `μ⁺ = 𝔽l_d⁺(F, w)`, from `F` alone, as (3.18) reads.
@@ -36,14 +36,14 @@ pub(crate) enum Form {
 
 /// What is left of a run.
 #[derive(Default)]
-pub(crate) struct Left {
+pub struct Left {
     /// Of the energy's mean, between the first and the last tenth of the run, relative.
-    pub(crate) energy: f64,
+    pub energy: f64,
     /// Of `p·w` and of `p_3`, relative.
-    pub(crate) vertical: f64,
-    pub(crate) axial: f64,
+    pub vertical: f64,
+    pub axial: f64,
     /// Newton iterations a step.
-    pub(crate) iterations: f64,
+    pub iterations: f64,
 }
 
 /// No solvable step needs more.
@@ -51,7 +51,7 @@ const MOST: u64 = 20;
 
 /// So many steps `h` from a momentum and a vertical; an iteration ends after an update below the tolerance, relative to
 /// the unknown.
-pub(crate) fn run<L>(
+pub fn run<L>(
     lagrangian: &L,
     h: f64,
     (mut momentum, mut w): (Vector3<f64>, Vector3<f64>),
@@ -102,7 +102,7 @@ where
 }
 
 /// So many steps of the library's own.
-pub(crate) fn by_the_library<L>(
+pub fn by_the_library<L>(
     stepper: &Stepper<L>,
     mut state: State<SO3, Vector3<f64>>,
     steps: u64,
@@ -126,7 +126,7 @@ where
 }
 
 /// The energy of a declared scene at a momentum and a parameter, J: that of its continuous limit without a bias.
-pub(crate) fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
+pub fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
     lagrangian: &L,
     momentum: &Vector3<f64>,
     w: &Vector3<f64>,

@@ -1,13 +1,13 @@
 //! The means of an oscillation at the beginning and at the end of a run.
 
 /// The greater of two sizes, NaN if one of them is.
-pub(crate) fn greater(a: f64, b: f64) -> f64 {
+pub fn greater(a: f64, b: f64) -> f64 {
     if a.is_nan() || b <= a { a } else { b }
 }
 
 /// A count of steps as a number.
 #[allow(clippy::cast_precision_loss)] // far below 2⁵³
-pub(crate) fn float(count: u64) -> f64 {
+pub fn float(count: u64) -> f64 {
     count as f64
 }
 
@@ -15,22 +15,22 @@ pub(crate) fn float(count: u64) -> f64 {
 ///
 /// The mean is weighted by `sin²`: with equal weights the oscillations that the two ends cut would make up most of it.
 #[derive(Clone, Copy)]
-pub(crate) struct Window {
+pub struct Window {
     length: u64,
     done: u64,
     weighted: f64,
     weights: f64,
-    pub(crate) lowest: f64,
-    pub(crate) highest: f64,
+    pub lowest: f64,
+    pub highest: f64,
 }
 
 impl Window {
-    pub(crate) fn new(length: u64) -> Self {
+    pub fn new(length: u64) -> Self {
         let (lowest, highest) = (f64::INFINITY, f64::NEG_INFINITY);
         Self { length, done: 0, weighted: 0.0, weights: 0.0, lowest, highest }
     }
 
-    pub(crate) fn add(&mut self, value: f64) {
+    pub fn add(&mut self, value: f64) {
         let weight = (std::f64::consts::PI * (float(self.done) + 0.5) / float(self.length)).sin().powi(2);
         self.done += 1;
         self.weights += weight;
@@ -39,25 +39,25 @@ impl Window {
         self.highest = self.highest.max(value);
     }
 
-    pub(crate) fn mean(&self) -> f64 {
+    pub fn mean(&self) -> f64 {
         self.weighted / self.weights
     }
 }
 
 /// The first and the last tenth of a run.
-pub(crate) struct Tenths {
+pub struct Tenths {
     steps: u64,
-    pub(crate) first: Window,
-    pub(crate) last: Window,
+    pub first: Window,
+    pub last: Window,
 }
 
 impl Tenths {
-    pub(crate) fn new(steps: u64) -> Self {
+    pub fn new(steps: u64) -> Self {
         Self { steps, first: Window::new(steps / 10), last: Window::new(steps / 10) }
     }
 
     /// The quantity after the step of this number, from one; computed only where it counts.
-    pub(crate) fn after(&mut self, step: u64, value: impl FnOnce() -> f64) {
+    pub fn after(&mut self, step: u64, value: impl FnOnce() -> f64) {
         if step <= self.steps / 10 {
             self.first.add(value());
         } else if step > self.steps - self.steps / 10 {
@@ -66,12 +66,12 @@ impl Tenths {
     }
 
     /// How far the mean has moved.
-    pub(crate) fn drift(&self) -> f64 {
+    pub fn drift(&self) -> f64 {
         (self.last.mean() - self.first.mean()).abs()
     }
 
     /// How much the extremes have moved, relative to the distance between them.
-    pub(crate) fn extremes(&self) -> f64 {
+    pub fn extremes(&self) -> f64 {
         let moved = (self.last.lowest - self.first.lowest).abs().max((self.last.highest - self.first.highest).abs());
         moved / (self.first.highest - self.first.lowest)
     }

@@ -6,13 +6,13 @@ use plotters::prelude::*;
 use super::style::px;
 
 /// A rectangle of a drawing.
-pub(crate) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Drawing into a string fails only for an impossible layout.
-pub(crate) type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
+pub type Drawn<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
 /// The SVG of a drawing of so many pixels.
-pub(crate) fn render((width, height): (u32, u32), draw: impl FnOnce(&Area<'_>) -> Drawn) -> Drawn<String> {
+pub fn render((width, height): (u32, u32), draw: impl FnOnce(&Area<'_>) -> Drawn) -> Drawn<String> {
     let (wide, high) = (px(width), px(height));
     let mut svg = String::new();
     {

@@ -9,7 +9,7 @@ mod sphere;
 mod style;
 mod thin;
 
-pub(crate) use canvas::{Area, Drawn, render};
-pub(crate) use panel::{Line, Panel, Vertical};
-pub(crate) use sphere::{Path, sphere};
-pub(crate) use style::{BLUE, GREEN, ORANGE, PURPLE, heading, legend, px};
+pub use canvas::{Area, Drawn, render};
+pub use panel::{Line, Panel, Vertical};
+pub use sphere::{Path, sphere};
+pub use style::{BLUE, GREEN, ORANGE, PURPLE, heading, legend, px};

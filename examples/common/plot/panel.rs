@@ -10,30 +10,30 @@ use super::style::{GRID, INK, at, letters, px};
 use super::thin::thinned;
 
 /// A line of one colour.
-pub(crate) struct Line {
-    pub(crate) colour: RGBColor,
+pub struct Line {
+    pub colour: RGBColor,
     /// Half pixels; wider where another line would hide it.
-    pub(crate) width: u32,
-    pub(crate) points: Vec<(f64, f64)>,
+    pub width: u32,
+    pub points: Vec<(f64, f64)>,
 }
 
 /// How heights are shown.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Vertical {
+pub enum Vertical {
     Linear,
     /// Powers of ten, and of many points in a pixel the highest: deviations pass through zero all the time.
     Logarithmic,
 }
 
 /// Axes with their names, a title, and lines.
-pub(crate) struct Panel<'a> {
-    pub(crate) title: &'a str,
-    pub(crate) across: &'a str,
-    pub(crate) up: &'a str,
-    pub(crate) vertical: Vertical,
+pub struct Panel<'a> {
+    pub title: &'a str,
+    pub across: &'a str,
+    pub up: &'a str,
+    pub vertical: Vertical,
     /// False where lines are paths rather than functions of the horizontal axis.
-    pub(crate) function: bool,
-    pub(crate) lines: Vec<Line>,
+    pub function: bool,
+    pub lines: Vec<Line>,
 }
 
 /// Below a double's rounding at one.
@@ -41,14 +41,14 @@ const FLOOR: f64 = 1e-17;
 
 impl<'a> Panel<'a> {
     /// Functions of time.
-    pub(crate) fn over_time(title: &'a str, up: &'a str, vertical: Vertical, lines: Vec<Line>) -> Self {
+    pub fn over_time(title: &'a str, up: &'a str, vertical: Vertical, lines: Vec<Line>) -> Self {
         Self { title, across: "time, s", up, vertical, function: true, lines }
     }
 }
 
 impl Panel<'_> {
     /// Draws it into the area.
-    pub(crate) fn draw(&self, area: &Area<'_>) -> Drawn {
+    pub fn draw(&self, area: &Area<'_>) -> Drawn {
         let (width, height) = area.dim_in_pixel();
         // Two pixels each: a line has about that width.
         let columns = width / px(2);

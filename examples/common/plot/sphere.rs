@@ -8,14 +8,14 @@ use super::style::{INK, at, letters, px};
 use super::thin::thinned;
 
 /// A path near the unit sphere.
-pub(crate) struct Path<'a> {
-    pub(crate) title: &'a str,
-    pub(crate) colour: RGBColor,
+pub struct Path<'a> {
+    pub title: &'a str,
+    pub colour: RGBColor,
     /// Half pixels; thin where a path covers itself many times.
-    pub(crate) width: u32,
-    pub(crate) points: &'a [Vector3<f64>],
+    pub width: u32,
+    pub points: &'a [Vector3<f64>],
     /// A direction to mark, and its name.
-    pub(crate) axis: (Vector3<f64>, &'a str),
+    pub axis: (Vector3<f64>, &'a str),
 }
 
 /// Where the eye is: high enough to see the rim of a cap at 45°.
@@ -27,7 +27,7 @@ const FAR_GRATICULE: RGBColor = RGBColor(228, 231, 235);
 const NEAR_GRATICULE: RGBColor = RGBColor(190, 196, 203);
 
 /// Draws the sphere and the path, its visible arcs over its hidden ones.
-pub(crate) fn sphere(area: &Area<'_>, path: &Path<'_>) -> Drawn {
+pub fn sphere(area: &Area<'_>, path: &Path<'_>) -> Drawn {
     let view = View::of(area);
     area.draw_text(path.title, &letters(13, INK), (at(16), at(6)))?;
     area.draw(&Circle::new(view.centre, view.size, SEA.filled()))?;

@@ -6,10 +6,10 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::canvas::{Area, Drawn};
 
 // Okabe and Ito's palette, which stays distinct under the common forms of colour blindness.
-pub(crate) const BLUE: RGBColor = RGBColor(0, 114, 178);
-pub(crate) const ORANGE: RGBColor = RGBColor(230, 159, 0);
-pub(crate) const GREEN: RGBColor = RGBColor(0, 158, 115);
-pub(crate) const PURPLE: RGBColor = RGBColor(204, 121, 167);
+pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 
 pub(super) const INK: RGBColor = RGBColor(45, 45, 45);
 pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
@@ -18,7 +18,7 @@ pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
 pub(super) const UNITS: u32 = 2;
 
 /// Pixels in the units of the drawing.
-pub(crate) const fn px(pixels: u32) -> u32 {
+pub const fn px(pixels: u32) -> u32 {
     pixels * UNITS
 }
 
@@ -35,14 +35,14 @@ pub(super) fn letters(size: u32, colour: RGBColor) -> TextStyle<'static> {
 }
 
 /// A title and a fainter line below it.
-pub(crate) fn heading(area: &Area<'_>, title: &str, subtitle: &str) -> Drawn {
+pub fn heading(area: &Area<'_>, title: &str, subtitle: &str) -> Drawn {
     area.draw_text(title, &letters(17, INK), (at(16), at(12)))?;
     area.draw_text(subtitle, &letters(12, RGBColor(100, 100, 100)), (at(16), at(36)))?;
     Ok(())
 }
 
 /// Names beside strokes of their colours, in one row that starts `left`, `top` pixels into the area.
-pub(crate) fn legend(area: &Area<'_>, (left, top): (u32, u32), entries: &[(&str, RGBColor)]) -> Drawn {
+pub fn legend(area: &Area<'_>, (left, top): (u32, u32), entries: &[(&str, RGBColor)]) -> Drawn {
     let mut x = at(left);
     let y = at(top);
     for (name, colour) in entries {

@@ -1,8 +1,8 @@
 //! T7: an asymmetric top in chaotic motion.
 
 use liestep::{CompensatedState, Stepper};
+use workbench::run::Method as _;
 
-use crate::common::run::Method as _;
 use crate::curves::Curves;
 use crate::measure::{Tenths, float};
 use crate::motion::Motion;

@@ -1,13 +1,13 @@
 //! B8: on the separatrix, and symmetric bodies, against closed forms.
 
+use liestep::effects::PrincipalBody;
 use liestep::{LieGroup as _, SO3, Stepper};
 use nalgebra::Vector3;
+use workbench::heavy_top::rk4::{Body, OnQuaternion};
+use workbench::run::Method as _;
 
 use crate::closed::{separatrix, symmetric};
-use crate::common::run::Method as _;
 use crate::curves::Curves;
-use crate::free_body::lagrangian::FreeBody;
-use crate::heavy_top::rk4::{Body, OnQuaternion};
 use crate::measure::{exponent, four_halvings, greater, relative, steps_in};
 use crate::row::{Effort, Failure, Row, short};
 
@@ -26,7 +26,7 @@ fn end(
     exact: &(Option<nalgebra::Matrix3<f64>>, Vector3<f64>),
 ) -> Result<End, Failure> {
     let inertia = liestep::DiagonalNonstandardInertia::from_principal_moments(*moments)?;
-    let stepper = Stepper::new(FreeBody { J_d: inertia }, h)?;
+    let stepper = Stepper::new(PrincipalBody { J_d: inertia }, h)?;
     let mut state = stepper.start(SO3::identity(), *velocity)?;
     let (energy, spatial) = (stepper.energy(&state), state.spatial_momentum());
     let mut left = End { error: 0.0, energy: 0.0, momentum: 0.0 };

@@ -1,18 +1,18 @@
 //! B7: a body that flips about its middle axis, and when.
 
+use declarations::SixthOrderBody;
+use liestep::effects::PrincipalBody;
 use liestep::{
     Composition, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _,
     PreprocessedBody, PreprocessedOrder, Regular, SO3, Stepper,
 };
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::free_body::engines::{Moments, explicit, implicit, rescaled};
+use workbench::heavy_top::rk4::{Body, OnQuaternion};
+use workbench::run::Method as _;
 
 use crate::closed::flip;
-use crate::common::run::Method as _;
 use crate::curves::Curves;
-use crate::declarations::SixthOrderBody;
-use crate::free_body::engines::{Moments, explicit, implicit, rescaled};
-use crate::free_body::lagrangian::FreeBody;
-use crate::heavy_top::rk4::{Body, OnQuaternion};
 use crate::measure::{exponent, four_halvings};
 use crate::rivals::Update;
 use crate::row::{Effort, Failure, Row};
@@ -84,7 +84,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let (moments, velocity) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.01, 2.0, 0.02));
     let exact = flip::period(&moments, &velocity);
     let inertia = DiagonalNonstandardInertia::from_principal_moments(moments)?;
-    let (body, start) = (FreeBody { J_d: inertia }, moments.component_mul(&velocity));
+    let (body, start) = (PrincipalBody { J_d: inertia }, moments.component_mul(&velocity));
     let off = |method: &Steps<'_>, h: f64| period(method, start, h).map(|period| period / exact - 1.0);
 
     let ours = |h: f64| -> Result<Map<'_>, Failure> {
@@ -113,7 +113,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
             .near("two flips in closed form, s", exact, 19.001_635_511_000_25, 1e-12)
             .near("order", exponent(&errors), 2.0, 0.05)
             .shows(format!("(3.13) at h = 0.01 off by {:+.1e}", off(&ours, 0.01)?));
-    let kahan_li = composed(FreeBody { J_d: inertia }, CompositionScheme::KAHAN_LI_8);
+    let kahan_li = composed(PrincipalBody { J_d: inertia }, CompositionScheme::KAHAN_LI_8);
     let suzuki = composed(sixth, CompositionScheme::SUZUKI_8);
     let tenth: [(&str, &Steps<'_>, f64); 3] = [
         ("(3.13), Kahan-Li 8, h = 0.02", &kahan_li, 0.02),

@@ -1,9 +1,9 @@
 //! S1, S2: steps up to the fold, where the momentum equation loses its solution, and beyond.
 
 use liestep::{LieGroup as _, Solvability, StepError, Stepper};
+use workbench::plot::BLUE;
+use workbench::run::Method as _;
 
-use crate::common::plot::BLUE;
-use crate::common::run::Method as _;
 use crate::curves::{Curve, Curves};
 use crate::measure::{greater, relative};
 use crate::motion::Motion;

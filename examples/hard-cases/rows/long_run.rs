@@ -1,9 +1,9 @@
 //! T3: many steps of the looping top.
 
 use liestep::{CompensatedState, Stepper};
+use workbench::plot::{BLUE, GREEN, ORANGE};
+use workbench::run::{Method, Sample};
 
-use crate::common::plot::{BLUE, GREEN, ORANGE};
-use crate::common::run::{Method, Sample};
 use crate::curves::{Curve, Curves};
 use crate::measure::{Tenths, float};
 use crate::motion::Motion;

@@ -32,10 +32,10 @@ use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// Measures a row, and leaves what the figure shows of it.
-pub(crate) type Measure = fn(Effort, &mut Curves) -> Result<Row, Failure>;
+pub type Measure = fn(Effort, &mut Curves) -> Result<Row, Failure>;
 
 /// All of them in the order of the table: where a step has no solution or several, bodies, tops, structure, round-off.
-pub(crate) const ALL: [(&str, Measure); 35] = [
+pub const ALL: [(&str, Measure); 35] = [
     ("S1", folds::s1),
     ("S2", folds::s2),
     ("S3", traps::s3),

@@ -1,10 +1,10 @@
 //! T2: backward error analysis of (3.13).
 
+use declarations::HeavyTop;
 use liestep::Stepper;
 use nalgebra::Vector3;
 
 use crate::curves::Curves;
-use crate::declarations::HeavyTop;
 use crate::measure::{exponent, four_halvings, steps_in};
 use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};

@@ -1,5 +1,6 @@
 //! P2, P3: momentum maps, Casimirs, and how a covector is advected.
 
+use declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, SixthOrderTop};
 use liestep::laws::samples::{MatrixLieGroup, Random, eliminated_inverse};
 use liestep::{
     Advected, ContravariantVector, DiscreteLagrangian, DiscreteLiePoisson, Heisenberg, Inertia, LieGroup as _, Regular,
@@ -8,7 +9,6 @@ use liestep::{
 use nalgebra::{SVector, Vector3};
 
 use crate::curves::Curves;
-use crate::declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, SixthOrderTop};
 use crate::measure::{greater, relative};
 use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};

@@ -1,11 +1,11 @@
 //! P4: what stopping Newton's iteration early costs.
 
 use liestep::Stepper;
+use workbench::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
+use workbench::plot::{BLUE, ORANGE};
 
-use crate::common::plot::{BLUE, ORANGE};
 use crate::curves::{Curve, Curves};
 use crate::motion::Motion;
-use crate::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
 use crate::rivals::GREY;
 use crate::row::{Effort, Failure, Row, short};
 

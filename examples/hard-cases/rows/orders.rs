@@ -1,8 +1,8 @@
 //! T1: the tops of the thesis against references of 33 digits.
 
 use liestep::{LieGroup as _, Stepper};
+use workbench::run::Method as _;
 
-use crate::common::run::Method as _;
 use crate::curves::Curves;
 use crate::measure::{exponent, four_halvings, greater, relative, steps_in};
 use crate::motion::Motion;

@@ -1,10 +1,10 @@
 //! T6: straight up and straight down, where Euler angles are undefined.
 
+use declarations::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::curves::Curves;
-use crate::declarations::HeavyTop;
 use crate::measure::greater;
 use crate::row::{Effort, Failure, Row};
 

@@ -1,12 +1,12 @@
 //! S4: where nothing acts nothing happens.
 
+use declarations::{FreeBody, HeavyTop};
 use liestep::{DiscreteLagrangian, NonstandardInertia, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::run::Method as _;
 
-use crate::common::run::Method as _;
 use crate::curves::Curves;
-use crate::declarations::{FreeBody, HeavyTop};
-use crate::heavy_top::rk4::OnQuaternion;
 use crate::motion::Motion;
 use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row};

@@ -1,10 +1,10 @@
 //! S5: the step of zero, and the step of `−h`.
 
 use liestep::{LieGroup as _, Stepper};
+use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::run::Method as _;
 
-use crate::common::run::Method as _;
 use crate::curves::Curves;
-use crate::heavy_top::rk4::OnQuaternion;
 use crate::measure::relative;
 use crate::motion::Motion;
 use crate::rivals::{on_quaternion, rk4_body};

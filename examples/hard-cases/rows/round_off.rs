@@ -6,19 +6,19 @@
 //! this. The library takes one step towards the polar factor, `R (3I − RᵀR)/2`, once an attitude is 2¹¹ ε away; a step
 //! in every thousand, beside it, is what more of that would give.
 
+use declarations::HeavyTop;
 use liestep::{
     CompensatedState, CompensatedStepper, Composition, CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3,
     Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
+use workbench::newton_tolerance::energy;
+use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
 
-use crate::common::plot::{BLUE, GREEN, ORANGE, PURPLE};
 use crate::curves::{Curve, Curves};
-use crate::declarations::HeavyTop;
 use crate::measure::{Tenths, float};
 use crate::motion::Motion;
-use crate::newton_tolerance::energy;
 use crate::row::{Effort, Failure, Row, short};
 use crate::walk::{FARTHEST, TopState, Walk};
 

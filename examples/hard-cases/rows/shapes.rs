@@ -1,11 +1,11 @@
 //! B3 to B5: thin, flat, round, and in other axes.
 
+use declarations::FreeBody;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::boxes::box_of_engines;
 use crate::curves::Curves;
-use crate::declarations::FreeBody;
 use crate::measure::{greater, relative};
 use crate::rivals::Spin;
 use crate::row::{Effort, Failure, Row, short};

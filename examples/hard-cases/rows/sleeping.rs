@@ -1,12 +1,12 @@
 //! T5: the sleeping top on both sides of its critical speed.
 
+use declarations::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::run::Method as _;
 
-use crate::common::run::Method as _;
 use crate::curves::Curves;
-use crate::declarations::HeavyTop;
-use crate::heavy_top::rk4::OnQuaternion;
 use crate::measure::float;
 use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row, short};

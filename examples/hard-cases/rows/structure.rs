@@ -1,13 +1,13 @@
 //! P1: the step is a Poisson map.
 
+use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, SixthOrderTop};
 use liestep::laws::samples::Random;
 use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Inertia, Regular, SO3};
 use nalgebra::Vector3;
+use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::run::Method as _;
 
-use crate::common::run::Method as _;
 use crate::curves::Curves;
-use crate::declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, SixthOrderTop};
-use crate::heavy_top::rk4::OnQuaternion;
 use crate::measure::greater;
 use crate::motion::Motion;
 use crate::poisson::{Phase, defect};
@@ -65,7 +65,7 @@ pub(crate) fn p1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         let map = |(momentum, w): &Phase| {
             let length = w.norm();
             let body = rk4_body(&top);
-            let body = crate::heavy_top::rk4::Body { lever: body.lever * length, ..body };
+            let body = workbench::heavy_top::rk4::Body { lever: body.lever * length, ..body };
             let attitude = nalgebra::UnitQuaternion::rotation_between(w, &Vector3::z())?;
             let mut method = OnQuaternion::new(body, H, &attitude, *momentum);
             method.advance(1).ok()?;

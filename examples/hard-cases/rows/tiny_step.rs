@@ -2,8 +2,8 @@
 
 use liestep::{LieGroup as _, SO3, Stepper};
 use nalgebra::Vector3;
+use workbench::run::Method as _;
 
-use crate::common::run::Method as _;
 use crate::curves::Curves;
 use crate::measure::{relative, steps_in};
 use crate::motion::Motion;

@@ -1,10 +1,10 @@
 //! S3: about a principal axis `sin θ = hΩ` has a second root at `π − θ`.
 
+use declarations::FreeBody;
 use liestep::{DiscreteLiePoisson, Effect, Retraction as _, SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::curves::Curves;
-use crate::declarations::FreeBody;
 use crate::measure::greater;
 use crate::row::{Effort, Failure, Row};
 

@@ -1,10 +1,10 @@
 //! T9: other units of mass and time.
 
+use declarations::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::curves::Curves;
-use crate::declarations::HeavyTop;
 use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};
 

@@ -1,10 +1,10 @@
 //! S6: kinetic terms whose momentum equation has a solution at every step.
 
+use declarations::{CayleyTop, LogTraceTop};
 use liestep::{Inertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::curves::Curves;
-use crate::declarations::{CayleyTop, LogTraceTop};
 use crate::measure::greater;
 use crate::row::{Effort, Failure, Row};
 

@@ -1,12 +1,11 @@
 //! T8: no gravity.
 
+use declarations::HeavyTop;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::curves::Curves;
-use crate::declarations::HeavyTop;
-use crate::free_body::lagrangian::FreeBody;
 use crate::measure::{greater, relative};
 use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};
@@ -30,7 +29,7 @@ pub(crate) fn t8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let (mut apart, mut kept, mut bits) = (0.0, 0.0, true);
     for motion in [Motion::looping()?, Motion::chaotic()?] {
         let top = motion.top.clone();
-        let free = moved(FreeBody { J_d: top.J_d }, &motion)?;
+        let free = moved(PrincipalBody { J_d: top.J_d }, &motion)?;
         kept = greater(kept, free.2);
         let body = PrincipalBody { J_d: top.J_d };
         let sum = moved(body, &motion)?;

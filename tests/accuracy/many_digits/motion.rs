@@ -1,10 +1,10 @@
 //! The reference motions with all their digits.
 
+use checks::reference::read;
 use nalgebra::Vector3;
 use serde_json::Value;
 
 use super::{DoubleDouble, Matrix, Vector, long};
-use crate::common::reference::read;
 
 /// A heavy top in principal axes, its start and where it must come to.
 pub(crate) struct Motion {
@@ -38,7 +38,7 @@ fn time(value: &Value) -> f64 {
 }
 
 impl Motion {
-    /// As [`crate::common::reference::Motion::read`], which keeps what fits into doubles.
+    /// As [`checks::reference::Motion::read`], which keeps what fits into doubles.
     pub(crate) fn read(name: &str) -> Self {
         let data = read(name);
         let apart = !data["initial"].is_null();

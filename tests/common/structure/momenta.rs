@@ -9,7 +9,7 @@ use liestep::{Advected as _, LieGroup as _};
 use nalgebra::SVector;
 
 use super::{System, random_advected, turn};
-use crate::common::measure::derivative;
+use crate::measure::derivative;
 
 /// Two products of small matrices, relative to the entries of the momenta.
 const ROUNDING: f64 = 1e-13;

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;
 use super::{System, axis, random_advected, step, turn};
-use crate::common::measure::derivative;
+use crate::measure::derivative;
 
 /// `B(z)`, from the brackets of the group and the action on the parameters:
 ///

@@ -7,7 +7,7 @@ use nalgebra::{DVector, SMatrix, SVector};
 
 use super::numbers::Numbers as _;
 use super::{System, axis, random_advected, step};
-use crate::common::measure::derivative;
+use crate::measure::derivative;
 
 /// Products of small matrices that cancel in part, relative to the entries of the momenta.
 const ROUNDING: f64 = 1e-13;

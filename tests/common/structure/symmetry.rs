@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;
 use super::{System, step, turn};
-use crate::common::measure::derivative;
+use crate::measure::derivative;
 
 /// What the six-point differences leave of numbers near one.
 const DIFFERENCES: f64 = 1e-11;

@@ -2,10 +2,10 @@
 //! everything is seen in a mirror, `J_d' = Q J_d Qᵀ`, `ρ' = Qρ`, `R' = QRQᵀ`, `up' = Q up`, and the angular velocity,
 //! an axial vector, is `Ω' = det(Q) QΩ`.
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
-use crate::common::reference::looping;
-use crate::common::tops::{FullTop, HeavyTop};
+use checks::measure::relative;
+use checks::random::Random;
+use checks::reference::looping;
+use checks::tops::{FullTop, HeavyTop};
 use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,9 +1,9 @@
 //! Motions that are known in closed form: on the separatrix, of symmetric bodies, and a symmetric top that precesses
 //! regularly. Each is met to the order of the scheme, and its invariants are kept to rounding.
 
-use crate::common::measure::{four_halvings, order, relative, steps_in};
-use crate::common::random::Random;
-use crate::common::tops::{FreeBody, HeavyTop};
+use checks::measure::{four_halvings, order, relative, steps_in};
+use checks::random::Random;
+use checks::tops::{FreeBody, HeavyTop};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, State, Stepper};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 

@@ -5,9 +5,9 @@
 //! ω² = (J_3 − J_2)(|p|² − 2H J_1)/(J_1 J_2 J_3),      k² = (J_2 − J_1)(2H J_3 − |p|²)/((J_3 − J_2)(|p|² − 2H J_1))
 //! ```
 
-use crate::common::measure::{four_halvings, order};
-use crate::common::tops::FreeBody;
-use crate::declarations::SixthOrderBody;
+use checks::measure::{four_halvings, order};
+use checks::tops::FreeBody;
+use declarations::SixthOrderBody;
 use liestep::{
     Composition, CompositionScheme, DiagonalNonstandardInertia, Inertia, LieGroup as _, PreprocessedBody,
     PreprocessedOrder, SO3, Stepper,

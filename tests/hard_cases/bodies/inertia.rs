@@ -1,8 +1,8 @@
 //! The two inertias `J = tr(J_d) I − J_d` and `J_d = ½ tr(J) I − J`, and what isn't the inertia of any body.
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
-use crate::common::tops::{FreeBody, HeavyTop};
+use checks::measure::relative;
+use checks::random::Random;
+use checks::tops::{FreeBody, HeavyTop};
 use liestep::{
     DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError, NonstandardInertia, SetupError, Stepper,
 };

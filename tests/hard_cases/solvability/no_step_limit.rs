@@ -1,6 +1,6 @@
 //! The Cayley and the log-trace kinetic terms have a step where (3.13) has none.
 
-use crate::declarations::{CayleyTop, LogTraceTop};
+use declarations::{CayleyTop, LogTraceTop};
 use liestep::{Inertia, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 

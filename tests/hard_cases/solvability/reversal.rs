@@ -1,10 +1,10 @@
 //! (3.13) is self-adjoint, `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, so the step of `−h` undoes that of `h`; that of zero
 //! is the identity.
 
-use crate::common::measure::relative;
-use crate::common::random::Random;
-use crate::common::reference::looping;
-use crate::common::tops::HeavyTop;
+use checks::measure::relative;
+use checks::random::Random;
+use checks::reference::looping;
+use checks::tops::HeavyTop;
 use liestep::{DiscreteLiePoisson, LieGroup as _, Stepper};
 
 #[test]

@@ -2,16 +2,16 @@
 //! surely, for `h|a| > J_max` surely not, `a = p + (h/2) τ(w)`. Up to the fold a step is made, beyond it the error says
 //! how far one could go.
 
-use crate::common::random::Random;
-use crate::common::reference::{Motion, looping};
-use crate::common::tops::{FullTop, HeavyTop, moments};
+use checks::random::Random;
+use checks::reference::{Motion, looping};
+use checks::tops::{FullTop, HeavyTop};
 use liestep::{DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, StepError, Stepper};
 use nalgebra::Vector3;
 
 /// The largest solvable step of a symmetric top by the closed criterion: with `κ = h a_3/(2 J_3)`,
 /// `(h|a_⊥|/2)² ≤ max over X of (1 − X − κ²/X)(J_1² X + (J_3 − J_1)² κ²/X)`, where `X = q_0²`.
 fn fold_of_symmetric_top(motion: &Motion) -> f64 {
-    let j = moments(&motion.top);
+    let j = motion.top.moments();
     let momentum = j.component_mul(&motion.velocity);
     let w = motion.attitude.adjoint_transpose(&motion.top.up);
     let solvable = |h: f64| {

@@ -3,8 +3,8 @@
 //! principle has them at first sight, multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from
 //! `x = 2` on.
 
-use crate::common::measure::{four_halvings, order, relative, steps_in};
-use crate::common::random::Random;
+use checks::measure::{four_halvings, order, relative, steps_in};
+use checks::random::Random;
 use liestep::effects::{Drag, MagneticDamping, PrincipalBody, Torque};
 use liestep::{DiagonalNonstandardInertia, Inertia, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};

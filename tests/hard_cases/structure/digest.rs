@@ -11,8 +11,8 @@
 //! the order that the expansion wrote; nothing is fused or reordered. A change of the derivation that changes roundings
 //! changes the digest, and belongs in the history with it.
 
-use crate::common::reference::looping;
-use crate::common::tops::{FreeBody, HeavyTop};
+use checks::reference::looping;
+use checks::tops::{FreeBody, HeavyTop};
 use liestep::{CompensatedState, Effect, LieGroup as _, SO3, State, Stepper};
 use nalgebra::Vector3;
 

@@ -3,10 +3,10 @@
 //!
 //! `(μ, w)` moves on a coadjoint orbit of the semidirect product, so `|w|²` and `μ·w` are exact.
 
-use crate::common::random::Random;
-use crate::common::structure::momenta::assert_momenta;
-use crate::common::structure::stages::{assert_stages, assert_step};
-use crate::common::tops::{FreeBody, FullTop, HeavyTop};
+use checks::random::Random;
+use checks::structure::momenta::assert_momenta;
+use checks::structure::stages::{assert_stages, assert_step};
+use checks::tops::{FreeBody, FullTop, HeavyTop};
 use liestep::DiscreteLiePoisson;
 use nalgebra::Vector3;
 

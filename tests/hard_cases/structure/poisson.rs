@@ -1,9 +1,9 @@
 //! P1 for tops and free bodies: with `z = (μ, w)` the tensor is `B = [[μ̂, ŵ], [ŵ, 0]]`, and `B = μ̂` where nothing is
 //! advected. `tests/systems/poisson.rs` has the other declarations.
 
-use crate::common::random::Random;
-use crate::common::structure::poisson::{assert_poisson, tensor};
-use crate::common::tops::{FreeBody, FullTop, HeavyTop};
+use checks::random::Random;
+use checks::structure::poisson::{assert_poisson, tensor};
+use checks::tops::{FreeBody, FullTop, HeavyTop};
 use nalgebra::DMatrix;
 
 const STEPS: [f64; 3] = [0.01, 0.1, 0.3];

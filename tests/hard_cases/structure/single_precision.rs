@@ -1,8 +1,8 @@
 //! P8: the same cases in `f32`, with the thresholds of `f64` in units of its ε: what is 10⁻¹⁴ there is 45 ε, 10⁻¹³ is
 //! 450 ε, 2·10⁻¹² is 9000 ε.
 
-use crate::common::measure::{four_halvings, order, relative, steps_in};
-use crate::common::reference::{Motion, looping};
+use checks::measure::{four_halvings, order, relative, steps_in};
+use checks::reference::{Motion, looping};
 use liestep::{
     DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, InertiaError, LieGroup as _, NonstandardInertia, Real,
     Regular, SO3, State, StepError, Stepper, lagrangian,

@@ -3,8 +3,8 @@
 //!
 //! The step is made here of the terms of a declared Lagrangian, so that it may stop where it shouldn't.
 
-use crate::common::reference::looping;
-use crate::common::tops::HeavyTop;
+use checks::reference::looping;
+use checks::tops::HeavyTop;
 use liestep::{CayleyRetraction, Coordinates as _, Effect, LieGroup as _, Retraction, SO3, Stepper};
 use nalgebra::Vector3;
 

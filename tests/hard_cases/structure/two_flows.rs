@@ -1,9 +1,9 @@
 //! The flow on increments (2.5) and the flow on momenta (2.8) are one, seen through the Legendre transforms: with
 //! `μ_i = 𝔽l_d⁻(f_i, w_i)` both give the same `f_i` and `w_i`, and (2.10) the same attitudes.
 
-use crate::common::measure::relative;
-use crate::common::reference::looping;
-use crate::common::tops::{FreeBody, FullTop, HeavyTop};
+use checks::measure::relative;
+use checks::reference::looping;
+use checks::tops::{FreeBody, FullTop, HeavyTop};
 use liestep::{
     DiscreteEulerPoincare, DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, Stepper, reconstruct,
 };

@@ -1,7 +1,7 @@
 //! A chaotic asymmetric top: neighbouring motions part by `e^{0.2 t}`, so after some minutes no digit of the state is
 //! that of the continuous motion; energy and Casimirs stay all the same.
 
-use crate::common::reference::Motion;
+use checks::reference::Motion;
 use liestep::{CompensatedState, Stepper};
 
 const H: f64 = 0.02;

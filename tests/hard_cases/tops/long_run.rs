@@ -2,8 +2,8 @@
 //! `|w|²` and `p·w`, the energy's mean and extremes, and the momentum about the axis of symmetry. What rounding leaves
 //! is a random walk, not a drift; with compensated sums it is the walk of what is added alone.
 
-use crate::common::reference::looping;
-use crate::common::tops::HeavyTop;
+use checks::reference::looping;
+use checks::tops::HeavyTop;
 use liestep::{CompensatedState, LieGroup as _, SO3, State, Stepper};
 use nalgebra::{SVector, Vector3, Vector4};
 

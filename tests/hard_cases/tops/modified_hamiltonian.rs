@@ -8,15 +8,15 @@
 //! while `H` itself oscillates at second order. A wrong sign or factor anywhere in the step, or in this, leaves the
 //! order at two.
 
-use crate::common::measure::{four_halvings, order, steps_in};
-use crate::common::reference::{Motion, looping};
-use crate::common::tops::{HeavyTop, moments};
+use checks::measure::{four_halvings, order, steps_in};
+use checks::reference::{Motion, looping};
+use checks::tops::HeavyTop;
 use liestep::Stepper;
 use nalgebra::Vector3;
 
 /// The bracket above, without its `h²`.
 fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
-    let (j, weight) = (moments(top), top.m * top.g);
+    let (j, weight) = (top.moments(), top.m * top.g);
     let momentum = j.component_mul(velocity);
     let gyroscopic = velocity.cross(&momentum);
     let torque = w.cross(&top.rho) * weight;

@@ -1,8 +1,8 @@
 //! A top without weight is a free body, and a free body's spatial momentum `R p` is constant.
 
-use crate::common::measure::relative;
-use crate::common::reference::looping;
-use crate::common::tops::{FreeBody, FullTop, HeavyTop};
+use checks::measure::relative;
+use checks::reference::looping;
+use checks::tops::{FreeBody, FullTop, HeavyTop};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,10 +1,10 @@
 //! The flow of (3.13) with `μ_0 = JΩ_0` converges to the heavy top and to the free body at second order in the step:
 //! its momentum is that of the continuous body at the same time, the half kick being inside (2.7).
 
-use crate::common::measure::order;
-use crate::common::order::errors;
-use crate::common::reference::Motion;
-use crate::common::tops::FreeBody;
+use checks::measure::order;
+use checks::order::errors;
+use checks::reference::Motion;
+use checks::tops::FreeBody;
 
 /// Well above what 10⁵ steps lose to rounding in attitude and velocity.
 const PLATEAU: f64 = 1e-11;

@@ -1,8 +1,8 @@
 //! A million steps of 10⁻⁸ s lose no more than rounding in the momentum: `F ≈ I` is never formed, its increment is.
 
-use crate::common::continuous::{phase, solution};
-use crate::common::measure::relative;
-use crate::common::reference::looping;
+use checks::continuous::{phase, solution};
+use checks::measure::relative;
+use checks::reference::looping;
 use liestep::{LieGroup as _, Stepper};
 use nalgebra::Vector3;
 

@@ -1,8 +1,8 @@
 //! Units don't matter: with masses in units 2ᵏ times smaller, or times, the motion is the same to the last bit. Every
 //! tolerance of the solver is relative, and no constant has a dimension.
 
-use crate::common::reference::looping;
-use crate::common::tops::HeavyTop;
+use checks::reference::looping;
+use checks::tops::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, Stepper};
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,9 +1,9 @@
 //! Straight up and straight down, where Euler angles are undefined, are attitudes like any other: a top that passes
 //! through them does so without more iterations, with the accuracy of the scheme, and keeping its invariants.
 
-use crate::common::continuous::{phase, solution};
-use crate::common::measure::{four_halvings, order, relative, steps_in};
-use crate::common::tops::HeavyTop;
+use checks::continuous::{phase, solution};
+use checks::measure::{four_halvings, order, relative, steps_in};
+use checks::tops::HeavyTop;
 use liestep::{SO3, State, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 

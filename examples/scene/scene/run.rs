@@ -7,9 +7,9 @@ use liestep::{
     StepError, Stepper,
 };
 use nalgebra::{Matrix3, Vector3};
+use workbench::csv;
 
 use super::file::SceneFile;
-use crate::csv;
 
 /// A state, in SI units.
 #[derive(Clone, Copy)]

@@ -10,49 +10,52 @@
 //! there are is decided once a run: the step that then runs is that of the sum of just those, compiled as if it had
 //! been written by hand. A mistake in a file is reported with its line and column.
 
-#[path = "common/csv.rs"]
-mod csv;
-#[path = "common/output.rs"]
-mod output;
-#[path = "common/plot/mod.rs"]
-mod plot;
-#[path = "common/scene/mod.rs"]
 mod scene;
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use clap::Parser;
+use workbench::args::{Failure, Word, example};
+use workbench::output::{Output, print};
 
-use output::{Output, print};
+const HELP: &str = "Simulates the scenes that files describe, and draws them
 
-/// Simulates the scenes that files describe, and draws them.
-#[derive(Parser)]
-#[command(name = "scene")]
+Arguments:
+  <FILE>...        The scene files
+
+Options:
+      --out <DIR>  The folder for the pictures [default: out/scenes]
+      --csv        Also write the samples as CSV, next to the pictures
+  -h, --help       Print this
+";
+
 struct Arguments {
-    /// The scene files.
-    #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The folder for the pictures.
-    #[arg(long, value_name = "DIR", default_value = "out/scenes")]
     out: PathBuf,
-    /// Also write the samples as CSV, next to the pictures.
-    #[arg(long)]
     csv: bool,
 }
 
 fn main() -> ExitCode {
-    match simulate(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::FAILURE
+    example(HELP, |words| {
+        let mut arguments = Arguments { files: Vec::new(), out: "out/scenes".into(), csv: false };
+        while let Some(word) = words.word()? {
+            match word {
+                Word::Plain(file) => arguments.files.push(file.into()),
+                Word::Option(option) => match option.as_str() {
+                    "out" => arguments.out = words.folder()?,
+                    "csv" => arguments.csv = true,
+                    _ => return Err(words.unknown()),
+                },
+            }
         }
-    }
+        if arguments.files.is_empty() {
+            return Err("the required arguments were not provided: a scene file; see --help".into());
+        }
+        simulate(&arguments)
+    })
 }
 
-fn simulate(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+fn simulate(arguments: &Arguments) -> Result<(), Failure> {
     // All files are read before the first is simulated, so a mistake in the last doesn't come after minutes.
     let scenes = arguments.files.iter().map(|path| scene::read(path)).collect::<Result<Vec<_>, _>>()?;
     let mut output = Output::new(arguments.out.clone())?;

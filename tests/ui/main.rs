@@ -4,7 +4,7 @@ use std::process::Command;
 
 /// The compiler whose messages `tests/ui/fail/*.stderr` were made with.
 fn pinned() -> &'static str {
-    let toolchain = include_str!("../rust-toolchain.toml");
+    let toolchain = include_str!("../../rust-toolchain.toml");
     let channel = toolchain.lines().find_map(|line| line.strip_prefix("channel = "));
     channel.expect("rust-toolchain.toml has a channel").trim_matches('"')
 }
@@ -20,11 +20,11 @@ fn found() -> String {
 #[test]
 fn ui() {
     let cases = trybuild::TestCases::new();
-    cases.pass("tests/ui/pass/*.rs");
+    cases.pass("pass/*.rs");
     let (found, pinned) = (found(), pinned());
     if found == pinned {
-        cases.compile_fail("tests/ui/fail/*.rs");
+        cases.compile_fail("fail/*.rs");
     } else {
-        println!("tests/ui/fail is skipped: this is rustc {found}, and the messages are those of {pinned}");
+        println!("fail is skipped: this is rustc {found}, and the messages are those of {pinned}");
     }
 }

@@ -8,23 +8,11 @@
 //! The same text stands in the documentation of the constant `DERIVATION` and, equation by equation, of each generated
 //! method.
 
-#[path = "declarations/mod.rs"]
-mod declarations;
+use std::process::ExitCode;
 
-use std::io::{self, Write as _};
-
-use clap::Parser;
-use clap::builder::PossibleValuesParser;
 use liestep::DiscreteLagrangian;
-
-/// Prints what is derived from a declared Lagrangian.
-#[derive(Parser)]
-#[command(name = "derive")]
-struct Arguments {
-    /// Which one; all are listed if it is left away.
-    #[arg(value_parser = PossibleValuesParser::new(LAGRANGIANS.map(|shown| shown.name)))]
-    name: Option<String>,
-}
+use workbench::args::{Failure, Word, example};
+use workbench::output::print;
 
 /// A declaration that is shown.
 struct Shown {
@@ -59,17 +47,40 @@ const LAGRANGIANS: [Shown; 17] = [
     shown::<declarations::ElasticFlow>("elastic-flow", "an affine flow of an elastic drop, SL(2, R)"),
 ];
 
-fn main() -> io::Result<()> {
-    let name = Arguments::parse().name;
-    let mut out = io::stdout().lock();
-    for lagrangian in LAGRANGIANS {
-        let Shown { name: this, about, derivation, is_self_adjoint } = lagrangian;
-        if name.is_none() {
-            let adjoint = if is_self_adjoint { "self-adjoint" } else { "–" };
-            writeln!(out, "{this:<20} {adjoint:<14} {about}")?;
-        } else if name.as_deref() == Some(this) {
-            writeln!(out, "{this}: {about}\n\n{derivation}")?;
+const HELP: &str = "Prints what is derived from a declared Lagrangian
+
+Argument:
+  [NAME]  Which one; all are listed if it is left away
+";
+
+fn main() -> ExitCode {
+    example(HELP, |words| {
+        let mut name = None;
+        while let Some(word) = words.word()? {
+            match word {
+                Word::Plain(word) if name.is_none() => name = Some(word),
+                Word::Plain(word) => return Err(format!("unexpected argument '{}'", word.display()).into()),
+                Word::Option(_) => return Err(words.unknown()),
+            }
         }
-    }
-    out.flush()
+        print(&name.map_or_else(|| Ok(list()), |name| derivation(&name.display().to_string()))?)?;
+        Ok(())
+    })
+}
+
+fn list() -> String {
+    let line = |Shown { name, about, is_self_adjoint, .. }: &Shown| {
+        let adjoint = if *is_self_adjoint { "self-adjoint" } else { "–" };
+        format!("{name:<20} {adjoint:<14} {about}\n")
+    };
+    LAGRANGIANS.iter().map(line).collect()
+}
+
+fn derivation(wanted: &str) -> Result<String, Failure> {
+    let found = LAGRANGIANS.iter().find(|shown| shown.name == wanted);
+    let Shown { name, about, derivation, .. } = found.ok_or_else(|| {
+        let names: Vec<_> = LAGRANGIANS.iter().map(|shown| shown.name).collect();
+        format!("invalid value '{wanted}': it is none of {}", names.join(", "))
+    })?;
+    Ok(format!("{name}: {about}\n\n{derivation}\n"))
 }

@@ -2,13 +2,13 @@
 
 use nalgebra::Vector3;
 use serde::Deserialize;
+use workbench::plot::{
+    Area, BLUE, Drawn, GREEN, Line, ORANGE, PURPLE, Panel, Path, Vertical, heading, legend, px, render, sphere,
+};
 
 use super::file::SceneFile;
 use super::quantity::Direction;
 use super::run::{Run, Sample};
-use crate::plot::{
-    Area, BLUE, Drawn, GREEN, Line, ORANGE, PURPLE, Panel, Path, Vertical, heading, legend, px, render, sphere,
-};
 
 /// What to draw.
 #[derive(Deserialize)]

@@ -2,14 +2,14 @@
 
 // The letters of the field.
 #![allow(non_snake_case)]
-// Each user takes a part of this.
-#![allow(dead_code, unreachable_pub, unused_imports)]
+// A library of this repository alone.
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
 
 mod cayley_top;
 mod elastic_flow;
 mod fourth_order_top;
 mod free_body;
-mod heavy_top;
+mod full_top;
 mod log_top;
 mod log_trace_top;
 mod magnet;
@@ -25,7 +25,7 @@ pub use cayley_top::CayleyTop;
 pub use elastic_flow::ElasticFlow;
 pub use fourth_order_top::FourthOrderTop;
 pub use free_body::FreeBody;
-pub use heavy_top::{FullTop, HeavyTop};
+pub use full_top::FullTop;
 pub use log_top::LogTop;
 pub use log_trace_top::LogTraceTop;
 pub use magnet::Magnet;
@@ -36,6 +36,9 @@ pub use spring::Spring;
 pub use tethered_plate::TetheredPlate;
 pub use tops::Top;
 pub use underwater_body::UnderwaterBody;
+
+// The first example declares this.
+pub use workbench::heavy_top::declaration::HeavyTop;
 
 // The library declares these itself.
 pub use liestep::effects::{FourthOrderBody, SixthOrderBody};

@@ -1,0 +1,15 @@
+//! Scenes with exact states, the methods that integrate them, and what accuracy costs each in time.
+
+// A library of this repository alone.
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
+
+pub mod asked;
+pub mod figure;
+pub mod invariants;
+pub mod measure;
+pub mod methods;
+pub mod newton;
+pub mod others;
+pub mod report;
+pub mod rivals;
+pub mod scenes;

@@ -1,0 +1,20 @@
+//! What the examples share with each other, with the tests and with the benchmarks: the heavy top and what is compared
+//! with it, arguments, timed runs, tables, files and figures.
+//!
+//! What only the longer examples and the tests need is in packages of its own, so that the first example is built soon.
+
+// A library of this repository alone.
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
+
+pub mod args;
+pub mod csv;
+pub mod free_body;
+pub mod heavy_top;
+pub mod newton_tolerance;
+pub mod output;
+pub mod plot;
+pub mod progress;
+pub mod run;
+pub mod table;
+pub mod top_equations;
+pub mod variational;

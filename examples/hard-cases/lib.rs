@@ -1,0 +1,16 @@
+//! The hard cases: what is measured for each, and the bound that it must keep.
+
+// A library of this repository alone.
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
+
+mod closed;
+pub mod curves;
+pub mod figure;
+mod measure;
+mod motion;
+mod poisson;
+pub mod report;
+mod rivals;
+pub mod row;
+pub mod rows;
+mod walk;

@@ -1,0 +1,17 @@
+//! What the tests share: declared Lagrangians, reference data, random states, order estimates.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+// A library of this repository alone.
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
+
+pub mod any_scalar;
+pub mod continuous;
+pub mod examples;
+pub mod measure;
+pub mod order;
+pub mod random;
+pub mod reference;
+pub mod solvers;
+pub mod structure;
+pub mod tops;
