@@ -7,8 +7,8 @@ use std::error::Error;
 
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Spring};
 use liestep::{
-    Candidates, Composition, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, NonstandardInertia,
-    PreprocessedFlow, PreprocessedOrder, Regular, SO3, SymmetricBody,
+    Candidates, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, NonstandardInertia,
+    PreprocessedFlow, PreprocessedOrder, Regular, SO3, Stepper, SymmetricBody,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -74,7 +74,7 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
 {
     const A_SECOND: u32 = 100;
-    let fine = Composition::new(scene, f64::from(A_SECOND).recip(), CompositionScheme::SOFRONIOU_SPALETTA_10)?;
+    let fine = Stepper::composed(scene, f64::from(A_SECOND).recip(), CompositionScheme::SOFRONIOU_SPALETTA_10)?;
     let mut state = fine.start(attitude, velocity)?;
     while fine.time(&state) < t - 1e-6 {
         fine.step(&mut state)?;

@@ -58,7 +58,7 @@ impl Spin {
         let (attitude, rates, h) = (UnitQuaternion::identity(), self.velocity, self.h);
         let stepper = Stepper::new(self.body(), h)?;
         let state = stepper.start(attitude, rates)?;
-        let body = Moments::of(stepper.lagrangian());
+        let body = Moments::of(stepper.scene());
         let rk4 = Body { inverse_moments: self.moments().map(f64::recip), lever: Vector3::zeros() };
         let momentum = state.momentum();
         let engine = |update: Update| Engine { body, h, attitude, rates, update };

@@ -5,9 +5,10 @@ use checks::random::Random;
 use checks::reference::Motion;
 use checks::structure::poisson::TOLERANCE;
 use checks::tops::HeavyTop;
+use liestep::effects::PrincipalBody;
 use liestep::{
-    Inertia, KineticFlow, LieGroup as _, PreprocessedBody, PreprocessedOrder, Real, SO3, SetupError, SplitBody,
-    Splitting, SplittingScheme, StepError, SymmetricBody, Turn,
+    Inertia, KineticFlow, LieGroup as _, PreprocessedOrder, Real, SO3, SetupError, SplitBody, SplittingScheme,
+    StepError, Stepper, SymmetricBody, Turn,
 };
 use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
@@ -33,7 +34,7 @@ fn drifted<K: KineticFlow<T>, T: Real>(body: &K, h: T, momentum: &Vector3<T>) ->
 
 fn end<const N: usize>(scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
     let kinetic = SplitBody::<N>::new(&motion.top.ordinary_inertia()).unwrap();
-    let splitting = Splitting::new(motion.top.clone(), kinetic, h, scheme).unwrap();
+    let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
     splitting.advance(&mut state, steps.into()).unwrap();
     (state.attitude(), splitting.velocity(&state))
@@ -73,7 +74,8 @@ fn moved<K: KineticFlow<f64>>(body: &K, t: f64, steps: u32, momentum: &Vector3<f
 fn expected(moments: [f64; 3], t: f64, momentum: &Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
     let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
     let steps = 1000;
-    let body = PreprocessedBody::new(nonstandard, t / f64::from(steps), PreprocessedOrder::Ten).unwrap();
+    let body = Stepper::preprocessed(PrincipalBody { J_d: nonstandard }, t / f64::from(steps), PreprocessedOrder::Ten)
+        .unwrap();
     let mut state = body.start_with_momentum(SO3::identity(), *momentum).unwrap();
     for _ in 0..steps {
         body.step(&mut state).unwrap();
@@ -213,7 +215,7 @@ fn p1_they_are_poisson_maps() {
 fn momenta_are_kept() {
     fn assert_kept<const N: usize>(motion: &Motion, scheme: SplittingScheme, h: f64) {
         let kinetic = SplitBody::<N>::new(&motion.top.ordinary_inertia()).unwrap();
-        let splitting = Splitting::new(motion.top.clone(), kinetic, h, scheme).unwrap();
+        let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
         let before = state.spatial_momentum();
         splitting.advance(&mut state, 100_000).unwrap();
@@ -325,7 +327,7 @@ fn what_is_not_finite_is_refused() {
     assert!(matches!(split::<7>(MOMENTS[0]).drift(f64::NAN), Err(SetupError::InvalidStep { .. })));
     let top = HeavyTop::asymmetric();
     let kinetic = SplitBody::<7>::new(&top.ordinary_inertia()).unwrap();
-    let splitting = Splitting::new(top, kinetic, 0.1, SplittingScheme::STRANG).unwrap();
+    let splitting = Stepper::split(top, 0.1, kinetic, SplittingScheme::STRANG).unwrap();
     let mut state = splitting.start_with_momentum(SO3::identity(), Vector3::repeat(1e200)).unwrap();
     let before = state;
     let error = splitting.step(&mut state).unwrap_err();

@@ -2,7 +2,7 @@
 
 use liestep::{
     Accuracy, Candidates, CayleyRetraction, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia,
-    SO3, SceneVisitor, SetupError, Splitting, SplittingScheme, Stepper, SymmetricBody, WithKinetic,
+    SO3, SceneVisitor, SetupError, SplittingScheme, Stepper, SymmetricBody, WithKinetic,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -155,7 +155,7 @@ fn a_force_gradient_has_to_be_written() {
         rho: Vector3::z(),
     };
     let body = SymmetricBody::new(&Inertia::from_principal_moments(moments).unwrap()).unwrap();
-    let split = |scheme| Splitting::new(top.clone(), body, 0.01, scheme).map(|splitting| *splitting.scheme());
+    let split = |scheme| Stepper::split(top.clone(), 0.01, body, scheme).map(|splitting| *splitting.scheme());
     assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(SplittingScheme::NYSTROM_6));
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
     // Nor is it chosen.

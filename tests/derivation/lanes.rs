@@ -3,8 +3,7 @@
 use checks::any_scalar::Top;
 use checks::random::Random;
 use liestep::{
-    CompensatedState, Composition, CompositionScheme, DiagonalNonstandardInertia, LieGroup as _, Real, SO3, State,
-    StepError, Stepper, lagrangian,
+    CompositionScheme, DiagonalNonstandardInertia, LieGroup as _, Real, SO3, State, StepError, Stepper, lagrangian,
 };
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
@@ -107,13 +106,13 @@ fn each_lane_moves_as_alone() {
 fn composed_and_compensated_lanes_move_as_alone() {
     let lanes: [Lane<f64>; 8] = spread(12, 16.0);
     let composed = |(stepper, state): Running<f64>| {
-        let composition = Composition::new(*stepper.lagrangian(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
+        let composition = Stepper::composed(*stepper.scene(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
         (composition, state)
     };
     let (wide, mut all) = together::<AutoF64x8, 8>(&lanes, 0.01);
     let mut compensated_all = CompensatedState::from(all);
     let step = wide.step_size();
-    let wide_composition = Composition::new(*wide.lagrangian(), step, CompositionScheme::SUZUKI_4).unwrap();
+    let wide_composition = Stepper::composed(*wide.scene(), step, CompositionScheme::SUZUKI_4).unwrap();
     let wide = wide.compensated();
     let mut compositions = alone::<AutoF64x8, 8>(&lanes, 0.01).map(composed);
     let mut singles = alone::<AutoF64x8, 8>(&lanes, 0.01).map(|(s, state)| (s.compensated(), state.into()));
@@ -227,7 +226,7 @@ fn a_lane_that_is_not_finite_is_refused() {
     let mut attitude = *state.attitude().as_matrix();
     attitude.m11.replace(2, 0.0);
     assert!(stepper.start_with_momentum(SO3::from_matrix_unchecked(attitude), state.momentum()).is_err());
-    let top = *stepper.lagrangian();
+    let top = *stepper.scene();
     for bad in [0.0, f64::NAN] {
         assert!(Stepper::new(top, WideF64x4::from([0.01, 0.01, bad, 0.01])).is_err(), "{bad}");
     }

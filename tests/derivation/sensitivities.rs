@@ -95,7 +95,7 @@ fn of_one_solve() {
             let warm = stepper.flow().step(&momentum, &vertical, &constant).unwrap();
             for step in [cold, warm] {
                 let f = step.element().matrix();
-                let solved = stepper.lagrangian().legendre_minus(&f, &vertical, STEP.into());
+                let solved = stepper.scene().legendre_minus(&f, &vertical, STEP.into());
                 let residual = (solved - momentum).map(|entry| entry.eps).norm();
                 let size = momentum.map(|entry| entry.re).norm() + momentum.map(|entry| entry.eps).norm();
                 assert!(residual < 1e-14 * size, "{scaled:?}: {residual:e} of {size}");

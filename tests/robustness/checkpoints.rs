@@ -101,7 +101,7 @@ fn p7_another_scene_is_refused() {
 #[test]
 fn p7_other_parameters_are_refused_by_name() {
     let (stepper, stored) = checkpoint();
-    let top = stepper.lagrangian();
+    let top = stepper.scene();
     let refused = |top: HeavyTop, h: f64| Stepper::new(top, h).unwrap().resume(&stored).unwrap_err();
     // `m g` alone is in the equations; the field is another all the same.
     let error = refused(HeavyTop { m: 2.0, g: top.g / 2.0, ..top.clone() }, 0.01);

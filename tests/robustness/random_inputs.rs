@@ -180,7 +180,7 @@ fn check_start_error(attitude: &SO3, momentum: &Vector3<f64>, error: &SetupError
 
 /// `𝔽l_d⁻(F, w) = μ` and `𝔽l_d⁺(F, w) = μ⁺`, to the roundings of `F = RᵀR⁺` and of terms that cancel.
 fn check_equations(stepper: &Stepper<HeavyTop>, before: &State<SO3, Vector3<f64>>, after: &State<SO3, Vector3<f64>>) {
-    let (top, h) = (stepper.lagrangian(), stepper.step_size());
+    let (top, h) = (stepper.scene(), stepper.step_size());
     assert!(finite(after.attitude().as_matrix().as_slice()), "{after:?}");
     assert!(finite(after.momentum().as_slice()) && finite(after.advected().as_slice()), "{after:?}");
     if h == 0.0 {
@@ -203,7 +203,7 @@ fn check_step_error(
     inertia: &Matrix3<f64>,
     error: &StepError,
 ) -> &'static str {
-    let (top, h) = (stepper.lagrangian(), stepper.step_size());
+    let (top, h) = (stepper.scene(), stepper.step_size());
     let (momentum, w) = (state.momentum(), state.advected());
     let turn = (momentum + w.cross(&top.rho) * (0.5 * h * top.m * top.g)) * h;
     match *error {

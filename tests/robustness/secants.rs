@@ -146,7 +146,7 @@ where
     let (mut largest, mut counts) = (0.0_f64, [0; 3]);
     for _ in 0..200 {
         let (velocity, w) = (random.direction() * (angle / h), random.direction());
-        let momentum = with.lagrangian().inertia() * velocity;
+        let momentum = with.scene().inertia() * velocity;
         let guess = velocity * h;
         let (outcome, is_dear) = needs_jacobian(|| without.step(&momentum, &w, &guess));
         match (with.step(&momentum, &w, &guess), outcome) {

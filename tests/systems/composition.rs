@@ -2,7 +2,7 @@
 
 use checks::measure::{four_halvings, order, relative, steps_in};
 use checks::structure::System;
-use liestep::{Composition, CompositionScheme, LieGroup as _};
+use liestep::{CompositionScheme, LieGroup as _, Stepper};
 use nalgebra::SVector;
 
 use crate::continuous::{Body, Phase};
@@ -29,7 +29,7 @@ where
     let momentum: SVector<f64, D> = body.inertia * velocity;
     let exact: Phase<N, D> = body.solution::<L::Group>((attitude.matrix(), momentum), TIME, 1000);
     four_halvings(coarsest).map(|h| {
-        let composed = Composition::new(system.clone(), h, scheme).unwrap();
+        let composed = Stepper::composed(system.clone(), h, scheme).unwrap();
         let mut state = composed.start_with_momentum(attitude, momentum).unwrap();
         for _ in 0..steps_in(TIME, h) {
             composed.step(&mut state).unwrap();

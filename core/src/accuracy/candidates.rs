@@ -176,7 +176,7 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
     pub fn and_splittings<S, K>(mut self, name: &str, scene: S, kinetic: K) -> Self
     where
         S: Scene<Scalar = f64, Group = SO3, Advected = A>,
-        K: KineticFlow<f64> + Clone + 'static,
+        K: KineticFlow<f64> + 'static,
     {
         self.compare(&scene);
         let has_gradient = has_force_gradient(&scene);

@@ -82,6 +82,10 @@ pub trait Plan<S: Effect> {
         Summation::push(motion, impulse);
     }
 
+    /// Whether the errors of [`step`](Self::step) are those of a stage, and [`explained`](Self::explained) only when they
+    /// are shown.
+    const EXPLAINS: bool = false;
+
     /// The error of a step as it is shown: where a stage has none, the largest step that would do is that of the whole.
     #[cold]
     fn explained(

@@ -7,6 +7,7 @@ use crate::mechanics::{
     momentum_of_velocity, velocity_of_momentum,
 };
 use crate::motion::declared::Declared;
+use crate::motion::flows::DiscreteLiePoisson;
 use crate::motion::plan::Plan;
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
@@ -86,8 +87,17 @@ impl<S: Effect> Stepper<S> {
         Ok(Self { scene, plan })
     }
 
+    /// The flow on momenta, (2.8), of the same scene and step.
+    #[must_use]
+    pub fn flow(&self) -> DiscreteLiePoisson<S>
+    where
+        S: Clone,
+    {
+        DiscreteLiePoisson::of(self.scene.clone(), self.plan.clone())
+    }
+
     /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
-    /// see [`DiscreteLiePoisson::solvability`](crate::motion::DiscreteLiePoisson::solvability).
+    /// see [`DiscreteLiePoisson::solvability`].
     #[must_use]
     pub fn solvability<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Solvability {
         self.plan.solvability(&self.scene, &state.motion.momentum, &state.motion.advected)
@@ -144,6 +154,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
     #[inline]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
+        if !P::EXPLAINS {
+            return dispatch(P::DISPATCHED, Step(self, state));
+        }
         match dispatch(P::DISPATCHED, Step(self, state)) {
             Ok(report) => Ok(report),
             Err(error) => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),

@@ -21,7 +21,7 @@ use nalgebra::SimdValue as _;
 /// # Examples
 ///
 /// ```
-/// use liestep::{DiagonalNonstandardInertia, SO3, Stepper, lagrangian};
+/// use liestep::{DiagonalNonstandardInertia, LieGroup as _, SO3, Stepper, lagrangian};
 /// use nalgebra::Vector3;
 ///
 /// /// A free rigid body.
@@ -107,6 +107,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
     type Kept = Carried<P::Kept, Group<S>, S::Advected>;
 
     const DISPATCHED: bool = P::DISPATCHED;
+    const EXPLAINS: bool = P::EXPLAINS;
 
     fn step_size(&self) -> Scalar<S> {
         self.0.step_size()

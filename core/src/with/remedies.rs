@@ -36,7 +36,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// ```
     /// use liestep::motion::Remedy;
-    /// use liestep::{DiagonalNonstandardInertia, SO3, Stepper, lagrangian};
+    /// use liestep::{DiagonalNonstandardInertia, LieGroup as _, SO3, Stepper, lagrangian};
     /// use nalgebra::Vector3;
     ///
     /// /// A free rigid body.
@@ -85,6 +85,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for OrSubsteps<P> {
     type Kept = P::Kept;
 
     const DISPATCHED: bool = P::DISPATCHED;
+    const EXPLAINS: bool = P::EXPLAINS;
 
     fn step_size(&self) -> Scalar<S> {
         self.plan.step_size()
@@ -200,6 +201,7 @@ where
     type Kept = P::Kept;
 
     const DISPATCHED: bool = P::DISPATCHED;
+    const EXPLAINS: bool = P::EXPLAINS;
 
     fn step_size(&self) -> Scalar<S> {
         self.plan.step_size()

@@ -27,7 +27,7 @@ where
         let (sample, w): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
         let (momentum, w) = (sample * 10.0, w.normalize());
         let step = flow.step(&momentum, &w, &Vector3::zeros())?;
-        let (l, f) = (flow.lagrangian(), step.element());
+        let (l, f) = (flow.scene(), step.element());
         let right = l.right_momentum(&f.matrix(), &w, H);
         let left = l.left_momentum(&f.matrix(), &w, H);
         let transported = f.adjoint_transpose(&(momentum + l.diamond(&f.matrix(), &w, H)));

@@ -7,10 +7,7 @@
 //! in every thousand, beside it, is what more of that would give.
 
 use declarations::HeavyTop;
-use liestep::{
-    CompensatedState, CompensatedStepper, Composition, CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3,
-    Splitting, SplittingScheme, Stepper, SymmetricBody,
-};
+use liestep::{CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3, SplittingScheme, Stepper, SymmetricBody};
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
 use workbench::newton_tolerance::energy;
@@ -98,7 +95,7 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let (h, scheme) = (0.05, CompositionScheme::KAHAN_LI_8);
     let steps = effort.steps(500_000, 5_000_000);
     let motion = Motion::looping()?;
-    let composition = Composition::new(motion.top.clone(), h, scheme)?;
+    let composition = Stepper::composed(motion.top.clone(), h, scheme)?;
     let start = composition.start(motion.attitude, motion.velocity)?;
     let mut state = start;
     let plain = walk(&motion.top, &start, steps, |_| {
@@ -136,7 +133,7 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
     let motion = Motion::looping()?;
     let kinetic = SymmetricBody::new(&Inertia::new(motion.top.inertia())?)?;
-    let splitting = Splitting::new(motion.top.clone(), kinetic, 0.02, SplittingScheme::NYSTROM_11)?;
+    let splitting = Stepper::split(motion.top.clone(), 0.02, kinetic, SplittingScheme::NYSTROM_11)?;
     let start = splitting.start(motion.attitude, motion.velocity)?;
     let mut state = start;
     let plain = walk(&motion.top, &start, steps, |_| {

@@ -22,7 +22,7 @@ fn ends(motion: &Motion, h: f64) -> Result<[Vector3<f64>; 2], Failure> {
         stepper.step(&mut plain)?;
         carrying.step(&mut kept)?;
     }
-    Ok([plain.momentum(), kept.state().momentum()])
+    Ok([plain.momentum(), kept.momentum()])
 }
 
 /// The same step with products in the place of sums: `R F`, `Fᵀ w`, `Fᵀ a`, as one writes it down.

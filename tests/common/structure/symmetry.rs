@@ -40,7 +40,7 @@ pub fn drift<L: System<N, D>, const N: usize, const D: usize>(
     (mut attitude, velocity): (L::Group, SVector<f64, D>),
     steps: u32,
 ) -> (f64, f64) {
-    let lagrangian = flow.lagrangian();
+    let lagrangian = flow.scene();
     let symmetries = symmetries::<L, N, D>(lagrangian);
     let mut w = lagrangian.advected().seen_from(&attitude);
     let mut momentum = lagrangian.inertia() * velocity + lagrangian.momentum_bias(&w);

@@ -8,10 +8,8 @@
 use checks::measure::{four_halvings, order};
 use checks::tops::FreeBody;
 use declarations::SixthOrderBody;
-use liestep::{
-    Composition, CompositionScheme, DiagonalNonstandardInertia, Inertia, LieGroup as _, PreprocessedBody,
-    PreprocessedOrder, SO3, Stepper,
-};
+use liestep::effects::PrincipalBody;
+use liestep::{CompositionScheme, DiagonalNonstandardInertia, Inertia, LieGroup as _, PreprocessedOrder, SO3, Stepper};
 use nalgebra::Vector3;
 
 /// `4K/ω` of the motion below to 16 digits, s.
@@ -100,7 +98,7 @@ fn b7_the_time_of_two_flips_of_a_composition() {
     let errors: Vec<f64> = (0..27)
         .map(|k| {
             let h = 0.02 * (1.0 - 0.001 * f64::from(k));
-            let composed = Composition::new(body.clone(), h, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
+            let composed = Stepper::composed(body.clone(), h, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
             let mut state = composed.start(SO3::identity(), velocity()).unwrap();
             relative_error(h, || {
                 composed.step(&mut state).unwrap();
@@ -119,7 +117,7 @@ fn b7_the_time_of_two_flips_of_a_composition() {
 #[test]
 fn b7_the_time_of_two_flips_of_the_preprocessed_body() {
     let body = DiagonalNonstandardInertia::from_principal_moments(moments()).unwrap();
-    let stepper = PreprocessedBody::new(body, 0.01, PreprocessedOrder::Ten).unwrap();
+    let stepper = Stepper::preprocessed(PrincipalBody { J_d: body }, 0.01, PreprocessedOrder::Ten).unwrap();
     let mut state = stepper.start(SO3::identity(), velocity()).unwrap();
     let error = relative_error(0.01, || {
         stepper.step(&mut state).unwrap();

@@ -94,10 +94,10 @@ fn p8_a_million_steps_stay_on_the_group() {
     let start = state;
     let vertical = state.momentum().dot(&state.advected());
     // In double precision, so that what is measured isn't the rounding of the measurement.
-    let moments = stepper.lagrangian().inertia().diagonal().map(f64::from);
+    let moments = stepper.scene().inertia().diagonal().map(f64::from);
     let energy = |state: &TopState| {
         let p = double(&state.momentum());
-        0.5 * p.dot(&p.component_div(&moments)) + f64::from(stepper.lagrangian().potential(&state.advected()))
+        0.5 * p.dot(&p.component_div(&moments)) + f64::from(stepper.scene().potential(&state.advected()))
     };
     let (mut worst, mut means, mut largest) = ([0.0_f64; 3], [0.0_f64; 2], [0.0_f64; 2]);
     let window = 100_000;
@@ -217,7 +217,7 @@ where
     let stepper = Stepper::new(body, h).unwrap();
     let mut state = stepper.start(SO3::identity(), velocity.into()).unwrap();
     // In double precision, so that what is measured isn't the rounding of the measurement.
-    let inverse = stepper.lagrangian().inertia().map(f64::from).try_inverse().unwrap();
+    let inverse = stepper.scene().inertia().map(f64::from).try_inverse().unwrap();
     let invariants = |state: &State<SO3<f32>, ()>| {
         let p = double(&state.momentum());
         (p.dot(&(inverse * p)), state.attitude().matrix().map(f64::from) * p)

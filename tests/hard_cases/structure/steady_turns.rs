@@ -7,8 +7,7 @@
 
 use checks::tops::HeavyTop;
 use liestep::{
-    CompensatedState, Composition, CompositionScheme, DiagonalNonstandardInertia, Inertia, SO3, Splitting,
-    SplittingScheme, State, Stepper, SymmetricBody,
+    CompositionScheme, DiagonalNonstandardInertia, Inertia, SO3, SplittingScheme, State, Stepper, SymmetricBody,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -76,7 +75,7 @@ fn t3_compensated_steady_turns_stay_on_the_group() {
 fn t3_composed_steady_turns_stay_on_the_group() {
     let (attitude, velocity) = start();
     for moments in BODIES {
-        let composed = Composition::new(weightless(moments), 0.05, CompositionScheme::SUZUKI_4).unwrap();
+        let composed = Stepper::composed(weightless(moments), 0.05, CompositionScheme::SUZUKI_4).unwrap();
         let start = composed.start(attitude, velocity).unwrap();
         let mut state = start;
         for _ in 0..STEPS / 5 {
@@ -92,7 +91,7 @@ fn t3_split_steady_turns_stay_on_the_group() {
     for moments in BODIES {
         let inertia = Inertia::from_principal_moments(moments.into()).unwrap();
         let body = SymmetricBody::new(&inertia).unwrap();
-        let splitting = Splitting::new(weightless(moments), body, 0.01, SplittingScheme::NYSTROM_6).unwrap();
+        let splitting = Stepper::split(weightless(moments), 0.01, body, SplittingScheme::NYSTROM_6).unwrap();
         let start = splitting.start(attitude, velocity).unwrap();
         let mut state = start;
         splitting.advance(&mut state, u64::from(STEPS / 6)).unwrap();

@@ -57,9 +57,9 @@ struct Kept {
 /// `next` makes a step and returns momentum and `w`.
 #[allow(clippy::cast_precision_loss)] // a million
 fn kept(stepper: &Stepper<HeavyTop>, mut next: impl FnMut() -> (Vector3<f64>, Vector3<f64>)) -> Kept {
-    let inertia = stepper.lagrangian().inertia();
+    let inertia = stepper.scene().inertia();
     let energy = |p: &Vector3<f64>, w: &Vector3<f64>| {
-        0.5 * p.dot(&p.component_div(&inertia.diagonal())) + stepper.lagrangian().potential(w)
+        0.5 * p.dot(&p.component_div(&inertia.diagonal())) + stepper.scene().potential(w)
     };
     let (first, window) = (next(), STEPS / 10);
     let start = energy(&first.0, &first.1);

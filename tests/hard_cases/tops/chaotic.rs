@@ -2,7 +2,7 @@
 //! that of the continuous motion; energy and Casimirs stay all the same.
 
 use checks::reference::Motion;
-use liestep::{CompensatedState, Stepper};
+use liestep::Stepper;
 
 const H: f64 = 0.02;
 
@@ -21,7 +21,7 @@ fn errors(steps: u64) -> Vec<[f64; 3]> {
         let mut worst = [0.0_f64; 3];
         for _ in 0..steps / PARTS {
             carrying.step(&mut state).unwrap();
-            let (p, w) = (state.state().momentum(), state.state().advected());
+            let (p, w) = (state.momentum(), state.advected());
             let errors = [
                 carrying.stepper().energy(state.state()) - energy,
                 w.norm_squared() - 1.0,

@@ -1,4 +1,4 @@
-use liestep::{Effect, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{Effect, lagrangian, NonstandardInertia, SO3, Stepper};
 use nalgebra::Vector3;
 
 #[lagrangian(
@@ -14,7 +14,7 @@ struct Top {
 
 fn run(top: Top) {
     let stepper = Stepper::new(top, 0.01).unwrap();
-    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+    println!("{} {}", stepper.scene().inertia(), Top::DERIVATION);
 }
 
 fn main() {}

@@ -176,6 +176,8 @@ impl<S: Effect> Plan<S> for Composed<S> {
     }
 
     /// [`StepError::BeyondSolvable`] speaks of the whole step.
+    const EXPLAINS: bool = true;
+
     #[cold]
     fn explained(
         &self,

@@ -161,6 +161,8 @@ impl<T: Real> Plan<PrincipalBody<T>> for Preprocessed<T> {
         Ok(StepReport::of(root.iterations))
     }
 
+    const EXPLAINS: bool = true;
+
     #[cold]
     fn explained(
         &self,

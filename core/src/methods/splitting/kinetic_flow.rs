@@ -10,7 +10,7 @@ use crate::motion::{DiscreteLiePoisson, Stepped};
 use crate::numbers::{Coordinates as _, Real, real, reported};
 
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
-pub trait KineticFlow<T: Real> {
+pub trait KineticFlow<T: Real>: Clone {
     /// The flow over one share of the step, its constants folded.
     type Drift: Clone;
 

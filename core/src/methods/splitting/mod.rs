@@ -118,7 +118,7 @@ impl<S: Effect> Stepper<S> {
     ) -> Result<Stepper<S, Split<S, K>>, SetupError>
     where
         S: DiscreteLagrangian<Group = SO3<<S as Effect>::Scalar>> + Regular,
-        K: KineticFlow<Scalar<S>> + Clone,
+        K: KineticFlow<Scalar<S>>,
     {
         // For its checks of the scene and the step.
         Declared::new(&scene, h)?;
@@ -230,7 +230,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     }
 }
 
-impl<S: RigidScene, K: KineticFlow<Scalar<S>> + Clone> Plan<S> for Split<S, K> {
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     type Kept = ();
 
     fn step_size(&self) -> Scalar<S> {

@@ -34,6 +34,10 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         Ok(Self { scene, declared })
     }
 
+    pub(in crate::motion) fn of(scene: L, declared: Declared<L>) -> Self {
+        Self { scene, declared }
+    }
+
     /// The scene.
     #[must_use]
     pub fn scene(&self) -> &L {
