@@ -1,12 +1,13 @@
 //! The methods, ours and others', behind one way to run them.
 
+use declarations::motions::End;
 use liestep::{
     Composition, CompositionScheme, DiscreteLagrangian, Gauss, KineticFlow, PreprocessedBody, PreprocessedFlow,
     PreprocessedOrder, Regular, SO3, SplitBody, Splitting, SplittingScheme, Stepper, SymmetricBody,
 };
 
 use crate::rivals::{dop853, library};
-use crate::scenes::{End, Kind, Scene};
+use crate::scenes::{Kind, Scene};
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
 pub type Prepared = Box<dyn Fn() -> Option<End>>;

@@ -1,12 +1,12 @@
 //! The free body with preprocessed moments of inertia.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::reference::Motion;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use checks::tops::FreeBody;
+use declarations::FreeBody;
+use declarations::Motion;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, PreprocessedBody, PreprocessedOrder, SO3, StepError};
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 use crate::convergence::{assert_order, counts};
 
@@ -27,7 +27,7 @@ fn preprocessed_bodies_have_their_order() {
     for ((order, preprocessing), (coarsest, ratio)) in
         ORDERS.into_iter().zip([(200, 2.0), (120, 1.6), (50, 1.3), (54, 1.1)])
     {
-        for motion in ["free_asymmetric_body", "free_asymmetric_J123_intermediate"] {
+        for motion in ["free", "free flip"] {
             assert_order(("preprocessed", order), (motion, 10.0), &counts(coarsest, ratio, 5), |motion, h, steps| {
                 let body = PreprocessedBody::new(motion.top.J_d, h, preprocessing).unwrap();
                 let mut state = body.start(motion.attitude, motion.velocity).unwrap();
@@ -98,7 +98,7 @@ fn a_preprocessed_step_of_zero_is_the_identity() {
 
 #[test]
 fn a_preprocessed_step_that_is_too_long_is_an_error() {
-    let motion = Motion::read("free_asymmetric_body");
+    let motion = Motion::read("free");
     for (_, preprocessing) in ORDERS {
         let body = PreprocessedBody::new(motion.top.J_d, 5.0, preprocessing).unwrap();
         let mut state = body.start(motion.attitude, motion.velocity).unwrap();
