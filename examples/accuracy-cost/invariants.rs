@@ -2,13 +2,14 @@
 //!
 //! Each method makes as many steps, of the length with which it reached [`ERROR`] after ten seconds.
 
+use declarations::motions::End;
 use nalgebra::Matrix3;
 use workbench::table::{aligned, number};
 
 use crate::measure::Run;
 use crate::methods::{Family, Method};
 use crate::report::Measured;
-use crate::scenes::{End, Scene};
+use crate::scenes::Scene;
 
 /// The error that sets the step.
 const ERROR: f64 = 1e-4;

@@ -77,7 +77,7 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
             Effort { longest: 4e-3 * t, repeated: Duration::from_millis(15), ratio: 1.25 }
         }
     };
-    let mut scenes = Scene::all()?;
+    let mut scenes = Vec::from(Scene::all());
     if let Some(wanted) = &arguments.scene {
         scenes.retain(|scene| scene.short == wanted);
         if scenes.is_empty() {

@@ -58,7 +58,7 @@ pub fn ladder(method: &Method, scene: &Scene, t: f64, effort: Effort) -> Vec<Run
 }
 
 /// Where a run ends, and how long the fastest of its repetitions took, s.
-pub fn timed(prepared: &Prepared, repeated: Duration) -> Option<(crate::scenes::End, f64)> {
+pub fn timed(prepared: &Prepared, repeated: Duration) -> Option<(declarations::motions::End, f64)> {
     let started = Instant::now();
     let mut best = Duration::MAX;
     loop {

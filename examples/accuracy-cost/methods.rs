@@ -2,13 +2,14 @@
 
 use liestep::effects::PrincipalBody;
 use liestep::motion::Plan;
+use declarations::motions::End;
 use liestep::{
     CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedFlow, PreprocessedOrder, Regular, SO3, SplitBody,
     SplittingScheme, Stepper, SymmetricBody,
 };
 
 use crate::rivals::{dop853, library};
-use crate::scenes::{End, Kind, Scene};
+use crate::scenes::{Kind, Scene};
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
 pub type Prepared = Box<dyn Fn() -> Option<End>>;

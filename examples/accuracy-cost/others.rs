@@ -5,6 +5,7 @@
 
 use std::error::Error;
 
+use declarations::motions::End;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Spring};
 use liestep::{
     Candidates, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, NonstandardInertia,
@@ -14,7 +15,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::asked::{Question, asking};
 use crate::methods::{self, Family};
-use crate::scenes::{End, Scene};
+use crate::scenes::Scene;
 
 /// A scene that no file describes, and how it is asked for.
 pub type Other = (Scene, Question);

@@ -6,8 +6,6 @@
 mod closed;
 pub mod curves;
 pub mod figure;
-mod measure;
-mod motion;
 mod poisson;
 pub mod report;
 mod rivals;

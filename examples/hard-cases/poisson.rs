@@ -32,5 +32,5 @@ pub(crate) fn defect(map: impl Fn(&Phase) -> Option<Phase>, z: &Phase) -> f64 {
     let tangent = Matrix6::from_columns(&columns);
     let defect = tangent * tensor(z) * tangent.transpose() - tensor(&apart(&value(&joined(z))));
     // `amax` passes over NaN.
-    defect.iter().map(|entry| entry.abs()).fold(0.0, crate::measure::greater)
+    defect.iter().map(|entry| entry.abs()).fold(0.0, workbench::measure::greater)
 }

@@ -1,6 +1,7 @@
 //! Other methods on the bodies of the rows.
 
 use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::effects::PrincipalBody;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -11,7 +12,6 @@ use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
 use workbench::run::{Method, Sample, Stopped};
 use workbench::variational::Variational;
 
-use crate::motion::Motion;
 use crate::row::Failure;
 
 pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);
@@ -89,7 +89,7 @@ impl Spin {
 
     fn kept(&self, steps: u64, Sample { attitude, momentum }: &Sample) -> Kept {
         let velocity = momentum.component_div(&self.moments());
-        let time = self.h * crate::measure::float(steps);
+        let time = self.h * workbench::measure::float(steps);
         Kept { time, energy: 0.5 * velocity.dot(momentum), spatial: attitude * momentum, velocity }
     }
 }
@@ -122,7 +122,7 @@ impl Trace {
     }
 
     pub(crate) fn worst(&self, size: impl Fn(&Kept) -> f64) -> f64 {
-        self.kept.iter().map(size).fold(0.0, crate::measure::greater)
+        self.kept.iter().map(size).fold(0.0, workbench::measure::greater)
     }
 }
 

@@ -2,8 +2,7 @@
 
 use liestep::{LieGroup as _, SO3, State};
 use nalgebra::{Matrix3, SVector, Vector3};
-
-use crate::measure::{float, greater};
+use workbench::measure::{float, greater};
 
 /// A state with one advected vector.
 pub(crate) type TopState = State<SO3, Vector3<f64>>;

@@ -6,9 +6,9 @@
 //! ```
 //!
 //! A file names a body, the effects on it, where the motion starts, the step or an accuracy, and what to draw; the
-//! files in `examples/scenes` show every key. Numbers are in SI units, or texts with a unit: `"30 deg"`. Which effects
-//! there are is decided once a run: the step that then runs is that of the sum of just those, compiled as if it had
-//! been written by hand. A mistake in a file is reported with its line and column.
+//! files in `examples/scenes` show every key. Numbers are in SI units, or texts with a unit: `"30 deg"`. An effect
+//! that a file doesn't name is switched off: the run has the bits of the sum of just those that it names, of which a
+//! program of its own would step faster. A mistake in a file is reported with its line and column.
 
 mod scene;
 

@@ -1,13 +1,13 @@
 //! Symmetric compositions of declared Lagrangians.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::reference::{Motion, looping};
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::Motion;
 use declarations::{FourthOrderTop, SixthOrderTop, Top as _};
+use declarations::{FreeBody, HeavyTop};
 use liestep::{CompositionScheme, DiscreteLagrangian, LieGroup as _, Regular, SO3, StepError, Stepper};
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::many_digits::heavy_top::Top;
@@ -139,7 +139,7 @@ fn s5_negative_composed_step_is_the_inverse_map() {
 
 #[test]
 fn a_composed_step_of_zero_is_the_identity() {
-    let motion = looping();
+    let motion = Motion::looping();
     for scheme in SCHEMES {
         let composed = Stepper::composed(motion.top.clone(), 0.0, scheme).unwrap();
         let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
@@ -155,7 +155,7 @@ fn a_composed_step_of_zero_is_the_identity() {
 /// 10⁴ steps of up to 35 stages each.
 #[test]
 fn compositions_keep_the_vertical_momentum() {
-    let motion = looping();
+    let motion = Motion::looping();
     for scheme in SCHEMES {
         let composed = Stepper::composed(motion.top.clone(), 0.02, scheme).unwrap();
         let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
@@ -185,7 +185,7 @@ fn compositions_keep_the_energy_of_the_free_body() {
 /// The longest substep meets the limit first; what is reported is a whole step, and that one can be made.
 #[test]
 fn a_substep_that_is_too_long_is_an_error() {
-    let motion = looping();
+    let motion = Motion::looping();
     for scheme in SCHEMES {
         let limit = 0.0815 / scheme.largest();
         let composed = Stepper::composed(motion.top.clone(), 1.2 * limit, scheme).unwrap();
@@ -206,7 +206,7 @@ fn a_substep_that_is_too_long_is_an_error() {
 /// What the extrapolated guesses are for: without them a stage takes four iterations.
 #[test]
 fn a_stage_takes_few_iterations() {
-    let motion = looping();
+    let motion = Motion::looping();
     for scheme in SCHEMES {
         let composed = Stepper::composed(motion.top.clone(), 0.02, scheme).unwrap();
         let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
@@ -223,7 +223,7 @@ fn a_stage_takes_few_iterations() {
 #[test]
 fn a_composition_of_one_stage_is_the_step_itself() {
     let one = CompositionScheme::new("one", 2, 2, &[1.0]);
-    let motion = looping();
+    let motion = Motion::looping();
     let composed = Stepper::composed(motion.top.clone(), 0.01, one).unwrap();
     let stepper = liestep::Stepper::new(motion.top.clone(), 0.01).unwrap();
     let mut state = composed.start(motion.attitude, motion.velocity).unwrap();

@@ -1,13 +1,12 @@
 //! Measured orders.
 
-use checks::measure::{order, relative};
-use checks::reference::Motion;
+use declarations::Motion;
 use liestep::SO3;
 use nalgebra::{Matrix3, Vector3};
+use workbench::measure::{order, relative};
 
 /// The tops whose equations are nonlinear in every variable: three of the thesis, and one without any symmetry.
-pub(crate) const TOPS: [&str; 4] =
-    ["thesis_looping_A_Jd221", "thesis_cuspidal_B_J221", "thesis_unidirectional_A_Jd221", "chaotic_asymmetric_top"];
+pub(crate) const TOPS: [&str; 4] = ["looping A", "cuspidal B", "third A", "chaotic"];
 
 /// Above what some thousand stages lose to rounding in attitude and velocity.
 const PLATEAU: f64 = 2e-13;

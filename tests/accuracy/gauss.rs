@@ -1,16 +1,13 @@
 //! Gauss collocation in quaternion and momentum.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::reference::{Motion, looping};
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::Motion;
 use declarations::{FourthOrderTop, LogTop, Top as _};
-use liestep::{
-    DiscreteLagrangian, Effect as _, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody, SO3, SetupError,
-    StepError, Stepper, effects,
-};
+use declarations::{FreeBody, FullTop, HeavyTop};
+use liestep::{DiscreteLagrangian, Effect as _, effects, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody, SetupError, SO3, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3};
+use workbench::measure::relative;
 
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::many_digits;
@@ -167,7 +164,7 @@ fn assert_kept<const PAIRS: usize>(motion: &Motion, h: f64) {
 
 #[test]
 fn a_million_steps_keep_the_momenta() {
-    assert_kept::<4>(&looping(), 0.04);
+    assert_kept::<4>(&Motion::looping(), 0.04);
     assert_kept::<4>(&Motion::read(TOPS[3]), 0.2);
 }
 
@@ -193,7 +190,7 @@ fn energy_errors<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> [f6
 /// time.
 #[test]
 fn the_energy_does_not_drift() {
-    let [first, second] = energy_errors::<2>(&looping(), 0.15, 200_000);
+    let [first, second] = energy_errors::<2>(&Motion::looping(), 0.15, 200_000);
     println!("energy {first:.1e}, then {second:.1e}");
     assert!(first > 1e-9 && second < 1.1 * first && second < 1e-5, "{first:e}, {second:e}");
 }
@@ -246,7 +243,7 @@ fn scenes_of_several_effects_are_integrated() {
 /// The macro's kinetic part is replaced, and axes are free to choose.
 #[test]
 fn only_the_continuous_limit_matters() {
-    let motion = looping();
+    let motion = Motion::looping();
     let log = LogTop::of(&motion.top);
     let full = FullTop::in_axes(&motion.top, &Matrix3::identity());
     let (a, b) = (Stepper::collocated::<4>(log, 0.05).unwrap(), Stepper::collocated::<4>(full, 0.05).unwrap());
@@ -271,7 +268,7 @@ fn a_free_body_keeps_its_spatial_momentum() {
 
 #[test]
 fn a_copy_goes_on_with_the_same_bits() {
-    let motion = looping();
+    let motion = Motion::looping();
     let gauss = Stepper::collocated::<3>(motion.top.clone(), 0.05).unwrap();
     let state = run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), 10);
     assert_eq!(run(&gauss, state, 10), run(&gauss, state, 10));
@@ -290,7 +287,7 @@ fn a_body_at_rest_begins_to_move_and_one_that_nothing_moves_stays() {
 
 #[test]
 fn a_step_too_long_is_an_error_and_leaves_the_state() {
-    let motion = looping();
+    let motion = Motion::looping();
     let gauss = Stepper::collocated::<4>(motion.top.clone(), 2.0).unwrap();
     let mut state = gauss.start(motion.attitude, motion.velocity).unwrap();
     let before = state;

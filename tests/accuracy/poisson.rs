@@ -2,8 +2,8 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use checks::tops::{FreeBody, HeavyTop};
 use declarations::{FourthOrderBody, SixthOrderBody};
+use declarations::{FreeBody, HeavyTop};
 use liestep::{KineticFlow, LieGroup as _, PreprocessedFlow, PreprocessedOrder, SO3, SplittingScheme, Stepper};
 use nalgebra::Vector3;
 

@@ -1,13 +1,13 @@
 //! The free body with preprocessed moments of inertia.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::reference::Motion;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use checks::tops::FreeBody;
+use declarations::FreeBody;
+use declarations::Motion;
 use liestep::effects::PrincipalBody;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, PreprocessedOrder, SO3, StepError, Stepper};
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 use crate::convergence::{assert_order, counts};
 
@@ -28,7 +28,7 @@ fn preprocessed_bodies_have_their_order() {
     for ((order, preprocessing), (coarsest, ratio)) in
         ORDERS.into_iter().zip([(200, 2.0), (120, 1.6), (50, 1.3), (54, 1.1)])
     {
-        for motion in ["free_asymmetric_body", "free_asymmetric_J123_intermediate"] {
+        for motion in ["free", "free flip"] {
             assert_order(("preprocessed", order), (motion, 10.0), &counts(coarsest, ratio, 5), |motion, h, steps| {
                 let body = Stepper::preprocessed(PrincipalBody { J_d: motion.top.J_d }, h, preprocessing).unwrap();
                 let mut state = body.start(motion.attitude, motion.velocity).unwrap();
@@ -76,8 +76,7 @@ fn preprocessed_bodies_keep_energy_and_momentum() {
 fn s5_negative_preprocessed_step_is_the_inverse_map() {
     let mut random = Random::new(42);
     for (_, preprocessing) in ORDERS {
-        let [there, back] =
-            [0.2, -0.2].map(|h| Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, h, preprocessing).unwrap());
+        let [there, back] = [0.2, -0.2].map(|h| Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, h, preprocessing).unwrap());
         for _ in 0..10 {
             let mut state = there.start(random.rotation(), random.vector()).unwrap();
             let before = state;
@@ -100,7 +99,7 @@ fn a_preprocessed_step_of_zero_is_the_identity() {
 
 #[test]
 fn a_preprocessed_step_that_is_too_long_is_an_error() {
-    let motion = Motion::read("free_asymmetric_body");
+    let motion = Motion::read("free");
     for (_, preprocessing) in ORDERS {
         let body = Stepper::preprocessed(PrincipalBody { J_d: motion.top.J_d }, 5.0, preprocessing).unwrap();
         let mut state = body.start(motion.attitude, motion.velocity).unwrap();

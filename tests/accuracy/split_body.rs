@@ -1,17 +1,14 @@
 //! The asymmetric body by rotations about its axes.
 
-use checks::measure::{order, relative};
 use checks::random::Random;
-use checks::reference::Motion;
 use checks::structure::poisson::TOLERANCE;
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::effects::PrincipalBody;
-use liestep::{
-    Inertia, KineticFlow, LieGroup as _, PreprocessedOrder, Real, SO3, SetupError, SplitBody, SplittingScheme,
-    StepError, Stepper, SymmetricBody, Turn,
-};
+use liestep::{Inertia, KineticFlow, LieGroup as _, PreprocessedOrder, Real, SetupError, SO3, SplitBody, SplittingScheme, StepError, Stepper, SymmetricBody, Turn};
 use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
+use workbench::measure::{order, relative};
 
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::poisson::poisson_defect;
@@ -42,7 +39,7 @@ fn end<const N: usize>(scheme: SplittingScheme, motion: &Motion, h: f64, steps: 
 
 #[test]
 fn free_bodies_move_to_order_4() {
-    for (motion, coarsest) in [("free_asymmetric_body", 100), ("free_asymmetric_J123_intermediate", 100)] {
+    for (motion, coarsest) in [("free", 100), ("free flip", 100)] {
         let counts = counts(coarsest, 2.0, 5);
         let strang = SplittingScheme::STRANG;
         assert_order(("seven rotations", 4), (motion, 10.0), &counts, |m, h, steps| end::<7>(strang, m, h, steps));
@@ -74,8 +71,7 @@ fn moved<K: KineticFlow<f64>>(body: &K, t: f64, steps: u32, momentum: &Vector3<f
 fn expected(moments: [f64; 3], t: f64, momentum: &Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
     let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
     let steps = 1000;
-    let body = Stepper::preprocessed(PrincipalBody { J_d: nonstandard }, t / f64::from(steps), PreprocessedOrder::Ten)
-        .unwrap();
+    let body = Stepper::preprocessed(PrincipalBody { J_d: nonstandard }, t / f64::from(steps), PreprocessedOrder::Ten).unwrap();
     let mut state = body.start_with_momentum(SO3::identity(), *momentum).unwrap();
     for _ in 0..steps {
         body.step(&mut state).unwrap();
@@ -226,7 +222,7 @@ fn momenta_are_kept() {
         println!("{N} rotations, {}: momentum {moved:.1e}, orthogonality {defect:.1e}", scheme.name());
         assert!(moved < 1e-12 && defect < 1e-12, "{N} rotations: {moved:e}, {defect:e}");
     }
-    for name in ["free_asymmetric_body", TOPS[3]] {
+    for name in ["free", TOPS[3]] {
         let motion = Motion::read(name);
         assert_kept::<7>(&motion, SplittingScheme::STRANG, 0.05);
         assert_kept::<9>(&motion, SplittingScheme::STRANG, 0.05);

@@ -1,16 +1,16 @@
 //! Kinetic-potential splittings.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::reference::{Motion, looping};
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::Motion;
 use declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBody, Top as _};
+use declarations::{FreeBody, HeavyTop};
 use liestep::effects::{GravityGradient, Rotor, Spring};
 use liestep::{
     CompositionScheme, DiagonalNonstandardInertia, Effect, Flow, Inertia, KineticFlow, LieGroup as _, PreprocessedFlow,
     PreprocessedOrder, SO3, SetupError, SplittingScheme, Stepper, SymmetricBody,
 };
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 use crate::convergence::{End, TOPS, assert_order, counts};
 use crate::many_digits::heavy_top::Top;
@@ -187,7 +187,7 @@ fn declared_kinetic_flows_keep_the_order() {
 /// The flow that needs no equation is that of the free body: against the closed form to thirty digits.
 #[test]
 fn the_symmetric_body_moves_exactly() {
-    let motion = Motion::read("free_axisymmetric_Jd221");
+    let motion = Motion::read("free symmetric");
     let (attitude, velocity) = motion.at(10.0);
     for h in [10.0, 1.0, 0.01] {
         let found = end(symmetric(&motion.top), SplittingScheme::STRANG, &motion, h, {
@@ -203,7 +203,7 @@ fn the_symmetric_body_moves_exactly() {
 /// Strang's splitting of (3.13) with its own kinetic flow is (3.13).
 #[test]
 fn strang_with_the_flow_of_3_13_is_3_13() {
-    let motion = looping();
+    let motion = Motion::looping();
     let kinetic = FreeBody { J_d: motion.top.J_d.into() };
     let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
@@ -217,7 +217,7 @@ fn strang_with_the_flow_of_3_13_is_3_13() {
 
 #[test]
 fn many_steps_are_single_steps() {
-    let motion = looping();
+    let motion = Motion::looping();
     for scheme in SplittingScheme::ALL {
         let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
         let mut many = splitting.start(motion.attitude, motion.velocity).unwrap();
@@ -266,7 +266,7 @@ fn s5_negative_split_step_is_the_inverse_map() {
 /// A million stages: the momentum about the vertical, the spin, and rotations that stay rotations.
 #[test]
 fn splittings_keep_the_momenta() {
-    let motion = looping();
+    let motion = Motion::looping();
     for scheme in SplittingScheme::ALL {
         let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
@@ -309,7 +309,7 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
 /// here.
 #[test]
 fn the_exact_flow_keeps_lengths() {
-    let motion = looping();
+    let motion = Motion::looping();
     let scheme = SplittingScheme::NEAR_INTEGRABLE_10_6_4;
     let splitting = Stepper::split(motion.top.clone(), 0.19, symmetric(&motion.top), scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
@@ -331,7 +331,7 @@ fn a_rotor_that_the_flow_does_not_have_is_refused() {
 /// The kinetic part of the declared Lagrangian doesn't matter, as it is replaced.
 #[test]
 fn the_kinetic_part_is_replaced() {
-    let motion = looping();
+    let motion = Motion::looping();
     let log = LogTop::of(&motion.top);
     let scheme = SplittingScheme::NYSTROM_11;
     let (a, b) = (

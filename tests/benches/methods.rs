@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Cargo adds `--bench`.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let all = Scene::all()?;
+    let all = Scene::all();
     let called =
         |name: &str| all.iter().find(|scene| scene.short == name).ok_or_else(|| format!("there is no scene `{name}`"));
     match arguments.as_slice() {

@@ -14,7 +14,7 @@ const PROFILE: &str = if cfg!(debug_assertions) { "dev" } else { "release" };
 /// Where a build puts them depends on its target, its profile and the settings of cargo, which is therefore asked.
 pub fn built(names: &[&str]) -> HashMap<String, PathBuf> {
     let mut build = Command::new(env!("CARGO"));
-    build.args(["build", "--quiet", "--message-format=json-render-diagnostics", "--profile", PROFILE]);
+    build.args(["build", "--workspace", "--quiet", "--message-format=json-render-diagnostics", "--profile", PROFILE]);
     build.args(names.iter().flat_map(|name| ["--example", name]));
     let output = build.stderr(Stdio::inherit()).output().unwrap();
     assert!(output.status.success(), "the examples {names:?} can't be built");

@@ -6,12 +6,8 @@
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
 
 pub mod any_scalar;
-pub mod continuous;
 pub mod examples;
-pub mod measure;
 pub mod order;
 pub mod random;
-pub mod reference;
 pub mod solvers;
 pub mod structure;
-pub mod tops;

@@ -1,9 +1,8 @@
 //! Orders of declared Lagrangians, measured at motions of `tests/data`.
 
+use declarations::Motion;
 use liestep::{LieGroup as _, Regular, SO3, Stepper};
-
-use super::measure::{four_halvings, order, relative, steps_in};
-use super::reference::Motion;
+use workbench::measure::{four_halvings, order, relative, steps_in};
 
 /// Above what some hundred steps lose to rounding.
 const PLATEAU: f64 = 2e-14;

@@ -1,18 +1,18 @@
 //! One step and ten of (3.13) against values computed in binary128: the momentum equation (2.7), its solution, and the
 //! update (2.9) in the physical normalisation of the momentum.
 
-use checks::measure::relative;
-use checks::reference::{matrix, number, read, vector};
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::motions::{matrix, number, read, vector};
 use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, LieGroup as _};
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 /// Ten steps lose a few roundings each; the reference itself is exact to 30 digits.
 const TOLERANCE: f64 = 1e-13;
 
 #[test]
 fn golden_entries_of_the_trapezoidal_top_are_reproduced() {
-    let data = read("golden_steps");
+    let data = read("golden steps");
     let steps = data["steps"].as_array().unwrap();
     let entries: Vec<_> = steps.iter().filter(|entry| entry["l_d"] == "dmv_trapezoid_(3.13)").collect();
     assert_eq!(entries.len(), 4, "two bodies, two steps");

@@ -1,10 +1,10 @@
 //! Kinetic terms other than that of (3.13), declared as they stand in the literature.
 
-use checks::measure::relative;
-use checks::reference::{matrix, number, read, vector};
+use declarations::motions::{matrix, number, read, vector};
 use declarations::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop, Top};
 use liestep::{DiscreteLiePoisson, Inertia, LieGroup as _, SO3};
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 #[test]
 fn golden_entries_of_the_cayley_top_are_reproduced() {
@@ -30,7 +30,7 @@ fn golden<L>(name: &str)
 where
     L: Top + liestep::Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
 {
-    let data = read("golden_steps");
+    let data = read("golden steps");
     let steps = data["steps"].as_array().unwrap();
     let entries: Vec<_> = steps.iter().filter(|entry| entry["l_d"] == name).collect();
     assert_eq!(entries.len(), 4, "two bodies, two steps");

@@ -1,9 +1,9 @@
 //! Torques that are given anew each step.
 
-use checks::measure::relative;
 use liestep::effects::{Drag, Gravity, RigidBody, Thrust, Torque};
 use liestep::{LieGroup as _, NonstandardInertia, Regular, SO3, State, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::relative;
 
 fn body() -> RigidBody {
     RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap() }

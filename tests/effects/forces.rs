@@ -1,10 +1,11 @@
 //! Forces by the discrete Lagrange–d'Alembert principle: what is derived from their virtual work, and what they do.
 
-use checks::measure::{derivative, relative};
 use checks::random::Random;
 use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Thrust, Torque};
+use liestep::laws::samples::derivative;
 use liestep::{Advected as _, Force, LieGroup as _, NonstandardInertia, Retraction as _, SO3, Stepper, force};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use workbench::measure::relative;
 
 /// A force of no physics, different at both ends, with terms of all kinds.
 #[force(

@@ -1,15 +1,15 @@
 //! The bodies that a scene can choose from: each adds with the other effects, and is of its order.
 
-use checks::measure::relative;
 use checks::order;
 use checks::random::Random;
-use checks::reference::Motion;
+use declarations::Motion;
 use declarations::{CayleyTop, LogTop};
 use liestep::effects::{
     CayleyBody, Drag, FourthOrderBody, GeodesicBody, Gravity, PrincipalBody, RigidBody, Rotor, SixthOrderBody,
 };
 use liestep::{DiagonalNonstandardInertia, Inertia, LieGroup as _, Regular, SO3, State, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::relative;
 
 fn tensor() -> Inertia {
     let axes = *Random::new(3).rotation().as_matrix();
@@ -60,18 +60,18 @@ fn assert_order<L: Regular<Scalar = f64, Group = SO3>>(
 
 #[test]
 fn a_free_body_is_of_its_order() {
-    let name = "free_asymmetric_J123_intermediate";
+    let name = "free flip";
     assert_order(name, 2.0, (10.0, 1.0 / 20.0), |J| CayleyBody { J });
     assert_order(name, 2.0, (10.0, 1.0 / 20.0), |J| GeodesicBody { J });
     assert_order(name, 4.0, (10.0, 1.0 / 20.0), |J| FourthOrderBody { J });
-    let name = "free_axisymmetric_Jd221";
+    let name = "free symmetric";
     assert_order(name, 6.0, (10.0, 1.0 / 5.0), |J| SixthOrderBody { J });
 }
 
 /// A potential at the two ends of a step is of second order with any body.
 #[test]
 fn a_heavy_body_is_of_second_order() {
-    let name = "thesis_looping_A_Jd221";
+    let name = "looping A";
     let top = Motion::read(name).top;
     let gravity = Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up };
     assert_order(name, 2.0, (1.0, 1.0 / 100.0), |J| CayleyBody { J } + gravity);

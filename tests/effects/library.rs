@@ -1,12 +1,12 @@
 //! Each effect of the library against the physics that it stands for.
 
-use checks::measure::relative;
 use checks::random::Random;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::{
     AxiallyInvariant, DiagonalNonstandardInertia, Effect, Inertia, LieGroup as _, Regular, SO3, State, Stepper,
 };
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::relative;
 
 fn body(moments: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap() }

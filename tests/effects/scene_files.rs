@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 
 use checks::examples;
 use expect_test::expect;
-use liestep::effects::{Drag, Gravity, PrincipalBody};
+use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, PrincipalBody, Rotor, Spring, Torque};
 use liestep::{Accuracy, DiagonalNonstandardInertia, NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -103,7 +103,6 @@ fn mistakes_have_places() {
         ("step = \"10 ms\"\n", ""),
         ("step = \"10 ms\"", "accuracy = 1e-6"),
         ("step = \"10 ms\"", "accuracy = 0"),
-        ("[run]", "[rotor]\nspin = [0, 0, 1]\n[dipole]\nmoment = [0, 0, 1]\nfield = [0, 0, 1]\n[run]"),
         ("[run]", "[picture]\npanels = [\"rates\", \"phase\"]\n[run]"),
         ("[run]", "[run"),
         ("[drag]", "[gravity]"),
@@ -153,7 +152,6 @@ fn mistakes_have_places() {
         error: top.toml:19:1: a run has either a `step` or an `accuracy`
         error: top.toml:20:12: an accuracy can be asked for in conservative scenes; drag does work, so give a `step`
         error: top.toml:20:12: must be above zero
-        error: top.toml:21:1: a scene has at most 3 effects beside the body
         error: top.toml:20:20: unknown variant `phase`, expected one of `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error`
         error: top.toml:19:5: unclosed table, expected `]`
         error: top.toml:12:2: duplicate key
@@ -326,6 +324,39 @@ fn a_file_is_a_sum() {
         stepper.step(&mut state).unwrap();
     }
     assert_eq!(rows.len(), 201);
+    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
+    assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
+}
+
+/// All effects at once.
+#[test]
+fn a_file_may_have_every_effect() {
+    let others = "[gravity_gradient]\nGM = 2\nr = 3\ndirection = [1, 0, 0]\n\
+                  [dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
+                  [spring]\nk = 3\nlength = 0.5\nat = [0, 0, 1]\nanchor = [1, 0.3, 0.5]\n\
+                  [rotor]\nspin = [0, 0.4, 1]\n\
+                  [magnetic_damping]\nk = 0.1\nfield = [0, 0.5, 1]\n\
+                  [torque]\ntorque = [0.1, 0.2, -0.1]\n[run]";
+    let rows = rows(&folder("all"), &TOP.replace("[run]", others));
+    let last = rows.last().unwrap();
+
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let J = NonstandardInertia::from(J_d).to_inertia();
+    let scene = PrincipalBody { J_d }
+        + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
+        + GravityGradient { GM: 2.0, r: 3.0, J, direction: Vector3::x() }
+        + Dipole { moment: Vector3::new(0.0, 0.1, 1.0), field: Vector3::new(0.2, 0.0, 1.0) }
+        + Spring { k: 3.0, length: 0.5, at: Vector3::z(), anchor: Vector3::new(1.0, 0.3, 0.5) }
+        + Rotor { spin: Vector3::new(0.0, 0.4, 1.0) }
+        + Drag { c: 1e-3, J }
+        + MagneticDamping { k: 0.1, field: Vector3::new(0.0, 0.5, 1.0), J }
+        + Torque { torque: Vector3::new(0.1, 0.2, -0.1) };
+    let stepper = Stepper::new(scene, 10.0 * 1e-3).unwrap();
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    for _ in 0..200 {
+        stepper.step(&mut state).unwrap();
+    }
     assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
     assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
 }

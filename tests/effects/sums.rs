@@ -1,14 +1,15 @@
 //! Scenes are sums: a sum is the same integrator as the Lagrangian written in one piece, and costs what it holds.
 
-use checks::measure::{derivative, relative};
 use checks::random::Random;
-use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
+use liestep::laws::samples::derivative;
 use liestep::{
     Advected, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia, Regular, Retraction as _, SO3,
     State, Stepper, lagrangian,
 };
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::relative;
 
 /// A kinetic term with a part of fourth order: its Newton system has the square of the Cayley denominator.
 #[lagrangian(

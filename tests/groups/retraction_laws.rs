@@ -3,8 +3,8 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use checks::measure::derivative;
 use checks::random::Random;
+use liestep::laws::samples::derivative;
 use liestep::{CayleyRetraction, ExponentialRetraction, LieGroup as _, Retraction, SO3};
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,10 +1,11 @@
 //! The laws of `LieGroup` on SO(3): `Ad_F ξ = (F ξ̂ F⁻¹)^∨`, `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`, their transposes by the pairing,
 //! hat and vee, exp and log, and the reconstruction.
 
-use checks::measure::{derivative, relative};
 use checks::random::Random;
+use liestep::laws::samples::derivative;
 use liestep::{ExponentialRetraction, LieGroup as _, Retraction as _, SO3, reconstruct};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use workbench::measure::relative;
 
 /// A product of three 3 × 3 matrices of size one.
 const ROUNDING: f64 = 4e-15;

@@ -2,8 +2,8 @@
 //! nothing else than its own.
 
 use checks::random::Random;
-use checks::reference::looping;
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::Motion;
+use declarations::{FreeBody, HeavyTop};
 use declarations::{SixthOrderTop, Top as _};
 use liestep::{Checkpoint, CheckpointError, Effect, LieGroup as _, SO3, Scalar, Stepper, Stored};
 use nalgebra::Vector3;
@@ -36,7 +36,7 @@ where
             // The text of a float has all its digits and the sign of zero.
             assert_eq!(format!("{on:?}"), format!("{resumed:?}"));
         }
-        for _ in 0..checks::measure::steps_in(random.signed().abs(), 0.01) {
+        for _ in 0..workbench::measure::steps_in(random.signed().abs(), 0.01) {
             stepper.step(&mut state).unwrap();
         }
     }
@@ -44,7 +44,7 @@ where
 
 #[test]
 fn p7_save_and_resume_at_random_steps() {
-    let motion = looping();
+    let motion = Motion::looping();
     for h in [0.01, 0.06, -0.001, 1e-8, 0.0] {
         let stepper = Stepper::new(motion.top.clone(), h).unwrap();
         assert_resumes(&stepper, stepper.start(motion.attitude, motion.velocity).unwrap(), 7);
@@ -57,7 +57,7 @@ fn p7_save_and_resume_at_random_steps() {
 
 #[test]
 fn p7_save_and_resume_with_compensation_terms() {
-    let motion = looping();
+    let motion = Motion::looping();
     let plain = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let stepper = plain.clone().compensated();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
@@ -81,7 +81,7 @@ fn p7_save_and_resume_with_compensation_terms() {
 
 /// A stepper of the looping top, and a checkpoint of it after some steps.
 fn checkpoint() -> (Stepper<HeavyTop>, Checkpoint<f64>) {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
     for _ in 0..100 {

@@ -1,11 +1,11 @@
 //! Rounding grows like `√N`, and with compensated sums it grows from the changes of a step instead of from the state.
 
-use checks::measure::{relative, slope, steps_in};
 use checks::random::Random;
-use checks::reference::looping;
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::{LieGroup as _, SO3, State, Stepper};
 use nalgebra::{SVector, Vector3};
+use workbench::measure::{relative, slope, steps_in};
 
 type TopState = State<SO3, Vector3<f64>>;
 
@@ -140,7 +140,7 @@ fn t3_compensated_sums_lose_nothing_at_small_steps() {
 /// `10⁻¹¹ h²`.
 #[test]
 fn t4_tiny_steps() {
-    let motion = looping();
+    let motion = Motion::looping();
     let end = |h: f64| {
         let stepper = Stepper::new(motion.top.clone(), h).unwrap().compensated();
         let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
@@ -178,7 +178,7 @@ fn compensated(top: HeavyTop, h: f64) -> CompensatedStepper<HeavyTop> {
 
 #[test]
 fn s5_zero_step_and_the_inverse_map() {
-    let motion = looping();
+    let motion = Motion::looping();
     let standing = compensated(motion.top.clone(), 0.0);
     let mut state = standing.start(motion.attitude, motion.velocity).unwrap();
     let before = state;
@@ -201,7 +201,7 @@ fn s5_zero_step_and_the_inverse_map() {
 
 #[test]
 fn s2_a_refused_step_leaves_state_and_carry_alone() {
-    let motion = looping();
+    let motion = Motion::looping();
     let mut state = {
         let stepper = compensated(motion.top.clone(), 0.01);
         let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();

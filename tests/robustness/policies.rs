@@ -1,17 +1,17 @@
 //! What a stepper with a policy does where there is no step, and that it says so.
 
-use checks::measure::relative;
-use checks::reference::{Motion, looping};
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use declarations::{CayleyTop, Top as _};
-use liestep::{Remedy, SO3, State, StepError, StepReport, Stepper};
+use liestep::{Remedy, SO3, State, StepError, Stepper, StepReport};
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 type TopState = State<SO3, Vector3<f64>>;
 
 /// The thesis' published setting, at which (3.13) has no first step.
 fn published() -> (Stepper<HeavyTop>, TopState) {
-    let Motion { top, attitude, velocity, .. } = looping();
+    let Motion { top, attitude, velocity, .. } = Motion::looping();
     let stepper = Stepper::new(top, 0.1).unwrap();
     let state = stepper.start(attitude, velocity).unwrap();
     (stepper, state)
@@ -36,7 +36,7 @@ fn s2_substeps_in_the_place_of_the_published_step() {
 
     // Two steps of half the size, to the bit.
     let half = Stepper::new(stepper.scene().clone(), 0.05).unwrap();
-    let mut expected = half.start(looping().attitude, looping().velocity).unwrap();
+    let mut expected = half.start(Motion::looping().attitude, Motion::looping().velocity).unwrap();
     let iterations: u32 = (0..2).map(|_| half.step(&mut expected).unwrap().iterations).sum();
     assert_eq!(report.iterations, iterations);
     assert_eq!(
@@ -73,7 +73,7 @@ fn s2_cayley_step_in_the_place_of_the_published_step() {
 /// Where the step has a solution it is that one, to the bit, and the report is the stepper's own.
 #[test]
 fn s2_a_policy_does_nothing_where_there_is_a_step() {
-    let Motion { top, attitude, velocity, .. } = looping();
+    let Motion { top, attitude, velocity, .. } = Motion::looping();
     let stepper = Stepper::new(top, 0.01).unwrap();
     let substeps = stepper.clone().or_substeps(16);
     let fallback = stepper.clone().on_failure(Fallback::new(CayleyTop::of(stepper.scene()), &stepper).unwrap());
@@ -94,7 +94,7 @@ fn s2_substeps_move_by_the_whole_step() {
     let (stepper, mut state) = published();
     let remedied = stepper.or_substeps(16);
     let half = Stepper::new(HeavyTop::thesis(), 0.05).unwrap();
-    let mut expected = half.start(looping().attitude, looping().velocity).unwrap();
+    let mut expected = half.start(Motion::looping().attitude, Motion::looping().velocity).unwrap();
     for _ in 0..10 {
         assert_eq!(remedied.step(&mut state).unwrap().remedy, Some(Remedy::Substeps(2)));
         half.step(&mut expected).unwrap();

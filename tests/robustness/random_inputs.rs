@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use checks::random::Random;
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
 use liestep::{
     DiagonalNonstandardInertia, DiscreteLagrangian as _, Effect as _, InertiaError, LieGroup as _, NonstandardInertia,
     SO3, SetupError, Solvability, State, StepError, Stepper,

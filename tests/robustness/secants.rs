@@ -2,10 +2,10 @@
 //! Newton's iteration.
 
 use checks::any_scalar::Top;
-use checks::measure::{derivative, slope};
 use checks::random::Random;
 use checks::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use declarations::{self, FourthOrderTop, SixthOrderTop};
+use liestep::laws::samples::derivative;
 use liestep::{
     CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia,
     LieGroup as _, Regular, SO3, StepError, Stepper, lagrangian,
@@ -13,6 +13,7 @@ use liestep::{
 use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use simba::simd::WideF64x4;
+use workbench::measure::slope;
 
 fn top(moments: Vector3<f64>, weight: f64, rho: Vector3<f64>) -> Top<f64> {
     Top { J_d: DiagonalNonstandardInertia::from_principal_moments(moments).unwrap(), weight, rho, up: Vector3::z() }

@@ -2,11 +2,11 @@
 //! will.
 
 use checks::any_scalar::Top;
-use checks::measure::relative;
 use checks::solvers::{WithJacobian, jacobians};
 use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use num_dual::Dual64;
+use workbench::measure::relative;
 
 fn any<T: RealField>(v: Vector3<f64>) -> Vector3<T> {
     v.map(convert)

@@ -1,9 +1,9 @@
 //! What is proved about a step before it is solved agrees with what the solver finds.
 
 use checks::random::Random;
-use checks::reference::{Motion, looping};
-use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::Motion;
 use declarations::{CayleyTop, Top as _};
+use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::effects::{Gravity, RigidBody};
 use liestep::{
     DiagonalNonstandardInertia, DiscreteLiePoisson, LieGroup as _, NonstandardInertia, Regular, SO3, Solvability,
@@ -61,7 +61,7 @@ fn s1_bounds_of_tops() {
 /// The guaranteed and the impossible step of the thesis' first case.
 #[test]
 fn s1_bounds_of_the_looping_top() {
-    let Motion { top, attitude, velocity, .. } = looping();
+    let Motion { top, attitude, velocity, .. } = Motion::looping();
     let at = |h: f64| {
         let stepper = Stepper::new(top.clone(), h).unwrap();
         stepper.solvability(&stepper.start(attitude, velocity).unwrap())

@@ -1,9 +1,9 @@
 //! Symmetric compositions of the declared systems on other groups than SO(3): the order that their scheme has.
 
-use checks::measure::{four_halvings, order, relative, steps_in};
 use checks::structure::System;
 use liestep::{CompositionScheme, LieGroup as _, Stepper};
 use nalgebra::SVector;
+use workbench::measure::{four_halvings, order, relative, steps_in};
 
 use crate::continuous::{Body, Phase};
 use crate::order::{PLATEAU, kirchhoff, orbit, tether};

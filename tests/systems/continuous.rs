@@ -6,8 +6,8 @@
 //!
 //! Nothing of the derivation is used: no advected parameter, no diamond, and inertia and potential are written by hand.
 
-use checks::measure::derivative;
 use checks::structure::axis;
+use liestep::laws::samples::derivative;
 use liestep::laws::samples::{MatrixLieGroup, along};
 use nalgebra::{SMatrix, SVector};
 

@@ -4,10 +4,10 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use checks::measure::order;
 use checks::structure::reversal;
 use liestep::{CovariantTensor, DiscreteLagrangian, LieGroup as _, SE3, SL2, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
+use workbench::measure::order;
 
 use crate::continuous::Body;
 use crate::order::{PLATEAU, errors, kirchhoff, unshifted};

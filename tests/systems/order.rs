@@ -3,11 +3,11 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use checks::measure::{four_halvings, order, relative, steps_in};
 use checks::structure::System;
 use declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
 use liestep::{LieGroup as _, SL2, Stepper};
 use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3};
+use workbench::measure::{four_halvings, order, relative, steps_in};
 
 use crate::continuous::{Body, Phase};
 use crate::samples::{self, Start};

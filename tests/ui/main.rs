@@ -1,8 +1,10 @@
 //! Every mistake with its message, and every unusual setting in which a declaration still has to compile and run.
+//!
+//! Two lists of cases: trybuild compiles those that must fail all at once, unless others that must run are among them.
 
 use std::process::Command;
 
-/// The compiler whose messages `tests/ui/fail/*.stderr` were made with.
+/// The compiler whose messages `fail/*.stderr` were made with.
 fn pinned() -> &'static str {
     let toolchain = include_str!("../../rust-toolchain.toml");
     let channel = toolchain.lines().find_map(|line| line.strip_prefix("channel = "));
@@ -18,13 +20,16 @@ fn found() -> String {
 }
 
 #[test]
-fn ui() {
-    let cases = trybuild::TestCases::new();
-    cases.pass("pass/*.rs");
+fn settings() {
+    trybuild::TestCases::new().pass("pass/*.rs");
+}
+
+#[test]
+fn mistakes() {
     let (found, pinned) = (found(), pinned());
     if found == pinned {
-        cases.compile_fail("fail/*.rs");
+        trybuild::TestCases::new().compile_fail("fail/*.rs");
     } else {
-        println!("fail is skipped: this is rustc {found}, and the messages are those of {pinned}");
+        println!("tests/ui/fail is skipped: this is rustc {found}, and the messages are those of {pinned}");
     }
 }

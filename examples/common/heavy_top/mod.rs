@@ -1,6 +1,7 @@
 //! The heavy top: its declaration, its initial conditions, its rivals and its figures.
 
 pub mod cases;
+pub mod continuous;
 pub mod declaration;
 pub mod figures;
 pub mod overview;

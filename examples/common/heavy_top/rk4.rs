@@ -58,12 +58,13 @@ impl<A: Mul<f64, Output = A>> Mul<f64> for Pair<A> {
     }
 }
 
-fn step<V: Copy + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f: impl Fn(V) -> V) -> V {
+/// What a step of `h` from `y` adds to it.
+pub(crate) fn change<V: Copy + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f: impl Fn(V) -> V) -> V {
     let k1 = f(y);
     let k2 = f(y + k1 * (0.5 * h));
     let k3 = f(y + k2 * (0.5 * h));
     let k4 = f(y + k3 * h);
-    y + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)
+    (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)
 }
 
 /// In a unit quaternion, brought back to unit length after every step: how a careful user would do it.
@@ -107,13 +108,14 @@ impl Method for OnQuaternion {
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
         let body = self.body;
         for _ in 0..steps {
-            let next = step(self.state, self.h, |y| {
-                let rates = body.rates(&y.momentum);
-                Pair {
-                    attitude: y.attitude * Quaternion::from_imag(rates * 0.5),
-                    momentum: body.momentum_rate(&y.momentum, &rates, &vertical(&y.attitude)),
-                }
-            });
+            let next = self.state
+                + change(self.state, self.h, |y| {
+                    let rates = body.rates(&y.momentum);
+                    Pair {
+                        attitude: y.attitude * Quaternion::from_imag(rates * 0.5),
+                        momentum: body.momentum_rate(&y.momentum, &rates, &vertical(&y.attitude)),
+                    }
+                });
             self.state = Pair { attitude: next.attitude / next.attitude.norm(), momentum: next.momentum };
         }
         Ok(0)
@@ -129,14 +131,15 @@ impl Method for OnMatrix {
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
         let body = self.body;
         for _ in 0..steps {
-            self.state = step(self.state, self.h, |y| {
-                let rates = body.rates(&y.momentum);
-                let w = y.attitude.row(2).transpose();
-                Pair {
-                    attitude: y.attitude * rates.cross_matrix(),
-                    momentum: body.momentum_rate(&y.momentum, &rates, &w),
-                }
-            });
+            self.state = self.state
+                + change(self.state, self.h, |y| {
+                    let rates = body.rates(&y.momentum);
+                    let w = y.attitude.row(2).transpose();
+                    Pair {
+                        attitude: y.attitude * rates.cross_matrix(),
+                        momentum: body.momentum_rate(&y.momentum, &rates, &w),
+                    }
+                });
         }
         Ok(0)
     }

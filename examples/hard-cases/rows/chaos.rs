@@ -1,11 +1,11 @@
 //! T7: an asymmetric top in chaotic motion.
 
+use declarations::Motion;
 use liestep::{CompensatedState, Stepper};
+use workbench::measure::{Tenths, float};
 use workbench::run::Method as _;
 
 use crate::curves::Curves;
-use crate::measure::{Tenths, float};
-use crate::motion::Motion;
 use crate::rivals::{energy_of, on_quaternion};
 use crate::row::{Effort, Failure, Row, short};
 use crate::walk::Walk;
@@ -39,7 +39,7 @@ fn amplitudes(energies: &Tenths) -> [f64; 2] {
 
 pub(crate) fn t7(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(3_000_000, 30_000_000);
-    let motion = Motion::chaotic()?;
+    let motion = Motion::chaotic();
     let mut row = Row::new(
         "T7",
         "chaotic asymmetric top, h = 0.02, 3e6 steps (3e7 with --long)",

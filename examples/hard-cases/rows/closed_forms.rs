@@ -4,11 +4,11 @@ use liestep::effects::PrincipalBody;
 use liestep::{LieGroup as _, SO3, Stepper};
 use nalgebra::Vector3;
 use workbench::heavy_top::rk4::{Body, OnQuaternion};
+use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::Method as _;
 
 use crate::closed::{separatrix, symmetric};
 use crate::curves::Curves;
-use crate::measure::{exponent, four_halvings, greater, relative, steps_in};
 use crate::row::{Effort, Failure, Row, short};
 
 /// What is left of the invariants, and the error at the end.
@@ -71,7 +71,7 @@ pub(crate) fn b8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
             (energy, kept) = (greater(energy, end.energy), greater(kept, end.momentum));
         }
         row = row
-            .near(&format!("{name}: order"), exponent(&errors), 2.0, 0.05)
+            .near(&format!("{name}: order"), order(&errors, 1e-11), 2.0, 0.05)
             .at_most(&format!("{name}: energy"), energy, 1e-13)
             .at_most(&format!("{name}: momentum"), kept, 1e-13);
         let rk4 = Body { inverse_moments: moments.map(f64::recip), lever: Vector3::zeros() };

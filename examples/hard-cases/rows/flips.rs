@@ -9,11 +9,11 @@ use liestep::{
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::free_body::engines::{Moments, explicit, implicit, rescaled};
 use workbench::heavy_top::rk4::{Body, OnQuaternion};
+use workbench::measure::{four_halvings, order};
 use workbench::run::Method as _;
 
 use crate::closed::flip;
 use crate::curves::Curves;
-use crate::measure::{exponent, four_halvings};
 use crate::rivals::Update;
 use crate::row::{Effort, Failure, Row};
 
@@ -111,7 +111,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let mut row =
         Row::new("B7", "flip period of J = (1, 2, 3), Ω = (.01, 2, .02)", "order 2 towards it; high order to 1e-12")
             .near("two flips in closed form, s", exact, 19.001_635_511_000_25, 1e-12)
-            .near("order", exponent(&errors), 2.0, 0.05)
+            .near("order", order(&errors, 1e-11), 2.0, 0.05)
             .shows(format!("(3.13) at h = 0.01 off by {:+.1e}", off(&ours, 0.01)?));
     let kahan_li = composed(PrincipalBody { J_d: inertia }, CompositionScheme::KAHAN_LI_8);
     let suzuki = composed(sixth, CompositionScheme::SUZUKI_8);

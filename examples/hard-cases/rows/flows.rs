@@ -1,12 +1,12 @@
 //! P5: two ways to write the flow, and two ways to write the scene.
 
+use declarations::Motion;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::{DiscreteEulerPoincare, DiscreteLagrangian as _, LieGroup as _, Stepper};
 use nalgebra::Vector3;
+use workbench::measure::{greater, relative};
 
 use crate::curves::Curves;
-use crate::measure::{greater, relative};
-use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};
 
 const STEPS: u32 = 1000;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 4.0 * 31_623.0 * f64::EPSILON;
 pub(crate) fn p5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let mut row =
         Row::new("P5", "(2.5) and (2.8); the sum of effects and (3.13), 1000 steps", "round-off, 4 n^{3/2} ε");
-    for motion in [Motion::looping()?, Motion::chaotic()?] {
+    for motion in [Motion::looping(), Motion::chaotic()] {
         for h in [0.001, 0.01] {
             let stepper = Stepper::new(motion.top.clone(), h)?;
             let mut state = stepper.start(motion.attitude, motion.velocity)?;

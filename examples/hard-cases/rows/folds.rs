@@ -1,12 +1,12 @@
 //! S1, S2: steps up to the fold, where the momentum equation loses its solution, and beyond.
 
+use declarations::Motion;
 use liestep::{LieGroup as _, Solvability, StepError, Stepper};
+use workbench::measure::{greater, relative};
 use workbench::plot::BLUE;
 use workbench::run::Method as _;
 
 use crate::curves::{Curve, Curves};
-use crate::measure::{greater, relative};
-use crate::motion::Motion;
 use crate::rivals::{energy_of, on_quaternion};
 use crate::row::{Effort, Failure, Row, short};
 
@@ -32,7 +32,7 @@ fn largest(holds: impl Fn(f64) -> Result<bool, Failure>) -> Result<f64, Failure>
 }
 
 pub(crate) fn s1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
-    let motion = Motion::looping()?;
+    let motion = Motion::looping();
     let known = |h: f64| -> Result<Solvability, Failure> {
         let stepper = Stepper::new(motion.top.clone(), h)?;
         Ok(stepper.solvability(&stepper.start(motion.attitude, motion.velocity)?))
@@ -79,7 +79,7 @@ pub(crate) fn s1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
 }
 
 pub(crate) fn s2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let (motion, h) = (Motion::looping()?, 0.1);
+    let (motion, h) = (Motion::looping(), 0.1);
     let stepper = Stepper::new(motion.top.clone(), h)?;
     let mut state = stepper.start(motion.attitude, motion.velocity)?;
     let before = state;

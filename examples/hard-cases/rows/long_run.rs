@@ -1,12 +1,12 @@
 //! T3: many steps of the looping top.
 
+use declarations::Motion;
 use liestep::{CompensatedState, Stepper};
+use workbench::measure::{Tenths, float};
 use workbench::plot::{BLUE, GREEN, ORANGE};
 use workbench::run::{Method, Sample};
 
 use crate::curves::{Curve, Curves};
-use crate::measure::{Tenths, float};
-use crate::motion::Motion;
 use crate::rivals::{GREY, energy_of, on_matrix, on_quaternion};
 use crate::row::{Effort, Failure, Row, short};
 use crate::walk::{FARTHEST, TopState, Walk};
@@ -65,7 +65,7 @@ fn guide(name: &'static str, (at, height): (f64, f64), power: f64, end: f64) -> 
 
 pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 100_000_000);
-    let motion = Motion::looping()?;
+    let motion = Motion::looping();
     let (energy, plain) = ours(&motion, steps, false)?;
     let (_, kept) = ours(&motion, steps, true)?;
     // The nine entries leave the rotations soon, and a million steps show it.

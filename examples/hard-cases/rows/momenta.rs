@@ -1,5 +1,6 @@
 //! P2, P3: momentum maps, Casimirs, and how a covector is advected.
 
+use declarations::Motion;
 use declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, SixthOrderTop};
 use liestep::laws::samples::{MatrixLieGroup, Random, eliminated_inverse};
 use liestep::{
@@ -7,10 +8,9 @@ use liestep::{
     SE2, SE3, SL2, SO3,
 };
 use nalgebra::{SVector, Vector3};
+use workbench::measure::{greater, relative};
 
 use crate::curves::Curves;
-use crate::measure::{greater, relative};
-use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};
 
 const H: f64 = 0.05;
@@ -41,7 +41,7 @@ where
 }
 
 pub(crate) fn p2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let top = Motion::chaotic()?.top;
+    let top = Motion::chaotic().top;
     let d = top.J_d.diagonal();
     #[allow(non_snake_case)] // the letter of the field
     let J = Inertia::from_principal_moments(Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y))?;

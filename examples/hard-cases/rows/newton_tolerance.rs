@@ -1,11 +1,11 @@
 //! P4: what stopping Newton's iteration early costs.
 
+use declarations::Motion;
 use liestep::Stepper;
 use workbench::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
 use workbench::plot::{BLUE, ORANGE};
 
 use crate::curves::{Curve, Curves};
-use crate::motion::Motion;
 use crate::rivals::GREY;
 use crate::row::{Effort, Failure, Row, short};
 
@@ -23,7 +23,7 @@ fn told(name: &str, exponent: i32, left: &Left) -> String {
 
 pub(crate) fn p4(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
-    let motion = Motion::looping()?;
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), H)?;
     let state = stepper.start(motion.attitude, motion.velocity)?;
     let start = (state.momentum(), state.advected());

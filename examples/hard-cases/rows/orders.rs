@@ -1,11 +1,11 @@
 //! T1: the tops of the thesis against references of 33 digits.
 
+use declarations::Motion;
 use liestep::{LieGroup as _, Stepper};
+use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::Method as _;
 
 use crate::curves::Curves;
-use crate::measure::{exponent, four_halvings, greater, relative, steps_in};
-use crate::motion::Motion;
 use crate::rivals::{on_quaternion, rk4_body};
 use crate::row::{Effort, Failure, Row};
 
@@ -18,27 +18,26 @@ fn error(motion: &Motion, t: f64, h: f64) -> Result<f64, Failure> {
     for _ in 0..steps_in(t, h) {
         stepper.step(&mut state)?;
     }
-    let (attitude, velocity) = motion.at(t)?;
-    Ok(relative(&state.attitude().matrix(), attitude).hypot(relative(&stepper.velocity(&state), velocity)))
+    let (attitude, velocity) = motion.at(t);
+    Ok(relative(&state.attitude().matrix(), &attitude).hypot(relative(&stepper.velocity(&state), &velocity)))
 }
 
 fn rk4_error(motion: &Motion, t: f64, h: f64) -> Result<f64, Failure> {
     let mut method = on_quaternion(motion, h);
     method.advance(steps_in(t, h))?;
-    let (attitude, velocity) = motion.at(t)?;
+    let (attitude, velocity) = motion.at(t);
     let end = method.sample();
     let rates = rk4_body(&motion.top).inverse_moments.component_mul(&end.momentum);
-    Ok(relative(&end.attitude, attitude).hypot(relative(&rates, velocity)))
+    Ok(relative(&end.attitude, &attitude).hypot(relative(&rates, &velocity)))
 }
 
-fn order(error: impl Fn(f64) -> Result<f64, Failure>, coarsest: f64) -> Result<(f64, f64), Failure> {
+/// The order, and the error of the coarsest step.
+fn measured(error: impl Fn(f64) -> Result<f64, Failure>, coarsest: f64) -> Result<(f64, f64), Failure> {
     let mut errors = Vec::new();
     for h in four_halvings(coarsest) {
         errors.push((h, error(h)?));
     }
-    let first = errors[0].1;
-    errors.retain(|(_, error)| *error > PLATEAU);
-    Ok((exponent(&errors), first))
+    Ok((order(&errors, PLATEAU), errors[0].1))
 }
 
 pub(crate) fn t1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
@@ -47,12 +46,12 @@ pub(crate) fn t1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
         "the three tops of the thesis, both readings, t = 1, 10, 100",
         "order 2.00 ± 0.05 over four halvings",
     );
-    let motions = Motion::of_the_thesis()?;
+    let motions = Motion::of_the_thesis();
     // The error of the phase grows with time, so that the last time asks for the smallest steps.
     for (t, coarsest) in [(1.0, 1.0 / 200.0), (10.0, 1.0 / 1600.0), (100.0, 1.0 / 3200.0)] {
         let (mut off, mut orders) = (0.0, Vec::new());
         for motion in &motions {
-            let (order, _) = order(|h| error(motion, t, h), coarsest)?;
+            let (order, _) = measured(|h| error(motion, t, h), coarsest)?;
             off = greater(off, (order - 2.0).abs());
             orders.push(format!("{} {order:.3}", motion.name));
         }
@@ -60,7 +59,7 @@ pub(crate) fn t1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     }
     let looping = &motions[0];
     let coarsest = 1.0 / 200.0;
-    let (slope, theirs) = order(|h| rk4_error(looping, 10.0, h), coarsest)?;
+    let (slope, theirs) = measured(|h| rk4_error(looping, 10.0, h), coarsest)?;
     let ours = error(looping, 10.0, coarsest)?;
     Ok(row.other(format!(
         "RK4 (quaternion): order {slope:.2}; looping A, t = 10, h = 0.005: error {theirs:.1e} against {ours:.1e} of ours"

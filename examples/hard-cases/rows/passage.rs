@@ -3,9 +3,9 @@
 use declarations::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::greater;
 
 use crate::curves::Curves;
-use crate::measure::greater;
 use crate::row::{Effort, Failure, Row};
 
 /// How near to the vertical the axis comes, rad.

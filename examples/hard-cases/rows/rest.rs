@@ -1,5 +1,6 @@
 //! S4: where nothing acts nothing happens.
 
+use declarations::Motion;
 use declarations::{FreeBody, HeavyTop};
 use liestep::{DiscreteLagrangian, NonstandardInertia, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -7,7 +8,6 @@ use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::run::Method as _;
 
 use crate::curves::Curves;
-use crate::motion::Motion;
 use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row};
 
@@ -32,7 +32,7 @@ where
 
 pub(crate) fn s4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, -0.3, 0.1));
-    let (level, top) = (UnitQuaternion::identity(), Motion::chaotic()?.top);
+    let (level, top) = (UnitQuaternion::identity(), Motion::chaotic().top);
     let rho = Vector3::new(0.3, 0.2, 0.4);
     let scenes = [
         ("g = 0", HeavyTop { g: 0.0, ..top.clone() }, tilted),

@@ -1,12 +1,12 @@
 //! S5: the step of zero, and the step of `−h`.
 
+use declarations::Motion;
 use liestep::{LieGroup as _, Stepper};
 use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::measure::relative;
 use workbench::run::Method as _;
 
 use crate::curves::Curves;
-use crate::measure::relative;
-use crate::motion::Motion;
 use crate::rivals::{on_quaternion, rk4_body};
 use crate::row::{Effort, Failure, Row, short};
 
@@ -29,7 +29,7 @@ fn error_on_return(motion: &Motion, h: f64) -> Result<f64, Failure> {
 }
 
 pub(crate) fn s5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let motion = Motion::looping()?;
+    let motion = Motion::looping();
     let standing = Stepper::new(motion.top.clone(), 0.0)?;
     let mut state = standing.start(motion.attitude, motion.velocity)?;
     let before = (state.attitude(), state.momentum(), state.advected());

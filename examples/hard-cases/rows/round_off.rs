@@ -7,15 +7,15 @@
 //! in every thousand, beside it, is what more of that would give.
 
 use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::{CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3, SplittingScheme, Stepper, SymmetricBody};
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
+use workbench::measure::{Tenths, float};
 use workbench::newton_tolerance::energy;
 use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
 
 use crate::curves::{Curve, Curves};
-use crate::measure::{Tenths, float};
-use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row, short};
 use crate::walk::{FARTHEST, TopState, Walk};
 
@@ -94,7 +94,7 @@ fn line(name: &'static str, colour: RGBColor, (walk, _): &(Walk, f64)) -> Curve 
 pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let (h, scheme) = (0.05, CompositionScheme::KAHAN_LI_8);
     let steps = effort.steps(500_000, 5_000_000);
-    let motion = Motion::looping()?;
+    let motion = Motion::looping();
     let composition = Stepper::composed(motion.top.clone(), h, scheme)?;
     let start = composition.start(motion.attitude, motion.velocity)?;
     let mut state = start;
@@ -131,7 +131,7 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
 
 pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
-    let motion = Motion::looping()?;
+    let motion = Motion::looping();
     let kinetic = SymmetricBody::new(&Inertia::new(motion.top.inertia())?)?;
     let splitting = Stepper::split(motion.top.clone(), 0.02, kinetic, SplittingScheme::NYSTROM_11)?;
     let start = splitting.start(motion.attitude, motion.velocity)?;
@@ -187,7 +187,7 @@ fn three(top: &HeavyTop, velocity: Vector3<f64>, steps: u64) -> Result<[(Walk, f
 
 pub(crate) fn r3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(10_000_000, 100_000_000);
-    let top = Motion::looping()?.top;
+    let top = Motion::looping().top;
     // Upright: neither momentum nor `w` changes, and each step adds the same `D`.
     let [plain, kept, corrected] = three(&top, Vector3::z(), steps)?;
     let angle = 0.05_f64.asin();
@@ -204,7 +204,7 @@ pub(crate) fn r3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
 
 pub(crate) fn r4(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(10_000_000, 100_000_000);
-    let top = HeavyTop { g: 0.0, ..Motion::looping()?.top };
+    let top = HeavyTop { g: 0.0, ..Motion::looping().top };
     // Without weight the symmetric body precesses regularly: the angle of a step is always the same, its axis turns.
     let [plain, kept, corrected] = three(&top, Vector3::new(1.0, 0.5, 2.0), steps)?;
     let row = Row::new("R4", "free precession of a symmetric body, h = 0.05, 1e7 steps (1e8 with --long)", CRITERION);

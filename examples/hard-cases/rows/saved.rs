@@ -1,9 +1,9 @@
 //! P7: the same bits again.
 
+use declarations::Motion;
 use liestep::Stepper;
 
 use crate::curves::Curves;
-use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};
 use crate::walk::TopState;
 
@@ -32,7 +32,7 @@ fn thousand_steps(motion: &Motion) -> Result<u64, Failure> {
 }
 
 pub(crate) fn p7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let motion = Motion::looping()?;
+    let motion = Motion::looping();
     let (first, second) = (thousand_steps(&motion)?, thousand_steps(&motion)?);
     let build = if cfg!(debug_assertions) { "debug" } else { "release" };
     let row = Row::new("P7", "the same run again", "identical bytes")

@@ -3,10 +3,10 @@
 use declarations::FreeBody;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, Rotation3, Vector3};
+use workbench::measure::{greater, relative};
 
 use super::boxes::box_of_engines;
 use crate::curves::Curves;
-use crate::measure::{greater, relative};
 use crate::rivals::Spin;
 use crate::row::{Effort, Failure, Row, short};
 

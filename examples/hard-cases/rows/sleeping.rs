@@ -4,10 +4,10 @@ use declarations::HeavyTop;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::measure::float;
 use workbench::run::Method as _;
 
 use crate::curves::Curves;
-use crate::measure::float;
 use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row, short};
 

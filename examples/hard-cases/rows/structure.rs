@@ -1,15 +1,15 @@
 //! P1: the step is a Poisson map.
 
+use declarations::Motion;
 use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, SixthOrderTop};
 use liestep::laws::samples::Random;
 use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Inertia, Regular, SO3};
 use nalgebra::Vector3;
 use workbench::heavy_top::rk4::OnQuaternion;
+use workbench::measure::greater;
 use workbench::run::Method as _;
 
 use crate::curves::Curves;
-use crate::measure::greater;
-use crate::motion::Motion;
 use crate::poisson::{Phase, defect};
 use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row, short};
@@ -39,7 +39,7 @@ where
 }
 
 pub(crate) fn p1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let top = Motion::chaotic()?.top;
+    let top = Motion::chaotic().top;
     let d = top.J_d.diagonal();
     let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
     let (phases, weight, rho, up) = (phases(&moments), top.m * top.g, top.rho, Vector3::z());

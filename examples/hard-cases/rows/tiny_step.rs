@@ -1,12 +1,12 @@
 //! T4: steps so small that `F` is the identity in most of its digits.
 
+use declarations::Motion;
 use liestep::{LieGroup as _, SO3, Stepper};
 use nalgebra::Vector3;
+use workbench::measure::{relative, steps_in};
 use workbench::run::Method as _;
 
 use crate::curves::Curves;
-use crate::measure::{relative, steps_in};
-use crate::motion::Motion;
 use crate::rivals::on_quaternion;
 use crate::row::{Effort, Failure, Row, short};
 
@@ -43,7 +43,7 @@ fn by_products(motion: &Motion, h: f64) -> Result<Vector3<f64>, Failure> {
 }
 
 pub(crate) fn t4(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    let (motion, h) = (Motion::looping()?, 1e-8);
+    let (motion, h) = (Motion::looping(), 1e-8);
     // Richardson's extrapolation of the order 2 leaves an error of the order of h⁴.
     let (coarse, fine) = (ends(&motion, 2e-5)?[1], ends(&motion, 1e-5)?[1]);
     let exact = fine + (fine - coarse) / 3.0;

@@ -3,9 +3,9 @@
 use declarations::FreeBody;
 use liestep::{DiscreteLiePoisson, Effect, Retraction as _, SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::greater;
 
 use crate::curves::Curves;
-use crate::measure::greater;
 use crate::row::{Effort, Failure, Row};
 
 const STEP: f64 = 0.1;

@@ -3,9 +3,9 @@
 use declarations::{CayleyTop, LogTraceTop};
 use liestep::{Inertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::greater;
 
 use crate::curves::Curves;
-use crate::measure::greater;
 use crate::row::{Effort, Failure, Row};
 
 pub(crate) fn s6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {

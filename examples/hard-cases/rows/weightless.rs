@@ -1,13 +1,13 @@
 //! T8: no gravity.
 
 use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
+use workbench::measure::{greater, relative};
 
 use crate::curves::Curves;
-use crate::measure::{greater, relative};
-use crate::motion::Motion;
 use crate::row::{Effort, Failure, Row};
 
 /// Attitude and momentum after a thousand steps, about twenty turns, and how far `R p` has gone.
@@ -27,7 +27,7 @@ where
 
 pub(crate) fn t8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let (mut apart, mut kept, mut bits) = (0.0, 0.0, true);
-    for motion in [Motion::looping()?, Motion::chaotic()?] {
+    for motion in [Motion::looping(), Motion::chaotic()] {
         let top = motion.top.clone();
         let free = moved(PrincipalBody { J_d: top.J_d }, &motion)?;
         kept = greater(kept, free.2);

@@ -6,7 +6,6 @@ use liestep::effects::PrincipalBody;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::choose::MOST_EFFECTS;
 use super::effects::{
     Body, DipoleTable, DragTable, GravityGradientTable, GravityTable, MagneticDampingTable, RotorTable, SpringTable,
     TorqueTable,
@@ -21,14 +20,14 @@ use super::start::Start;
 pub(crate) struct SceneFile {
     pub(super) title: String,
     body: Body,
-    pub(super) gravity: Option<Spanned<GravityTable>>,
-    pub(super) gravity_gradient: Option<Spanned<GravityGradientTable>>,
-    pub(super) dipole: Option<Spanned<DipoleTable>>,
-    pub(super) spring: Option<Spanned<SpringTable>>,
-    pub(super) rotor: Option<Spanned<RotorTable>>,
-    pub(super) drag: Option<Spanned<DragTable>>,
-    pub(super) magnetic_damping: Option<Spanned<MagneticDampingTable>>,
-    pub(super) torque: Option<Spanned<TorqueTable>>,
+    pub(super) gravity: Option<GravityTable>,
+    pub(super) gravity_gradient: Option<GravityGradientTable>,
+    pub(super) dipole: Option<DipoleTable>,
+    pub(super) spring: Option<SpringTable>,
+    pub(super) rotor: Option<RotorTable>,
+    pub(super) drag: Option<DragTable>,
+    pub(super) magnetic_damping: Option<MagneticDampingTable>,
+    pub(super) torque: Option<TorqueTable>,
     pub(super) start: Start,
     pub(super) run: Schedule,
     #[serde(default)]
@@ -102,34 +101,31 @@ impl SceneFile {
         self.body.0
     }
 
-    /// The effects by their names in the file, and where each is.
-    fn effects(&self) -> Vec<(&'static str, Range<usize>)> {
-        fn span<T>(table: Option<&Spanned<T>>) -> Option<Range<usize>> {
-            table.map(Spanned::span)
-        }
-        let all = [
-            ("gravity", span(self.gravity.as_ref())),
-            ("gravity gradient", span(self.gravity_gradient.as_ref())),
-            ("dipole", span(self.dipole.as_ref())),
-            ("spring", span(self.spring.as_ref())),
-            ("rotor", span(self.rotor.as_ref())),
-            ("drag", span(self.drag.as_ref())),
-            ("magnetic damping", span(self.magnetic_damping.as_ref())),
-            ("torque", span(self.torque.as_ref())),
-        ];
-        all.into_iter().filter_map(|(name, span)| Some((name, span?))).collect()
+    /// The effects by their names in the file.
+    fn effects(&self) -> impl Iterator<Item = &'static str> {
+        [
+            ("gravity", self.gravity.is_some()),
+            ("gravity gradient", self.gravity_gradient.is_some()),
+            ("dipole", self.dipole.is_some()),
+            ("spring", self.spring.is_some()),
+            ("rotor", self.rotor.is_some()),
+            ("drag", self.drag.is_some()),
+            ("magnetic damping", self.magnetic_damping.is_some()),
+            ("torque", self.torque.is_some()),
+        ]
+        .into_iter()
+        .filter_map(|(name, is_there)| is_there.then_some(name))
     }
 
     /// The sum, in words.
     pub(super) fn sum(&self) -> String {
-        self.effects().iter().fold("body".to_owned(), |sum, (name, _)| format!("{sum} + {name}"))
+        self.effects().fold("body".to_owned(), |sum, name| format!("{sum} + {name}"))
     }
 
-    /// Where the first effect is that is one too many.
-    pub(super) fn excess(&self) -> Option<Range<usize>> {
-        let mut spans: Vec<_> = self.effects().into_iter().map(|(_, span)| span).collect();
-        spans.sort_by_key(|span| span.start);
-        spans.into_iter().nth(MOST_EFFECTS)
+    /// The first force, by its name.
+    pub(super) fn force(&self) -> Option<&'static str> {
+        let forces = ["drag", "magnetic damping", "torque"];
+        self.effects().find(|name| forces.contains(name))
     }
 
     /// Where an accuracy is asked for although there is a step.
@@ -140,8 +136,7 @@ impl SceneFile {
     /// Where an accuracy is asked for that a force stands in the way of, and which.
     pub(super) fn force_in_the_way(&self) -> Option<(Range<usize>, &'static str)> {
         let Pace::Accuracy(accuracy) = &self.run.pace else { return None };
-        let forces = ["drag", "magnetic damping", "torque"];
-        let (name, _) = self.effects().into_iter().find(|(name, _)| forces.contains(name))?;
+        let name = self.force()?;
         Some((accuracy.span(), name))
     }
 }

@@ -9,6 +9,7 @@ mod quantity;
 mod refused;
 mod run;
 mod start;
+mod switched;
 
 use std::fs::File;
 use std::io::{self, Read as _};
@@ -43,10 +44,6 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
 /// The scene that a text describes; `path` is for messages.
 pub(crate) fn parse(path: &Path, text: &str) -> Result<SceneFile, Mistake> {
     let file: SceneFile = toml::from_str(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-    if let Some(span) = file.excess() {
-        let message = format!("a scene has at most {} effects beside the body", choose::MOST_EFFECTS);
-        return Err(Mistake::at(path, text, &span, message));
-    }
     if let Some(span) = file.step_and_accuracy() {
         let message = "a run has either a `step` or an `accuracy`".to_owned();
         return Err(Mistake::at(path, text, &span, message));

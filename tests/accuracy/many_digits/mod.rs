@@ -17,7 +17,7 @@ mod poisson;
 
 pub(crate) use number::{DoubleDouble, long};
 
-use checks::measure::{order, relative};
+use workbench::measure::{order, relative};
 
 use crate::convergence::End;
 use motion::Motion;
@@ -49,7 +49,7 @@ pub(crate) fn assert_order(
     (motion, t): (&str, f64),
     (compared, counts): (u32, &[u32]),
     run: impl Fn(&Motion, DoubleDouble, u32) -> LongEnd,
-    library: impl Fn(&checks::reference::Motion, f64, u32) -> End,
+    library: impl Fn(&declarations::Motion, f64, u32) -> End,
 ) {
     let read = Motion::read(motion);
     let after = |steps: u32| {
@@ -59,7 +59,7 @@ pub(crate) fn assert_order(
     let errors: Vec<_> = counts.iter().map(|&steps| (t / f64::from(steps), after(steps).0)).collect();
     let order = order(&errors, PLATEAU);
     let (missed, attitude, velocity) = after(compared);
-    let found = library(&checks::reference::Motion::read(motion), t / f64::from(compared), compared);
+    let found = library(&declarations::Motion::read(motion), t / f64::from(compared), compared);
     let apart = relative(found.0.as_matrix(), &attitude.map(DoubleDouble::rounded))
         .hypot(relative(&found.1, &velocity.map(DoubleDouble::rounded)));
     let listed: Vec<_> = errors.iter().map(|(_, error)| format!("{error:.1e}")).collect();

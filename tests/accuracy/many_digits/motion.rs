@@ -1,6 +1,6 @@
 //! The reference motions with all their digits.
 
-use checks::reference::read;
+use declarations::motions::read;
 use nalgebra::Vector3;
 use serde_json::Value;
 
@@ -38,7 +38,7 @@ fn time(value: &Value) -> f64 {
 }
 
 impl Motion {
-    /// As [`checks::reference::Motion::read`], which keeps what fits into doubles.
+    /// As [`declarations::Motion::read`], which keeps what fits into doubles.
     pub(crate) fn read(name: &str) -> Self {
         let data = read(name);
         let apart = !data["initial"].is_null();

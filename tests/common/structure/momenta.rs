@@ -4,12 +4,12 @@
 //! (L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF,     μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)
 //! ```
 
+use liestep::laws::samples::derivative;
 use liestep::laws::samples::{Random, along};
 use liestep::{Advected as _, LieGroup as _};
 use nalgebra::SVector;
 
 use super::{System, random_advected, turn};
-use crate::measure::derivative;
 
 /// Two products of small matrices, relative to the entries of the momenta.
 const ROUNDING: f64 = 1e-13;

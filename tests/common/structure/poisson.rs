@@ -1,12 +1,12 @@
 //! P1: the flow (2.8) is a Poisson map of the semidirect product, `DΦ B(z) DΦᵀ = B(Φ(z))` for `z = (μ, w)`.
 
+use liestep::laws::samples::derivative;
 use liestep::laws::samples::{Random, along};
 use liestep::{Advected as _, DiscreteLiePoisson, LieGroup};
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;
 use super::{System, axis, random_advected, step, turn};
-use crate::measure::derivative;
 
 /// `B(z)`, from the brackets of the group and the action on the parameters:
 ///

@@ -1,13 +1,13 @@
 //! P2: the step in stages says the same as the equations: the Newton system vanishes where `𝔽l_d⁻ = μ`, its Jacobian is
 //! its derivative, and a step ends at `𝔽l_d⁺`.
 
+use liestep::laws::samples::derivative;
 use liestep::laws::samples::{Random, along};
 use liestep::{Advected, Coordinates, DiscreteLiePoisson, LieGroup as _, Retraction as _};
 use nalgebra::{DVector, SMatrix, SVector};
 
 use super::numbers::Numbers as _;
 use super::{System, axis, random_advected, step};
-use crate::measure::derivative;
 
 /// Products of small matrices that cancel in part, relative to the entries of the momenta.
 const ROUNDING: f64 = 1e-13;

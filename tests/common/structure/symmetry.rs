@@ -5,12 +5,12 @@
 //! exact for every `l_d` (Noether). On SO(3) with one vector that is `μ·w`; where nothing is advected it is all of the
 //! spatial momentum.
 
+use liestep::laws::samples::derivative;
 use liestep::{Advected as _, DiscreteLiePoisson, LieGroup as _};
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;
 use super::{System, step, turn};
-use crate::measure::derivative;
 
 /// What the six-point differences leave of numbers near one.
 const DIFFERENCES: f64 = 1e-11;

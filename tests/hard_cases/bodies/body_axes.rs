@@ -2,12 +2,12 @@
 //! everything is seen in a mirror, `J_d' = Q J_d Qᵀ`, `ρ' = Qρ`, `R' = QRQᵀ`, `up' = Q up`, and the angular velocity,
 //! an axial vector, is `Ω' = det(Q) QΩ`.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::reference::looping;
-use checks::tops::{FullTop, HeavyTop};
+use declarations::Motion;
+use declarations::{FullTop, HeavyTop};
 use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
+use workbench::measure::relative;
 
 /// One second; the looping top's spin turns it twelve times around.
 fn moved<L>(lagrangian: L, attitude: SO3, velocity: Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>)
@@ -49,7 +49,7 @@ fn signed_permutations() -> Vec<Matrix3<f64>> {
 
 #[test]
 fn b5_all_permutations_and_flips_of_the_axes() {
-    let motion = looping();
+    let motion = Motion::looping();
     let top = HeavyTop::asymmetric();
     let original = moved(top.clone(), motion.attitude, motion.velocity);
     let permutations = signed_permutations();
@@ -69,7 +69,7 @@ fn b5_all_permutations_and_flips_of_the_axes() {
 
 #[test]
 fn b5_turned_and_mirrored_axes() {
-    let motion = looping();
+    let motion = Motion::looping();
     let top = HeavyTop::asymmetric();
     let original = moved(top.clone(), motion.attitude, motion.velocity);
     let mut random = Random::new(31);

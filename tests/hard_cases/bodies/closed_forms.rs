@@ -1,11 +1,11 @@
 //! Motions that are known in closed form: on the separatrix, of symmetric bodies, and a symmetric top that precesses
 //! regularly. Each is met to the order of the scheme, and its invariants are kept to rounding.
 
-use checks::measure::{four_halvings, order, relative, steps_in};
 use checks::random::Random;
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::{FreeBody, HeavyTop};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, State, Stepper};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use workbench::measure::{four_halvings, order, relative, steps_in};
 
 /// Well above what some thousand steps lose to rounding, and what a saddle makes of it.
 const PLATEAU: f64 = 1e-11;

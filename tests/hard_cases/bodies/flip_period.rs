@@ -5,12 +5,12 @@
 //! ω² = (J_3 − J_2)(|p|² − 2H J_1)/(J_1 J_2 J_3),      k² = (J_2 − J_1)(2H J_3 − |p|²)/((J_3 − J_2)(|p|² − 2H J_1))
 //! ```
 
-use checks::measure::{four_halvings, order};
-use checks::tops::FreeBody;
+use declarations::FreeBody;
 use declarations::SixthOrderBody;
 use liestep::effects::PrincipalBody;
 use liestep::{CompositionScheme, DiagonalNonstandardInertia, Inertia, LieGroup as _, PreprocessedOrder, SO3, Stepper};
 use nalgebra::Vector3;
+use workbench::measure::{four_halvings, order};
 
 /// `4K/ω` of the motion below to 16 digits, s.
 const TWO_FLIPS: f64 = 19.001_635_511_000_25;

@@ -2,7 +2,7 @@
 //! is rounding, at random and less than one a step, so 10⁻¹⁴ after hundreds of steps and 10⁻¹³ after ten thousands; for
 //! bodies and steps on which an explicit, an implicit or a rescaling update fails.
 
-use checks::tops::FreeBody;
+use declarations::FreeBody;
 use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,12 +1,12 @@
 //! The two inertias `J = tr(J_d) I − J_d` and `J_d = ½ tr(J) I − J`, and what isn't the inertia of any body.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::{FreeBody, HeavyTop};
 use liestep::{
     DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError, NonstandardInertia, SetupError, Stepper,
 };
 use nalgebra::{Matrix3, Vector3};
+use workbench::measure::relative;
 
 /// `∫ X Xᵀ dm` and `∫ (|X|² I − X Xᵀ) dm` of point masses.
 fn integrals(random: &mut Random) -> (Matrix3<f64>, Matrix3<f64>) {

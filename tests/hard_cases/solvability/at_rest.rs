@@ -1,7 +1,7 @@
 //! Where nothing acts nothing happens, exactly: no formula divides by the angle of a step, by the momentum, by `w` or
 //! by the weight.
 
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::{FreeBody, HeavyTop};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 

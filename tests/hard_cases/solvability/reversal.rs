@@ -1,15 +1,15 @@
 //! (3.13) is self-adjoint, `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, so the step of `−h` undoes that of `h`; that of zero
 //! is the identity.
 
-use checks::measure::relative;
 use checks::random::Random;
-use checks::reference::looping;
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::{DiscreteLiePoisson, LieGroup as _, Stepper};
+use workbench::measure::relative;
 
 #[test]
 fn s5_zero_step_is_the_identity() {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), 0.0).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
     let before = state;
@@ -41,7 +41,7 @@ fn s5_negative_step_is_the_inverse_map() {
 
 /// The worst relative error of attitude, momentum and `w` after a million steps there and a million back.
 fn error_on_return(h: f64) -> f64 {
-    let motion = looping();
+    let motion = Motion::looping();
     let [there, back] = [h, -h].map(|h| Stepper::new(motion.top.clone(), h).unwrap());
     let mut state = there.start(motion.attitude, motion.velocity).unwrap();
     let before = state;

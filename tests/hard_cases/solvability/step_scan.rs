@@ -3,8 +3,8 @@
 //! how far one could go.
 
 use checks::random::Random;
-use checks::reference::{Motion, looping};
-use checks::tops::{FullTop, HeavyTop};
+use declarations::Motion;
+use declarations::{FullTop, HeavyTop};
 use liestep::{DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, StepError, Stepper};
 use nalgebra::Vector3;
 
@@ -44,7 +44,7 @@ where
 
 #[test]
 fn s1_looping_top_steps_up_to_the_fold() {
-    let motion = looping();
+    let motion = Motion::looping();
     let fold = fold_of_symmetric_top(&motion);
     println!("fold {fold:.6}");
     assert!((fold - 0.0815).abs() < 5e-5, "four digits of the known fold: {fold}");
@@ -60,7 +60,7 @@ fn s1_looping_top_steps_up_to_the_fold() {
 
 #[test]
 fn s1_the_error_beyond_the_fold_names_the_largest_step() {
-    let motion = looping();
+    let motion = Motion::looping();
     let fold = fold_of_symmetric_top(&motion);
     for factor in [1.00001, 1.001, 1.006, 1.01, 1.1, 1.5, 2.0, 3.0, 10.0, 100.0, 1e6] {
         let h = factor * fold;
@@ -119,7 +119,7 @@ where
 
 #[test]
 fn s2_the_published_setting_is_refused_and_leaves_the_state_alone() {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), 0.1).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
     let before = state;

@@ -2,7 +2,7 @@
 //! iteration started near that root settles there; the signs of the Jacobian's determinant and trace tell that it
 //! doesn't continue the identity.
 
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::{FreeBody, HeavyTop};
 use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Effect as _, Regular, Retraction, SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 

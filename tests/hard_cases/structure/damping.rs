@@ -3,11 +3,11 @@
 //! principle has them at first sight, multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from
 //! `x = 2` on.
 
-use checks::measure::{four_halvings, order, relative, steps_in};
 use checks::random::Random;
 use liestep::effects::{Drag, MagneticDamping, PrincipalBody, Torque};
 use liestep::{DiagonalNonstandardInertia, Inertia, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::{four_halvings, order, relative, steps_in};
 
 const STEP: f64 = 0.05;
 

@@ -11,8 +11,8 @@
 //! the order that the expansion wrote; nothing is fused or reordered. A change of the derivation that changes roundings
 //! changes the digest, and belongs in the history with it.
 
-use checks::reference::looping;
-use checks::tops::{FreeBody, HeavyTop};
+use declarations::Motion;
+use declarations::{FreeBody, HeavyTop};
 use liestep::{CompensatedState, Effect, LieGroup as _, SO3, State, Stepper};
 use nalgebra::Vector3;
 
@@ -51,7 +51,7 @@ fn of_steps<L: Effect<Scalar = f64, Group = SO3>>(stepper: &Stepper<L>, start: S
 /// function has a part in it.
 #[test]
 fn p7_heavy_top() {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let start = stepper.start(motion.attitude, motion.velocity).unwrap();
     assert_eq!(of_steps(&stepper, start), 0x9c10_0b19_5563_0e0c);

@@ -6,7 +6,7 @@
 use checks::random::Random;
 use checks::structure::momenta::assert_momenta;
 use checks::structure::stages::{assert_stages, assert_step};
-use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::DiscreteLiePoisson;
 use nalgebra::Vector3;
 

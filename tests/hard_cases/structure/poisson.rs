@@ -3,7 +3,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{assert_poisson, tensor};
-use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::{FreeBody, FullTop, HeavyTop};
 use nalgebra::DMatrix;
 
 const STEPS: [f64; 3] = [0.01, 0.1, 0.3];

@@ -1,13 +1,13 @@
 //! P8: the same cases in `f32`, with the thresholds of `f64` in units of its ε: what is 10⁻¹⁴ there is 45 ε, 10⁻¹³ is
 //! 450 ε, 2·10⁻¹² is 9000 ε.
 
-use checks::measure::{four_halvings, order, relative, steps_in};
-use checks::reference::{Motion, looping};
+use declarations::Motion;
 use liestep::{
     DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, InertiaError, LieGroup as _, NonstandardInertia, Real,
     Regular, SO3, State, StepError, Stepper, lagrangian,
 };
 use nalgebra::{Matrix3, RealField, Vector3, convert};
+use workbench::measure::{four_halvings, order, relative, steps_in};
 
 /// (3.13) in principal axes.
 #[lagrangian(
@@ -68,7 +68,7 @@ fn started(motion: &Motion, h: f64) -> (Stepper<Top<f32>>, TopState) {
 /// T1: the errors of attitude and velocity after a second, above what `f32` loses by then.
 #[test]
 fn p8_order_two() {
-    for name in ["thesis_looping_A_Jd221", "thesis_cuspidal_A_Jd221", "thesis_unidirectional_A_Jd221"] {
+    for name in ["looping A", "cuspidal A", "third A"] {
         let motion = Motion::read(name);
         let errors = four_halvings(1.0 / 100.0).map(|h| {
             let (stepper, mut state) = started(&motion, h);
@@ -90,7 +90,7 @@ fn p8_order_two() {
 /// T3: a million steps.
 #[test]
 fn p8_a_million_steps_stay_on_the_group() {
-    let (stepper, mut state) = started(&looping(), 0.01);
+    let (stepper, mut state) = started(&Motion::looping(), 0.01);
     let start = state;
     let vertical = state.momentum().dot(&state.advected());
     // In double precision, so that what is measured isn't the rounding of the measurement.
@@ -132,7 +132,7 @@ fn p8_a_million_steps_stay_on_the_group() {
 /// the error names a step that would do.
 #[test]
 fn p8_step_scan() {
-    let motion = looping();
+    let motion = Motion::looping();
     let (stepper, state) = started(&motion, 0.1);
     let StepError::BeyondSolvable { largest, .. } = stepper.step(&mut state.clone()).unwrap_err() else { panic!() };
     assert!((largest - 0.0815).abs() < 1e-4, "{largest}");
@@ -156,7 +156,7 @@ fn p8_step_scan() {
 /// S4: at rest, without gravity, and hanging.
 #[test]
 fn p8_at_rest() {
-    let motion = looping();
+    let motion = Motion::looping();
     let top = top::<f32>(&motion);
     let hanging = Top { up: -top.rho, ..top };
     for (top, attitude) in [(Top { g: 0.0, ..top }, attitude(&motion)), (hanging, SO3::identity())] {
@@ -195,7 +195,7 @@ fn there_and_back(motion: &Motion, h: f64) -> [f64; 3] {
 /// another: so the median over an octave.
 #[test]
 fn p8_a_million_steps_there_and_back() {
-    let motion = looping();
+    let motion = Motion::looping();
     for h in [1e-5, 1e-4] {
         let runs = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]
             .map(|k: f64| there_and_back(&motion, h / 2_f64.powf(k / 8.0)));

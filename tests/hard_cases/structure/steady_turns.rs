@@ -5,7 +5,7 @@
 //!
 //! An attitude that is found far from the group is put back, and what is advected with it.
 
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
 use liestep::{
     CompositionScheme, DiagonalNonstandardInertia, Inertia, SO3, SplittingScheme, State, Stepper, SymmetricBody,
 };

@@ -3,8 +3,8 @@
 //!
 //! The step is made here of the terms of a declared Lagrangian, so that it may stop where it shouldn't.
 
-use checks::reference::looping;
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::{CayleyRetraction, Coordinates as _, Effect, LieGroup as _, Retraction, SO3, Stepper};
 use nalgebra::Vector3;
 
@@ -85,7 +85,7 @@ fn kept(stepper: &Stepper<HeavyTop>, mut next: impl FnMut() -> (Vector3<f64>, Ve
 #[test]
 #[allow(clippy::cast_precision_loss)] // a million
 fn p4_energy_drift_against_the_newton_tolerance() {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), H).unwrap();
     let start = stepper.start(motion.attitude, motion.velocity).unwrap();
     println!("tolerance  iterations  energy drift       p_3        p·w");

@@ -1,13 +1,13 @@
 //! The flow on increments (2.5) and the flow on momenta (2.8) are one, seen through the Legendre transforms: with
 //! `μ_i = 𝔽l_d⁻(f_i, w_i)` both give the same `f_i` and `w_i`, and (2.10) the same attitudes.
 
-use checks::measure::relative;
-use checks::reference::looping;
-use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::Motion;
+use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::{
     DiscreteEulerPoincare, DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, Stepper, reconstruct,
 };
 use nalgebra::Vector3;
+use workbench::measure::relative;
 
 const STEPS: u32 = 1000;
 
@@ -21,7 +21,7 @@ fn assert_flows_agree<L>(lagrangian: &L, h: f64)
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
 {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(lagrangian.clone(), h).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
     let (mut attitude, mut w) = (state.attitude(), state.advected());

@@ -1,8 +1,8 @@
 //! A chaotic asymmetric top: neighbouring motions part by `e^{0.2 t}`, so after some minutes no digit of the state is
 //! that of the continuous motion; energy and Casimirs stay all the same.
 
-use checks::reference::Motion;
-use liestep::Stepper;
+use declarations::Motion;
+use liestep::{Stepper};
 
 const H: f64 = 0.02;
 
@@ -11,7 +11,7 @@ const PARTS: u64 = 10;
 
 /// The largest errors in each part: of the energy, J, and relative ones of `|w|²` and `p·w`.
 fn errors(steps: u64) -> Vec<[f64; 3]> {
-    let motion = Motion::read("chaotic_asymmetric_top");
+    let motion = Motion::read("chaotic");
     let stepper = Stepper::new(motion.top.clone(), H).unwrap();
     let start = stepper.start(motion.attitude, motion.velocity).unwrap();
     let energy = stepper.energy(&start);

@@ -2,8 +2,8 @@
 //! `|w|²` and `p·w`, the energy's mean and extremes, and the momentum about the axis of symmetry. What rounding leaves
 //! is a random walk, not a drift; with compensated sums it is the walk of what is added alone.
 
-use checks::reference::looping;
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::{CompensatedState, LieGroup as _, SO3, State, Stepper};
 use nalgebra::{SVector, Vector3, Vector4};
 
@@ -50,7 +50,7 @@ type Defects = SVector<f64, 8>;
 
 /// The looping top at a hundredth of a second, and its start.
 fn looping_top() -> (Stepper<HeavyTop>, TopState) {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let state = stepper.start(motion.attitude, motion.velocity).unwrap();
     (stepper, state)

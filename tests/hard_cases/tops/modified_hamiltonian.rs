@@ -8,11 +8,11 @@
 //! while `H` itself oscillates at second order. A wrong sign or factor anywhere in the step, or in this, leaves the
 //! order at two.
 
-use checks::measure::{four_halvings, order, steps_in};
-use checks::reference::{Motion, looping};
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::Stepper;
 use nalgebra::Vector3;
+use workbench::measure::{four_halvings, order, steps_in};
 
 /// The bracket above, without its `h²`.
 fn correction(top: &HeavyTop, velocity: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
@@ -54,13 +54,13 @@ fn assert_orders_two_and_four(motion: &Motion, coarsest: f64) {
 
 #[test]
 fn t2_looping_top() {
-    assert_orders_two_and_four(&looping(), 0.01);
+    assert_orders_two_and_four(&Motion::looping(), 0.01);
 }
 
 /// Every term of the correction takes part only without symmetry.
 #[test]
 fn t2_asymmetric_top() {
-    let mut motion = looping();
+    let mut motion = Motion::looping();
     motion.top = HeavyTop::asymmetric();
     assert_orders_two_and_four(&motion, 0.005);
 }

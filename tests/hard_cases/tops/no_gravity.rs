@@ -1,14 +1,14 @@
 //! A top without weight is a free body, and a free body's spatial momentum `R p` is constant.
 
-use checks::measure::relative;
-use checks::reference::looping;
-use checks::tops::{FreeBody, FullTop, HeavyTop};
+use declarations::Motion;
+use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
+use workbench::measure::relative;
 
 /// Attitude and momentum after a thousand steps, about twenty turns, and how far `R p` has gone.
 fn moved<L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular>(lagrangian: L) -> (Matrix3<f64>, Vector3<f64>) {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(lagrangian, 0.01).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
     let momentum = state.spatial_momentum();

@@ -1,10 +1,10 @@
 //! The flow of (3.13) with `μ_0 = JΩ_0` converges to the heavy top and to the free body at second order in the step:
 //! its momentum is that of the continuous body at the same time, the half kick being inside (2.7).
 
-use checks::measure::order;
 use checks::order::errors;
-use checks::reference::Motion;
-use checks::tops::FreeBody;
+use declarations::FreeBody;
+use declarations::Motion;
+use workbench::measure::order;
 
 /// Well above what 10⁵ steps lose to rounding in attitude and velocity.
 const PLATEAU: f64 = 1e-11;
@@ -29,41 +29,41 @@ fn assert_second_order_at_1_and_10(name: &str) {
 
 #[test]
 fn t1_looping_reading_a() {
-    assert_second_order_at_1_and_10("thesis_looping_A_Jd221");
+    assert_second_order_at_1_and_10("looping A");
 }
 
 #[test]
 fn t1_looping_reading_b() {
-    assert_second_order_at_1_and_10("thesis_looping_B_J221");
+    assert_second_order_at_1_and_10("looping B");
 }
 
 #[test]
 fn t1_cuspidal_reading_a() {
-    assert_second_order_at_1_and_10("thesis_cuspidal_A_Jd221");
+    assert_second_order_at_1_and_10("cuspidal A");
 }
 
 #[test]
 fn t1_cuspidal_reading_b() {
-    assert_second_order_at_1_and_10("thesis_cuspidal_B_J221");
+    assert_second_order_at_1_and_10("cuspidal B");
 }
 
 #[test]
 fn t1_unidirectional_reading_a() {
-    assert_second_order_at_1_and_10("thesis_unidirectional_A_Jd221");
+    assert_second_order_at_1_and_10("third A");
 }
 
 #[test]
 fn t1_unidirectional_reading_b() {
-    assert_second_order_at_1_and_10("thesis_unidirectional_B_J221");
+    assert_second_order_at_1_and_10("third B");
 }
 
 #[test]
 fn b8_symmetric_free_body() {
-    assert_second_order_at_1_and_10("free_axisymmetric_Jd221");
+    assert_second_order_at_1_and_10("free symmetric");
 }
 
 /// The flat body `J_1 + J_2 = J_3` through its flip about the intermediate axis.
 #[test]
 fn b7_asymmetric_free_body() {
-    assert_second_order_at_1_and_10("free_asymmetric_J123_intermediate");
+    assert_second_order_at_1_and_10("free flip");
 }

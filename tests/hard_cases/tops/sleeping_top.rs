@@ -1,7 +1,7 @@
 //! The sleeping top is unstable below `ω_c = √(4 m g l J_1)/J_3`: a tilt grows at the known rate, less what the step
 //! changes, `ω_c(h) = ω_c (1 − 0.8176 h²)`; above it a tilt stays as small as it was.
 
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
 use liestep::Stepper;
 use nalgebra::{UnitQuaternion, Vector3};
 

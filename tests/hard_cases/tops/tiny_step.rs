@@ -1,14 +1,14 @@
 //! A million steps of 10⁻⁸ s lose no more than rounding in the momentum: `F ≈ I` is never formed, its increment is.
 
-use checks::continuous::{phase, solution};
-use checks::measure::relative;
-use checks::reference::looping;
+use declarations::Motion;
 use liestep::{LieGroup as _, Stepper};
 use nalgebra::Vector3;
+use workbench::heavy_top::continuous::{phase, solution};
+use workbench::measure::relative;
 
 #[test]
 fn t4_a_million_steps_of_ten_nanoseconds() {
-    let motion = looping();
+    let motion = Motion::looping();
     let stepper = Stepper::new(motion.top.clone(), 1e-8).unwrap();
     let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
     let start = phase(&state.momentum(), &state.advected());

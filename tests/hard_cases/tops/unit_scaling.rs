@@ -1,14 +1,14 @@
 //! Units don't matter: with masses in units 2ᵏ times smaller, or times, the motion is the same to the last bit. Every
 //! tolerance of the solver is relative, and no constant has a dimension.
 
-use checks::reference::looping;
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
+use declarations::Motion;
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 /// The looping top, or one without symmetry, with masses and times multiplied; momenta in the old units.
 fn moved(top: &HeavyTop, mass: f64, time: f64) -> (Matrix3<f64>, Vector3<f64>, Vector3<f64>) {
-    let motion = looping();
+    let motion = Motion::looping();
     let scaled = HeavyTop {
         J_d: DiagonalNonstandardInertia::new(top.J_d.diagonal() * mass).unwrap(),
         m: top.m * mass,

@@ -1,11 +1,11 @@
 //! Straight up and straight down, where Euler angles are undefined, are attitudes like any other: a top that passes
 //! through them does so without more iterations, with the accuracy of the scheme, and keeping its invariants.
 
-use checks::continuous::{phase, solution};
-use checks::measure::{four_halvings, order, relative, steps_in};
-use checks::tops::HeavyTop;
+use declarations::HeavyTop;
 use liestep::{SO3, State, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
+use workbench::heavy_top::continuous::{phase, solution};
+use workbench::measure::{four_halvings, order, relative, steps_in};
 
 /// How near to the vertical the axis comes.
 const MISS: f64 = 5e-7;

@@ -1,7 +1,8 @@
-//! Distances and orders.
+//! Distances, orders, and what is left of a run.
 
-pub use liestep::laws::samples::derivative;
 use nalgebra::{Dim, Matrix, RawStorage};
+
+pub use crate::tenths::{Tenths, float, greater};
 
 /// `|a − b| / |b|` in the Euclidean (Frobenius) norm.
 pub fn relative<R: Dim, C: Dim, A: RawStorage<f64, R, C>, B: RawStorage<f64, R, C>>(
@@ -19,12 +20,11 @@ pub fn four_halvings(coarsest: f64) -> [f64; 5] {
 
 /// The slope of `ln error` over `ln h` by least squares, over the points above the round-off plateau.
 ///
-/// At least four points must be left, so that a slope isn't read off the plateau's edge.
+/// NaN if fewer than four points are left, so that a slope isn't read off the plateau's edge.
 pub fn order(errors: &[(f64, f64)], plateau: f64) -> f64 {
-    let points: Vec<(f64, f64)> =
-        errors.iter().filter(|(_, error)| *error > plateau).map(|(h, error)| (h.ln(), error.ln())).collect();
-    assert!(points.len() >= 4, "too few points above the round-off plateau: {errors:?}");
-    slope(&points)
+    let above = errors.iter().filter(|(_, error)| *error > plateau);
+    let points: Vec<(f64, f64)> = above.map(|(h, error)| (h.ln(), error.ln())).collect();
+    if points.len() >= 4 { slope(&points) } else { f64::NAN }
 }
 
 /// The slope of a straight line through the points, by least squares.

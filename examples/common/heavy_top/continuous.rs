@@ -2,7 +2,8 @@
 
 use nalgebra::{SVector, Vector3};
 
-use crate::tops::HeavyTop;
+use super::declaration::HeavyTop;
+use super::rk4::change;
 
 /// Body momentum and `w`, one below the other.
 pub type Phase = SVector<f64, 6>;
@@ -23,11 +24,7 @@ pub fn solution(top: &HeavyTop, start: Phase, t: f64, steps: u32) -> Phase {
     let h = t / f64::from(steps);
     let (mut z, mut lost) = (start, Phase::zeros());
     for _ in 0..steps {
-        let k1 = rate(top, &z);
-        let k2 = rate(top, &(z + k1 * (0.5 * h)));
-        let k3 = rate(top, &(z + k2 * (0.5 * h)));
-        let k4 = rate(top, &(z + k3 * h));
-        let change = (k1 + k2 * 2.0 + k3 * 2.0 + k4) * (h / 6.0) + lost;
+        let change = change(z, h, |z| rate(top, &z)) + lost;
         let next = z + change;
         lost = change - (next - z);
         z = next;

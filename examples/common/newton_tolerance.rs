@@ -3,15 +3,13 @@
 //! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by
 //! a loop of a few lines.
 
-pub mod tenths;
-
 use liestep::{
     Advected, Coordinates as _, DiscreteLagrangian, Effect, LieGroup as _, Retraction as _, SO3, State, StepError,
     Stepper,
 };
 use nalgebra::Vector3;
 
-use tenths::{Tenths, float, greater};
+use crate::tenths::{Tenths, float, greater};
 
 /// The tolerances of the table, as powers of ten.
 pub const EXPONENTS: [i32; 11] = [-12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 0];

@@ -1,0 +1,119 @@
+//! Motions with exact states: `tests/data/README.md` says how each was validated.
+
+use liestep::{DiagonalNonstandardInertia, SO3};
+use nalgebra::{Matrix3, Vector3};
+use serde_json::Value;
+use workbench::heavy_top::declaration::HeavyTop;
+
+/// A top or a free body, its start, and where it is later.
+#[derive(Clone)]
+pub struct Motion {
+    pub name: &'static str,
+    pub top: HeavyTop,
+    pub attitude: SO3,
+    /// Body frame, rad/s.
+    pub velocity: Vector3<f64>,
+    states: Vec<(f64, End)>,
+}
+
+/// Attitude (body to space) and body velocity.
+pub type End = (Matrix3<f64>, Vector3<f64>);
+
+/// The files of `tests/data`, under the names that tables have room for.
+macro_rules! files {
+    ($($name:literal: $file:literal),+ $(,)?) => {
+        const FILES: &[(&str, &str)] = &[$(($name, include_str!(concat!("../../tests/data/", $file, ".json")))),+];
+    };
+}
+
+files! {
+    "looping A": "thesis_looping_A_Jd221",
+    "cuspidal A": "thesis_cuspidal_A_Jd221",
+    "third A": "thesis_unidirectional_A_Jd221",
+    "looping B": "thesis_looping_B_J221",
+    "cuspidal B": "thesis_cuspidal_B_J221",
+    "third B": "thesis_unidirectional_B_J221",
+    "chaotic": "chaotic_asymmetric_top",
+    "free": "free_asymmetric_body",
+    "free flip": "free_asymmetric_J123_intermediate",
+    "free symmetric": "free_axisymmetric_Jd221",
+    "golden steps": "golden_steps",
+}
+
+/// A file as it stands, by its name above.
+pub fn read(name: &str) -> Value {
+    serde_json::from_str(file(name).1).expect(name)
+}
+
+fn file(name: &str) -> (&'static str, &'static str) {
+    *FILES.iter().find(|file| file.0 == name).expect(name)
+}
+
+/// A number that was written as a text, to have all its digits.
+pub fn number(value: &Value) -> f64 {
+    value.as_str().unwrap().parse().unwrap()
+}
+
+/// A time, s; the round ones that are asked for are numbers in some files and strings in others.
+fn time(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| number(value))
+}
+
+pub fn vector(value: &Value) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| number(&value[i]))
+}
+
+/// A matrix given by rows, or as nine numbers row by row.
+pub fn matrix(value: &Value) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| number(if value[0].is_array() { &value[i][j] } else { &value[3 * i + j] }))
+}
+
+impl Motion {
+    /// By the name above.
+    pub fn read(name: &str) -> Self {
+        let (name, data) = (file(name).0, read(name));
+        // The thesis' cases give their initial values apart, in angles too; elsewhere these are the state at zero.
+        let apart = !data["initial"].is_null();
+        let (m, g) = if apart { (number(&data["m"]), number(&data["g"])) } else { (number(&data["mg"]), 1.0) };
+        let J_d = DiagonalNonstandardInertia::new(vector(&data["J_d"])).unwrap();
+        let top = HeavyTop { J_d, m, g, rho: vector(&data["rho"]), up: Vector3::z() };
+        let end = |state: &Value| {
+            let attitude = if apart { &state["R"] } else { &state["R_row_major"] };
+            (matrix(attitude), vector(&state["Omega"]))
+        };
+        let (attitude, velocity) = end(if apart { &data["initial"] } else { &data["states"][0] });
+        let states = data["states"].as_array().unwrap().iter();
+        Self {
+            name,
+            top,
+            attitude: SO3::try_from(attitude).unwrap(),
+            velocity,
+            states: states.map(|state| (time(&state["t"]), end(state))).collect(),
+        }
+    }
+
+    /// The initial value of the thesis' first case, reading A: `φ̇ = 3`, `θ̇ = 0.5`, `ψ̇ = 10`, `θ = 0.8`.
+    pub fn looping() -> Self {
+        Self::read("looping A")
+    }
+
+    /// An asymmetric top in chaotic motion.
+    pub fn chaotic() -> Self {
+        Self::read("chaotic")
+    }
+
+    /// The three tops of the thesis, each in both readings.
+    pub fn of_the_thesis() -> [Self; 6] {
+        ["looping A", "cuspidal A", "third A", "looping B", "cuspidal B", "third B"].map(Self::read)
+    }
+
+    /// Attitude and body velocity at the time `t`, which must be one of the file's.
+    pub fn at(&self, t: f64) -> End {
+        self.states.iter().find(|(time, _)| (time - t).abs() < 1e-9).expect("a time of the file").1
+    }
+
+    /// All of its states, with their times in s.
+    pub fn states(&self) -> &[(f64, End)] {
+        &self.states
+    }
+}
