@@ -5,12 +5,14 @@ use std::rc::Rc;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::ast::{Declaration, Role, Tree};
-use crate::choose::Chosen;
-use crate::derive::SelfAdjointness;
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, Role, Tree};
+use crate::declared::{check, lower, parse};
+use crate::emit;
 use crate::emit::Findings;
-use crate::errors::Errors;
-use crate::{check, choose, emit, explain, fallback, hypotheses, lower, parse, verify};
+use crate::judged::choose::Chosen;
+use crate::judged::{choose, explain, hypotheses, verify};
+use crate::mathematics::derive::SelfAdjointness;
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
@@ -18,7 +20,7 @@ pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> 
     match implementation(role, &arguments, item, &mut errors) {
         Some(implementation) if errors.is_empty() => quote!(#item #implementation),
         _ => {
-            let (mistakes, stand_in) = (errors.to_compile_errors(), fallback::stand_in(role, arguments, item));
+            let (mistakes, stand_in) = (errors.to_compile_errors(), emit::stand_in(role, arguments, item));
             quote!(#item #mistakes #stand_in)
         }
     }

@@ -1,25 +1,14 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
-//! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower, choose, hypotheses, verify, explain} → ast`, `derive → symbolic`,
-//! `scalar → symbolic`; `emit` alone quotes tokens.
+//! This half runs when the user's crate is compiled. Its rooms, in the direction that they depend on each other:
+//! `lib → expand → {judged, emit} → {declared, program} → mathematics`.
 
-mod ast;
-mod check;
-mod choose;
-mod derive;
+mod declared;
 mod emit;
-mod errors;
 mod expand;
-mod explain;
-mod fallback;
-mod group;
-mod hypotheses;
-mod lower;
-mod parse;
-mod scalar;
-mod symbolic;
-mod verify;
+mod judged;
+mod mathematics;
+mod program;
 
 /// Derives an integrator from a reduced discrete Lagrangian: `impl Effect`, `impl DiscreteLagrangian` and `impl Add`
 /// for the annotated struct.
@@ -56,7 +45,7 @@ mod verify;
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
 pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(ast::Role::Lagrangian, arguments.into(), &item.into()).into()
+    expand::expand(declared::Role::Lagrangian, arguments.into(), &item.into()).into()
 }
 
 /// Derives the stages of a force from its virtual work in a step: `impl Effect` and `impl Add` for the annotated
@@ -78,5 +67,5 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 /// equation, and its derivative the Newton Jacobian.
 #[proc_macro_attribute]
 pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(ast::Role::Force, arguments.into(), &item.into()).into()
+    expand::expand(declared::Role::Force, arguments.into(), &item.into()).into()
 }

@@ -7,8 +7,8 @@ use quote::{ToTokens as _, quote_spanned};
 use syn::Ident;
 
 use super::Emitter;
-use crate::scalar::{Graph, Node, NodeId};
-use crate::symbolic::{Function, Rational};
+use crate::mathematics::symbolic::{Function, Rational};
+use crate::program::{Graph, Node, NodeId};
 
 /// What the outputs make together.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ impl Emitter<'_> {
         form: Form,
         graph: &Graph,
         outputs: &[NodeId],
-        input: &dyn Fn(crate::scalar::Input) -> TokenStream,
+        input: &dyn Fn(crate::program::Input) -> TokenStream,
     ) -> TokenStream {
         let given = |id: NodeId| match graph.node(id) {
             Node::Input(entry) => Some(input(entry)),

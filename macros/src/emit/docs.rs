@@ -3,10 +3,10 @@
 use syn::ext::IdentExt as _;
 
 use super::Findings;
-use crate::ast::Declaration;
-use crate::derive::{Declared, Derived, SelfAdjointness};
-use crate::scalar::{Candidate, Graph, Kernel, NodeId, count};
-use crate::symbolic::{Stage, Variance, covector_text, text};
+use crate::declared::Declaration;
+use crate::mathematics::derive::{Declared, Derived, SelfAdjointness};
+use crate::mathematics::symbolic::{Stage, Variance, covector_text, text};
+use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
 pub(super) struct Equation {

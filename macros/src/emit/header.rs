@@ -4,8 +4,8 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
-use crate::ast::{Declaration, FieldKind, Scalar};
-use crate::symbolic::Variance;
+use crate::declared::{Declaration, FieldKind, Scalar};
+use crate::mathematics::symbolic::Variance;
 
 /// What the signatures are written with.
 pub(crate) struct Header {

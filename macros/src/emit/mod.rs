@@ -1,7 +1,10 @@
-//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`. Makes no mathematical decision.
+//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`, and what stands in for them after a mistake.
+//!
+//! Deliberately not here: any mathematical decision. The room knows `declared`, `program` and `mathematics`.
 
 mod code;
 mod docs;
+mod fallback;
 mod header;
 mod inputs;
 mod stages;
@@ -10,14 +13,15 @@ mod verbatim;
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
-use crate::ast::{Declaration, Role};
-use crate::derive::{Derived, SelfAdjointness};
-use crate::lower::Lowered;
-use crate::scalar::{Given, Graph, Kernel, Scalariser, components, square, with_lets};
-use crate::symbolic::{Expression, SymbolId};
+use crate::declared::lower::Lowered;
+use crate::declared::{Declaration, Role};
+use crate::mathematics::derive::{Derived, SelfAdjointness};
+use crate::mathematics::symbolic::{Expression, SymbolId};
+use crate::program::{Given, Graph, Kernel, Scalariser, components, square, with_lets};
 
 use code::Form;
-pub(crate) use header::Header;
+pub(crate) use fallback::stand_in;
+use header::Header;
 
 /// What has been found out about a derivation.
 pub(crate) struct Findings {
@@ -191,7 +195,7 @@ impl Emitter<'_> {
         let checks = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
-            if field.kind == crate::ast::FieldKind::Scalar {
+            if field.kind == crate::declared::FieldKind::Scalar {
                 quote_spanned!(span=> #root::__private::validate_scalar(self.#name, #text)?;)
             } else {
                 quote_spanned!(span=> #root::__private::Parameter::validate(&self.#name, #text)?;)
@@ -212,7 +216,7 @@ impl Emitter<'_> {
         let fields = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
-            if field.kind == crate::ast::FieldKind::Scalar {
+            if field.kind == crate::declared::FieldKind::Scalar {
                 quote_spanned!(span=> #root::__private::SceneVisitor::parameter(visitor, #text, self.#name);)
             } else {
                 quote_spanned!(span=> #root::__private::Parameter::describe(&self.#name, #text, visitor);)

@@ -7,8 +7,8 @@ use quote::quote_spanned;
 
 use super::Emitter;
 use super::code::{Form, needed};
-use crate::scalar::{Graph, Kernel, Node, NodeId};
-use crate::symbolic::{Stage, SymbolId};
+use crate::mathematics::symbolic::{Stage, SymbolId};
+use crate::program::{Graph, Kernel, Node, NodeId};
 
 /// The methods of the stages, and the arrays that pass values between them.
 pub(super) struct Stages {

@@ -11,7 +11,7 @@ use syn::visit_mut::{self, VisitMut};
 use syn::{Expr, Ident};
 
 use super::Header;
-use crate::ast::{Declaration, FieldKind, Role};
+use crate::declared::{Declaration, FieldKind, Role};
 
 /// The Lagrangian's `l_d`, or a force's `virtual_work`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
