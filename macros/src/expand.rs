@@ -28,8 +28,8 @@ pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> 
 
 /// Parse, check, lower, derive, choose, verify, emit.
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
-    let item = parse::item(item, errors)?;
-    parse::check_size(arguments, errors)?;
+    let item = parse::item(role, item, errors)?;
+    parse::check_size(role, arguments, errors)?;
     let declaration = parse::parse(role, arguments.clone(), item, errors);
     let tree = check::check(&declaration, errors)?;
     if !errors.is_empty() {

@@ -24,6 +24,22 @@ impl Role {
         }
     }
 
+    /// What the expression is, in a sentence.
+    pub(crate) fn noun(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "a Lagrangian",
+            Self::Force => "virtual work",
+        }
+    }
+
+    /// The expression of one declaration, in a sentence.
+    pub(crate) fn definite(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "the Lagrangian",
+            Self::Force => "the virtual work",
+        }
+    }
+
     /// The name of the attribute.
     pub(crate) fn attribute(self) -> &'static str {
         match self {
@@ -39,13 +55,12 @@ pub(crate) struct Declaration {
     pub(crate) item: ItemStruct,
     /// Where liestep is found.
     pub(crate) root: Path,
-    /// The group as written.
-    pub(crate) group: Path,
-    /// What is known of it.
-    pub(crate) structure: Group,
+    /// The group's name as written.
+    pub(crate) group_path: Path,
+    pub(crate) group: Group,
     pub(crate) advected: Vec<AdvectedParameter>,
     /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.
-    pub(crate) l_d: Option<Expr>,
+    pub(crate) expression: Option<Expr>,
     pub(crate) fields: Vec<Field>,
     /// The fields whose type has no meaning.
     pub(crate) unreadable: Vec<String>,
@@ -62,7 +77,7 @@ pub(crate) struct AdvectedParameter {
 impl Declaration {
     /// What an advected parameter's field promises; a plain vector after a mistake.
     pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
-        let size = self.structure.size;
+        let size = self.group.size;
         let field = self.advected.get(index).and_then(|w| self.fields.get(w.field?));
         let kind = field.map(|field| field.kind).filter(|kind| kind.is_carried_by(size));
         kind.unwrap_or(FieldKind::Vector(size))

@@ -43,8 +43,8 @@ pub(crate) fn lower_without(
 ) -> Option<Vec<Lowered>> {
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
-    let size = declaration.structure.size;
-    let structure = if declaration.structure.orthogonal { Structure::Rotation } else { Structure::General };
+    let size = declaration.group.size;
+    let structure = if declaration.group.orthogonal { Structure::Rotation } else { Structure::General };
     let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
     let structure = weaker(Name::Increment, structure);
     let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
@@ -75,7 +75,7 @@ pub(crate) fn lower_without(
     }
     let displacements = (declaration.role == Role::Force).then(|| {
         let mut displacement = |name: &str, place| {
-            let id = symbols.add(name, (declaration.structure.dimension(), 1), Structure::General, Stage::Step);
+            let id = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
             names.insert(place, id);
             id
         };
@@ -83,9 +83,9 @@ pub(crate) fn lower_without(
         Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
     });
     let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
-    let lowered = |(symbols, l_d, lets): (Symbols, Expression, Vec<Let>)| {
-        let (group, advected, names) = (declaration.structure.clone(), advected.clone(), names.clone());
-        let declared = Declared { group, symbols, lets, l_d, increment, step, advected };
+    let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
+        let (group, advected, names) = (declaration.group.clone(), advected.clone(), names.clone());
+        let declared = Declared { group, symbols, lets, expression, increment, step, advected };
         Lowered { declared, names, displacements }
     };
     let multiplied_out = attempt(None);
@@ -150,15 +150,15 @@ struct Lowering<'a> {
 
 impl Lowering<'_> {
     fn whole(mut self, tree: &Rc<Tree>) -> Result<(Symbols, Expression, Vec<Let>), Failure> {
-        let l_d = self.expression(tree)?;
+        let expression = self.expression(tree)?;
         let lets = self.lets.unwrap_or_default();
-        if lets.iter().map(|one| &one.value).chain([&l_d]).any(Expression::has_overflow) {
+        if lets.iter().map(|one| &one.value).chain([&expression]).any(Expression::has_overflow) {
             return Err(Failure::Overflow);
         }
         if lets.len() > MOST_LETS || lets.iter().map(|one| one.value.size()).sum::<usize>() > MOST_FACTORS {
             return Err(Failure::TooLarge(tree.span));
         }
-        Ok((self.symbols, l_d, lets))
+        Ok((self.symbols, expression, lets))
     }
 
     /// The expression of a `let`, or the symbol that stands for it.

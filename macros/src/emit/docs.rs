@@ -41,7 +41,7 @@ pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation>
     let scalar = |expression| text(expression, symbols);
     let equation = |method, left, right, source| Equation { method, left, right, source };
     let mut equations = vec![
-        equation("l_d", "l_d", scalar(&declared.l_d), "as declared, in normal form"),
+        equation("l_d", "l_d", scalar(&declared.expression), "as declared, in normal form"),
         equation("right_momentum", "(R_F)* δl_d/δF", covector(&derived.right_momentum), "section 3.2.1, item 2"),
         equation("left_momentum", "(L_F)* δl_d/δF", covector(&derived.left_momentum), "section 3.2.1, item 1; (2.6)"),
         equation("diamond", "δl_d/δw ⋄ w", covector(&derived.diamond), "(2.1)"),
@@ -65,7 +65,7 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
     let symbols = &derived.symbols;
     let covector = |expression| covector_text(expression, derived.directions.first, symbols);
     let equation = |method, left, right, source| Equation { method, left, right, source };
-    let (work, jacobian) = (text(&declared.l_d, symbols), text(&derived.jacobian, symbols));
+    let (work, jacobian) = (text(&declared.expression, symbols), text(&derived.jacobian, symbols));
     vec![
         equation("virtual_work", "f⁻·η + f⁺·η⁺", work, "as declared, with FᵀF = I used"),
         equation("momentum", "−f⁻", covector(&derived.momentum), "the share in (2.7)"),
@@ -135,7 +135,7 @@ pub(super) fn derivation(
 
 /// The group, and how it moves the advected parameters.
 fn setting(declaration: &Declaration) -> String {
-    let group = declaration.group.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+    let group = declaration.group_path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
     let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
         let (space, moved) = match declaration.advected_kind(index).variance() {
             Variance::Vector => ("V", "F⁻¹ w"),

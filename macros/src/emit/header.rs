@@ -10,7 +10,7 @@ use crate::mathematics::symbolic::Variance;
 /// What the signatures are written with.
 pub(crate) struct Header {
     pub(crate) root: Path,
-    group: Path,
+    group_path: Path,
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
     pub(crate) parameter: Option<Ident>,
@@ -33,14 +33,14 @@ impl Header {
         };
         Self {
             root: declaration.root.clone(),
-            group: declaration.group.clone(),
+            group_path: declaration.group_path.clone(),
             scalar,
             parameter,
             name: declaration.item.ident.clone(),
             generics: declaration.item.generics.clone(),
             advected: (0..declaration.advected.len()).map(|index| declaration.advected_kind(index)).collect(),
-            size: declaration.structure.size,
-            dimension: declaration.structure.dimension(),
+            size: declaration.group.size,
+            dimension: declaration.group.dimension(),
         }
     }
 
@@ -99,7 +99,7 @@ impl Header {
 
     /// `impl … Add<Other> for …`: the sum with any effect of the same group.
     pub(crate) fn addition(&self) -> TokenStream {
-        let (span, root, group, scalar) = (Span::mixed_site(), &self.root, &self.group, &self.scalar);
+        let (span, root, group, scalar) = (Span::mixed_site(), &self.root, &self.group_path, &self.scalar);
         let core = quote_spanned!(span=> #root::__private::core);
         // A name that no type of the user's has.
         let other = Ident::new("LiestepOtherEffect", span);
@@ -148,7 +148,7 @@ impl Header {
     /// The associated types of an effect.
     pub(crate) fn types(&self, has_kinetic: bool, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
         let kinetic = Ident::new(if has_kinetic { "WithKinetic" } else { "WithoutKinetic" }, Span::mixed_site());
-        let (root, group, scalar) = (&self.root, &self.group, &self.scalar);
+        let (root, group, scalar) = (&self.root, &self.group_path, &self.scalar);
         let values: Vec<TokenStream> = self.advected.iter().map(|kind| self.advected_type(*kind)).collect();
         let advected = match values.as_slice() {
             [single] => single.clone(),

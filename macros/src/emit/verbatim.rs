@@ -17,7 +17,7 @@ use crate::declared::{Declaration, FieldKind, Role};
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
     let (root, scalar, square) = (&header.root, &header.scalar, header.matrix());
-    let Some(mut expression) = declaration.l_d.clone() else { return TokenStream::new() };
+    let Some(mut expression) = declaration.expression.clone() else { return TokenStream::new() };
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let mut names: Vec<Ident> = Vec::new();

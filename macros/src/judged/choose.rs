@@ -50,7 +50,7 @@ pub(crate) fn cheapest(candidates: Vec<Lowered>) -> Result<Chosen, Refusal> {
 
 fn size(lowered: &Lowered) -> usize {
     let lets = lowered.declared.lets.iter().map(|one| one.value.size());
-    lowered.declared.l_d.size() + lets.sum::<usize>()
+    lowered.declared.expression.size() + lets.sum::<usize>()
 }
 
 fn derived(lowered: Lowered) -> Result<Chosen, Refusal> {

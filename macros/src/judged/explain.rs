@@ -40,7 +40,7 @@ pub(crate) fn explain(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tre
             "as h → 0 this doesn't become h times a Lagrangian that is quadratic in the velocity".to_owned()
         }
     };
-    errors.push_over(declaration.l_d.as_ref().map(check::value), message);
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
 /// Reports virtual work that isn't the work of a force.
@@ -50,7 +50,7 @@ fn explain_force(error: ForceError, declaration: &Declaration, errors: &mut Erro
             "virtual work is linear in the displacements: a force times `eta`, and a force times `eta_next`"
         }
     };
-    errors.push_over(declaration.l_d.as_ref().map(check::value), message);
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
 /// Reports a kinetic part that no values of the parameters make regular at the identity.
@@ -76,7 +76,7 @@ pub(crate) fn kinetic_part(found: &KineticPart, declaration: &Declaration, error
             )
         }
     };
-    errors.push_over(declaration.l_d.as_ref().map(check::value), message);
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
 }
 
@@ -89,7 +89,7 @@ fn not_stationary(asymmetric: &[usize], declaration: &Declaration) -> String {
     }
     let (names, first) = (names.join(" and "), names.first().map_or("", |name| name.trim_matches('`')));
     let inertias =
-        if declaration.structure.size == 3 { ", or give it the type `NonstandardInertia` or `Inertia`" } else { "" };
+        if declaration.group.size == 3 { ", or give it the type `NonstandardInertia` or `Inertia`" } else { "" };
     format!(
         "{beginning}: it would be for a symmetric {names}, which the type of a plain matrix doesn't promise: write \
          `0.5 * ({first} + {first}.transpose())`{inertias}"

@@ -28,7 +28,7 @@ pub(crate) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
     };
     let operations = operations(lowered);
     let mut used = Vec::new();
-    if declaration.structure.orthogonal {
+    if declaration.group.orthogonal {
         if changes_equations(Name::Increment, Structure::General) {
             used.push("FᵀF = I".to_owned());
         }
@@ -71,7 +71,7 @@ fn operations(lowered: &Lowered) -> usize {
     let given =
         with_values(&mut graph, &symbols, declared.lets.iter().map(|one| (one.symbol, &one.value)), Given::new());
     let mut scalariser = Scalariser { graph: &mut graph, symbols: &symbols, given };
-    let output = scalariser.scalar(&declared.l_d);
+    let output = scalariser.scalar(&declared.expression);
     count(&graph, &[output], None).arithmetic
 }
 

@@ -22,7 +22,8 @@ impl Checker<'_> {
             } else {
                 "there are `vee(A)`, `log(F)`, `exp(v)` and `inverse(J)`".to_owned()
             };
-            self.errors.push_over(&call.func, format!("this function isn't known in a Lagrangian: {advice}"));
+            let noun = self.declaration.role.noun();
+            self.errors.push_over(&call.func, format!("this function isn't known in {noun}: {advice}"));
             self.arguments(&call.args);
             return None;
         }
@@ -37,7 +38,7 @@ impl Checker<'_> {
         match (function.as_str(), argument.shape) {
             ("vee", SQUARE) => Some(Tree::new(span, VECTOR, Kind::Vee(argument))),
             ("vee", shape) => self.mismatch("vee", "a 3 × 3 matrix", shape, at),
-            ("log", SQUARE) if self.declaration.structure.is_so3 => Some(logarithm(span, argument)),
+            ("log", SQUARE) if self.declaration.group.is_so3 => Some(logarithm(span, argument)),
             ("log", SQUARE) => {
                 self.errors.push(at, "`log` is that of a rotation, and this group isn't SO3");
                 None

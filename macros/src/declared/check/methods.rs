@@ -159,7 +159,7 @@ impl Checker<'_> {
                 let known = METHODS.iter().copied().filter(|known| *known != "clone").collect::<Vec<_>>().join(", ");
                 let near = suggestion(name, METHODS);
                 let list = if near.is_empty() { format!("\nknown: {known}") } else { String::new() };
-                format!("`{name}` isn't known in a Lagrangian{near}{list}")
+                format!("`{name}` isn't known in {}{near}{list}", self.declaration.role.noun())
             }
         };
         self.errors.push(span, message);

@@ -22,18 +22,20 @@ const DEEPEST: usize = 250;
 
 /// The declared expression as a tree, with every mistake reported.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
-    let l_d = declaration.l_d.as_ref()?;
+    let expression = declaration.expression.as_ref()?;
     let mut checker =
         Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0, is_too_deep: false };
-    let tree = checker.expression(l_d);
+    let tree = checker.expression(expression);
     let used = checker.used;
     let tree = tree?;
     if tree.shape != Shape::Scalar {
         let shape = tree.shape.describe();
-        errors.push_over(
-            value(l_d),
-            format!("a Lagrangian is a scalar, but this is {shape}: take a `.trace()` or a `.dot(…)`"),
-        );
+        let advice = match declaration.role {
+            Role::Lagrangian => "take a `.trace()` or a `.dot(…)`",
+            Role::Force => "take its `.dot(…)` with a displacement",
+        };
+        let noun = declaration.role.noun();
+        errors.push_over(value(expression), format!("{noun} is a scalar, but this is {shape}: {advice}"));
         return None;
     }
     // Only what has been read as a whole says what is used.
@@ -128,9 +130,13 @@ impl Checker<'_> {
     }
 
     fn unknown(&mut self, span: Span) -> Option<Rc<Tree>> {
+        let noun = self.declaration.role.noun();
         self.errors.push(
             span,
-            "this has no meaning in a Lagrangian: use + - * /, `let`, indexing, `vee(…)` and the methods of vectors and matrices",
+            format!(
+                "this has no meaning in {noun}: use + - * /, `let`, indexing, `vee(…)` and the methods of vectors and \
+                 matrices"
+            ),
         );
         None
     }
@@ -149,24 +155,25 @@ impl Checker<'_> {
     }
 
     fn statements(&mut self, statements: &[Stmt], span: Span) -> Option<Rc<Tree>> {
+        let the = self.declaration.role.definite();
         let Some((last, before)) = statements.split_last() else {
-            self.errors.push(span, "the block is empty: end it with the Lagrangian");
+            self.errors.push(span, format!("the block is empty: end it with {the}"));
             return None;
         };
         for statement in before {
             match statement {
                 Stmt::Local(local) => self.binding(local),
-                other => self.errors.push(other.span(), "only `let name = …;` may stand before the Lagrangian"),
+                other => self.errors.push(other.span(), format!("only `let name = …;` may stand before {the}")),
             }
         }
         match last {
             Stmt::Expr(expression, None) => self.expression(expression),
             Stmt::Expr(_, Some(semicolon)) => {
-                self.errors.push(semicolon.span(), "the block must end with the Lagrangian: remove the semicolon");
+                self.errors.push(semicolon.span(), format!("the block must end with {the}: remove the semicolon"));
                 None
             }
             other => {
-                self.errors.push(other.span(), "the block must end with the Lagrangian, without a semicolon");
+                self.errors.push(other.span(), format!("the block must end with {the}, without a semicolon"));
                 None
             }
         }
@@ -251,7 +258,7 @@ impl Checker<'_> {
         }
         let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.name.unraw() == name);
         let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.name.unraw() == name);
-        let size = self.declaration.structure.size;
+        let size = self.declaration.group.size;
         let square = Shape::Matrix(size, size);
         let (shape, found) = match name.as_str() {
             "I" => return Some(Tree::new(span, square, Kind::Identity)),
@@ -289,7 +296,7 @@ impl Checker<'_> {
     }
 
     fn displacement(&self) -> Shape {
-        Shape::Matrix(self.declaration.structure.dimension(), 1)
+        Shape::Matrix(self.declaration.group.dimension(), 1)
     }
 
     fn unknown_name(&mut self, name: &str, span: Span) {

@@ -7,13 +7,13 @@ use crate::declared::{Declaration, Name, Role};
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     if declaration.role == Role::Force {
-        if !declaration.structure.is_so3 {
-            errors.push_over(&declaration.group, "forces are only known on `SO3`");
+        if !declaration.group.is_so3 {
+            errors.push_over(&declaration.group_path, "forces are only known on `SO3`");
         }
         let displacements = [Name::DisplacementBefore, Name::DisplacementAfter];
         if !used.iter().any(|name| displacements.contains(name)) {
             errors.push_over(
-                declaration.l_d.as_ref().map(super::value),
+                declaration.expression.as_ref().map(super::value),
                 "virtual work needs a displacement: `eta` at the beginning of the step, `eta_next` at its end",
             );
         }
@@ -23,7 +23,7 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
     // A potential at the beginning of a step alone has no `F`, and still pushes.
     if !used.iter().any(|name| matches!(name, Name::Increment | Name::Advected(_))) {
         errors.push_over(
-            declaration.l_d.as_ref().map(super::value),
+            declaration.expression.as_ref().map(super::value),
             "the Lagrangian doesn't depend on `F`, the increment of a step: nothing would move",
         );
     }
@@ -31,10 +31,11 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
 }
 
 fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
+    let the = declaration.role.definite();
     for (index, w) in declaration.advected.iter().enumerate() {
         if !used.contains(&Name::Advected(index)) {
             let name = w.name.unraw();
-            errors.push(w.name.span(), format!("`{name}` isn't used in the Lagrangian: remove it from `advected(…)`"));
+            errors.push(w.name.span(), format!("`{name}` isn't used in {the}: remove it from `advected(…)`"));
         }
     }
     for (index, field) in declaration.fields.iter().enumerate() {
@@ -47,8 +48,7 @@ fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
             );
         } else if !carried && !used.contains(&Name::Field(index)) {
             let name = field.name.unraw();
-            errors
-                .push(field.name.span(), format!("`{name}` isn't used in the Lagrangian: remove the field, or use it"));
+            errors.push(field.name.span(), format!("`{name}` isn't used in {the}: remove the field, or use it"));
         }
     }
 }

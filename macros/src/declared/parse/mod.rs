@@ -19,9 +19,9 @@ use crate::mathematics::symbolic::Variance;
 pub(crate) use size::check_size;
 
 /// The annotated struct.
-pub(crate) fn item(item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
-    let parsed = syn::parse2(item.clone());
-    parsed.map_err(|error| errors.push(error.span(), "`lagrangian` belongs on a struct with named fields")).ok()
+pub(crate) fn item(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
+    let message = format!("`{}` belongs on a struct with named fields", role.attribute());
+    syn::parse2(item.clone()).map_err(|error| errors.push(error.span(), message)).ok()
 }
 
 /// The arguments as written.
@@ -29,7 +29,7 @@ pub(crate) fn item(item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct
 struct Arguments {
     group: Option<Path>,
     advected: Vec<(Ident, Ident)>,
-    l_d: Option<Expr>,
+    expression: Option<Expr>,
     root: Option<Path>,
     generators: Option<ExprArray>,
 }
@@ -56,28 +56,28 @@ pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors
     // What seems to be missing may stand in an argument that couldn't be read.
     let is_readable = errors.is_empty();
     let root = arguments.root.unwrap_or_else(default_root);
-    let (group, structure) = group::group(arguments.group, arguments.generators.as_ref(), &root, is_readable, errors);
-    if arguments.l_d.is_none() && is_readable {
+    let (group_path, group) = group::group(arguments.group, arguments.generators.as_ref(), &root, is_readable, errors);
+    if arguments.expression.is_none() && is_readable {
         let message = match role {
             Role::Lagrangian => "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`",
             Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
         };
         errors.push(Span::call_site(), message);
     }
-    let (mut fields, unreadable) = fields(&item, errors);
+    let (mut fields, unreadable) = fields(role, &item, errors);
     if errors.is_empty() {
-        points(&mut fields, &structure, errors);
+        points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
-    let advected = advected(&arguments.advected, &fields, &unreadable, structure.size, errors);
+    let advected = advected(role, &arguments.advected, &fields, &unreadable, group.size, errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     Declaration {
         role,
         root,
+        group_path,
         group,
-        structure,
         advected,
-        l_d: arguments.l_d.filter(|_| is_readable && has_names),
+        expression: arguments.expression.filter(|_| is_readable && has_names),
         fields: fields.into_iter().map(|(field, _)| field).collect(),
         unreadable,
         scalar,
@@ -119,9 +119,9 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             arguments.root = Some(input.parse()?);
         }
         expression if expression == role.key() => {
-            once(arguments.l_d.is_some());
+            once(arguments.expression.is_some());
             input.parse::<Token![=]>()?;
-            arguments.l_d = Some(input.parse()?);
+            arguments.expression = Some(input.parse()?);
         }
         "generators" => {
             once(arguments.generators.is_some());
@@ -170,9 +170,13 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
 }
 
 /// The fields with the place of their types, and the names of those whose type has no meaning.
-fn fields(item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<String>) {
+fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<String>) {
     let Fields::Named(named) = &item.fields else {
-        errors.push(item.ident.span(), "a Lagrangian is a struct with named fields: its parameters");
+        let what = match role {
+            Role::Lagrangian => "a Lagrangian",
+            Role::Force => "a force",
+        };
+        errors.push(item.ident.span(), format!("{what} is a struct with named fields: its parameters"));
         return Default::default();
     };
     let (mut fields, mut unreadable) = (Vec::new(), Vec::new());
@@ -184,8 +188,12 @@ fn fields(item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<St
             unreadable.push(name.unraw().to_string());
             errors.push_over(
                 &field.ty,
-                "this type has no meaning in a Lagrangian: use f64, Vector3<f64>, Point3<f64>, Matrix3<f64>, NonstandardInertia, \
-                 DiagonalNonstandardInertia or Inertia (or the same with the struct's type parameter)",
+                format!(
+                    "this type has no meaning in {}: use f64, Vector3<f64>, Point3<f64>, Matrix3<f64>, \
+                     NonstandardInertia, DiagonalNonstandardInertia or Inertia (or the same with the struct's type \
+                     parameter)",
+                    role.noun()
+                ),
             );
         }
     }
@@ -300,6 +308,7 @@ fn points(fields: &mut [(Field, Span)], group: &crate::mathematics::group::Group
 }
 
 fn advected(
+    role: Role,
     pairs: &[(Ident, Ident)],
     fields: &[(Field, Span)],
     unreadable: &[String],
@@ -311,7 +320,8 @@ fn advected(
         let unraw = name.unraw().to_string();
         let field_names: Vec<String> = fields.iter().map(|(field, _)| field.name.unraw().to_string()).collect();
         if ["F", "I", "h"].contains(&unraw.as_str()) || field_names.contains(&unraw) {
-            errors.push(name.span(), format!("`{unraw}` already has a meaning in the Lagrangian: choose another name"));
+            let the = role.definite();
+            errors.push(name.span(), format!("`{unraw}` already has a meaning in {the}: choose another name"));
             continue;
         }
         if parameters.iter().any(|other| other.name == *name) {

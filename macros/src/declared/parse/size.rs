@@ -2,6 +2,7 @@
 
 use proc_macro2::{TokenStream, TokenTree};
 
+use crate::declared::Role;
 use crate::declared::errors::Errors;
 
 /// More tokens than this, or deeper nesting, are no Lagrangian that a person wrote, and parsing them recursively could
@@ -54,17 +55,16 @@ impl Open {
 }
 
 /// `None` where the arguments are too large to be parsed, which has been reported.
-pub(crate) fn check_size(arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
+pub(crate) fn check_size(role: Role, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![Open::new(arguments.clone(), 0)];
     let mut count = 0;
     while let Some(mut innermost) = open.pop() {
         let Some(token) = innermost.tokens.next() else { continue };
         count += 1;
         if count > MOST_TOKENS {
-            errors.push(
-                token.span(),
-                format!("the Lagrangian has more than {MOST_TOKENS} tokens: the expression is too large"),
-            );
+            let the = role.definite();
+            let message = format!("{the} has more than {MOST_TOKENS} tokens: the expression is too large");
+            errors.push(token.span(), message);
             return None;
         }
         innermost.count(&token);

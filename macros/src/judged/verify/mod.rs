@@ -108,7 +108,7 @@ impl<'a> Sample<'a> {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let group = &declaration.structure;
+        let group = &declaration.group;
         let (mut increment, mut inverse) = (Value::identity(group.size), Value::identity(group.size));
         for k in 0..group.dimension() {
             let angle = 0.6 * number() - 0.3;

@@ -239,7 +239,7 @@ fn small_terms_count() {
 fn degrees() {
     let of = |l_d: &str| {
         let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
-        degree::coincidences(&tree, declaration.structure.dimension())
+        degree::coincidences(&tree, declaration.group.dimension())
     };
     // k F²/h is (2 + 4)/(4 + 2).
     assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 12);

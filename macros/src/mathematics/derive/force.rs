@@ -33,12 +33,12 @@ pub(crate) struct Displacements {
 pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result<Derived, ForceError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
-    let context = Context { declared, lagrangian: &declared.l_d, symbols: &symbols, directions: &directions };
+    let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
     let direction = context.symbol(directions.first).vee(&symbols);
     let work = |before: i128, after: i128| {
         let along = |factor| direction.clone().scaled(Rational::integer(factor));
         let map = BTreeMap::from([(displacements.before, along(before)), (displacements.after, along(after))]);
-        context.substituted(&declared.l_d, &map)
+        context.substituted(&declared.expression, &map)
     };
     let (before, after) = (work(1, 0), work(0, 1));
     // With three values along a line, and none at zero, no power but the first and no product of the two is left.

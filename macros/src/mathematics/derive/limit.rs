@@ -40,7 +40,7 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     if !context.declared.lets.is_empty() {
         return through_lets(context);
     }
-    let (l_d, h) = (&context.declared.l_d, context.declared.step);
+    let (l_d, h) = (&context.declared.expression, context.declared.step);
     if l_d.contains_closed(h) {
         return Err(LimitError::StepInsideFunction);
     }
@@ -64,7 +64,7 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
 /// As a series in `h` along `F = exp(hξ̂)`, where `let`s hide the powers of `h`.
 fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     let velocity = context.directions.velocity;
-    let series = Expansion::new(context, velocity, context.directions.scratch)?.of(&context.declared.l_d)?;
+    let series = Expansion::new(context, velocity, context.directions.scratch)?.of(&context.declared.expression)?;
     if series.end() < 2 {
         return Err(LimitError::NotALagrangian);
     }

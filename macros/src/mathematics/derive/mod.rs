@@ -30,9 +30,10 @@ pub(crate) use self_adjoint::SelfAdjointness;
 pub(crate) struct Declared {
     pub(crate) group: Group,
     pub(crate) symbols: Symbols,
-    /// The `let`s that aren't multiplied out, in their order; none where `l_d` is small enough.
+    /// The `let`s that aren't multiplied out, in their order; none where the expression is small enough.
     pub(crate) lets: Vec<Let>,
-    pub(crate) l_d: Expression,
+    /// The Lagrangian `l_d`, or the virtual work of a force.
+    pub(crate) expression: Expression,
     /// The increment `F`.
     pub(crate) increment: SymbolId,
     /// The step `h`.
@@ -154,7 +155,7 @@ impl Derived {
 pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
-    let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.l_d, &mut symbols);
+    let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
     let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
     closed::tangents(&context, &mut closed);
     let right_momentum = momentum_maps::right(&context);
@@ -200,7 +201,7 @@ pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
 pub(crate) fn principal_equations(declared: &Declared) -> Vec<Expression> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
-    let (closed, lagrangian) = closed::multipliers(&declared.lets, &declared.l_d, &mut symbols);
+    let (closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
     let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
     let (right, left) = (momentum_maps::right(&context), momentum_maps::left(&context));
     let diamond = diamond::diamond(&context);
@@ -208,7 +209,7 @@ pub(crate) fn principal_equations(declared: &Declared) -> Vec<Expression> {
     let parts = transport::parts(&context, &momentum, &diamond);
     let limit =
         limit::limit(&context, &momentum).map(|limit| [limit.slope, limit.inertia, limit.bias, limit.potential]);
-    let all = [declared.l_d.clone(), right, left, diamond, momentum, parts.kick_before, parts.kick_after];
+    let all = [declared.expression.clone(), right, left, diamond, momentum, parts.kick_before, parts.kick_after];
     let lets = closed.into_iter().flat_map(|one| [one.value, one.pairing]);
     all.into_iter().chain(limit.into_iter().flatten()).chain(lets).collect()
 }

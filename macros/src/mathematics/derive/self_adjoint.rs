@@ -35,7 +35,7 @@ pub(super) fn defect(context: &Context) -> Expression {
     let declared = context.declared;
     // Closed `let`s aren't looked into.
     if !declared.lets.is_empty() {
-        return declared.l_d.clone();
+        return declared.expression.clone();
     }
     let f = context.symbol(declared.increment);
     let inverse = Expression::inverse(declared.increment, context.symbols);
@@ -47,5 +47,5 @@ pub(super) fn defect(context: &Context) -> Expression {
     for &(w, variance) in &declared.advected {
         map.insert(w, action::moved_back(context, variance, (&inverse, &f), &context.symbol(w)));
     }
-    declared.l_d.clone().plus(context.substituted(&declared.l_d, &map))
+    declared.expression.clone().plus(context.substituted(&declared.expression, &map))
 }
