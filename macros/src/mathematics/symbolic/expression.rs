@@ -300,30 +300,8 @@ impl Expression {
         })
     }
 
-    /// `û` of a vector.
-    pub(crate) fn hat(&self, symbols: &Symbols) -> Self {
-        self.by_word((3, 3), |word| word::hat(word, symbols))
-    }
-
-    /// `½ (A − Aᵀ)^∨` of a 3 × 3 matrix.
-    pub(crate) fn vee(&self, symbols: &Symbols) -> Self {
-        self.by_word((3, 1), |word| word::vee(word, symbols))
-    }
-
-    /// `diag(u)` of a vector.
-    pub(crate) fn diagonal(&self, symbols: &Symbols) -> Self {
-        let shape = (self.shape.0, self.shape.0);
-        self.by_word(shape, |word| Self::from_word(vec![Factor::Diagonal(word.to_vec())], shape, symbols))
-    }
-
-    /// `½ (A − Aᵀ)`.
-    pub(crate) fn skew_part(self, symbols: &Symbols) -> Self {
-        let transposed = self.transpose(symbols);
-        self.minus(transposed).scaled(Rational::new(1, 2))
-    }
-
     /// Applies a linear operation to the word of each term.
-    fn by_word(&self, shape: (usize, usize), operation: impl Fn(&[Factor]) -> Self) -> Self {
+    pub(super) fn by_word(&self, shape: (usize, usize), operation: impl Fn(&[Factor]) -> Self) -> Self {
         let mut image = Self::zero(shape);
         for (monomial, coefficient) in self.terms() {
             for (inner, factor) in operation(&monomial.word).terms() {

@@ -1,8 +1,8 @@
-//! Smooth functions of one scalar.
+//! Smooth functions of one scalar; their derivatives are expressions, and are with the rules of variation.
 
-use super::{Expression, Rational, Symbols};
+use super::rational::Rational;
 
-/// A function with its derivative.
+/// A function that a Lagrangian may apply to a scalar, or that `exp` and `log` are made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Function {
     Sqrt,
@@ -70,23 +70,6 @@ impl Function {
                 Rational::new(product(&mut (1..=k).map(|i| 2 * i * i)), product(&mut (1..=k).map(|i| 2 * i + 1)))
             }
         })
-    }
-
-    /// `f'(u)`.
-    pub(crate) fn derivative(self, argument: &Expression, symbols: &Symbols) -> Expression {
-        let at = |function: Self| Expression::function(function, argument.clone());
-        match self {
-            Self::Sqrt => at(self).power(-1, symbols).scaled(Rational::new(1, 2)),
-            Self::Ln => argument.clone().power(-1, symbols),
-            Self::Exp => at(self),
-            Self::Sin => at(Self::Cos),
-            Self::Cos => at(Self::Sin).scaled(-Rational::ONE),
-            Self::Stumpff(k) => {
-                let second = at(Self::Stumpff(k + 2)).scaled(Rational::new(k.into(), 2));
-                second.minus(at(Self::Stumpff(k + 1)).scaled(Rational::new(1, 2)))
-            }
-            Self::LogRatio(k) => at(Self::LogRatio(k + 1)),
-        }
     }
 }
 

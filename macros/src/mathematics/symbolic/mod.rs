@@ -4,6 +4,7 @@
 //! keep this normal form, so that equal expressions are equal values and what cancels is gone: neighbours cancel by
 //! `FᵀF = I`, traces are taken up to rotation and transposition, declared symmetry is used.
 
+mod cross;
 mod display;
 mod expression;
 mod functions;

@@ -16,6 +16,7 @@
 use std::collections::BTreeMap;
 
 use super::expression::{Atom, Expression, Monomial};
+use super::functions::Function;
 use super::rational::Rational;
 use super::substitution::single;
 use super::symbols::{SymbolId, Symbols};
@@ -69,9 +70,26 @@ fn vary_atom(atom: &Atom, variations: &Variations, symbols: &Symbols) -> Express
         }
         Atom::Function(function, inner) => {
             let varied = variation(inner, variations, symbols);
-            if varied.is_zero() { varied } else { function.derivative(inner, symbols).times(&varied, symbols) }
+            if varied.is_zero() { varied } else { derivative(*function, inner, symbols).times(&varied, symbols) }
         }
         Atom::Sum(inner) => variation(inner, variations, symbols),
+    }
+}
+
+/// `f'(u)`.
+fn derivative(function: Function, argument: &Expression, symbols: &Symbols) -> Expression {
+    let at = |function: Function| Expression::function(function, argument.clone());
+    match function {
+        Function::Sqrt => at(function).power(-1, symbols).scaled(Rational::new(1, 2)),
+        Function::Ln => argument.clone().power(-1, symbols),
+        Function::Exp => at(function),
+        Function::Sin => at(Function::Cos),
+        Function::Cos => at(Function::Sin).scaled(-Rational::ONE),
+        Function::Stumpff(k) => {
+            let second = at(Function::Stumpff(k + 2)).scaled(Rational::new(k.into(), 2));
+            second.minus(at(Function::Stumpff(k + 1)).scaled(Rational::new(1, 2)))
+        }
+        Function::LogRatio(k) => at(Function::LogRatio(k + 1)),
     }
 }
 

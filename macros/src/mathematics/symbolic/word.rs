@@ -1,6 +1,5 @@
 //! Words: products of matrix factors, with the relations that hold between neighbours.
 
-use super::expression::Expression;
 use super::symbols::{Structure, SymbolId, Symbols};
 
 /// One factor of a matrix product.
@@ -192,31 +191,4 @@ fn sort_triple_product(sign: i8, word: Vec<Factor>, symbols: &Symbols) -> (i8, V
     let [row, middle, column] = vectors;
     let (turn, row) = transpose(&row, symbols);
     (sign * turn, [row, vec![Factor::Hat(middle)], column].concat())
-}
-
-/// `û` of a vector word: of a skew part it is that part, otherwise a factor of its own.
-pub(crate) fn hat(word: &[Factor], symbols: &Symbols) -> Expression {
-    if let [Factor::Vee { word: inner, transposed: false }] = word {
-        let matrix = Expression::from_word(inner.clone(), (3, 3), symbols);
-        return matrix.skew_part(symbols);
-    }
-    Expression::from_word(vec![Factor::Hat(word.to_vec())], (3, 3), symbols)
-}
-
-/// `½ (W − Wᵀ)^∨` of a matrix word.
-pub(crate) fn vee(word: &[Factor], symbols: &Symbols) -> Expression {
-    if let [Factor::Hat(inner)] = word {
-        return Expression::from_word(inner.clone(), (3, 1), symbols);
-    }
-    let (sign, turned) = transpose(word, symbols);
-    if turned == word {
-        if sign > 0 {
-            return Expression::zero((3, 1));
-        }
-        let factor = Factor::Vee { word: word.to_vec(), transposed: false };
-        return Expression::from_word(vec![factor], (3, 1), symbols);
-    }
-    let (sign, word) = if word < turned.as_slice() { (1, word.to_vec()) } else { (-sign, turned) };
-    let factor = Factor::Vee { word, transposed: false };
-    Expression::from_word(vec![factor], (3, 1), symbols).scaled(super::Rational::integer(sign.into()))
 }
