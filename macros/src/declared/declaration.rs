@@ -53,10 +53,10 @@ impl Role {
 pub(crate) struct Declaration {
     pub(crate) role: Role,
     pub(crate) item: ItemStruct,
-    /// Where liestep is found.
-    pub(crate) root: Path,
-    /// The group's name as written.
-    pub(crate) group_path: Path,
+    /// Where liestep is found, if not at `::liestep`.
+    pub(crate) root: Option<Path>,
+    /// The group's name as written; `None` after a mistake.
+    pub(crate) group_path: Option<Path>,
     pub(crate) group: Group,
     pub(crate) advected: Vec<AdvectedParameter>,
     /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.

@@ -1,6 +1,6 @@
 //! Errors accumulate, so that one compilation reports all mistakes of a declaration.
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::Span;
 use quote::ToTokens;
 
 /// The mistakes found so far.
@@ -26,8 +26,8 @@ impl Errors {
         self.0.is_empty()
     }
 
-    pub(crate) fn to_compile_errors(&self) -> TokenStream {
-        self.0.iter().map(syn::Error::to_compile_error).collect()
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &syn::Error> {
+        self.0.iter()
     }
 }
 

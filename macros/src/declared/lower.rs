@@ -24,18 +24,16 @@ const MANY_DIGITS: u128 = 10_000;
 pub(crate) struct Lowered {
     pub(crate) declared: Declared,
     pub(crate) names: BTreeMap<Name, SymbolId>,
-    /// Those of a force's virtual work.
-    pub(crate) displacements: Option<Displacements>,
 }
 
-/// Lowers the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has been
-/// reported.
-pub(crate) fn lower(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
-    lower_without(declaration, tree, &|_, structure| structure, errors)
+/// The two readings of the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has
+/// been reported.
+pub(crate) fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
+    readings_without(declaration, tree, &|_, structure| structure, errors)
 }
 
 /// The same with less known of some symbols.
-pub(crate) fn lower_without(
+pub(crate) fn readings_without(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     weaker: &dyn Fn(Name, Structure) -> Structure,
@@ -85,8 +83,8 @@ pub(crate) fn lower_without(
     let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
     let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
         let (group, advected, names) = (declaration.group.clone(), advected.clone(), names.clone());
-        let declared = Declared { group, symbols, lets, expression, increment, step, advected };
-        Lowered { declared, names, displacements }
+        let declared = Declared { group, symbols, lets, expression, increment, step, advected, displacements };
+        Lowered { declared, names }
     };
     let multiplied_out = attempt(None);
     // The work of a force is always multiplied out: it is linear in the displacements, and short.

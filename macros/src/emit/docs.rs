@@ -2,8 +2,8 @@
 
 use syn::ext::IdentExt as _;
 
-use super::Findings;
 use crate::declared::Declaration;
+use crate::judged::{Chosen, Findings};
 use crate::mathematics::derive::{Declared, Derived, SelfAdjointness};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
@@ -92,7 +92,7 @@ pub(super) fn stage(graph: &Graph, outputs: &[NodeId], stage: Stage, when: &str)
 /// The equations, what they rest on, and what they cost, as one text.
 pub(super) fn derivation(
     declaration: &Declaration,
-    derived: &Derived,
+    chosen: &Chosen,
     equations: &[Equation],
     findings: &Findings,
 ) -> String {
@@ -104,7 +104,7 @@ pub(super) fn derivation(
         [] => "none".to_owned(),
         used => used.join(", "),
     };
-    let kernel = &findings.kernel;
+    let kernel = &chosen.kernel;
     let before = [kernel.kick_before.as_slice(), &kernel.residual, &kernel.jacobian].concat();
     // With a = μ + k₀.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
@@ -130,12 +130,21 @@ pub(super) fn derivation(
         ("operations", operations),
     ];
     let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
-    [setting(declaration), lets(derived)].into_iter().chain(equations.iter().map(line)).chain(sections).collect()
+    [setting(declaration), lets(&chosen.derived)]
+        .into_iter()
+        .chain(equations.iter().map(line))
+        .chain(sections)
+        .collect()
 }
 
 /// The group, and how it moves the advected parameters.
 fn setting(declaration: &Declaration) -> String {
-    let group = declaration.group_path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+    let group = declaration
+        .group_path
+        .as_ref()
+        .and_then(|path| path.segments.last())
+        .map(|segment| segment.ident.to_string())
+        .unwrap_or_default();
     let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
         let (space, moved) = match declaration.advected_kind(index).variance() {
             Variance::Vector => ("V", "F⁻¹ w"),

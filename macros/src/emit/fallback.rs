@@ -1,7 +1,7 @@
 //! What stands in for the implementation after a mistake, so that one mistake gives one error.
 
 use proc_macro2::{Span, TokenStream, TokenTree};
-use quote::quote_spanned;
+use quote::{quote, quote_spanned};
 use syn::{Item, ItemStruct};
 
 use super::Header;
@@ -9,12 +9,19 @@ use crate::declared::Role;
 use crate::declared::errors::Errors;
 use crate::declared::parse;
 
+/// The item with all mistakes, and with a stand-in.
+pub(crate) fn mistakes(role: Role, arguments: TokenStream, item: &TokenStream, errors: &Errors) -> TokenStream {
+    let mistakes: TokenStream = errors.iter().map(syn::Error::to_compile_error).collect();
+    let stand_in = stand_in(role, arguments, item);
+    quote!(#item #mistakes #stand_in)
+}
+
 /// An implementation that type-checks wherever the real one would be used.
-pub(crate) fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
+fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
     let Some(item) = as_struct(item) else { return TokenStream::new() };
     let span = Span::mixed_site();
     let mut silent = Errors::default();
-    let header = Header::new(&parse::parse(role, without_lagrangian(role, arguments), item, &mut silent));
+    let header = Header::new(&parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent));
     let root = &header.root;
     let none = quote_spanned!(span=> ());
     let types = header.types(true, &none, &none);

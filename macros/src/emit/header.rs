@@ -23,17 +23,18 @@ pub(crate) struct Header {
 
 impl Header {
     pub(crate) fn new(declaration: &Declaration) -> Self {
+        let root = declaration.root.clone().unwrap_or_else(|| syn::parse_quote!(::liestep));
+        let group_path = declaration.group_path.clone().unwrap_or_else(|| syn::parse_quote!(#root::SO3));
         let (scalar, parameter) = match &declaration.scalar {
             // The primitive type even where the name is shadowed.
             Scalar::Primitive(name) => {
-                let root = &declaration.root;
                 (quote_spanned!(Span::mixed_site()=> #root::__private::core::primitive::#name), None)
             }
             Scalar::Parameter(name) => (name.to_token_stream(), Some(name.clone())),
         };
         Self {
-            root: declaration.root.clone(),
-            group_path: declaration.group_path.clone(),
+            root,
+            group_path,
             scalar,
             parameter,
             name: declaration.item.ident.clone(),

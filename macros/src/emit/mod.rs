@@ -1,6 +1,6 @@
 //! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`, and what stands in for them after a mistake.
 //!
-//! Deliberately not here: any mathematical decision. The room knows `declared`, `program` and `mathematics`.
+//! The only room that quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
 
 mod code;
 mod docs;
@@ -15,36 +15,30 @@ use quote::quote_spanned;
 
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, Role};
-use crate::mathematics::derive::{Derived, SelfAdjointness};
+use crate::judged::{Chosen, Findings};
+use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::{Expression, SymbolId};
-use crate::program::{Given, Graph, Kernel, Scalariser, components, square, with_lets};
+use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
 
 use code::Form;
-pub(crate) use fallback::stand_in;
+pub(crate) use fallback::mistakes;
 use header::Header;
 
-/// What has been found out about a derivation.
-pub(crate) struct Findings {
-    pub(crate) kernel: Kernel,
-    pub(crate) self_adjointness: SelfAdjointness,
-    pub(crate) hypotheses: Vec<String>,
-}
-
-/// The whole implementation.
+/// The item with the whole implementation.
 pub(crate) fn implementation(
+    item: &TokenStream,
     declaration: &Declaration,
-    lowered: &Lowered,
-    derived: &Derived,
+    chosen: &Chosen,
     findings: &Findings,
 ) -> TokenStream {
-    let (header, kernel) = (Header::new(declaration), &findings.kernel);
+    let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
     let mut graph = Graph::default();
     let given = with_lets(&mut graph, derived, Given::new());
     let emitter = Emitter { declaration, lowered, derived, header: &header, lets: (graph, given) };
     let (mathematics, effect, texts) = emitter.mathematics();
     let stages = stages::stages(&emitter, kernel, &texts);
     let declared = verbatim::declared(declaration, &header);
-    let derivation = docs::derivation(declaration, derived, &texts, findings);
+    let derivation = docs::derivation(declaration, chosen, &texts, findings);
     let documentation = format!("```text\n{derivation}```");
     let validate = emitter.validate();
     let describe = emitter.describe();
@@ -66,6 +60,8 @@ pub(crate) fn implementation(
         quote_spanned!(span=> const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;)
     });
     quote_spanned! {span=>
+        #item
+
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #of_role {

@@ -6,15 +6,14 @@ use std::rc::Rc;
 use proc_macro2::Span;
 use syn::ext::IdentExt as _;
 
+use super::verify::KineticPart;
 use crate::declared::check;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Kind, Name, Tree};
-use crate::judged::choose::Refusal;
-use crate::judged::verify::KineticPart;
-use crate::mathematics::derive::{ForceError, LimitError};
+use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 
-/// Reports a Lagrangian that discretises no continuous one.
-pub(crate) fn explain(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
+/// Reports why nothing could be derived.
+pub(super) fn refusal(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     let error = match refusal {
         Refusal::Limit(error) => error,
         Refusal::Force(error) => return explain_force(error, declaration, errors),
@@ -54,7 +53,7 @@ fn explain_force(error: ForceError, declaration: &Declaration, errors: &mut Erro
 }
 
 /// Reports a kinetic part that no values of the parameters make regular at the identity.
-pub(crate) fn kinetic_part(found: &KineticPart, declaration: &Declaration, errors: &mut Errors) -> Option<()> {
+pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, errors: &mut Errors) -> Option<()> {
     let message = match found {
         KineticPart::Regular => return Some(()),
         KineticPart::NotStationary(asymmetric) => not_stationary(asymmetric, declaration),
@@ -78,6 +77,12 @@ pub(crate) fn kinetic_part(found: &KineticPart, declaration: &Declaration, error
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
+}
+
+/// Reports a derived term that the self-check doesn't confirm.
+pub(super) fn disagreement(term: &str, tree: &Tree, errors: &mut Errors) {
+    errors
+        .push(tree.span, format!("the derived {term} disagrees with what is declared: please report this declaration"));
 }
 
 fn not_stationary(asymmetric: &[usize], declaration: &Declaration) -> String {

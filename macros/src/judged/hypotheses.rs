@@ -8,17 +8,17 @@ use std::rc::Rc;
 use syn::ext::IdentExt as _;
 
 use crate::declared::errors::Errors;
-use crate::declared::lower::{Lowered, lower_without};
+use crate::declared::lower::{Lowered, readings_without};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::principal_equations;
 use crate::mathematics::symbolic::{Stage, Structure};
 use crate::program::{Given, Graph, Scalariser, count, with_values};
 
 /// The hypotheses that are used, as a paper would write them.
-pub(crate) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &Lowered) -> Vec<String> {
+pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &Lowered) -> Vec<String> {
     let without = |name: Name, weaker: Structure| {
         let weaker = |other: Name, structure: Structure| if other == name { weaker } else { structure };
-        let candidates = lower_without(declaration, tree, &weaker, &mut Errors::default())?;
+        let candidates = readings_without(declaration, tree, &weaker, &mut Errors::default())?;
         candidates.into_iter().find(|other| other.declared.lets.is_empty() == lowered.declared.lets.is_empty())
     };
     let equations = principal_equations(&lowered.declared);

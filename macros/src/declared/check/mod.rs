@@ -20,7 +20,7 @@ use crate::mathematics::symbolic::Rational;
 /// Deeper expressions than a person writes would overflow the stack of the compiler.
 const DEEPEST: usize = 250;
 
-/// The declared expression as a tree, with every mistake reported.
+/// The declared expression as a tree; `None` after a mistake, be it one in the attribute or in the struct.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
     let expression = declaration.expression.as_ref()?;
     let mut checker =
@@ -42,7 +42,7 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
     if errors.is_empty() {
         usage::check(declaration, &used, errors);
     }
-    Some(tree)
+    errors.is_empty().then_some(tree)
 }
 
 /// What a block ends with, or the expression itself.

@@ -8,19 +8,15 @@ use crate::declared::errors::{Errors, suggestion};
 use crate::mathematics::group::{Group, NAMES, built_in};
 use crate::mathematics::symbolic::Rational;
 
-/// The path to name in the expansion, and what is known of the group; SO(3) after a mistake, so that the rest can be
+/// The path as written, and what is known of the group; after a mistake none, and SO(3), so that the rest can be
 /// checked.
 pub(super) fn group(
     path: Option<Path>,
     matrices: Option<&ExprArray>,
-    root: &Path,
     is_readable: bool,
     errors: &mut Errors,
-) -> (Path, Group) {
-    let stand_in = || {
-        let rotations = built_in("SO3").unwrap_or_else(|| Group::declared(3, Vec::new()));
-        (syn::parse_quote!(#root::SO3), rotations)
-    };
+) -> (Option<Path>, Group) {
+    let stand_in = || (None, built_in("SO3").unwrap_or_else(|| Group::declared(3, Vec::new())));
     let Some(path) = path else {
         // What seems to be missing may stand in an argument that couldn't be read.
         if is_readable {
@@ -38,7 +34,7 @@ pub(super) fn group(
         }),
     };
     match found {
-        Ok(group) => (path, group),
+        Ok(group) => (Some(path), group),
         Err(error) => {
             errors.extend(error);
             stand_in()

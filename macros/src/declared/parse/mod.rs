@@ -16,10 +16,20 @@ use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{AdvectedParameter, Declaration, Field, FieldKind, Role, Scalar};
 use crate::mathematics::symbolic::Variance;
 
-pub(crate) use size::check_size;
+/// The declaration, with its mistakes reported; `None` where nothing of it can be read.
+pub(crate) fn declaration(
+    role: Role,
+    arguments: &TokenStream,
+    item: &TokenStream,
+    errors: &mut Errors,
+) -> Option<Declaration> {
+    let item = annotated(role, item, errors)?;
+    size::check(role, arguments, errors)?;
+    Some(as_far_as_readable(role, arguments.clone(), item, errors))
+}
 
 /// The annotated struct.
-pub(crate) fn item(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
+fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
     let message = format!("`{}` belongs on a struct with named fields", role.attribute());
     syn::parse2(item.clone()).map_err(|error| errors.push(error.span(), message)).ok()
 }
@@ -34,12 +44,13 @@ struct Arguments {
     generators: Option<ExprArray>,
 }
 
-fn default_root() -> Path {
-    syn::parse_quote!(::liestep)
-}
-
 /// The declaration as far as it can be read.
-pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors: &mut Errors) -> Declaration {
+pub(crate) fn as_far_as_readable(
+    role: Role,
+    arguments: TokenStream,
+    item: ItemStruct,
+    errors: &mut Errors,
+) -> Declaration {
     // In braces that span the last token, so that what ends too early is reported there.
     let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
     let mut braces = Group::new(Delimiter::Brace, arguments);
@@ -55,8 +66,7 @@ pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors
     });
     // What seems to be missing may stand in an argument that couldn't be read.
     let is_readable = errors.is_empty();
-    let root = arguments.root.unwrap_or_else(default_root);
-    let (group_path, group) = group::group(arguments.group, arguments.generators.as_ref(), &root, is_readable, errors);
+    let (group_path, group) = group::group(arguments.group, arguments.generators.as_ref(), is_readable, errors);
     if arguments.expression.is_none() && is_readable {
         let message = match role {
             Role::Lagrangian => "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`",
@@ -73,7 +83,7 @@ pub(crate) fn parse(role: Role, arguments: TokenStream, item: ItemStruct, errors
     let has_names = matches!(item.fields, Fields::Named(_));
     Declaration {
         role,
-        root,
+        root: arguments.root,
         group_path,
         group,
         advected,

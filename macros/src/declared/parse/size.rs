@@ -55,7 +55,7 @@ impl Open {
 }
 
 /// `None` where the arguments are too large to be parsed, which has been reported.
-pub(crate) fn check_size(role: Role, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
+pub(super) fn check(role: Role, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![Open::new(arguments.clone(), 0)];
     let mut count = 0;
     while let Some(mut innermost) = open.pop() {

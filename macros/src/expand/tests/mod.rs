@@ -12,8 +12,9 @@ use proc_macro2::TokenStream;
 use crate::declared::Role;
 use crate::declared::errors::Errors;
 use crate::declared::{check, lower, parse};
-use crate::judged::choose;
+use crate::judged::cheapest;
 use crate::mathematics::derive::Derived;
+use crate::mathematics::derive::derive;
 
 /// (3.13).
 pub(crate) const HEAVY_TOP: &str = "group = SO3, advected(w = up),
@@ -39,12 +40,11 @@ fn expanded(arguments: &str, item: &str) -> TokenStream {
 /// What is derived from a declaration, through all phases.
 pub(crate) fn derived(arguments: &str, item: &str) -> Derived {
     let mut errors = Errors::default();
-    let item = syn::parse_str(item).expect("a struct");
-    let declaration = parse::parse(Role::Lagrangian, tokens(arguments), item, &mut errors);
+    let declaration = parse::declaration(Role::Lagrangian, &tokens(arguments), &tokens(item), &mut errors);
+    let declaration = declaration.expect("a declaration");
     let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
-    let candidates = lower::lower(&declaration, &tree, &mut errors).expect("small");
-    assert!(errors.is_empty(), "{}", errors.to_compile_errors());
-    choose::cheapest(candidates).unwrap_or_else(|_| panic!("nothing to derive")).derived
+    let readings = lower::readings(&declaration, &tree, &mut errors).expect("small");
+    cheapest(readings, derive, &declaration, &tree, &mut errors).expect("something to derive").derived
 }
 
 /// An expansion is an error for the compiler to show, or items; returns whether it is an error.

@@ -29,8 +29,8 @@ use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 use crate::program::{Graph, Input, Kernel, NodeId};
 
 use evaluation::Evaluation;
-pub(crate) use force::force;
-pub(crate) use inertia::{KineticPart, kinetic_part};
+pub(super) use force::force;
+pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
 use step::Step;
 use terms::Terms;
@@ -42,7 +42,7 @@ const SPACING: f64 = 1e-5;
 const TOLERANCE: f64 = 1e-5;
 
 /// Checks all that was derived. The error is the first term that disagrees.
-pub(crate) fn verify(
+pub(super) fn verify(
     declaration: &Declaration,
     tree: &Rc<Tree>,
     lowered: &Lowered,

@@ -30,7 +30,7 @@ pub(crate) struct Displacements {
 }
 
 /// All that follows from the virtual work; what only a Lagrangian has is zero.
-pub(crate) fn force(declared: &Declared, displacements: Displacements) -> Result<Derived, ForceError> {
+pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result<Derived, ForceError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };

@@ -21,7 +21,7 @@ use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, Symbo
 
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
-pub(crate) use force::{Displacements, ForceError, force};
+pub(crate) use force::{Displacements, ForceError};
 pub(crate) use limit::{Limit, LimitError};
 pub(crate) use self_adjoint::SelfAdjointness;
 
@@ -40,6 +40,17 @@ pub(crate) struct Declared {
     pub(crate) step: SymbolId,
     /// The advected parameters `w`.
     pub(crate) advected: Vec<(SymbolId, Variance)>,
+    /// Those of a force's virtual work; a Lagrangian has none.
+    pub(crate) displacements: Option<Displacements>,
+}
+
+/// Why nothing can be derived.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Refusal {
+    Limit(LimitError),
+    Force(ForceError),
+    /// A coefficient left the range of exact arithmetic.
+    Overflow,
 }
 
 /// The symbols that the derivation adds.
@@ -125,7 +136,7 @@ impl Derived {
     }
 
     /// Whether all coefficients stayed in the range of exact arithmetic.
-    pub(crate) fn is_exact(&self) -> bool {
+    fn is_exact(&self) -> bool {
         let limit = &self.limit;
         let all = [
             &self.right_momentum,
@@ -151,8 +162,16 @@ impl Derived {
     }
 }
 
-/// Derives everything.
-pub(crate) fn derive(declared: &Declared) -> Result<Derived, LimitError> {
+/// Derives everything, of a Lagrangian or of a force.
+pub(crate) fn derive(declared: &Declared) -> Result<Derived, Refusal> {
+    let derived = match declared.displacements {
+        None => lagrangian(declared).map_err(Refusal::Limit)?,
+        Some(displacements) => force::force(declared, displacements).map_err(Refusal::Force)?,
+    };
+    if derived.is_exact() { Ok(derived) } else { Err(Refusal::Overflow) }
+}
+
+fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
