@@ -1,7 +1,11 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
-//! This half runs when the user's crate is compiled. Its rooms, in the direction that they depend on each other:
-//! `lib → expand → {judged, emit} → {declared, program} → mathematics`.
+//! This half runs when the user's crate is compiled. Its rooms depend on each other in one direction:
+//!
+//! `lib → expand → emit → judged → {declared, program} → mathematics`
+//!
+//! Tokens are quoted in `emit` alone. Syntax is known in `declared`, where it is read, and in `emit`, where it is
+//! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 
 mod declared;
 mod emit;

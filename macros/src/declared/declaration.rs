@@ -1,5 +1,6 @@
 //! A declaration after parsing: the struct, the attribute's arguments, and what the fields' types promise.
 
+use syn::ext::IdentExt as _;
 use syn::{Expr, Ident, ItemStruct, Path};
 
 use super::Shape;
@@ -74,6 +75,13 @@ pub(crate) struct AdvectedParameter {
     pub(crate) field: Option<usize>,
 }
 
+impl AdvectedParameter {
+    /// The name without `r#`.
+    pub(crate) fn plain_name(&self) -> String {
+        self.name.unraw().to_string()
+    }
+}
+
 impl Declaration {
     /// What an advected parameter's field promises; a plain vector after a mistake.
     pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
@@ -88,6 +96,13 @@ impl Declaration {
 pub(crate) struct Field {
     pub(crate) name: Ident,
     pub(crate) kind: FieldKind,
+}
+
+impl Field {
+    /// The name without `r#`.
+    pub(crate) fn plain_name(&self) -> String {
+        self.name.unraw().to_string()
+    }
 }
 
 /// What a field's type promises.

@@ -3,8 +3,6 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use syn::ext::IdentExt as _;
-
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{Declared, Displacements, Let};
@@ -58,7 +56,7 @@ pub(crate) fn readings_without(
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
         };
         let structure = weaker(Name::Field(index), structure);
-        let name = field.name.unraw().to_string();
+        let name = field.plain_name();
         names.insert(Name::Field(index), symbols.add(name, shape, structure, Stage::Construction));
     }
     let mut advected = Vec::new();
@@ -67,7 +65,7 @@ pub(crate) fn readings_without(
         let shape = ambient(kind.shape());
         let structure = if matches!(kind, FieldKind::Point(_)) { Structure::Point } else { Structure::General };
         let structure = weaker(Name::Advected(index), structure);
-        let id = symbols.add(w.name.unraw().to_string(), shape, structure, Stage::Step);
+        let id = symbols.add(w.plain_name(), shape, structure, Stage::Step);
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }

@@ -1,7 +1,5 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
-use syn::ext::IdentExt as _;
-
 use crate::declared::Declaration;
 use crate::judged::{Chosen, Findings};
 use crate::mathematics::derive::{Declared, Derived, SelfAdjointness};
@@ -153,7 +151,7 @@ fn setting(declaration: &Declaration) -> String {
             Variance::Covariant => ("V* ⊗ V*", "Fᵀ w F"),
             Variance::Mixed => ("V ⊗ V*", "F⁻¹ w F"),
         };
-        let name = w.name.unraw().to_string();
+        let name = w.plain_name();
         format!("    {name}⁺ = F⁻¹·{name} = {} for {name} in {space}\n", moved.replace('w', &name))
     });
     let advected: String = advected.collect();

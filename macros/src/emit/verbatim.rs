@@ -48,7 +48,7 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             FieldKind::Point(_) => quote_spanned!(span=> #root::__private::Parameter::value(&#part)),
             _ => part,
         };
-        bind(&parameter.name.unraw().to_string(), value);
+        bind(&parameter.plain_name(), value);
     }
     for field in &declaration.fields {
         let member = &field.name;
@@ -57,7 +57,7 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         } else {
             quote_spanned!(span=> #root::__private::Parameter::value(&self.#member))
         };
-        bind(&field.name.unraw().to_string(), value);
+        bind(&field.plain_name(), value);
     }
     // In the user's scope `F` and `I` may be constants or unit structs, which a pattern would compare with instead of
     // binding the name; the nearer functions can be hidden.

@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use proc_macro2::Span;
-use syn::ext::IdentExt as _;
 
 use super::verify::KineticPart;
 use crate::declared::check;
@@ -88,7 +87,7 @@ pub(super) fn disagreement(term: &str, tree: &Tree, errors: &mut Errors) {
 fn not_stationary(asymmetric: &[usize], declaration: &Declaration) -> String {
     let beginning = "the kinetic part isn't stationary at `F = I`, so at rest the momentum would grow like 1/h";
     let fields = asymmetric.iter().filter_map(|&index| declaration.fields.get(index));
-    let names: Vec<String> = fields.map(|field| format!("`{}`", field.name.unraw())).collect();
+    let names: Vec<String> = fields.map(|field| format!("`{}`", field.plain_name())).collect();
     if names.is_empty() {
         return format!("{beginning}: write it as a square of `F - I`");
     }

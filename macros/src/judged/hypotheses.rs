@@ -5,8 +5,6 @@
 
 use std::rc::Rc;
 
-use syn::ext::IdentExt as _;
-
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings_without};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
@@ -37,7 +35,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
         }
     }
     for (index, field) in declaration.fields.iter().enumerate() {
-        let (name, field_name) = (Name::Field(index), field.name.unraw());
+        let (name, field_name) = (Name::Field(index), field.plain_name());
         let is_symmetric = matches!(field.kind, FieldKind::SymmetricInertia | FieldKind::DiagonalInertia);
         if is_symmetric && changes_equations(name, Structure::General) {
             used.push(format!("{field_name}ᵀ = {field_name}"));
@@ -45,7 +43,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
         if let FieldKind::Point(rows) = field.kind {
             let carried = declaration.advected.iter().position(|w| w.field == Some(index));
             let (name, shown) = match carried {
-                Some(place) => (Name::Advected(place), declaration.advected[place].name.unraw()),
+                Some(place) => (Name::Advected(place), declaration.advected[place].plain_name()),
                 None => (name, field_name.clone()),
             };
             if without(name, Structure::General).is_none_or(|any| self::operations(&any) != operations) {

@@ -14,7 +14,7 @@ use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
 use crate::declared::errors::{Errors, suggestion};
-use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
+use crate::declared::{AdvectedParameter, Declaration, Field, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::Rational;
 
 /// Deeper expressions than a person writes would overflow the stack of the compiler.
@@ -256,8 +256,8 @@ impl Checker<'_> {
                 return binding.tree.clone();
             }
         }
-        let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.name.unraw() == name);
-        let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.name.unraw() == name);
+        let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.plain_name() == name);
+        let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.plain_name() == name);
         let size = self.declaration.group.size;
         let square = Shape::Matrix(size, size);
         let (shape, found) = match name.as_str() {
@@ -271,7 +271,7 @@ impl Checker<'_> {
                     (self.declaration.advected_kind(index).shape(), Name::Advected(index))
                 } else if let Some(index) = field(self.declaration) {
                     if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
-                        let w = w.name.unraw();
+                        let w = w.plain_name();
                         self.errors.push(
                             span,
                             format!("`{name}` is the spatial value of `{w}`: write `{w}`, which is what the body sees"),
@@ -300,8 +300,8 @@ impl Checker<'_> {
     }
 
     fn unknown_name(&mut self, name: &str, span: Span) {
-        let fields = self.declaration.fields.iter().map(|field| field.name.unraw().to_string());
-        let advected = self.declaration.advected.iter().map(|w| w.name.unraw().to_string());
+        let fields = self.declaration.fields.iter().map(Field::plain_name);
+        let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
         let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
         let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
         let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());

@@ -1,7 +1,5 @@
 //! What is declared must be used, as a forgotten name is a forgotten force.
 
-use syn::ext::IdentExt as _;
-
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Name, Role};
 
@@ -34,20 +32,20 @@ fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     let the = declaration.role.definite();
     for (index, w) in declaration.advected.iter().enumerate() {
         if !used.contains(&Name::Advected(index)) {
-            let name = w.name.unraw();
+            let name = w.plain_name();
             errors.push(w.name.span(), format!("`{name}` isn't used in {the}: remove it from `advected(…)`"));
         }
     }
     for (index, field) in declaration.fields.iter().enumerate() {
         let carried = declaration.advected.iter().any(|w| w.field == Some(index));
         if field.kind.is_wrapped() && !carried {
-            let name = field.name.unraw();
+            let name = field.plain_name();
             errors.push(
                 field.name.span(),
                 format!("the type of `{name}` is for what the group carries: declare it with `advected(w = {name})`"),
             );
         } else if !carried && !used.contains(&Name::Field(index)) {
-            let name = field.name.unraw();
+            let name = field.plain_name();
             errors.push(field.name.span(), format!("`{name}` isn't used in {the}: remove the field, or use it"));
         }
     }

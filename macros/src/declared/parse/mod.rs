@@ -298,7 +298,7 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
 fn points(fields: &mut [(Field, Span)], group: &crate::mathematics::group::Group, errors: &mut Errors) {
     for (field, span) in fields {
         let FieldKind::Point(rows) = field.kind else { continue };
-        let (name, size) = (field.name.unraw(), group.size);
+        let (name, size) = (field.plain_name(), group.size);
         let message = if !group.is_affine() {
             format!(
                 "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{size}<f64>"
@@ -328,7 +328,7 @@ fn advected(
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for (name, field) in pairs {
         let unraw = name.unraw().to_string();
-        let field_names: Vec<String> = fields.iter().map(|(field, _)| field.name.unraw().to_string()).collect();
+        let field_names: Vec<String> = fields.iter().map(|(field, _)| field.plain_name()).collect();
         if ["F", "I", "h"].contains(&unraw.as_str()) || field_names.contains(&unraw) {
             let the = role.definite();
             errors.push(name.span(), format!("`{unraw}` already has a meaning in {the}: choose another name"));

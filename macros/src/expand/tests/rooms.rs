@@ -1,0 +1,94 @@
+//! The rooms of `lib.rs`: who may know whom, and who may know tokens.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Every source but tests: its path from `src`, and its code without comments.
+fn sources() -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let (mut open, mut sources) = (vec![root.clone()], BTreeMap::new());
+    while let Some(path) = open.pop() {
+        if path.is_dir() {
+            let entries = std::fs::read_dir(path).expect("a directory");
+            let paths = entries.map(|entry| entry.expect("an entry").path());
+            open.extend(paths.filter(|path: &PathBuf| !path.ends_with("tests") && !path.ends_with("tests.rs")));
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).expect("text");
+        let code: Vec<&str> = text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+        let name: Vec<String> = path.strip_prefix(&root).expect("below src").iter().map(text_of).collect();
+        sources.insert(name.join("/"), code.join("\n"));
+    }
+    assert!(sources.len() > 30);
+    sources
+}
+
+fn text_of(part: &std::ffi::OsStr) -> String {
+    part.to_string_lossy().into_owned()
+}
+
+/// `judged` of `judged/verify/mod.rs`, `expand` of `expand.rs`.
+fn room(file: &str) -> &str {
+    file.split('/').next().unwrap_or_default().trim_end_matches(".rs")
+}
+
+/// The floor of each room, from below, as `lib.rs` states it.
+fn floors() -> BTreeMap<String, usize> {
+    let page = include_str!("../../lib.rs");
+    let line = page.lines().find_map(|line| line.strip_prefix("//! `lib →")).expect("the direction of dependency");
+    let floors = line.trim_end_matches('`').split('→').rev().enumerate();
+    let rooms = |(floor, rooms): (usize, &'static str)| {
+        rooms.split(',').map(move |room| (room.trim_matches([' ', '{', '}']).to_owned(), floor))
+    };
+    floors.flat_map(rooms).chain([("lib".to_owned(), usize::MAX)]).collect()
+}
+
+/// The first names of all paths that begin with `crate`.
+fn named(code: &str) -> BTreeSet<&str> {
+    let mut names = BTreeSet::new();
+    for (_, rest) in code.match_indices("crate::").map(|(at, found)| code.split_at(at + found.len())) {
+        let group = rest.strip_prefix('{').and_then(|inner| inner.split("};").next());
+        for path in group.map_or(vec![rest], |group| group.split(',').collect()) {
+            names.extend(path.trim().split(|c: char| !c.is_alphanumeric() && c != '_').next());
+        }
+    }
+    names
+}
+
+#[test]
+fn depend_in_one_direction() {
+    let floors = floors();
+    for (file, code) in sources() {
+        let room = room(&file);
+        let floor = floors.get(room).unwrap_or_else(|| panic!("{room} has no place in lib.rs"));
+        for other in named(&code).into_iter().filter(|other| *other != room) {
+            let below = floors.get(other).unwrap_or_else(|| panic!("{file}: crate::{other} isn't a room"));
+            assert!(below < floor, "{file}: {room} may not know {other}");
+        }
+        // Above its own room there is only the root.
+        let depth = file.split('/').count() - usize::from(file.ends_with("/mod.rs"));
+        assert!(!code.contains(&"super::".repeat(depth)) || !file.contains('/'), "{file}: `super` leaves {room}");
+    }
+}
+
+#[test]
+fn tokens_are_quoted_in_one_room() {
+    let only = |what: &[&str], rooms: &[&str]| {
+        for (file, code) in sources().iter().filter(|(file, _)| !rooms.contains(&room(file))) {
+            let found = what.iter().find(|what| code.contains(**what));
+            assert!(found.is_none(), "{file}: {found:?} belongs in {rooms:?}");
+        }
+    };
+    only(&["quote!", "quote_spanned!", "format_ident!"], &["emit"]);
+    only(&["syn::"], &["declared", "emit"]);
+    only(&["Span"], &["declared", "judged", "emit"]);
+    only(&["TokenStream", "proc_macro"], &["declared", "judged", "emit", "expand", "lib"]);
+}
+
+/// Their order differs from run to run, which no repetition in one process shows for sure.
+#[test]
+fn nothing_is_hashed() {
+    for (file, code) in sources() {
+        assert!(!code.contains("HashMap") && !code.contains("HashSet"), "{file}");
+    }
+}
