@@ -3,17 +3,22 @@
 pub use core;
 pub use nalgebra;
 
+// What a declaration becomes.
+pub use crate::{
+    CayleyRetraction, ContravariantTensor, ContravariantVector, CovariantTensor, DiscreteLagrangian, Effect, Force,
+    LeftInvariant, LieGroup, MixedTensor, Operations, Parts, Real, Retraction, SO3, SetupError, SharedBy, Sum,
+    WithKinetic, WithoutKinetic,
+};
+
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
-use crate::LieGroup;
 use crate::advected::homogeneous;
 pub use crate::advected::inverse_increment;
 use crate::entries::Entries as _;
 pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::scalar::real;
 pub use crate::scene::SceneVisitor;
-use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};
+use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia};
 
 /// `F⁻¹` of a group element.
 #[inline]

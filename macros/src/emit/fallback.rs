@@ -22,13 +22,13 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let span = Span::mixed_site();
     let mut silent = Errors::default();
     let header = Header::new(&parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent));
-    let root = &header.root;
+    let private = &header.private;
     let none = quote_spanned!(span=> ());
     let types = header.types(true, &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let effect = header.implementation("Effect");
     let addition = header.addition();
-    let core = quote_spanned!(span=> #root::__private::core);
+    let core = quote_spanned!(span=> #private::core);
     let of_increment = [
         ("right_momentum", &vector),
         ("left_momentum", &vector),
@@ -77,8 +77,8 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         #effect {
             #types
             const DERIVATION: &'static #core::primitive::str = "";
-            fn validate(&self) -> #core::result::Result<(), #root::SetupError> { loop {} }
-            fn describe(&self, _: &mut dyn #root::__private::SceneVisitor<#scalar>) { loop {} }
+            fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
+            fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
             fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
             fn inertia(&self) -> #square { loop {} }

@@ -43,7 +43,7 @@ pub(crate) fn implementation(
     let validate = emitter.validate();
     let describe = emitter.describe();
     let advected = emitter.advected();
-    let root = &header.root;
+    let private = &header.private;
     let span = Span::mixed_site();
     let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, kernel);
@@ -57,7 +57,7 @@ pub(crate) fn implementation(
     let body = &stages.methods;
     let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
-        quote_spanned!(span=> const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;)
+        quote_spanned!(span=> const SELF_ADJOINT: #private::core::primitive::bool = #is_self_adjoint;)
     });
     quote_spanned! {span=>
         #item
@@ -77,7 +77,7 @@ pub(crate) fn implementation(
             #parts
 
             #[doc = #documentation]
-            const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
+            const DERIVATION: &'static #private::core::primitive::str = #derivation;
 
             #validate
             #describe
@@ -156,7 +156,7 @@ impl Emitter<'_> {
         expression: &Expression,
         equations: &[docs::Equation],
     ) -> TokenStream {
-        let (span, d, root) = (Span::mixed_site(), self.derived, &self.header.root);
+        let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
         let (mut graph, none) = self.lets.clone();
         let (outputs, result) = match form {
             Form::Scalar => {
@@ -168,12 +168,12 @@ impl Emitter<'_> {
         };
         let documentation = docs::of(equations, name, &graph, &outputs);
         let inverse = stages::uses(&graph, &outputs, d.directions.inverse).then(
-            || quote_spanned!(span=> let inverse = #root::__private::inverse_of::<<Self as #root::Effect>::Group>(*f);),
+            || quote_spanned!(span=> let inverse = #private::inverse_of::<<Self as #private::Effect>::Group>(*f);),
         );
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
-        let w = quote_spanned!(span=> w: &<Self as #root::Effect>::Advected);
+        let w = quote_spanned!(span=> w: &<Self as #private::Effect>::Advected);
         let arguments = match takes {
             Takes::Nothing => TokenStream::new(),
             Takes::Advected => w,
@@ -187,40 +187,40 @@ impl Emitter<'_> {
 
     fn validate(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let root = &self.header.root;
+        let private = &self.header.private;
         let checks = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
             if field.kind == crate::declared::FieldKind::Scalar {
-                quote_spanned!(span=> #root::__private::validate_scalar(self.#name, #text)?;)
+                quote_spanned!(span=> #private::validate_scalar(self.#name, #text)?;)
             } else {
-                quote_spanned!(span=> #root::__private::Parameter::validate(&self.#name, #text)?;)
+                quote_spanned!(span=> #private::Parameter::validate(&self.#name, #text)?;)
             }
         });
         quote_spanned! {span=>
-            fn validate(&self) -> #root::__private::core::result::Result<(), #root::SetupError> {
+            fn validate(&self) -> #private::core::result::Result<(), #private::SetupError> {
                 #(#checks)*
-                #root::__private::core::result::Result::Ok(())
+                #private::core::result::Result::Ok(())
             }
         }
     }
 
     fn describe(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let root = &self.header.root;
+        let private = &self.header.private;
         let scalar = &self.header.scalar;
         let fields = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
             if field.kind == crate::declared::FieldKind::Scalar {
-                quote_spanned!(span=> #root::__private::SceneVisitor::parameter(visitor, #text, self.#name);)
+                quote_spanned!(span=> #private::SceneVisitor::parameter(visitor, #text, self.#name);)
             } else {
-                quote_spanned!(span=> #root::__private::Parameter::describe(&self.#name, #text, visitor);)
+                quote_spanned!(span=> #private::Parameter::describe(&self.#name, #text, visitor);)
             }
         });
         quote_spanned! {span=>
-            fn describe(&self, visitor: &mut dyn #root::__private::SceneVisitor<#scalar>) {
-                #root::__private::SceneVisitor::term(visitor, Self::DERIVATION);
+            fn describe(&self, visitor: &mut dyn #private::SceneVisitor<#scalar>) {
+                #private::SceneVisitor::term(visitor, Self::DERIVATION);
                 #(#fields)*
             }
         }

@@ -3,6 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::{HEAVY_TOP, expanded, tokens};
+use crate::declared::Role;
+
 /// Every source but tests: its path from `src`, and its code without comments.
 fn sources() -> BTreeMap<String, String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
@@ -83,6 +86,31 @@ fn tokens_are_quoted_in_one_room() {
     only(&["syn::"], &["declared", "emit"]);
     only(&["Span"], &["declared", "judged", "emit"]);
     only(&["TokenStream", "proc_macro"], &["declared", "judged", "emit", "expand", "lib"]);
+}
+
+/// Where the library keeps its public names is its own affair.
+#[test]
+fn expansions_name_the_private_module_alone() {
+    let emitted = sources().into_iter().filter(|(file, _)| room(file) == "emit").map(|(_, code)| code);
+    let roots = emitted.flat_map(|code| code.split("#root").skip(1).map(str::to_owned).collect::<Vec<_>>());
+    assert!(roots.map(|rest| assert!(rest.starts_with("::__private"), "{rest}")).count() > 0);
+    let work = "group = SO3, work = h * exp(a).trace() * log(F).dot(&(inverse(J) * eta))";
+    let force =
+        crate::expand::expand(Role::Force, tokens(work), &tokens("struct Push { a: Vector3<f64>, J: Inertia }"));
+    let generic =
+        "struct Top<T: Real> { J_d: DiagonalNonstandardInertia<T>, m: T, g: T, rho: Vector3<T>, up: Vector3<T> }";
+    let planar =
+        "group = SE2, advected(w = up, p = P, c = C), l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)
+        + h * w.dot(&p) * (c * inverse(F)).trace()";
+    let fields = "struct Planar { J: Matrix3<f64>, up: Point2<f64>, P: Vector3<f64>, C: MixedTensor<f64, 3> }";
+    let (top, planar) = (expanded(HEAVY_TOP, generic), expanded(planar, fields));
+    let refused = expanded("group = SO3, l_d = rho", &super::top("Inertia"));
+    for (expansion, refused) in [(force, false), (top, false), (planar, false), (refused, true)] {
+        assert_eq!(super::is_refused(&expansion), refused, "{expansion}");
+        let text = expansion.to_string();
+        let mut named = text.split("liestep ::").skip(1);
+        assert!(named.all(|rest| rest.starts_with(" __private ::")), "{text}");
+    }
 }
 
 /// Their order differs from run to run, which no repetition in one process shows for sure.
