@@ -14,6 +14,14 @@ pub(super) struct Equation {
     source: &'static str,
 }
 
+impl Equation {
+    /// `left = right    [source]`.
+    pub(super) fn line(&self) -> String {
+        let source = if self.source.is_empty() { String::new() } else { format!("    [{}]", self.source) };
+        format!("{} = {}{source}", self.left, self.right)
+    }
+}
+
 /// The closed `let`s and their multipliers, which the equations are written in.
 pub(super) fn lets(derived: &Derived) -> String {
     let symbols = &derived.symbols;
@@ -77,9 +85,7 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
 pub(super) fn of(equations: &[Equation], method: &str, graph: &Graph, outputs: &[NodeId]) -> String {
     let operations = count(graph, outputs, None);
     let found = equations.iter().find(|equation| equation.method == method);
-    let (left, right, source) = found.map_or(("", "", ""), |e| (e.left, e.right.as_str(), e.source));
-    let source = if source.is_empty() { String::new() } else { format!("    [{source}]") };
-    format!("```text\n{left} = {right}{source}\n```\n\n{operations}.")
+    format!("```text\n{}\n```\n\n{operations}.", found.map(Equation::line).unwrap_or_default())
 }
 
 /// The documentation of a stage.
@@ -94,15 +100,24 @@ pub(super) fn derivation(
     equations: &[Equation],
     findings: &Findings,
 ) -> String {
-    let line = |equation: &Equation| {
-        let source = if equation.source.is_empty() { String::new() } else { format!("    [{}]", equation.source) };
-        format!("{}\n    {} = {}{source}\n", equation.method, equation.left, equation.right)
-    };
+    let line = |equation: &Equation| format!("{}\n    {}\n", equation.method, equation.line());
     let hypotheses = match findings.hypotheses.as_slice() {
         [] => "none".to_owned(),
         used => used.join(", "),
     };
-    let kernel = &chosen.kernel;
+    let sections = [
+        ("hypotheses used", hypotheses),
+        ("self-adjoint", adjoint(findings.self_adjointness)),
+        ("Newton system", candidates(&chosen.kernel)),
+        ("operations", costs(&chosen.kernel)),
+    ];
+    let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
+    let beginning = [setting(declaration), lets(&chosen.derived)];
+    beginning.into_iter().chain(equations.iter().map(line)).chain(sections).collect()
+}
+
+/// The operations of each stage, one a line.
+pub(super) fn costs(kernel: &Kernel) -> String {
     let before = [kernel.kick_before.as_slice(), &kernel.residual, &kernel.jacobian].concat();
     // With a = μ + k₀.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
@@ -113,26 +128,14 @@ pub(super) fn derivation(
     } else {
         String::new()
     };
-    let operations = format!(
+    format!(
         "construction: {}\n    step, before the solve: {}\n    Newton iteration: {}{alone}\n    step, after the solve: {}",
         count(&kernel.graph, &[before.as_slice(), &kernel.kick_after].concat(), Some(Stage::Construction)),
         before_the_solve,
         count(&kernel.graph, &before, Some(Stage::Iteration)),
         count(&kernel.graph, &kernel.kick_after, Some(Stage::Step))
             + count(&kernel.graph, &kernel.kick_after, Some(Stage::Iteration)),
-    );
-    let sections = [
-        ("hypotheses used", hypotheses),
-        ("self-adjoint", adjoint(findings.self_adjointness)),
-        ("Newton system", candidates(kernel)),
-        ("operations", operations),
-    ];
-    let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
-    [setting(declaration), lets(&chosen.derived)]
-        .into_iter()
-        .chain(equations.iter().map(line))
-        .chain(sections)
-        .collect()
+    )
 }
 
 /// The group, and how it moves the advected parameters.
@@ -174,16 +177,13 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
 
 /// Whether the Lagrangian is self-adjoint, how that was found, and what follows.
 fn adjoint(found: SelfAdjointness) -> String {
+    let even = "even order; a step of −h undoes a step of h";
     let (sign, how, consequence) = match found {
-        SelfAdjointness::Symbolic => ("=", "by the normal forms", "even order; a step of −h undoes a step of h"),
-        SelfAdjointness::Exact => (
-            "=",
-            "at random points of the field of 2⁶¹ − 1 elements, wrong with a probability below 2⁻⁵⁰",
-            "even order; a step of −h undoes a step of h",
-        ),
-        SelfAdjointness::Numeric => {
-            ("=", "at random points, to rounding", "even order; a step of −h undoes a step of h")
+        SelfAdjointness::Symbolic => ("=", "by the normal forms", even),
+        SelfAdjointness::Exact => {
+            ("=", "at random points of the field of 2⁶¹ − 1 elements, wrong with a probability below 2⁻⁵⁰", even)
         }
+        SelfAdjointness::Numeric => ("=", "at random points, to rounding", even),
         SelfAdjointness::ForPoints => (
             "≠",
             "equal, at random points, if all vectors have 1 for their last coordinate, as the types of points promise",

@@ -7,6 +7,7 @@ mod docs;
 mod fallback;
 mod header;
 mod inputs;
+mod page;
 mod stages;
 mod verbatim;
 
@@ -40,6 +41,7 @@ pub(crate) fn implementation(
     let declared = verbatim::declared(declaration, &header);
     let derivation = docs::derivation(declaration, chosen, &texts, findings);
     let documentation = format!("```text\n{derivation}```");
+    let item = page::documented(item, &page::page(declaration, chosen, &texts, findings));
     let validate = emitter.validate();
     let describe = emitter.describe();
     let advected = emitter.advected();
@@ -77,7 +79,11 @@ pub(crate) fn implementation(
             #parts
 
             #[doc = #documentation]
-            const DERIVATION: &'static #private::core::primitive::str = #derivation;
+            const DERIVATION: &'static #private::core::primitive::str = {
+                // So that rustdoc shows no value: it would escape each letter that isn't ASCII.
+                const TEXT: &#private::core::primitive::str = #derivation;
+                TEXT
+            };
 
             #validate
             #describe
