@@ -85,7 +85,8 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
 pub(super) fn of(equations: &[Equation], method: &str, graph: &Graph, outputs: &[NodeId]) -> String {
     let operations = count(graph, outputs, None);
     let found = equations.iter().find(|equation| equation.method == method);
-    format!("```text\n{}\n```\n\n{operations}.", found.map(Equation::line).unwrap_or_default())
+    let equation = found.map(|equation| format!("```text\n{}\n```\n\n", equation.line()));
+    format!("{}{operations}.", equation.unwrap_or_default())
 }
 
 /// The documentation of a stage.

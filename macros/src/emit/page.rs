@@ -25,7 +25,7 @@ pub(super) fn documented(item: &TokenStream, page: &str) -> TokenStream {
     }
     let rest: TokenStream = tokens.collect();
     // As `///` writes it: in lines that begin with a space.
-    let page = page.lines().fold(String::new(), |page, line| page + "\n " + line);
+    let page = page.lines().fold(String::new(), |page, line| page + if line.is_empty() { "\n" } else { "\n " } + line);
     quote_spanned! {Span::mixed_site()=>
         #attributes
         #[doc = #page]

@@ -40,7 +40,8 @@ fn page(arguments: &str, item: &str) -> String {
         syn::Meta::NameValue(doc) if doc.path.is_ident("doc") => text_of(&doc.value),
         _ => None,
     });
-    values.collect::<Vec<_>>().join("\n")
+    let lines = values.collect::<Vec<_>>().join("\n");
+    lines.lines().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n")
 }
 
 /// Where an editor shows it; the user's own attributes come first, and the item stays as it is.
