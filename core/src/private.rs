@@ -3,10 +3,13 @@
 pub use core;
 pub use nalgebra;
 
+// What asks a group of one's own for its generators, and declares it.
+pub use liestep_macros::{force, lagrangian, matrix_group};
+
 // What a declaration becomes.
 pub use crate::{
     CayleyRetraction, ContravariantTensor, ContravariantVector, CovariantTensor, DiscreteLagrangian, Effect, Force,
-    LeftInvariant, LieGroup, MixedTensor, Operations, Parts, Real, Retraction, SO3, SetupError, SharedBy, Sum,
+    Generators, LeftInvariant, LieGroup, MatrixGroup, MixedTensor, Operations, Parts, Real, Retraction, SO3, SetupError, SharedBy, Sum,
     WithKinetic, WithoutKinetic,
 };
 
@@ -18,7 +21,7 @@ use crate::entries::Entries as _;
 pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
 pub use crate::scalar::real;
 pub use crate::scene::SceneVisitor;
-use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia};
+use crate::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
 
 /// `F⁻¹` of a group element.
 #[inline]

@@ -9,11 +9,21 @@ use crate::{emit, judged};
 
 /// The item with its integrator, or with all mistakes and a stand-in.
 pub(crate) fn expand(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
+    if let Some(asked) = parse::asked(&arguments) {
+        return emit::ask(role, &asked, item);
+    }
     let mut errors = Errors::default();
     match implementation(role, &arguments, item, &mut errors) {
         Some(implementation) if errors.is_empty() => implementation,
         _ => emit::mistakes(role, arguments, item, &errors),
     }
+}
+
+/// The items of a group of one's own, or its mistakes.
+pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
+    let mut errors = Errors::default();
+    let group = parse::own_group(tokens, &mut errors);
+    emit::own_group(group.as_ref(), &errors)
 }
 
 /// Every phase adds its mistakes to `errors`, and gives nothing where the next one couldn't go on.

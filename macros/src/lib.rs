@@ -20,7 +20,8 @@ mod program;
 /// ```text
 /// #[lagrangian(
 ///     group = SO3,                    the group that F belongs to
-///     generators = […],               its generators, row by row, if it is a group of your own
+///     generators = […],               its generators, row by row, if it is a group of your own; of one that
+///                                     `matrix_group!` declares, `group = Name!` finds them
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings
 ///     crate = path,                   where liestep is found, if not at `::liestep`
@@ -72,4 +73,31 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 #[proc_macro_attribute]
 pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
     expand::expand(declared::Role::Force, arguments.into(), &item.into()).into()
+}
+
+/// Declares a matrix group of one's own: a type alias for it, and its generators, written once.
+///
+/// ```text
+/// matrix_group! {
+///     /// The affine maps `x ↦ a x + b` of the line, `a > 0`.
+///     pub type Affine = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
+///
+///     fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+///         m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
+///     }
+/// }
+///
+/// #[lagrangian(group = Affine!, …)]
+/// ```
+///
+/// The matrices are the basis `E_k` of the group's Lie algebra, each by rows. The functions are those of the trait
+/// `Generators`, which the marker `AffineGenerators` implements; `relation` is required. `crate = path;` in front says
+/// where liestep is found, if not at `::liestep`.
+///
+/// `group = Affine!` asks a macro of the group's name for the generators. The macro is found where the type is, within
+/// the crate; from another crate, write `group = Affine` with `generators = […]`, which the compiler compares with those
+/// of the group.
+#[proc_macro]
+pub fn matrix_group(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand::matrix_group(tokens.into()).into()
 }

@@ -7,6 +7,7 @@ mod docs;
 mod fallback;
 mod header;
 mod inputs;
+mod own_group;
 mod page;
 mod stages;
 mod verbatim;
@@ -24,6 +25,7 @@ use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
 use code::Form;
 pub(crate) use fallback::mistakes;
 use header::Header;
+pub(crate) use own_group::{ask, own_group};
 
 /// The item with the whole implementation.
 pub(crate) fn implementation(

@@ -29,7 +29,10 @@ pub(super) fn group(
         Some(matrices) => generators(matrices).map(|(size, generators)| Group::declared(size, generators)),
         None => built_in(&name).ok_or_else(|| {
             let (near, known) = (suggestion(&name, NAMES), NAMES.join(", "));
-            let own = "of a group of your own give the generators too: `generators = [[[0.0, -1.0], [1.0, 0.0]]]`";
+            let own = format!(
+                "of a group that `matrix_group!` declares write `group = {name}!`, of another give the generators too: \
+                 `generators = [[[0.0, -1.0], [1.0, 0.0]]]`"
+            );
             syn::Error::new_spanned(&path, format!("the group `{name}` isn't known{near}\nknown: {known}; {own}"))
         }),
     };
@@ -43,7 +46,7 @@ pub(super) fn group(
 }
 
 /// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows.
-fn generators(array: &ExprArray) -> syn::Result<(usize, Vec<Vec<Rational>>)> {
+pub(super) fn generators(array: &ExprArray) -> syn::Result<(usize, Vec<Vec<Rational>>)> {
     let rows = |expression: &Expr| match expression {
         Expr::Array(array) => Ok(array.elems.clone()),
         other => Err(syn::Error::new(other.span(), "write a matrix as an array of rows: `[[0.0, -1.0], [1.0, 0.0]]`")),

@@ -1,6 +1,7 @@
 //! The attribute's arguments and the struct's fields.
 
 mod group;
+mod own_group;
 mod size;
 
 use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
@@ -15,6 +16,8 @@ use syn::{
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{AdvectedParameter, Declaration, Field, FieldKind, Role, Scalar};
 use crate::mathematics::symbolic::Variance;
+
+pub(crate) use own_group::{Asked, OwnGroup, asked, own_group};
 
 /// The declaration, with its mistakes reported; `None` where nothing of it can be read.
 pub(crate) fn declaration(

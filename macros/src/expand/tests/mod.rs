@@ -4,6 +4,7 @@ mod derivation;
 mod determinism;
 mod fuzz;
 mod higher_order;
+mod own_group;
 mod rooms;
 mod sizes;
 mod time;
