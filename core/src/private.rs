@@ -3,18 +3,26 @@
 pub use core;
 pub use nalgebra;
 
+// What asks a group of one's own for its generators, and declares it.
+pub use liestep_macros::{force, lagrangian, matrix_group};
+
+// What a declaration becomes.
+pub use crate::error::SetupError;
+pub use crate::groups::rotation_functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
+pub use crate::groups::{CayleyRetraction, Retraction, inverse_increment};
+pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
+pub use crate::mechanics::{
+    DiscreteLagrangian, Effect, Force, LeftInvariant, Operations, Parts, SceneVisitor, SharedBy, Sum, WithKinetic,
+    WithoutKinetic,
+};
+pub use crate::numbers::{Real, real};
+
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
-use crate::error::SetupError;
-pub use crate::groups::inverse_increment;
-pub use crate::groups::rotation_functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
-use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Generators, MatrixGroup, MixedTensor};
-use crate::groups::{LieGroup, homogeneous};
-pub use crate::mechanics::SceneVisitor;
+use crate::groups::homogeneous;
 use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
 use crate::numbers::Entries as _;
-use crate::numbers::Real;
-pub use crate::numbers::real;
 
 /// `F⁻¹` of a group element.
 #[inline]

@@ -1,8 +1,8 @@
 //! The methods, ours and others', behind one way to run them.
 
+use declarations::motions::End;
 use liestep::effects::PrincipalBody;
 use liestep::motion::Plan;
-use declarations::motions::End;
 use liestep::{
     CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedFlow, PreprocessedOrder, Regular, SO3, SplitBody,
     SplittingScheme, Stepper, SymmetricBody,

@@ -5,7 +5,10 @@ use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::Motion;
 use declarations::{FourthOrderTop, LogTop, Top as _};
 use declarations::{FreeBody, FullTop, HeavyTop};
-use liestep::{DiscreteLagrangian, Effect as _, effects, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody, SetupError, SO3, StepError, Stepper};
+use liestep::{
+    DiscreteLagrangian, Effect as _, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody, SO3, SetupError,
+    StepError, Stepper, effects,
+};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 

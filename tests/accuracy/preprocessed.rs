@@ -76,7 +76,8 @@ fn preprocessed_bodies_keep_energy_and_momentum() {
 fn s5_negative_preprocessed_step_is_the_inverse_map() {
     let mut random = Random::new(42);
     for (_, preprocessing) in ORDERS {
-        let [there, back] = [0.2, -0.2].map(|h| Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, h, preprocessing).unwrap());
+        let [there, back] =
+            [0.2, -0.2].map(|h| Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, h, preprocessing).unwrap());
         for _ in 0..10 {
             let mut state = there.start(random.rotation(), random.vector()).unwrap();
             let before = state;

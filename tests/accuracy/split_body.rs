@@ -5,7 +5,10 @@ use checks::structure::poisson::TOLERANCE;
 use declarations::HeavyTop;
 use declarations::Motion;
 use liestep::effects::PrincipalBody;
-use liestep::{Inertia, KineticFlow, LieGroup as _, PreprocessedOrder, Real, SetupError, SO3, SplitBody, SplittingScheme, StepError, Stepper, SymmetricBody, Turn};
+use liestep::{
+    Inertia, KineticFlow, LieGroup as _, PreprocessedOrder, Real, SO3, SetupError, SplitBody, SplittingScheme,
+    StepError, Stepper, SymmetricBody, Turn,
+};
 use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use workbench::measure::{order, relative};
@@ -71,7 +74,8 @@ fn moved<K: KineticFlow<f64>>(body: &K, t: f64, steps: u32, momentum: &Vector3<f
 fn expected(moments: [f64; 3], t: f64, momentum: &Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
     let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
     let steps = 1000;
-    let body = Stepper::preprocessed(PrincipalBody { J_d: nonstandard }, t / f64::from(steps), PreprocessedOrder::Ten).unwrap();
+    let body = Stepper::preprocessed(PrincipalBody { J_d: nonstandard }, t / f64::from(steps), PreprocessedOrder::Ten)
+        .unwrap();
     let mut state = body.start_with_momentum(SO3::identity(), *momentum).unwrap();
     for _ in 0..steps {
         body.step(&mut state).unwrap();

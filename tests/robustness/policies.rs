@@ -3,7 +3,7 @@
 use declarations::HeavyTop;
 use declarations::Motion;
 use declarations::{CayleyTop, Top as _};
-use liestep::{Remedy, SO3, State, StepError, Stepper, StepReport};
+use liestep::{Remedy, SO3, State, StepError, StepReport, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -42,7 +42,7 @@
 //!
 //! # What the macro derives
 //!
-//! Files are relative to `macros/src/derive`; the rules of differentiation are in `macros/src/symbolic/variation.rs`.
+//! Files are relative to `macros/src/mathematics/derive`; the rules of differentiation are in `macros/src/mathematics/symbolic/variation.rs`.
 //!
 //! | equation | what | file |
 //! |---|---|---|

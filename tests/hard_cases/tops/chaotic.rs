@@ -2,7 +2,7 @@
 //! that of the continuous motion; energy and Casimirs stay all the same.
 
 use declarations::Motion;
-use liestep::{Stepper};
+use liestep::Stepper;
 
 const H: f64 = 0.02;
 

@@ -1,8 +1,8 @@
 //! How many operations the Lagrangians of higher order come to.
 
 use super::derived;
-use crate::scalar::{Given, Graph, NodeId, count, kernel, with_values};
-use crate::symbolic::Stage;
+use crate::mathematics::symbolic::Stage;
+use crate::program::{Given, Graph, NodeId, count, kernel, with_values};
 
 const GEODESIC: &str = include_str!("../../../../examples/declarations/log_top.rs");
 const FOURTH: &str = include_str!("../../../../examples/declarations/fourth_order_top.rs");
