@@ -225,9 +225,9 @@ fn a_composition_of_one_stage_is_the_step_itself() {
     let one = CompositionScheme::new("one", 2, 2, &[1.0]);
     let motion = Motion::looping();
     let composed = Stepper::composed(motion.top.clone(), 0.01, one).unwrap();
-    let stepper = liestep::Stepper::new(motion.top.clone(), 0.01).unwrap();
+    let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
-    let mut alone = state;
+    let mut alone = stepper.start(motion.attitude, motion.velocity).unwrap();
     for _ in 0..100 {
         composed.step(&mut state).unwrap();
         stepper.step(&mut alone).unwrap();

@@ -5,9 +5,11 @@ use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::Motion;
 use declarations::{FourthOrderTop, LogTop, Top as _};
 use declarations::{FreeBody, FullTop, HeavyTop};
+use liestep::mechanics::RigidScene;
+use liestep::methods::{Collocated, Gauss};
 use liestep::{
-    DiscreteLagrangian, Effect as _, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody, SO3, SetupError,
-    StepError, Stepper, effects,
+    Effect as _, Gravity, LieGroup as _, NonstandardInertia, RigidBody, SO3, SetupError, State, StepError, Stepper,
+    effects,
 };
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
@@ -17,9 +19,13 @@ use crate::many_digits;
 use crate::many_digits::collocation::{self, Tableau};
 
 /// `L` of `PAIRS` pairs of stages after so many steps.
-fn run<L, const PAIRS: usize>(gauss: &Gauss<L, PAIRS>, mut state: GaussState<PAIRS>, steps: u32) -> GaussState<PAIRS>
+fn run<L, const PAIRS: usize>(
+    gauss: &Stepper<L, Gauss<L, PAIRS>>,
+    mut state: State<SO3, L::Advected, Collocated<PAIRS>>,
+    steps: u32,
+) -> State<SO3, L::Advected, Collocated<PAIRS>>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+    L: RigidScene<Scalar = f64>,
 {
     for _ in 0..steps {
         gauss.step(&mut state).unwrap();
@@ -91,7 +97,7 @@ fn poisson_defect<const PAIRS: usize>(top: &HeavyTop, h: f64, momentum: &Vector3
     let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
         let gauss = Stepper::collocated::<PAIRS>(HeavyTop { up: *w, ..top.clone() }, h).unwrap();
         let state = run(&gauss, gauss.start_with_momentum(SO3::identity(), *momentum).unwrap(), 1);
-        (state.momentum(), gauss.advected(&state))
+        (state.momentum(), state.advected())
     };
     defect_of::<HeavyTop, 3, 3>(step, momentum, w).0
 }
@@ -155,7 +161,7 @@ fn assert_kept<const PAIRS: usize>(motion: &Motion, h: f64) {
         drift = drift.max(((state.momentum_along(&Vector3::z()) - vertical) / vertical).abs());
     }
     let orthogonality = state.attitude().defect();
-    let parameter = (gauss.advected(&state).norm() - 1.0).abs();
+    let parameter = (state.advected().norm() - 1.0).abs();
     println!("{} stages: vertical {drift:.1e}, orthogonality {orthogonality:.1e}, |w| {parameter:.1e}", 2 * PAIRS);
     assert!(drift < 5e-13 && orthogonality < 2e-15 && parameter < 1e-15, "{drift:e}, {orthogonality:e}, {parameter:e}");
     let d = motion.top.J_d.diagonal();

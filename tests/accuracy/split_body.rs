@@ -36,7 +36,7 @@ fn end<const N: usize>(scheme: SplittingScheme, motion: &Motion, h: f64, steps: 
     let kinetic = SplitBody::<N>::new(&motion.top.ordinary_inertia()).unwrap();
     let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
-    splitting.advance(&mut state, steps.into()).unwrap();
+    splitting.run(&mut state, steps.into()).unwrap();
     (state.attitude(), splitting.velocity(&state))
 }
 
@@ -218,7 +218,7 @@ fn momenta_are_kept() {
         let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
         let before = state.spatial_momentum();
-        splitting.advance(&mut state, 100_000).unwrap();
+        splitting.run(&mut state, 100_000).unwrap();
         let after = state.spatial_momentum();
         let is_free = motion.top.m * motion.top.g == 0.0;
         let moved = if is_free { relative(&after, &before) } else { ((after.z - before.z) / before.z).abs() };

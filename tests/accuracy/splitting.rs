@@ -23,7 +23,7 @@ pub(crate) fn symmetric(top: &HeavyTop) -> SymmetricBody {
 fn end<K: KineticFlow<f64>>(kinetic: K, scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
     let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
-    splitting.advance(&mut state, steps.into()).unwrap();
+    splitting.run(&mut state, steps.into()).unwrap();
     (state.attitude(), splitting.velocity(&state))
 }
 
@@ -150,7 +150,7 @@ fn force_gradients_of_any_potential() {
     let run = |scheme, steps: u32| {
         let splitting = Stepper::split(scene(), 2.0 / f64::from(steps), symmetric(&top), scheme).unwrap();
         let mut state = splitting.start(SO3::identity(), Vector3::new(0.5, 2.0, 6.0)).unwrap();
-        splitting.advance(&mut state, steps.into()).unwrap();
+        splitting.run(&mut state, steps.into()).unwrap();
         (*state.attitude().as_matrix(), state.momentum())
     };
     let exact = run(SplittingScheme::NYSTROM_14, 800);
@@ -222,7 +222,7 @@ fn many_steps_are_single_steps() {
         let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
         let mut many = splitting.start(motion.attitude, motion.velocity).unwrap();
         let mut single = many;
-        splitting.advance(&mut many, 100).unwrap();
+        splitting.run(&mut many, 100).unwrap();
         for _ in 0..100 {
             splitting.step(&mut single).unwrap();
         }
@@ -271,7 +271,7 @@ fn splittings_keep_the_momenta() {
         let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
         let (vertical, spin) = (state.momentum_along(&Vector3::z()), state.momentum().z);
-        splitting.advance(&mut state, 100_000).unwrap();
+        splitting.run(&mut state, 100_000).unwrap();
         let drift = ((state.momentum_along(&Vector3::z()) - vertical) / vertical).abs();
         let defect = state.orthogonality_defect();
         println!("{}: vertical momentum {drift:.1e}, orthogonality {defect:.1e}", scheme.name());
@@ -314,7 +314,7 @@ fn the_exact_flow_keeps_lengths() {
     let splitting = Stepper::split(motion.top.clone(), 0.19, symmetric(&motion.top), scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
     let before = state.advected().norm_squared();
-    splitting.advance(&mut state, 10_000).unwrap();
+    splitting.run(&mut state, 10_000).unwrap();
     let change = (state.advected().norm_squared() / before - 1.0).abs();
     assert!(change < 6e-14, "{change:e}");
 }
@@ -340,8 +340,8 @@ fn the_kinetic_part_is_replaced() {
     );
     let mut states =
         (a.start(motion.attitude, motion.velocity).unwrap(), b.start(motion.attitude, motion.velocity).unwrap());
-    a.advance(&mut states.0, 100).unwrap();
-    b.advance(&mut states.1, 100).unwrap();
+    a.run(&mut states.0, 100).unwrap();
+    b.run(&mut states.1, 100).unwrap();
     assert!(relative(&states.0.momentum(), &states.1.momentum()) < 1e-13);
 }
 
@@ -353,6 +353,6 @@ fn a_failed_step_leaves_the_state() {
     let splitting = Stepper::split(top, 1.0, kinetic, SplittingScheme::STRANG).unwrap();
     let mut state = splitting.start(SO3::identity(), Vector3::new(5.0, 5.0, 5.0)).unwrap();
     let before = state;
-    splitting.advance(&mut state, 10).unwrap_err();
+    splitting.run(&mut state, 10).unwrap_err();
     assert_eq!(state, before);
 }

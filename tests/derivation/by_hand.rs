@@ -155,7 +155,7 @@ fn a_force_gradient_has_to_be_written() {
         rho: Vector3::z(),
     };
     let body = SymmetricBody::new(&Inertia::from_principal_moments(moments).unwrap()).unwrap();
-    let split = |scheme| Stepper::split(top.clone(), 0.01, body, scheme).map(|splitting| *splitting.scheme());
+    let split = |scheme| Stepper::split(top.clone(), 0.01, body, scheme).map(|splitting| *splitting.plan().scheme());
     assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(SplittingScheme::NYSTROM_6));
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
     // Nor is it chosen.

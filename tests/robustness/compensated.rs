@@ -3,14 +3,16 @@
 use checks::random::Random;
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{LieGroup as _, SO3, State, Stepper};
+use liestep::motion::{self, Declared};
+use liestep::with::Compensated;
+use liestep::{LieGroup as _, SO3, Stepper};
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{relative, slope, steps_in};
 
-type TopState = State<SO3, Vector3<f64>>;
+type TopMotion = motion::Motion<SO3, Vector3<f64>>;
 
 /// The six entries of `RRᵀ − I`, `|w|² − 1`, and the change of `p·w` relative to `|p|`.
-fn defects(state: &TopState, vertical: f64) -> SVector<f64, 8> {
+fn defects(state: &TopMotion, vertical: f64) -> SVector<f64, 8> {
     let (w, r) = (state.advected(), state.attitude().matrix());
     let gram = r * r.transpose();
     let casimirs = [w.norm_squared() - 1.0, (state.momentum().dot(&w) - vertical) / state.momentum().norm()];
@@ -49,7 +51,8 @@ fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Ve
     for _ in 0..motions {
         let start = stepper.start(random.rotation(), random.vector() * 4.0).unwrap();
         let vertical = start.momentum().dot(&start.advected());
-        let (mut plain, mut kept, carrying) = (start, CompensatedState::from(start), stepper.clone().compensated());
+        let carrying = stepper.clone().compensated();
+        let (mut plain, mut kept) = (start, carrying.adopt(&start));
         let mut done = 0;
         for (decade, steps) in decades.into_iter().enumerate() {
             for _ in done..steps {
@@ -60,7 +63,7 @@ fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Ve
                 }
             }
             done = steps;
-            found[decade].push(defects(if compensated { kept.state() } else { &plain }, vertical));
+            found[decade].push(defects(if compensated { &*kept } else { &*plain }, vertical));
         }
     }
     found.iter().map(|defects| sizes(defects)).collect()
@@ -162,7 +165,8 @@ fn t4_tiny_steps() {
 fn t3_compensation_changes_nothing_but_rounding() {
     let stepper = Stepper::new(HeavyTop::asymmetric(), 0.01).unwrap();
     let start = stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap();
-    let (mut plain, mut kept, carrying) = (start, CompensatedState::from(start), stepper.clone().compensated());
+    let carrying = stepper.clone().compensated();
+    let (mut plain, mut kept) = (start, carrying.adopt(&start));
     for _ in 0..100 {
         assert_eq!(stepper.step(&mut plain), carrying.step(&mut kept));
     }
@@ -172,7 +176,7 @@ fn t3_compensation_changes_nothing_but_rounding() {
     assert_eq!(kept.steps(), plain.steps());
 }
 
-fn compensated(top: HeavyTop, h: f64) -> CompensatedStepper<HeavyTop> {
+fn compensated(top: HeavyTop, h: f64) -> Stepper<HeavyTop, Compensated<Declared<HeavyTop>>> {
     Stepper::new(top, h).unwrap().compensated()
 }
 

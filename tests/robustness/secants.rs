@@ -209,7 +209,7 @@ fn lanes_are_independent() {
         let angles = [0.01, 0.1, 0.3, if round % 2 == 0 { 0.5 } else { 0.85 }];
         let velocity = angles.map(|angle| random.direction() * (angle / h));
         let w = angles.map(|_| random.direction());
-        let momentum = [0, 1, 2, 3].map(|k| alone[k].lagrangian().inertia() * velocity[k]);
+        let momentum = [0, 1, 2, 3].map(|k| alone[k].scene().inertia() * velocity[k]);
         let guess = velocity.map(|velocity| velocity * h);
         let wide = together.step(&gathered(|k| momentum[k]), &gathered(|k| w[k]), &gathered(|k| guess[k])).unwrap();
         let outcomes = [0, 1, 2, 3].map(|k| needs_jacobian(|| alone[k].step(&momentum[k], &w[k], &guess[k]).unwrap()));

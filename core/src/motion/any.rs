@@ -149,11 +149,11 @@ where
     }
 
     fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
-        self.velocity(&State { motion: *motion, kept: () })
+        self.velocity(motion)
     }
 
     fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
-        self.energy(&State { motion: *motion, kept: () })
+        self.energy(motion)
     }
 
     fn cost(&self) -> Cost {
@@ -211,20 +211,20 @@ impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
     /// The time since the start, `n h`, s; never accumulated.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // as `Stepper::time`
-    pub fn time<K>(&self, state: &State<G, A, K>) -> G::Scalar {
-        self.step_size() * real(state.motion.steps as f64)
+    pub fn time(&self, motion: &Motion<G, A>) -> G::Scalar {
+        self.step_size() * real(motion.steps as f64)
     }
 
     /// As [`Stepper::velocity`].
     #[must_use]
-    pub fn velocity<K>(&self, state: &State<G, A, K>) -> G::Vector {
-        self.0.velocity(&state.motion)
+    pub fn velocity(&self, motion: &Motion<G, A>) -> G::Vector {
+        self.0.velocity(motion)
     }
 
     /// As [`Stepper::energy`].
     #[must_use]
-    pub fn energy<K>(&self, state: &State<G, A, K>) -> G::Scalar {
-        self.0.energy(&state.motion)
+    pub fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
+        self.0.energy(motion)
     }
 
     /// As [`Plan::cost`].

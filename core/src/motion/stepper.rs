@@ -1,7 +1,7 @@
 //! The stepper: a scene, a method, and all that is put around a step.
 
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected, LieGroup, SO3};
+use crate::groups::{Advected as _, LieGroup as _, SO3};
 use crate::mechanics::{
     AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Vector, energy,
     momentum_of_velocity, velocity_of_momentum,
@@ -99,8 +99,8 @@ impl<S: Effect> Stepper<S> {
     /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
     /// see [`DiscreteLiePoisson::solvability`].
     #[must_use]
-    pub fn solvability<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Solvability {
-        self.plan.solvability(&self.scene, &state.motion.momentum, &state.motion.advected)
+    pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
+        self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
     }
 }
 
@@ -276,8 +276,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn adopt<A: Advected<Group<S>>, K>(&self, state: &State<Group<S>, A, K>) -> StateOf<S, P> {
-        self.begin(state.motion.attitude, state.motion.momentum)
+    pub fn adopt<A>(&self, motion: &Motion<Group<S>, A>) -> StateOf<S, P> {
+        self.begin(motion.attitude, motion.momentum)
     }
 
     /// The motion that begins with this attitude and momentum.
@@ -308,21 +308,21 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The time since the start, `n h`, s; never accumulated.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
-    pub fn time<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Scalar<S> {
-        self.step_size() * real(state.motion.steps as f64)
+    pub fn time(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        self.step_size() * real(motion.steps as f64)
     }
 
     /// The body velocity, on SO(3) in rad/s.
     #[must_use]
-    pub fn velocity<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Vector<S> {
-        velocity_of_momentum(&self.scene, &state.motion.momentum, &state.motion.advected)
+    pub fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        velocity_of_momentum(&self.scene, &motion.momentum, &motion.advected)
     }
 
     /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. Where the scene is a [`DiscreteLagrangian`] it
     /// oscillates about its initial value, at the order of the scheme, and doesn't drift.
     #[must_use]
-    pub fn energy<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Scalar<S> {
-        energy(&self.scene, &state.motion.momentum, &state.motion.advected)
+    pub fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        energy(&self.scene, &motion.momentum, &motion.advected)
     }
 
     /// The largest step from this state up to the stepper's own, s, to six digits: that fraction of it whose equations
@@ -371,21 +371,21 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected.
     #[must_use]
-    pub fn spatial_momentum<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Vector<S>
+    pub fn spatial_momentum(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S>
     where
         S: LeftInvariant,
     {
-        state.spatial_momentum()
+        motion.spatial_momentum()
     }
 
     /// The momentum along the advected vector, `Π·w` (`e₃·R Π` for the vertical), in a scene that conserves it: one
     /// vector is advected, (3.20).
     #[must_use]
-    pub fn momentum_along_advected<K>(&self, state: &State<Group<S>, S::Advected, K>) -> Scalar<S>
+    pub fn momentum_along_advected(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S>
     where
         S: AxiallyInvariant<Group = SO3<Scalar<S>>>,
     {
-        state.momentum().dot(&S::axis(&state.motion.advected))
+        motion.momentum.dot(&S::axis(&motion.advected))
     }
 }
 

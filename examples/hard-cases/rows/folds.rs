@@ -35,7 +35,8 @@ pub(crate) fn s1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let known = |h: f64| -> Result<Solvability, Failure> {
         let stepper = Stepper::new(motion.top.clone(), h)?;
-        Ok(stepper.solvability(&stepper.start(motion.attitude, motion.velocity)?))
+        let state = stepper.start(motion.attitude, motion.velocity)?;
+        Ok(stepper.solvability(&state))
     };
     let certain = largest(|h| Ok(known(h)? == Solvability::Certain))?;
     let impossible = largest(|h| Ok(known(h)? != Solvability::Impossible))?;

@@ -17,14 +17,14 @@ use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
 
 use crate::curves::{Curve, Curves};
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::{FARTHEST, TopState, Walk};
+use crate::walk::{FARTHEST, TopMotion, Walk};
 
 /// Steps and looks.
 fn walk(
     top: &HeavyTop,
-    start: &TopState,
+    start: &TopMotion,
     steps: u64,
-    mut step: impl FnMut(u64) -> Result<TopState, Failure>,
+    mut step: impl FnMut(u64) -> Result<TopMotion, Failure>,
 ) -> Result<(Walk, f64), Failure> {
     let (mut walk, mut energies) = (Walk::from_state(start, steps), Tenths::new(steps));
     let before = energy(top, &start.momentum(), &start.advected());
@@ -61,28 +61,9 @@ fn told(row: Row, name: &str, (walk, energy): &(Walk, f64), is_judged: bool) -> 
 const PERIOD: u64 = 1000;
 
 /// The attitude after a step towards its polar factor.
-fn orthogonal(state: &TopState) -> SO3 {
+fn orthogonal(state: &TopMotion) -> SO3 {
     let r = state.attitude().matrix();
     SO3::from_matrix_unchecked(r * (Matrix3::identity() * 3.0 - r.transpose() * r) * 0.5)
-}
-
-/// A composition with the sums of each stage compensated. The library compensates single steps; the stages are those.
-struct CompensatedComposition {
-    stages: Vec<CompensatedStepper<HeavyTop>>,
-}
-
-impl CompensatedComposition {
-    fn new(top: &HeavyTop, h: f64, scheme: &CompositionScheme) -> Result<Self, Failure> {
-        let stages = scheme.stages().map(|gamma| Stepper::new(top.clone(), gamma * h).map(Stepper::compensated));
-        Ok(Self { stages: stages.collect::<Result<_, _>>()? })
-    }
-
-    fn step(&self, state: &mut CompensatedState<SO3, Vector3<f64>>) -> Result<(), Failure> {
-        for stage in &self.stages {
-            stage.step(state)?;
-        }
-        Ok(())
-    }
 }
 
 const CRITERION: &str = "‖RᵀR − I‖ ≤ 2e-12, growing like √N (4 deviations of a walk)";
@@ -100,7 +81,7 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let mut state = start;
     let plain = walk(&motion.top, &start, steps, |_| {
         composition.step(&mut state)?;
-        Ok(state)
+        Ok(*state)
     })?;
     let mut state = start;
     let corrected = walk(&motion.top, &start, steps, |step| {
@@ -108,13 +89,13 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         if step.is_multiple_of(PERIOD) {
             state = composition.start_with_momentum(orthogonal(&state), state.momentum())?;
         }
-        Ok(state)
+        Ok(*state)
     })?;
-    let compensated = CompensatedComposition::new(&motion.top, h, &scheme)?;
-    let mut state = CompensatedState::from(start);
+    let compensated = composition.clone().compensated();
+    let mut state = compensated.start(motion.attitude, motion.velocity)?;
     let kept = walk(&motion.top, &start, steps, |_| {
         compensated.step(&mut state)?;
-        Ok(*state.state())
+        Ok(*state)
     })?;
     let row = Row::new(
         "R1",
@@ -138,7 +119,7 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let mut state = start;
     let plain = walk(&motion.top, &start, steps, |_| {
         splitting.step(&mut state)?;
-        Ok(state)
+        Ok(*state)
     })?;
     let mut state = start;
     let corrected = walk(&motion.top, &start, steps, |step| {
@@ -146,7 +127,7 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         if step.is_multiple_of(PERIOD) {
             state = splitting.start_with_momentum(orthogonal(&state), state.momentum())?;
         }
-        Ok(state)
+        Ok(*state)
     })?;
     let row = Row::new(
         "R2",
@@ -166,7 +147,7 @@ fn three(top: &HeavyTop, velocity: Vector3<f64>, steps: u64) -> Result<[(Walk, f
     let mut state = start;
     let plain = walk(top, &start, steps, |_| {
         stepper.step(&mut state)?;
-        Ok(state)
+        Ok(*state)
     })?;
     let mut state = start;
     let corrected = walk(top, &start, steps, |step| {
@@ -174,13 +155,13 @@ fn three(top: &HeavyTop, velocity: Vector3<f64>, steps: u64) -> Result<[(Walk, f
         if step.is_multiple_of(PERIOD) {
             state = stepper.start_with_momentum(orthogonal(&state), state.momentum())?;
         }
-        Ok(state)
+        Ok(*state)
     })?;
     let carrying = stepper.compensated();
-    let mut state = CompensatedState::from(start);
+    let mut state = carrying.adopt(&start);
     let kept = walk(top, &start, steps, |_| {
         carrying.step(&mut state)?;
-        Ok(*state.state())
+        Ok(*state)
     })?;
     Ok([plain, kept, corrected])
 }

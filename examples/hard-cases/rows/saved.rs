@@ -5,10 +5,10 @@ use liestep::Stepper;
 
 use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
-use crate::walk::TopState;
+use crate::walk::TopMotion;
 
 /// FNV-1a of the numbers of a state, 64 bits.
-fn digest(mut hash: u64, state: &TopState) -> u64 {
+fn digest(mut hash: u64, state: &TopMotion) -> u64 {
     let attitude = state.attitude();
     let numbers = attitude.as_matrix().iter().chain(&state.momentum()).copied().collect::<Vec<_>>();
     for byte in numbers.iter().chain(&state.advected()).flat_map(|number| number.to_bits().to_le_bytes()) {

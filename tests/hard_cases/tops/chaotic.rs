@@ -16,14 +16,14 @@ fn errors(steps: u64) -> Vec<[f64; 3]> {
     let start = stepper.start(motion.attitude, motion.velocity).unwrap();
     let energy = stepper.energy(&start);
     let carrying = stepper.compensated();
-    let mut state = CompensatedState::from(start);
+    let mut state = carrying.adopt(&start);
     let parts = (0..PARTS).map(|_| {
         let mut worst = [0.0_f64; 3];
         for _ in 0..steps / PARTS {
             carrying.step(&mut state).unwrap();
             let (p, w) = (state.momentum(), state.advected());
             let errors = [
-                carrying.stepper().energy(state.state()) - energy,
+                carrying.energy(&state) - energy,
                 w.norm_squared() - 1.0,
                 p.dot(&w) / start.momentum().dot(&start.advected()) - 1.0,
             ];
