@@ -154,12 +154,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
     #[inline]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
-        if !P::EXPLAINS {
-            return dispatch(P::DISPATCHED, Step(self, state));
-        }
-        match dispatch(P::DISPATCHED, Step(self, state)) {
-            Ok(report) => Ok(report),
-            Err(error) => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
+        let made = dispatch(P::DISPATCHED, Step(self, state));
+        match made {
+            Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
+            made => made,
         }
     }
 
