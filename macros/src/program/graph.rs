@@ -43,7 +43,7 @@ impl Node {
 pub(crate) struct Graph {
     nodes: Vec<(Node, Stage)>,
     index: Index,
-    /// Zero and one, which are asked for most, once they are nodes.
+    /// Zero and one, where they are nodes already: no other node is looked up so often.
     units: [Option<NodeId>; 2],
 }
 
@@ -261,8 +261,9 @@ impl Graph {
         factors.into_iter().fold(one, |product, factor| self.multiply(product, factor))
     }
 
-    /// A sum in which what is known earlier is added first; a sum of negatives is the negative of a sum, so that the
-    /// two signs of one sum share it.
+    /// A sum in which early stages are added first.
+    ///
+    /// A sum of negatives becomes the negative of a sum, so that `a + b` and `−a − b` share a node.
     pub(crate) fn sum(&mut self, terms: &[NodeId]) -> NodeId {
         let mut signed: Vec<(NodeId, bool)> = Vec::with_capacity(terms.len());
         for &term in terms {

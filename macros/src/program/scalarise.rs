@@ -1,7 +1,7 @@
 //! Matrix expressions to scalar operations.
 //!
-//! Products are associated so that what is known earlier is multiplied first, and a scalar coefficient goes into the
-//! factor that is known earliest. Sums over an inner index stay together as one node, so that the entry `P_ij` of a
+//! A product is bracketed so that early stages are multiplied first. A scalar coefficient goes into the factor of the
+//! earliest stage. Sums over an inner index stay together as one node, so that the entry `P_ij` of a
 //! product is the same node in the residual and in its Jacobian.
 
 use std::collections::BTreeMap;

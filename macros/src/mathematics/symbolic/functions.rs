@@ -16,7 +16,7 @@ pub(crate) enum Function {
     LogRatio(u8),
 }
 
-/// Beyond its radius of convergence of one a series isn't what is asked for.
+/// A series that needs more terms is at the edge of its radius of convergence, where it is no value to check with.
 const MOST_TERMS: u32 = 400;
 
 impl Function {
