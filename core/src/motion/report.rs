@@ -7,8 +7,8 @@ pub struct StepReport {
     /// all of them.
     ///
     /// Where the [Jacobian is expensive](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE) residuals count, too: up to
-    /// eight, and the iterations with the Jacobian where these weren't enough. A solve whose first guess had to be given
-    /// up counts more than 20.
+    /// eight, and the iterations with the Jacobian where these weren't enough. A solve whose first guess had to be
+    /// given up counts more than 20.
     pub iterations: u32,
     /// What was done in the place of this step; only with [`or_substeps`](crate::Stepper::or_substeps) or
     /// [`or_fallback`](crate::Stepper::or_fallback).
