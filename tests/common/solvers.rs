@@ -145,7 +145,7 @@ pub fn needs_jacobian<T>(run: impl FnOnce() -> T) -> (T, bool) {
     (outcome, jacobians > 0)
 }
 
-/// As if the Jacobian were dear. The second field is the inertia that the limit is said to have.
+/// As if the Jacobian were expensive. The second field is the inertia that the limit is said to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithoutJacobian<L, T: Real>(pub L, pub Matrix3<T>);
 
@@ -173,7 +173,7 @@ where
 
     staged_as!(L);
 
-    const JACOBIAN_IS_DEAR: bool = true;
+    const JACOBIAN_IS_EXPENSIVE: bool = true;
 
     fn inertia(&self) -> Matrix3<T> {
         self.1

@@ -254,7 +254,7 @@ fn a_scene_holds_what_its_terms_name() {
         size_of::<State<SO3, (A::Advected, B::Advected)>>()
     }
     const VECTOR: usize = 3 * size_of::<f64>();
-    // Seven differences of increments and their number, in the state of any scene: dear Lagrangians guess by them.
+    // Seven differences of increments and their number, in the state of any scene: expensive Lagrangians guess by them.
     const HISTORY: usize = 7 * VECTOR + size_of::<usize>();
     const {
         assert!(size::<RigidBody>() == size_of::<[f64; 9]>() + 3 * VECTOR + HISTORY + size_of::<u64>());

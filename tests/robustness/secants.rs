@@ -1,5 +1,5 @@
-//! Where the Jacobian is dear a step is solved without it: to the same root, to rounding, and where that is in doubt by
-//! Newton's iteration.
+//! Where the Jacobian is expensive a step is solved without it: to the same root, to rounding, and where that is in
+//! doubt by Newton's iteration.
 
 use checks::any_scalar::Top;
 use checks::random::Random;
@@ -37,9 +37,9 @@ fn sixth() -> SixthOrderTop {
 }
 
 #[test]
-fn the_macro_finds_out_which_jacobians_are_dear() {
-    const { assert!(SixthOrderTop::JACOBIAN_IS_DEAR && FourthOrderTop::JACOBIAN_IS_DEAR) };
-    const { assert!(!Top::<f64>::JACOBIAN_IS_DEAR) };
+fn the_macro_finds_out_which_jacobians_are_expensive() {
+    const { assert!(SixthOrderTop::JACOBIAN_IS_EXPENSIVE && FourthOrderTop::JACOBIAN_IS_EXPENSIVE) };
+    const { assert!(!Top::<f64>::JACOBIAN_IS_EXPENSIVE) };
 }
 
 /// The derivative of the residual for the sixth-order top without weight is nearly that of the free body's momentum.
@@ -149,11 +149,11 @@ where
         let (velocity, w) = (random.direction() * (angle / h), random.direction());
         let momentum = with.scene().inertia() * velocity;
         let guess = velocity * h;
-        let (outcome, is_dear) = needs_jacobian(|| without.step(&momentum, &w, &guess));
+        let (outcome, is_expensive) = needs_jacobian(|| without.step(&momentum, &w, &guess));
         match (with.step(&momentum, &w, &guess), outcome) {
             (Ok(a), Ok(b)) => {
                 largest = largest.max((a.coordinates - b.coordinates).norm() / a.coordinates.norm());
-                counts[usize::from(is_dear)] += 1;
+                counts[usize::from(is_expensive)] += 1;
             }
             (Err(a), Err(b)) => {
                 assert_eq!(core::mem::discriminant(&a), core::mem::discriminant(&b), "{a} {b}");

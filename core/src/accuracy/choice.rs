@@ -19,7 +19,7 @@ pub struct Offer {
     pub step: f64,
     /// The arithmetic of the run, relative to that of the method chosen.
     pub cost: f64,
-    /// Whether its trials ended early, as it could only have been dearer.
+    /// Whether its trials ended early, as it could only have been more expensive.
     pub is_bound: bool,
 }
 

@@ -104,7 +104,7 @@ pub trait Effect {
     /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
     /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which
     /// [`DENOMINATORS`](Self::DENOMINATORS) must be zero. The macro decides it by counting operations.
-    const JACOBIAN_IS_DEAR: bool = false;
+    const JACOBIAN_IS_EXPENSIVE: bool = false;
 
     /// How much arithmetic its share of a step is; the macro counts it.
     const OPERATIONS: Operations = Operations::UNCOUNTED;

@@ -92,10 +92,10 @@ where
         (false, _) => B::DENOMINATORS,
     };
     // The one unknown part's own kernel is run; two are added with their Jacobians.
-    const JACOBIAN_IS_DEAR: bool = match (A::PARTS.unknown, B::PARTS.unknown) {
+    const JACOBIAN_IS_EXPENSIVE: bool = match (A::PARTS.unknown, B::PARTS.unknown) {
         (true, true) => false,
-        (true, false) => A::JACOBIAN_IS_DEAR,
-        (false, _) => B::JACOBIAN_IS_DEAR,
+        (true, false) => A::JACOBIAN_IS_EXPENSIVE,
+        (false, _) => B::JACOBIAN_IS_EXPENSIVE,
     };
     const OPERATIONS: Operations = Operations {
         step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),

@@ -6,9 +6,9 @@ pub struct StepReport {
     /// A measure of the work: Newton iterations, of several lanes those of the slowest, and of several stages those of
     /// all of them.
     ///
-    /// Where the [Jacobian is expensive](crate::mechanics::Effect::JACOBIAN_IS_DEAR) residuals count, too: up to eight,
-    /// and the iterations with the Jacobian where these weren't enough. A solve whose first guess had to be given up
-    /// counts more than 20.
+    /// Where the [Jacobian is expensive](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE) residuals count, too: up to
+    /// eight, and the iterations with the Jacobian where these weren't enough. A solve whose first guess had to be
+    /// given up counts more than 20.
     pub iterations: u32,
     /// What was done in the place of this step; only with [`or_substeps`](crate::Stepper::or_substeps) or
     /// [`or_fallback`](crate::Stepper::or_fallback).

@@ -13,14 +13,14 @@ pub(crate) const DIFFERENCES: usize = 7;
 pub(crate) enum Continued {
     /// The parabola through three.
     Parabola,
-    /// The polynomial through as many as are known, where an iteration is dear.
+    /// The polynomial through as many as are known, where an iteration is expensive.
     Polynomial,
 }
 
 impl Continued {
     /// By what a solve of a Lagrangian costs.
-    pub(crate) const fn for_jacobian(is_dear: bool) -> Self {
-        if is_dear { Self::Polynomial } else { Self::Parabola }
+    pub(crate) const fn for_jacobian(is_expensive: bool) -> Self {
+        if is_expensive { Self::Polynomial } else { Self::Parabola }
     }
 }
 

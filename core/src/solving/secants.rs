@@ -130,7 +130,7 @@ impl<L: Effect> Problem<'_, L> {
     /// Whether the solve starts without the Jacobian.
     #[inline(always)]
     pub(super) fn goes_by_secants() -> bool {
-        L::JACOBIAN_IS_DEAR && is_plain::<Scalar<L>>()
+        L::JACOBIAN_IS_EXPENSIVE && is_plain::<Scalar<L>>()
     }
 
     /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of

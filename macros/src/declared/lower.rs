@@ -179,7 +179,7 @@ impl Lowering<'_> {
         Expression::symbol(symbol, &self.symbols)
     }
 
-    /// A number; with many digits it stays closed too, as its powers would leave the range of exact arithmetic.
+    /// A number. One with many digits stays closed: its powers would leave the range of exact arithmetic.
     fn number(&mut self, value: Rational) -> Expression {
         let expression = Expression::rational(value);
         let (numerator, denominator) = value.parts();
@@ -221,8 +221,9 @@ impl Lowering<'_> {
         self.bound(&format!("t{number}"), value)
     }
 
-    /// A sum of matrices applied to a vector, as `exp(v)` is: factor by factor, each image closed. Multiplied out, the
-    /// derivative of a product of two matrices would have two products for each of its terms.
+    /// A sum of matrices, such as `exp(v)`, applied to a vector: factor by factor, and each image stays closed.
+    ///
+    /// Multiplied out first, a product of two matrices would give two products in the derivative for each of its terms.
     fn image(&mut self, matrix: &Rc<Tree>, vector: &Expression) -> Result<Expression, Failure> {
         Ok(match &matrix.kind {
             Kind::Identity => vector.clone(),

@@ -68,7 +68,7 @@ impl Emitter<'_> {
 
     /// Code for the outputs: the statements, and a token for each output.
     ///
-    /// What is used once stands where it is used; the rest is bound by a `let`.
+    /// A value that is used once is written where it is used. All others are bound by a `let`.
     pub(super) fn statements(
         &self,
         graph: &Graph,

@@ -123,7 +123,7 @@ pub(super) fn costs(kernel: &Kernel) -> String {
     // With a = μ + k₀.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
     before_the_solve.arithmetic += kernel.residual.len();
-    let alone = if kernel.jacobian_is_dear() {
+    let alone = if kernel.jacobian_is_expensive() {
         let gradient = count(&kernel.graph, &kernel.gradient(), Some(Stage::Iteration));
         format!("; residual and diamond without it, with which a solve begins: {gradient}")
     } else {

@@ -1,4 +1,4 @@
-//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`, and what stands in for them after a mistake.
+//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`, and their stand-in after a mistake.
 //!
 //! The only room that quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
 

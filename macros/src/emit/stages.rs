@@ -21,7 +21,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let graph = &kernel.graph;
     let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
     // The moved part of the diamond is emitted only with a residual alone.
-    let moved: &[NodeId] = if kernel.jacobian_is_dear() { &kernel.moved } else { &[] };
+    let moved: &[NodeId] = if kernel.jacobian_is_expensive() { &kernel.moved } else { &[] };
     let solved = [system.as_slice(), moved].concat();
     let change = kernel.kick_derivative.as_deref().unwrap_or_default();
     let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after, change].concat();
@@ -54,7 +54,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let (lets, values) = emitter.statements(graph, &system, &from_terms);
     let (residual, jacobian) = values.split_at(kernel.residual.len());
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
-    let residual_alone = kernel.jacobian_is_dear().then(|| residual_alone(emitter, kernel, &from_terms));
+    let residual_alone = kernel.jacobian_is_expensive().then(|| residual_alone(emitter, kernel, &from_terms));
     let (increment, jacobian) = in_coordinates(emitter, kernel, &system, jacobian);
     let inverse = uses(graph, &kernel.kick_after, emitter.derived.directions.inverse).then(|| {
         let group = quote_spanned!(span=> <Self::Group as #private::LieGroup>);
@@ -188,7 +188,7 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
     let documentation = super::docs::stage(&kernel.graph, &gradient, Stage::Iteration, when);
     let option = quote_spanned!(span=> #private::core::option::Option);
     quote_spanned! {span=>
-        const JACOBIAN_IS_DEAR: #private::core::primitive::bool = true;
+        const JACOBIAN_IS_EXPENSIVE: #private::core::primitive::bool = true;
 
         #[doc = #documentation]
         #[inline(always)]

@@ -33,7 +33,7 @@ pub(crate) fn cheapest(
     errors: &mut Errors,
 ) -> Option<Chosen> {
     let least = readings.iter().map(size).min().unwrap_or(0);
-    // What is twice as long is surely not cheaper and takes long to derive, so it comes last, and only if it has to.
+    // A reading of twice the length is never the cheaper one, and takes long to derive: it is kept for when all else fails.
     let (short, long): (Vec<Lowered>, Vec<Lowered>) =
         readings.into_iter().partition(|reading| size(reading) <= 2 * least);
     let chosen = cheapest_of(short, derive).or_else(|refusal| {

@@ -1,7 +1,6 @@
 //! Scalar operations with equal ones shared.
 
-use std::collections::BTreeMap;
-
+use super::index::Index;
 use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
 
 /// An index into a [`Graph`]; operands come before their operation.
@@ -43,7 +42,9 @@ impl Node {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Graph {
     nodes: Vec<(Node, Stage)>,
-    index: BTreeMap<Node, NodeId>,
+    index: Index,
+    /// Zero and one, where they are nodes already: no other node is looked up so often.
+    units: [Option<NodeId>; 2],
 }
 
 impl Graph {
@@ -56,12 +57,14 @@ impl Graph {
     }
 
     fn insert(&mut self, node: Node, stage: Stage) -> NodeId {
-        if let Some(&id) = self.index.get(&node) {
-            return id;
-        }
+        let slot = match self.index.find(&node, |id| self.node(id)) {
+            Ok(id) => return id,
+            Err(slot) => slot,
+        };
         let id = NodeId(self.nodes.len());
         self.nodes.push((node, stage));
-        self.index.insert(node, id);
+        let nodes = &self.nodes;
+        self.index.insert(slot, id, |id| nodes[id.0].0);
         id
     }
 
@@ -80,11 +83,20 @@ impl Graph {
     }
 
     pub(crate) fn zero(&mut self) -> NodeId {
-        self.constant(Rational::ZERO)
+        self.unit(0, Rational::ZERO)
     }
 
     pub(crate) fn one(&mut self) -> NodeId {
-        self.constant(Rational::ONE)
+        self.unit(1, Rational::ONE)
+    }
+
+    fn unit(&mut self, place: usize, value: Rational) -> NodeId {
+        let known = self.units[place];
+        known.unwrap_or_else(|| {
+            let id = self.constant(value);
+            self.units[place] = Some(id);
+            id
+        })
     }
 
     pub(crate) fn input(&mut self, input: Input, stage: Stage) -> NodeId {
@@ -249,8 +261,9 @@ impl Graph {
         factors.into_iter().fold(one, |product, factor| self.multiply(product, factor))
     }
 
-    /// A sum in which what is known earlier is added first; a sum of negatives is the negative of a sum, so that the
-    /// two signs of one sum share it.
+    /// A sum in which early stages are added first.
+    ///
+    /// A sum of negatives becomes the negative of a sum, so that `a + b` and `−a − b` share a node.
     pub(crate) fn sum(&mut self, terms: &[NodeId]) -> NodeId {
         let mut signed: Vec<(NodeId, bool)> = Vec::with_capacity(terms.len());
         for &term in terms {

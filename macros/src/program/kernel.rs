@@ -49,7 +49,7 @@ impl Kernel {
     /// Whether the Jacobian costs so much more than the residual that a solve does better with the free body's.
     ///
     /// At common steps it takes two to five residuals then, instead of two or three systems.
-    pub(crate) fn jacobian_is_dear(&self) -> bool {
+    pub(crate) fn jacobian_is_expensive(&self) -> bool {
         let Some(taken) = self.candidates.first() else { return false };
         let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
         let jacobian = taken.operations.cost().saturating_sub(residual);
@@ -61,7 +61,7 @@ impl Kernel {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
         let mut step = count(&self.graph, &before, Some(Stage::Step));
         let mut outputs = before;
-        if self.jacobian_is_dear() {
+        if self.jacobian_is_expensive() {
             outputs = self.gradient();
         } else {
             step = step

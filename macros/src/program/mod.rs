@@ -10,6 +10,7 @@ mod closed;
 mod count;
 mod expand;
 mod graph;
+mod index;
 mod kernel;
 mod scalarise;
 #[cfg(test)]

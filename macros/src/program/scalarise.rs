@@ -1,7 +1,7 @@
 //! Matrix expressions to scalar operations.
 //!
-//! Products are associated so that what is known earlier is multiplied first, and a scalar coefficient goes into the
-//! factor that is known earliest. Sums over an inner index stay together as one node, so that the entry `P_ij` of a
+//! A product is bracketed so that early stages are multiplied first. A scalar coefficient goes into the factor of the
+//! earliest stage. Sums over an inner index stay together as one node, so that the entry `P_ij` of a
 //! product is the same node in the residual and in its Jacobian.
 
 use std::collections::BTreeMap;
@@ -258,8 +258,9 @@ impl Scalariser<'_> {
         self.graph.sum(&terms)
     }
 
-    /// Whether a product is of a generator, which the other components of a covector don't share; multiplications that
-    /// it makes, the later the dearer; the size of the result.
+    /// What a product of two factors costs, to be compared: whether it is one with a generator, which the other
+    /// components of a covector don't share; its multiplications, which count more at a later stage; the size of the
+    /// result.
     fn pair_cost(&self, left: &Entries, right: &Entries) -> (bool, usize, usize) {
         let is_own = self.is_constant(left) != self.is_constant(right);
         let mut cost = 0;

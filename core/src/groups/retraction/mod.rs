@@ -47,9 +47,9 @@ pub trait Retraction<G: LieGroup> {
     /// `h ∂p/∂ξ` for the momentum `p` that a free motion with the kinetic energy `½ η·Jη` needs to reach `τ(ξ)` within
     /// `h`, with the given `J`.
     ///
-    /// An approximation will do: a solver takes it for the Jacobian of a momentum equation where the exact one is dear,
-    /// see [`Effect::JACOBIAN_IS_DEAR`](crate::mechanics::Effect::JACOBIAN_IS_DEAR), and corrects it as it
-    /// goes. This default is its value at the identity, `J`.
+    /// An approximation will do: a solver takes it for the Jacobian of a momentum equation where the exact one is
+    /// expensive, see [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE), and corrects
+    /// it as it goes. This default is its value at the identity, `J`.
     #[must_use]
     fn free_momentum_tangent(
         inertia: &<G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square,

@@ -61,8 +61,8 @@ impl<S: Effect> Declared<S> {
         // Without a step there is nothing to solve, which the careful solve sees to.
         let largest = trace / h * real(2.0 * RATIO) / Scalar::<S>::simd_default_epsilon();
         let largest_target = if h == real(0.0) { h } else { largest * largest };
-        let is_dear = S::JACOBIAN_IS_DEAR && h != real(0.0);
-        let trusted = if is_dear { trusted_radius(scene, &constants) } else { real(0.0) };
+        let is_expensive = S::JACOBIAN_IS_EXPENSIVE && h != real(0.0);
+        let trusted = if is_expensive { trusted_radius(scene, &constants) } else { real(0.0) };
         Ok(Self { h, constants, largest_target, trusted, safe })
     }
 
@@ -165,7 +165,7 @@ impl<S: Effect> Declared<S> {
     #[inline(always)]
     fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<S>) -> Vector<S> {
         let direct = || S::kick_after(&self.constants, increment, next);
-        if !S::JACOBIAN_IS_DEAR || !kick.found.any() {
+        if !S::JACOBIAN_IS_EXPENSIVE || !kick.found.any() {
             return direct();
         }
         let mut found = kick.value + Group::<S>::adjoint_transpose_increment(increment, &kick.value);
@@ -272,7 +272,7 @@ fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
     stepped: &Stepped<S>,
 ) -> StepReport {
     motion.proceed(&stepped.proceeded());
-    let continued = Continued::for_jacobian(S::JACOBIAN_IS_DEAR);
+    let continued = Continued::for_jacobian(S::JACOBIAN_IS_EXPENSIVE);
     kept.follow(stepped.half, stepped.far, continued);
     if is_due(motion.now().steps) {
         look(scene, motion, kept, continued);

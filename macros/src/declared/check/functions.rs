@@ -17,7 +17,9 @@ impl Checker<'_> {
             _ => String::new(),
         };
         if !["vee", "log", "exp", "inverse"].contains(&function.as_str()) {
-            let advice = if METHODS.contains(&function.as_str()) {
+            let advice = if is_identity(&call.func) {
+                "write `I` for the identity".to_owned()
+            } else if METHODS.contains(&function.as_str()) {
                 format!("write `{function}` as a method, `x.{function}(…)`")
             } else {
                 "there are `vee(A)`, `log(F)`, `exp(v)` and `inverse(J)`".to_owned()
@@ -78,6 +80,11 @@ impl Checker<'_> {
             }
         }
     }
+}
+
+/// `Matrix3::identity` and its like.
+fn is_identity(function: &Expr) -> bool {
+    matches!(function, Expr::Path(path) if path.path.segments.last().is_some_and(|last| last.ident == "identity"))
 }
 
 /// `G(n) vee(A)` with `n = (3 − tr A)/4`.

@@ -38,7 +38,7 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
         errors.push_over(value(expression), format!("{noun} is a scalar, but this is {shape}: {advice}"));
         return None;
     }
-    // Only what has been read as a whole says what is used.
+    // After a mistake, names may be missing from `used`.
     if errors.is_empty() {
         usage::check(declaration, &used, errors);
     }
@@ -305,12 +305,20 @@ impl Checker<'_> {
         let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
         let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
         let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
-        let known: Vec<String> = fields.chain(advected).chain(bound).chain(builtin).collect();
+        let known: Vec<String> = builtin.chain(advected).chain(fields).chain(bound).collect();
         let near = suggestion(name, known.iter().map(String::as_str));
-        let advice = if near.is_empty() && name == "w" {
-            "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned()
-        } else {
-            near
+        let noun = self.declaration.role.noun();
+        let advice = match name {
+            _ if !near.is_empty() => near,
+            "w" => "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned(),
+            "t" | "time" => format!(
+                "; {noun} has no time: force a step with `step_forced`, or go on with other parameters by `adopt`"
+            ),
+            "omega" | "Omega" | "xi" | "velocity" => {
+                let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
+                format!("; the velocity of a step is in `F`: write {velocity}")
+            }
+            _ => format!("\nknown: {}", known.join(", ")),
         };
         self.errors.push(span, format!("`{name}` isn't known here{advice}"));
     }

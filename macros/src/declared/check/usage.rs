@@ -1,4 +1,4 @@
-//! What is declared must be used, as a forgotten name is a forgotten force.
+//! Every declared name must be used: a forgotten name is a forgotten force.
 
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Name, Role};

@@ -65,10 +65,10 @@ fn a_gradient_costs_less_than_three_values_of_the_sixth_order_top() {
 }
 
 #[test]
-fn the_jacobians_of_the_higher_orders_are_dear() {
-    let is_dear = |file| {
+fn the_jacobians_of_the_higher_orders_are_expensive() {
+    let is_expensive = |file| {
         let (arguments, item) = parts(file);
-        kernel(&derived(arguments, item)).jacobian_is_dear()
+        kernel(&derived(arguments, item)).jacobian_is_expensive()
     };
-    assert_eq!([GEODESIC, FOURTH, SIXTH].map(is_dear), [false, true, true]);
+    assert_eq!([GEODESIC, FOURTH, SIXTH].map(is_expensive), [false, true, true]);
 }

@@ -1,7 +1,6 @@
-//! How large the degrees of a declared expression can be, as a rational function of the numbers that it is evaluated
-//! at.
+//! A bound on the degree of a declared expression, as a rational function of the numbers that it is evaluated at.
 //!
-//! By Schwartz and Zippel, such a function that isn't zero vanishes at a random point of a field of `p` elements with a
+//! Schwartz and Zippel: a function that isn't zero vanishes at a random point of a field of `p` elements with a
 //! probability of at most its degree over `p`.
 
 use std::collections::BTreeMap;

@@ -111,8 +111,8 @@ impl Number for Residue {
         if exponent < 0 { power.reciprocal() } else { power }
     }
 
-    /// The field has no square roots, logarithms or sines to speak of. Any function that is even or odd where they are,
-    /// and elsewhere as good as random, does as well: what is equal with it doesn't rest on which function it is.
+    /// The field has no sines or logarithms. A pseudorandom function of the same symmetry, even or odd, stands in for
+    /// them. If two expressions agree with the stand-in, they agree whatever the function is.
     fn apply(self, function: Function) -> Self {
         let partner = match function {
             Function::Sin | Function::Cos | Function::Exp => -self,

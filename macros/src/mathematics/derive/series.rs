@@ -7,7 +7,7 @@ use crate::mathematics::symbolic::{
     Atom, Expression, Factor, Function, Rational, SymbolId, Variations, substitute, variation,
 };
 
-/// What is of this order or higher isn't looked at: `l_d` is wanted to the first, and may divide by `h`.
+/// Terms of this order and above are dropped. The limit needs `l_d` to the first order, and `l_d` may divide by `h`.
 const CUTOFF: i32 = 3;
 /// A limit that a person would write down has a tenth of it.
 const MOST_FACTORS: usize = 4_000;

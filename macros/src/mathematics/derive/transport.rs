@@ -7,7 +7,7 @@
 //! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
 //! ```
 //!
-//! Written in `w⁺`, the second part loses its `F` for a potential of the new position, as `FᵀF = I` finds by itself.
+//! The second part is written in `w⁺`. Of a potential of the new position it then has no `F`: `FᵀF = I` cancels it.
 
 use std::collections::BTreeMap;
 

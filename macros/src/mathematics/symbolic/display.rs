@@ -107,8 +107,8 @@ fn join(terms: impl Iterator<Item = (Rational, String, String)>) -> String {
     if sum.is_empty() { "0".to_owned() } else { sum }
 }
 
-/// The size of the coefficient with the named scalars of a monomial, and whatever is divided by, as one fraction; and
-/// its traces, forms and functions.
+/// A monomial in two parts: one fraction of the coefficient's size and of the named scalars, and the traces, forms and
+/// functions.
 fn parts(
     monomial: &Monomial,
     coefficient: Rational,

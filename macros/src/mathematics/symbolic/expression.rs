@@ -153,8 +153,8 @@ impl Expression {
         self.terms.is_empty()
     }
 
-    /// How many scalars and factors are written down; those inside functions double, as `f(u)` has `f'(u) δu` for its
-    /// variation.
+    /// How many scalars and factors are written down. Those inside a function count twice: the variation of `f(u)` is
+    /// `f'(u) δu`, which has `u` twice.
     pub(crate) fn size(&self) -> usize {
         let terms = self.terms.keys().map(|monomial| {
             let scalars = monomial.scalars.keys().map(|atom| match atom {

@@ -16,12 +16,25 @@ pub(crate) enum Function {
     LogRatio(u8),
 }
 
-/// Beyond its radius of convergence of one a series isn't what is asked for.
+/// A series that needs more terms is at the edge of its radius of convergence, where it is no value to check with.
 const MOST_TERMS: u32 = 400;
 
 impl Function {
     /// Those that are written as methods of a scalar.
     pub(crate) const METHODS: [Self; 5] = [Self::Sqrt, Self::Ln, Self::Exp, Self::Sin, Self::Cos];
+
+    /// A number of its own.
+    pub(crate) fn number(self) -> usize {
+        match self {
+            Self::Sqrt => 0,
+            Self::Ln => 1,
+            Self::Exp => 2,
+            Self::Sin => 3,
+            Self::Cos => 4,
+            Self::Stumpff(k) => 16 + usize::from(k),
+            Self::LogRatio(k) => 512 + usize::from(k),
+        }
+    }
 
     /// The method of a Rust float, and the name in print.
     pub(crate) fn name(self) -> String {

@@ -134,8 +134,9 @@ pub(crate) fn reduce(word: Vec<Factor>, symbols: &Symbols) -> Vec<Factor> {
     stack
 }
 
-/// A closed word `tr(W)` or a bilinear form `uᵀ W v`, in the one form that stands for all equal ones; with its sign,
-/// zero where the word equals its own negative transpose.
+/// The canonical form of a closed word `tr(W)` or of a bilinear form `uᵀ W v`, and its sign.
+///
+/// Equal words have equal canonical forms. The sign is zero where the word equals its own negative transpose.
 pub(crate) fn canonical_trace(word: Vec<Factor>, symbols: &Symbols) -> (i8, Vec<Factor>) {
     let word = reduce_cyclic(word, symbols);
     let is_form = word.first().is_some_and(|factor| factor.shape(symbols).0 == 1);
