@@ -16,8 +16,9 @@
 
 use std::process::ExitCode;
 
+use liestep::Stepper;
 use liestep::effects::PrincipalBody;
-use liestep::{DiagonalNonstandardInertia, Stepper};
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::args::{Common, Failure, example};
 use workbench::common_help;

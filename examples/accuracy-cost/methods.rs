@@ -2,11 +2,12 @@
 
 use declarations::motions::End;
 use liestep::effects::PrincipalBody;
-use liestep::motion::Plan;
-use liestep::{
-    CompositionScheme, DiscreteLagrangian, KineticFlow, PreprocessedFlow, PreprocessedOrder, Regular, SO3, SplitBody,
-    SplittingScheme, Stepper, SymmetricBody,
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::methods::{
+    CompositionScheme, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody,
 };
+use liestep::motion::Plan;
+use liestep::{SO3, Stepper};
 
 use crate::rivals::{dop853, library};
 use crate::scenes::{Kind, Scene};

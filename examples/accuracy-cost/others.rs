@@ -6,11 +6,11 @@
 use std::error::Error;
 
 use declarations::motions::End;
+use liestep::accuracy::Candidates;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Spring};
-use liestep::{
-    Candidates, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, NonstandardInertia,
-    PreprocessedFlow, PreprocessedOrder, Regular, SO3, Stepper, SymmetricBody,
-};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
+use liestep::methods::{CompositionScheme, PreprocessedFlow, PreprocessedOrder, SymmetricBody};
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::asked::{Question, asking};

@@ -2,8 +2,9 @@
 
 use declarations::HeavyTop;
 use declarations::Motion;
+use liestep::Stepper;
 use liestep::effects::PrincipalBody;
-use liestep::{DiagonalNonstandardInertia, Stepper};
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use plotters::style::RGBColor;
 use workbench::free_body::engines::{Engine, Moments, explicit, implicit, rescaled};

@@ -1,7 +1,8 @@
 //! Long runs: defects of the group and of the Casimirs while they grow.
 
+use liestep::SO3;
+use liestep::groups::LieGroup as _;
 use liestep::motion::Motion;
-use liestep::{LieGroup as _, SO3};
 use nalgebra::{Matrix3, SVector, Vector3};
 use workbench::measure::{float, greater};
 

@@ -5,7 +5,10 @@ use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::Motion;
 use declarations::{FourthOrderTop, SixthOrderTop, Top as _};
 use declarations::{FreeBody, HeavyTop};
-use liestep::{CompositionScheme, DiscreteLagrangian, LieGroup as _, Regular, SO3, StepError, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::methods::CompositionScheme;
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -3,12 +3,12 @@
 use declarations::HeavyTop;
 use declarations::Motion;
 use declarations::{FourthOrderTop, Top as _};
+use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates};
 use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
-use liestep::{
-    Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, CompositionScheme, DiagonalNonstandardInertia,
-    DiscreteLagrangian, Inertia, LieGroup as _, NonstandardInertia, PreprocessedFlow, PreprocessedOrder, Regular, SO2,
-    SO3, SetupError, Stepper, SymmetricBody, lagrangian,
-};
+use liestep::groups::{Advected, LieGroup as _, SO2};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
+use liestep::methods::{CompositionScheme, PreprocessedFlow, PreprocessedOrder, SymmetricBody};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3};
 
 /// The five scenes of the example accuracy-cost.

@@ -5,12 +5,12 @@ use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::Motion;
 use declarations::{FourthOrderTop, LogTop, Top as _};
 use declarations::{FreeBody, FullTop, HeavyTop};
+use liestep::effects::{Gravity, RigidBody};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Effect as _;
 use liestep::mechanics::RigidScene;
 use liestep::methods::{Collocated, Gauss};
-use liestep::{
-    Effect as _, Gravity, LieGroup as _, NonstandardInertia, RigidBody, SO3, SetupError, State, StepError, Stepper,
-    effects,
-};
+use liestep::{NonstandardInertia, SO3, SetupError, State, StepError, Stepper, effects};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 

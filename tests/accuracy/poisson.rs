@@ -4,7 +4,9 @@ use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderBody, SixthOrderBody};
 use declarations::{FreeBody, HeavyTop};
-use liestep::{KineticFlow, LieGroup as _, PreprocessedFlow, PreprocessedOrder, SO3, SplittingScheme, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::methods::{KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme};
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 
 use crate::splitting::symmetric;

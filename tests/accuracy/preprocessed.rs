@@ -5,7 +5,10 @@ use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::FreeBody;
 use declarations::Motion;
 use liestep::effects::PrincipalBody;
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, PreprocessedOrder, SO3, StepError, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::methods::PreprocessedOrder;
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

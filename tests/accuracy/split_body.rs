@@ -5,10 +5,11 @@ use checks::structure::poisson::TOLERANCE;
 use declarations::HeavyTop;
 use declarations::Motion;
 use liestep::effects::PrincipalBody;
-use liestep::{
-    Inertia, KineticFlow, LieGroup as _, PreprocessedOrder, Real, SO3, SetupError, SplitBody, SplittingScheme,
-    StepError, Stepper, SymmetricBody, Turn,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Inertia;
+use liestep::methods::{KineticFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody, Turn};
+use liestep::numbers::Real;
+use liestep::{SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use workbench::measure::{order, relative};
@@ -72,7 +73,7 @@ fn moved<K: KineticFlow<f64>>(body: &K, t: f64, steps: u32, momentum: &Vector3<f
 
 /// The same by another method, to rounding.
 fn expected(moments: [f64; 3], t: f64, momentum: &Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
-    let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
+    let nonstandard = liestep::mechanics::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
     let steps = 1000;
     let body = Stepper::preprocessed(PrincipalBody { J_d: nonstandard }, t / f64::from(steps), PreprocessedOrder::Ten)
         .unwrap();
@@ -192,7 +193,8 @@ fn symmetric_bodies_move_exactly() {
 #[test]
 fn p1_they_are_poisson_maps() {
     fn assert_poisson<const N: usize>(moments: [f64; 3], scheme: SplittingScheme, h: f64, random: &mut Random) {
-        let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
+        let nonstandard =
+            liestep::mechanics::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
         let top = HeavyTop { J_d: nonstandard, ..HeavyTop::asymmetric() };
         let (momentum, w) = (random.vector() * 3.0, random.vector());
         let defect = poisson_defect(&top, || split::<N>(moments), (scheme, h), (&momentum, &w));

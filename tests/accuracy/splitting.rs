@@ -5,10 +5,12 @@ use declarations::Motion;
 use declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBody, Top as _};
 use declarations::{FreeBody, HeavyTop};
 use liestep::effects::{GravityGradient, Rotor, Spring};
-use liestep::{
-    CompositionScheme, DiagonalNonstandardInertia, Effect, Flow, Inertia, KineticFlow, LieGroup as _, PreprocessedFlow,
-    PreprocessedOrder, SO3, SetupError, SplittingScheme, Stepper, SymmetricBody,
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia};
+use liestep::methods::{
+    CompositionScheme, Flow, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme, SymmetricBody,
 };
+use liestep::{SO3, SetupError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

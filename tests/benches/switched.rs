@@ -1,6 +1,8 @@
 //! An effect behind a flag that is asked at run time, as simulators have it that hold every effect in every scene.
 
-use liestep::{Coordinates as _, Effect, Matrix, Parts, SceneVisitor, SetupError, Square, Vector};
+use liestep::SetupError;
+use liestep::mechanics::{Effect, Matrix, Parts, SceneVisitor, Square, Vector};
+use liestep::numbers::Coordinates as _;
 
 /// An effect that can be switched off.
 pub(crate) struct Switched<E> {

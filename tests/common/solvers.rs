@@ -3,10 +3,12 @@
 use core::cell::Cell;
 use core::fmt::Debug;
 
-use liestep::{
-    DiscreteLagrangian, Effect, Group, LieGroup as _, Matrix, Parts, Real, Retraction as _, SO3, Scalar, SceneVisitor,
-    SetupError, Square, Vector, WithKinetic,
+use liestep::groups::{LieGroup as _, Retraction as _};
+use liestep::mechanics::{
+    DiscreteLagrangian, Effect, Group, Matrix, Parts, Scalar, SceneVisitor, Square, Vector, WithKinetic,
 };
+use liestep::numbers::Real;
+use liestep::{SO3, SetupError};
 use nalgebra::{Matrix3, Vector3};
 
 /// The terms that don't know stages.

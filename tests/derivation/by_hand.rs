@@ -1,9 +1,10 @@
 //! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
 
-use liestep::{
-    Accuracy, Candidates, CayleyRetraction, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia,
-    SO3, SceneVisitor, SetupError, SplittingScheme, Stepper, SymmetricBody, WithKinetic,
-};
+use liestep::accuracy::{Accuracy, Candidates};
+use liestep::groups::{CayleyRetraction, LieGroup as _};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, SceneVisitor, WithKinetic};
+use liestep::methods::{SplittingScheme, SymmetricBody};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 #[derive(Clone, Debug)]

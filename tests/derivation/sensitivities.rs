@@ -1,8 +1,10 @@
 //! Dual numbers through the stepper: derivatives of a whole trajectory with respect to a parameter.
 
 use checks::any_scalar::Top;
-use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian as _, LieGroup as _};
-use liestep::{Real, SO3, State, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian as _};
+use liestep::numbers::Real;
+use liestep::{SO3, State, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 

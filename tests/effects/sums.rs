@@ -3,11 +3,10 @@
 use checks::random::Random;
 use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
+use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
-use liestep::{
-    Advected, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia, Regular, Retraction as _, SO3,
-    State, Stepper, lagrangian,
-};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Regular};
+use liestep::{NonstandardInertia, SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

@@ -5,7 +5,10 @@ use checks::random::Random;
 use declarations::Motion;
 use declarations::{FreeBody, HeavyTop};
 use declarations::{SixthOrderTop, Top as _};
-use liestep::{Checkpoint, CheckpointError, Effect, LieGroup as _, SO3, Scalar, Stepper, Stored};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{Effect, Scalar};
+use liestep::with::{Checkpoint, CheckpointError, Stored};
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 

@@ -3,9 +3,11 @@
 use checks::random::Random;
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::motion::{self, Declared};
+use liestep::groups::LieGroup as _;
+use liestep::motion;
+use liestep::motion::Declared;
 use liestep::with::Compensated;
-use liestep::{LieGroup as _, SO3, Stepper};
+use liestep::{SO3, Stepper};
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{relative, slope, steps_in};
 

@@ -3,7 +3,8 @@
 use declarations::HeavyTop;
 use declarations::Motion;
 use declarations::{CayleyTop, Top as _};
-use liestep::{Remedy, SO3, State, StepError, StepReport, Stepper};
+use liestep::motion::{Remedy, StepReport};
+use liestep::{SO3, State, StepError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

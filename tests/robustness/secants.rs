@@ -5,11 +5,11 @@ use checks::any_scalar::Top;
 use checks::random::Random;
 use checks::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use declarations::{self, FourthOrderTop, SixthOrderTop};
+use liestep::groups::{CayleyRetraction, LieGroup as _};
 use liestep::laws::samples::derivative;
-use liestep::{
-    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia,
-    LieGroup as _, Regular, SO3, StepError, Stepper, lagrangian,
-};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia, Regular};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{SO3, StepError, Stepper, lagrangian};
 use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use simba::simd::WideF64x4;
@@ -52,7 +52,7 @@ fn the_model_is_right_to_the_fourth_power_of_the_angle() {
     let errors = [0.4, 0.2, 0.1, 0.05].map(|size| {
         let xi = axis * size;
         let (_, jacobian) = SixthOrderTop::newton_system(&constants, &terms, &(xi * 0.5));
-        let model = <CayleyRetraction as liestep::Retraction<SO3>>::free_momentum_tangent(&top.inertia(), &xi);
+        let model = <CayleyRetraction as liestep::groups::Retraction<SO3>>::free_momentum_tangent(&top.inertia(), &xi);
         (model - jacobian).norm() / model.norm()
     });
     let points: Vec<_> = errors.iter().zip([0.4_f64, 0.2, 0.1, 0.05]).map(|(e, size)| (size.ln(), e.ln())).collect();
@@ -74,7 +74,7 @@ fn the_residual_alone_is_the_systems() {
         assert!((alone - residual).norm() <= 1e-13 * residual.norm());
         let along = derivative(|s| SixthOrderTop::newton_residual(&constants, &terms, &(xi + Vector3::x() * s)).0);
         assert!((along - jacobian.column(0)).norm() < 1e-9 * jacobian.norm());
-        let f = <CayleyRetraction as liestep::Retraction<SO3>>::retract(&(xi + xi));
+        let f = <CayleyRetraction as liestep::groups::Retraction<SO3>>::retract(&(xi + xi));
         let after = SixthOrderTop::kick_after(&constants, &f.increment(), &(f.matrix().transpose() * w));
         assert!((f.adjoint_transpose(&moved.unwrap()) - after).norm() < 1e-13 * after.norm());
     }

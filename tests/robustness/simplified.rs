@@ -3,7 +3,9 @@
 
 use checks::any_scalar::Top;
 use checks::solvers::{WithJacobian, jacobians};
-use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Stepper};
+use liestep::Stepper;
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use num_dual::Dual64;
 use workbench::measure::relative;

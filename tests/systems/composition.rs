@@ -1,7 +1,9 @@
 //! Symmetric compositions of the declared systems on other groups than SO(3): the order that their scheme has.
 
 use checks::structure::System;
-use liestep::{CompositionScheme, LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
+use liestep::methods::CompositionScheme;
 use nalgebra::SVector;
 use workbench::measure::{four_halvings, order, relative, steps_in};
 

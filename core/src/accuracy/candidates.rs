@@ -36,7 +36,11 @@ type Make<G, A> = Box<dyn Fn(f64) -> Result<AnyStepper<G, A>, SetupError>>;
 ///
 /// ```
 /// use liestep::effects::{Gravity, PrincipalBody};
-/// use liestep::{Accuracy, Candidates, DiagonalNonstandardInertia, LieGroup, NonstandardInertia, SO3, SymmetricBody};
+/// use liestep::{NonstandardInertia, SO3};
+/// use liestep::accuracy::{Accuracy, Candidates};
+/// use liestep::groups::LieGroup;
+/// use liestep::mechanics::DiagonalNonstandardInertia;
+/// use liestep::methods::SymmetricBody;
 /// use nalgebra::Vector3;
 ///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;

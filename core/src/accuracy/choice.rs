@@ -31,7 +31,10 @@ pub struct Offer {
 ///
 /// ```
 /// use liestep::effects::{Gravity, PrincipalBody};
-/// use liestep::{Accuracy, DiagonalNonstandardInertia, LieGroup, SO3, Stepper};
+/// use liestep::{SO3, Stepper};
+/// use liestep::accuracy::Accuracy;
+/// use liestep::groups::LieGroup;
+/// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;

@@ -81,7 +81,9 @@ impl<S: Effect> Stepper<S> {
     ///
     /// ```
     /// use liestep::effects::RigidBody;
-    /// use liestep::{Accuracy, LieGroup, NonstandardInertia, SO3, Stepper};
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use liestep::accuracy::Accuracy;
+    /// use liestep::groups::LieGroup;
     /// use nalgebra::Vector3;
     ///
     /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))? };

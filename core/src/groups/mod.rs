@@ -45,6 +45,7 @@ pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
 pub(crate) use generators::{inverse, is_closed_under_cayley};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
+pub use liestep_macros::matrix_group;
 pub(crate) use matrix_group::basis;
 pub use matrix_group::{MatrixGroup, NotInGroup};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};

@@ -20,7 +20,8 @@ use crate::solving::{TurningLimits, solvability};
 /// # Examples
 ///
 /// ```
-/// use liestep::{LieGroup, SO3};
+/// use liestep::SO3;
+/// use liestep::groups::LieGroup;
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// let attitude = SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0)));
 /// assert!(attitude.defect() < 1e-15);

@@ -7,6 +7,9 @@ pub mod group;
 pub mod retraction;
 pub mod samples;
 
+#[doc(inline)]
+pub use crate::{advected_laws, lie_group_laws, retraction_laws};
+
 /// Generates the tests of the laws of [`LieGroup`](crate::groups::LieGroup) for a group over `f64`.
 ///
 /// | test | laws |
@@ -27,9 +30,10 @@ pub mod samples;
 /// ```
 /// #[cfg(test)]
 /// mod rigid_motions {
-///     liestep::lie_group_laws!(liestep::SE3);
+///     liestep::lie_group_laws!(liestep::groups::SE3);
 /// }
 /// ```
+#[doc(hidden)]
 #[macro_export]
 macro_rules! lie_group_laws {
     ($group:ty) => {
@@ -57,9 +61,10 @@ macro_rules! lie_group_laws {
 /// ```
 /// #[cfg(test)]
 /// mod rigid_motions_by_cayley {
-///     liestep::retraction_laws!(liestep::SE3, liestep::CayleyRetraction);
+///     liestep::retraction_laws!(liestep::groups::SE3, liestep::groups::CayleyRetraction);
 /// }
 /// ```
+#[doc(hidden)]
 #[macro_export]
 macro_rules! retraction_laws {
     ($group:ty, $retraction:ty) => {
@@ -90,13 +95,14 @@ macro_rules! retraction_laws {
 /// ```
 /// #[cfg(test)]
 /// mod carried_by_rigid_motions {
-///     liestep::advected_laws!(liestep::SE3);
+///     liestep::advected_laws!(liestep::groups::SE3);
 /// }
 /// #[cfg(test)]
 /// mod planes_carried_by_rigid_motions {
-///     liestep::advected_laws!(liestep::SE3, nalgebra::Vector4<f64>);
+///     liestep::advected_laws!(liestep::groups::SE3, nalgebra::Vector4<f64>);
 /// }
 /// ```
+#[doc(hidden)]
 #[macro_export]
 macro_rules! advected_laws {
     ($group:ty) => {

@@ -95,7 +95,7 @@ impl core::error::Error for InertiaError {}
 /// use nalgebra::Vector3;
 /// let body = NonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
 /// assert_eq!(body.as_matrix().diagonal(), Vector3::new(2.0, 2.0, 1.0));
-/// # Ok::<(), liestep::InertiaError>(())
+/// # Ok::<(), liestep::mechanics::InertiaError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(alias = "J_d")]

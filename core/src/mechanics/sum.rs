@@ -21,7 +21,8 @@ use crate::numbers::{Coordinates as _, real};
 ///
 /// ```
 /// use liestep::effects::{Gravity, RigidBody};
-/// use liestep::{NonstandardInertia, SO3, LieGroup as _, Stepper};
+/// use liestep::{NonstandardInertia, SO3, Stepper};
+/// use liestep::groups::LieGroup as _;
 /// use nalgebra::Vector3;
 ///
 /// let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;

@@ -45,7 +45,8 @@ pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as P
 /// # Examples
 ///
 /// ```
-/// use liestep::{DiagonalNonstandardInertia, SO3, Stepper, lagrangian};
+/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
 /// /// A free rigid body.
@@ -62,7 +63,7 @@ pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as P
 ///     stepper.step(&mut state)?;
 /// }
 /// assert!((state.spatial_momentum() - before).norm() < 1e-12);
-/// # use liestep::LieGroup;
+/// # use liestep::groups::LieGroup;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -215,7 +216,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// ```
     /// use liestep::effects::RigidBody;
-    /// use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper};
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use liestep::groups::LieGroup as _;
     /// use nalgebra::Vector3;
     ///
     /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5))?;
@@ -259,7 +261,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// ```
     /// use liestep::effects::{Gravity, RigidBody};
-    /// use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper};
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use liestep::groups::LieGroup as _;
     /// use nalgebra::Vector3;
     ///
     /// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))? };

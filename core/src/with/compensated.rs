@@ -21,7 +21,9 @@ use nalgebra::SimdValue as _;
 /// # Examples
 ///
 /// ```
-/// use liestep::{DiagonalNonstandardInertia, LieGroup as _, SO3, Stepper, lagrangian};
+/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::groups::LieGroup as _;
+/// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
 /// /// A free rigid body.

@@ -36,7 +36,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// ```
     /// use liestep::motion::Remedy;
-    /// use liestep::{DiagonalNonstandardInertia, LieGroup as _, SO3, Stepper, lagrangian};
+    /// use liestep::{SO3, Stepper, lagrangian};
+    /// use liestep::groups::LieGroup as _;
+    /// use liestep::mechanics::DiagonalNonstandardInertia;
     /// use nalgebra::Vector3;
     ///
     /// /// A free rigid body.

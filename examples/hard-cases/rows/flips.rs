@@ -2,10 +2,10 @@
 
 use declarations::SixthOrderBody;
 use liestep::effects::PrincipalBody;
-use liestep::{
-    CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _, PreprocessedOrder,
-    Regular, SO3, Stepper,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
+use liestep::methods::{CompositionScheme, PreprocessedOrder};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::free_body::engines::{Moments, explicit, implicit, rescaled};
 use workbench::heavy_top::rk4::{Body, OnQuaternion};

@@ -1,8 +1,11 @@
 //! P5: two ways to write the flow, and two ways to write the scene.
 
 use declarations::Motion;
+use liestep::Stepper;
 use liestep::effects::{Gravity, PrincipalBody};
-use liestep::{DiscreteEulerPoincare, DiscreteLagrangian as _, LieGroup as _, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiscreteLagrangian as _;
+use liestep::motion::DiscreteEulerPoincare;
 use nalgebra::Vector3;
 use workbench::measure::{greater, relative};
 

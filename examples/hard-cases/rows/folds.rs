@@ -1,7 +1,9 @@
 //! S1, S2: steps up to the fold, where the momentum equation loses its solution, and beyond.
 
 use declarations::Motion;
-use liestep::{LieGroup as _, Solvability, StepError, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::motion::Solvability;
+use liestep::{StepError, Stepper};
 use workbench::measure::{greater, relative};
 use workbench::plot::BLUE;
 use workbench::run::Method as _;

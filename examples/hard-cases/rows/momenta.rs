@@ -2,11 +2,11 @@
 
 use declarations::Motion;
 use declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, SixthOrderTop};
+use liestep::SO3;
+use liestep::groups::{Advected, ContravariantVector, Heisenberg, LieGroup as _, SE2, SE3, SL2};
 use liestep::laws::samples::{MatrixLieGroup, Random, eliminated_inverse};
-use liestep::{
-    Advected, ContravariantVector, DiscreteLagrangian, DiscreteLiePoisson, Heisenberg, Inertia, LieGroup as _, Regular,
-    SE2, SE3, SL2, SO3,
-};
+use liestep::mechanics::{DiscreteLagrangian, Inertia, Regular};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{greater, relative};
 

@@ -1,7 +1,8 @@
 //! T6: straight up and straight down, where Euler angles are undefined.
 
 use declarations::HeavyTop;
-use liestep::{DiagonalNonstandardInertia, Stepper};
+use liestep::Stepper;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::greater;
 

@@ -2,7 +2,8 @@
 
 use declarations::Motion;
 use declarations::{FreeBody, HeavyTop};
-use liestep::{DiscreteLagrangian, NonstandardInertia, Regular, SO3, Stepper};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::run::Method as _;

@@ -8,7 +8,10 @@
 
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3, SplittingScheme, Stepper, SymmetricBody};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{Effect as _, Inertia};
+use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
+use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
 use workbench::measure::{Tenths, float};

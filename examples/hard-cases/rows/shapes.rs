@@ -1,7 +1,9 @@
 //! B3 to B5: thin, flat, round, and in other axes.
 
 use declarations::FreeBody;
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, NonstandardInertia, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::measure::{greater, relative};
 

@@ -1,7 +1,9 @@
 //! P8: the same in `f32`.
 
 use liestep::effects::{Gravity, PrincipalBody};
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, SO3, StepError, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::curves::Curves;
@@ -42,7 +44,7 @@ fn single(value: f64) -> f32 {
     value as f32
 }
 
-type Scene = liestep::Sum<PrincipalBody<f32>, Gravity<f32>>;
+type Scene = liestep::mechanics::Sum<PrincipalBody<f32>, Gravity<f32>>;
 /// Nothing is advected for the body, the vertical for gravity.
 type Turning = liestep::State<SO3<f32>, ((), Vector3<f32>)>;
 

@@ -1,7 +1,8 @@
 //! T5: the sleeping top on both sides of its critical speed.
 
 use declarations::HeavyTop;
-use liestep::{DiagonalNonstandardInertia, Stepper};
+use liestep::Stepper;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::measure::float;

@@ -2,8 +2,10 @@
 
 use declarations::Motion;
 use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, SixthOrderTop};
+use liestep::SO3;
 use liestep::laws::samples::Random;
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Inertia, Regular, SO3};
+use liestep::mechanics::{DiscreteLagrangian, Inertia, Regular};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::Vector3;
 use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::measure::greater;

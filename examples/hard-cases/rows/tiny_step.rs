@@ -1,7 +1,8 @@
 //! T4: steps so small that `F` is the identity in most of its digits.
 
 use declarations::Motion;
-use liestep::{LieGroup as _, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::{relative, steps_in};
 use workbench::run::Method as _;

@@ -1,7 +1,10 @@
 //! S3: about a principal axis `sin θ = hΩ` has a second root at `π − θ`.
 
 use declarations::FreeBody;
-use liestep::{DiscreteLiePoisson, Effect, Retraction as _, SO3, StepError};
+use liestep::groups::Retraction as _;
+use liestep::mechanics::Effect;
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::greater;
 

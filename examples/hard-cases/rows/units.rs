@@ -2,7 +2,9 @@
 
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::curves::Curves;

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
+use liestep::accuracy::{Accuracy, AccuracyError, Choice};
+use liestep::groups::{Advected, LieGroup as _};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::motion::{AnyState, Motion};
-use liestep::{
-    Accuracy, AccuracyError, Advected, Choice, DiscreteLagrangian, LieGroup as _, Regular, SO3, SetupError, State,
-    StepError, Stepper,
-};
+use liestep::{SO3, SetupError, State, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::csv;
 

@@ -5,8 +5,9 @@
 //! exact for every `l_d` (Noether). On SO(3) with one vector that is `μ·w`; where nothing is advected it is all of the
 //! spatial momentum.
 
+use liestep::groups::{Advected as _, LieGroup as _};
 use liestep::laws::samples::derivative;
-use liestep::{Advected as _, DiscreteLiePoisson, LieGroup as _};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;

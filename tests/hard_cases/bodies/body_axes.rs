@@ -5,7 +5,9 @@
 use checks::random::Random;
 use declarations::Motion;
 use declarations::{FullTop, HeavyTop};
-use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 

@@ -8,7 +8,10 @@
 use declarations::FreeBody;
 use declarations::SixthOrderBody;
 use liestep::effects::PrincipalBody;
-use liestep::{CompositionScheme, DiagonalNonstandardInertia, Inertia, LieGroup as _, PreprocessedOrder, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+use liestep::methods::{CompositionScheme, PreprocessedOrder};
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::{four_halvings, order};
 

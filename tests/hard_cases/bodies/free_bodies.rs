@@ -3,7 +3,8 @@
 //! bodies and steps on which an explicit, an implicit or a rescaling update fails.
 
 use declarations::FreeBody;
-use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 /// Largest relative errors of the energy and of the spatial momentum, and the most Newton iterations after the first

@@ -2,7 +2,9 @@
 //! by the weight.
 
 use declarations::{FreeBody, HeavyTop};
-use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Starts at rest and finds the same attitude, momentum and advected parameters after each of many steps.

@@ -1,7 +1,8 @@
 //! The Cayley and the log-trace kinetic terms have a step where (3.13) has none.
 
 use declarations::{CayleyTop, LogTraceTop};
-use liestep::{Inertia, SO3, Stepper};
+use liestep::mechanics::Inertia;
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 fn tilted() -> UnitQuaternion<f64> {

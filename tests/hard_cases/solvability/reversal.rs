@@ -4,7 +4,9 @@
 use checks::random::Random;
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{DiscreteLiePoisson, LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
+use liestep::motion::DiscreteLiePoisson;
 use workbench::measure::relative;
 
 #[test]

@@ -5,7 +5,10 @@
 use checks::random::Random;
 use declarations::Motion;
 use declarations::{FullTop, HeavyTop};
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, StepError, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::Vector3;
 
 /// The largest solvable step of a symmetric top by the closed criterion: with `κ = h a_3/(2 J_3)`,

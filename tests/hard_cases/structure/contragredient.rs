@@ -1,8 +1,9 @@
 //! A parameter in `V*` moves by `ρ(f)ᵀ`, not by `ρ(f)⁻¹`, [RDAE, theorem 2.2.1] as corrected: the two agree on
 //! orthogonal matrices only.
 
+use liestep::SO3;
+use liestep::groups::{Advected, ContravariantVector, Heisenberg, SE2, SE3, SL2, SO2, SU2};
 use liestep::laws::samples::{MatrixLieGroup, Random, eliminated_inverse};
-use liestep::{Advected, ContravariantVector, Heisenberg, SE2, SE3, SL2, SO2, SO3, SU2};
 use nalgebra::SVector;
 
 /// The largest changes of `⟨w, v⟩` over some elements: with `Fᵀ w`, and with the product `F⁻¹ w` in its place.

@@ -13,8 +13,10 @@
 
 use declarations::Motion;
 use declarations::{FreeBody, HeavyTop};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Effect;
 use liestep::motion::Motion as Moving;
-use liestep::{Effect, LieGroup as _, SO3, State, Stepper};
+use liestep::{SO3, State, Stepper};
 use nalgebra::Vector3;
 
 const STEPS: u32 = 1000;
@@ -33,9 +35,9 @@ impl Digest {
         }
     }
 
-    fn add_state<A: liestep::Advected<SO3>>(&mut self, state: &Moving<SO3, A>) {
+    fn add_state<A: liestep::groups::Advected<SO3>>(&mut self, state: &Moving<SO3, A>) {
         state.attitude().as_matrix().iter().chain(&state.momentum()).for_each(|&number| self.add(number));
-        liestep::Entries::<f64>::each(&state.advected(), &mut |number| self.add(number));
+        liestep::numbers::Entries::<f64>::each(&state.advected(), &mut |number| self.add(number));
     }
 }
 

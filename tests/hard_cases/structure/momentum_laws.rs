@@ -7,7 +7,7 @@ use checks::random::Random;
 use checks::structure::momenta::assert_momenta;
 use checks::structure::stages::{assert_stages, assert_step};
 use declarations::{FreeBody, FullTop, HeavyTop};
-use liestep::DiscreteLiePoisson;
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::Vector3;
 
 const STEPS: [f64; 3] = [1e-3, 0.1, 0.3];

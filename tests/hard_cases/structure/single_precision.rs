@@ -2,10 +2,10 @@
 //! 450 ε, 2·10⁻¹² is 9000 ε.
 
 use declarations::Motion;
-use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, InertiaError, LieGroup as _, NonstandardInertia, Real,
-    Regular, SO3, State, StepError, Stepper, lagrangian,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, InertiaError, Regular};
+use liestep::numbers::Real;
+use liestep::{NonstandardInertia, SO3, State, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, Vector3, convert};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 

@@ -6,7 +6,9 @@
 //! An attitude that is found far from the group is put back, and what is advected with it.
 
 use declarations::HeavyTop;
-use liestep::{CompositionScheme, DiagonalNonstandardInertia, Inertia, SO3, SplittingScheme, Stepper, SymmetricBody};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 type TopMotion = liestep::motion::Motion<SO3, Vector3<f64>>;

@@ -5,7 +5,10 @@
 
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{CayleyRetraction, Coordinates as _, Effect, LieGroup as _, Retraction, SO3, Stepper};
+use liestep::groups::{CayleyRetraction, LieGroup as _, Retraction};
+use liestep::mechanics::Effect;
+use liestep::numbers::Coordinates as _;
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 
 const STEPS: u64 = 1_000_000;

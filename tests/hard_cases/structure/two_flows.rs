@@ -3,9 +3,10 @@
 
 use declarations::Motion;
 use declarations::{FreeBody, FullTop, HeavyTop};
-use liestep::{
-    DiscreteEulerPoincare, DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, Stepper, reconstruct,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -4,7 +4,8 @@
 
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{LieGroup as _, SO3, State, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::{SO3, State, Stepper};
 use nalgebra::{SVector, Vector3, Vector4};
 
 type TopMotion = liestep::motion::Motion<SO3, Vector3<f64>>;

@@ -1,7 +1,8 @@
 //! A million steps of 10⁻⁸ s lose no more than rounding in the momentum: `F ≈ I` is never formed, its increment is.
 
 use declarations::Motion;
-use liestep::{LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
 use nalgebra::Vector3;
 use workbench::heavy_top::continuous::{phase, solution};
 use workbench::measure::relative;

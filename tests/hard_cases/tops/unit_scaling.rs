@@ -3,7 +3,9 @@
 
 use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{Matrix3, Vector3};
 
 /// The looping top, or one without symmetry, with masses and times multiplied; momenta in the old units.

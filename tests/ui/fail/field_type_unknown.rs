@@ -1,4 +1,5 @@
-use liestep::{Effect, lagrangian, NonstandardInertia, SO3, Stepper};
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::mechanics::Effect;
 use nalgebra::{Translation3, Vector3};
 
 #[lagrangian(

@@ -1,4 +1,5 @@
-use liestep::{Effect, lagrangian, NonstandardInertia, Stepper};
+use liestep::{NonstandardInertia, Stepper, lagrangian};
+use liestep::mechanics::Effect;
 
 #[lagrangian(l_d = (F * J_d).trace() / h)]
 struct Top {

@@ -1,4 +1,5 @@
-use liestep::{Effect, lagrangian, NonstandardInertia, SO3, Stepper};
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::mechanics::Effect;
 
 #[lagrangian(group = SO3, l_d = (F - I) * J_d * (F - I).transpose() / (2.0 * h))]
 struct Top {

@@ -1,4 +1,5 @@
-use liestep::{Effect, lagrangian, NonstandardInertia, SO3, Stepper};
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::mechanics::Effect;
 use nalgebra::Vector3;
 
 #[lagrangian(

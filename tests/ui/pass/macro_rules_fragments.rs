@@ -1,6 +1,8 @@
 //! Declarations inside `macro_rules!`, with parts from either side.
 
-use liestep::{Effect as _, LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Effect as _;
 use nalgebra::Vector3;
 
 /// The name, the types and the whole Lagrangian come from the call.

@@ -3,7 +3,7 @@
 mod groups {
     use nalgebra::{RealField, SMatrix};
 
-    liestep::__private::matrix_group! {
+    liestep::groups::matrix_group! {
         /// The affine maps `x ↦ a x + b` of the line, `a > 0`.
         #[allow(dead_code)]
         pub type Affine = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
@@ -17,7 +17,10 @@ mod groups {
 }
 
 use groups::Affine;
-use liestep::{Effect as _, LieGroup as _, Real, Stepper, lagrangian};
+use liestep::{Stepper, lagrangian};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Effect as _;
+use liestep::numbers::Real;
 use nalgebra::{Matrix2, Vector2};
 
 /// The name is found where the type is imported.

@@ -12,7 +12,8 @@
 )]
 #![forbid(unsafe_code)]
 
-use liestep::{LieGroup as _, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::groups::LieGroup as _;
 use nalgebra::Vector3;
 
 /// A heavy top.

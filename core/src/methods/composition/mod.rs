@@ -50,7 +50,8 @@ use nalgebra::SimdBool as _;
 ///
 /// ```
 /// use liestep::methods::CompositionScheme;
-/// use liestep::{DiagonalNonstandardInertia, SO3, Stepper, lagrangian};
+/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
 /// /// A free rigid body.
@@ -66,7 +67,7 @@ use nalgebra::SimdBool as _;
 /// for _ in 0..100 {
 ///     composed.step(&mut state)?;
 /// }
-/// # use liestep::LieGroup;
+/// # use liestep::groups::LieGroup;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

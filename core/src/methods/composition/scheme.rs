@@ -8,7 +8,7 @@
 /// # Examples
 ///
 /// ```
-/// use liestep::CompositionScheme;
+/// use liestep::methods::CompositionScheme;
 /// let scheme = CompositionScheme::KAHAN_LI_8;
 /// assert_eq!((scheme.order(), scheme.stages().count()), (8, 17));
 /// assert!((scheme.stages().sum::<f64>() - 1.0).abs() < 1e-15);

@@ -68,7 +68,8 @@ impl PreprocessedOrder {
 /// ```
 /// use liestep::effects::PrincipalBody;
 /// use liestep::methods::PreprocessedOrder;
-/// use liestep::{DiagonalNonstandardInertia, SO3, Stepper};
+/// use liestep::{SO3, Stepper};
+/// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;

@@ -41,7 +41,8 @@ use nalgebra::{Matrix3, SimdBool as _, SimdPartialOrd as _, SimdRealField as _, 
 ///
 /// ```
 /// use liestep::methods::{SplittingScheme, SymmetricBody};
-/// use liestep::{Inertia, SO3, Stepper, lagrangian};
+/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::mechanics::Inertia;
 /// use nalgebra::{UnitQuaternion, Vector3};
 ///
 /// /// A heavy top.

@@ -29,7 +29,7 @@ pub enum Flow {
 /// # Examples
 ///
 /// ```
-/// use liestep::SplittingScheme;
+/// use liestep::methods::SplittingScheme;
 /// let scheme = SplittingScheme::NYSTROM_11;
 /// assert_eq!((scheme.order(), scheme.drifts(), scheme.kicks()), (6, 11, 11));
 /// ```

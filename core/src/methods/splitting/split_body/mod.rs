@@ -46,7 +46,8 @@ use crate::numbers::{Mask, Real, is_finite, real, reported};
 /// # Examples
 ///
 /// ```
-/// use liestep::{Inertia, KineticFlow as _, SplitBody};
+/// use liestep::mechanics::Inertia;
+/// use liestep::methods::{KineticFlow as _, SplitBody};
 /// use nalgebra::Vector3;
 ///
 /// let inertia = Inertia::from_principal_moments(Vector3::new(1.6, 2.6, 3.0))?;
