@@ -1,5 +1,4 @@
 mod damping;
 mod momentum_laws;
 mod poisson;
-mod single_precision;
 mod steady_turns;
