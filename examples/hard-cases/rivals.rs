@@ -1,7 +1,6 @@
 //! Other methods on the bodies of the rows.
 
-use declarations::Motion;
-use declarations::{FreeBody, HeavyTop};
+use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::effects::PrincipalBody;
 use liestep::{DiagonalNonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};

@@ -2,9 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::Motion;
-use declarations::{FourthOrderTop, SixthOrderTop, Top as _};
-use declarations::{FreeBody, HeavyTop};
+use declarations::{FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
 use liestep::{Composition, CompositionScheme, DiscreteLagrangian, LieGroup as _, Regular, SO3, StepError};
 use nalgebra::Vector3;
 use workbench::measure::relative;

@@ -2,9 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::Motion;
-use declarations::{FourthOrderTop, LogTop, Top as _};
-use declarations::{FreeBody, FullTop, HeavyTop};
+use declarations::{FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, Motion, Top as _};
 use liestep::{
     DiscreteLagrangian, Effect as _, Gauss, GaussState, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody,
     SO3, SetupError, StepError, effects,

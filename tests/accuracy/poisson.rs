@@ -2,8 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::{FourthOrderBody, SixthOrderBody};
-use declarations::{FreeBody, HeavyTop};
+use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
 use liestep::{KineticFlow, LieGroup as _, PreprocessedFlow, PreprocessedOrder, SO3, Splitting, SplittingScheme};
 use nalgebra::Vector3;
 

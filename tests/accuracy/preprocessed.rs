@@ -2,8 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::FreeBody;
-use declarations::Motion;
+use declarations::{FreeBody, Motion};
 use liestep::{DiagonalNonstandardInertia, LieGroup as _, PreprocessedBody, PreprocessedOrder, SO3, StepError};
 use nalgebra::Vector3;
 use workbench::measure::relative;

@@ -2,8 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::TOLERANCE;
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::{
     Inertia, KineticFlow, LieGroup as _, PreprocessedBody, PreprocessedOrder, Real, SO3, SetupError, SplitBody,
     Splitting, SplittingScheme, StepError, SymmetricBody, Turn,

@@ -2,9 +2,7 @@
 //! nothing else than its own.
 
 use checks::random::Random;
-use declarations::Motion;
-use declarations::{FreeBody, HeavyTop};
-use declarations::{SixthOrderTop, Top as _};
+use declarations::{FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
 use liestep::{Checkpoint, CheckpointError, Effect, LieGroup as _, SO3, Scalar, Stepper, Stored};
 use nalgebra::Vector3;
 use serde_json::{Value, json};

@@ -1,8 +1,7 @@
 //! Rounding grows like `√N`, and with compensated sums it grows from the changes of a step instead of from the state.
 
 use checks::random::Random;
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::{CompensatedState, CompensatedStepper, LieGroup as _, SO3, State, Stepper};
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{relative, slope, steps_in};

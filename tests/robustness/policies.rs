@@ -1,8 +1,6 @@
 //! What a stepper with a policy does where there is no step, and that it says so.
 
-use declarations::HeavyTop;
-use declarations::Motion;
-use declarations::{CayleyTop, Top as _};
+use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
 use liestep::{Fallback, Remedy, SO3, State, StepError, StepReport, Stepper, Substeps};
 use nalgebra::Vector3;
 use workbench::measure::relative;

@@ -1,7 +1,6 @@
 //! P2, P3: momentum maps, Casimirs, and how a covector is advected.
 
-use declarations::Motion;
-use declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, SixthOrderTop, Top as _};
+use declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _};
 use liestep::laws::samples::{MatrixLieGroup, Random, eliminated_inverse};
 use liestep::{
     Advected, ContravariantVector, DiscreteLagrangian, DiscreteLiePoisson, Heisenberg, LieGroup as _, Regular, SE2,

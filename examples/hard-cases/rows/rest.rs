@@ -1,7 +1,6 @@
 //! S4: where nothing acts nothing happens.
 
-use declarations::Motion;
-use declarations::{FreeBody, HeavyTop};
+use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::{DiscreteLagrangian, Regular, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::rk4::OnQuaternion;

@@ -6,8 +6,7 @@
 //! this. The library takes one step towards the polar factor, `R (3I − RᵀR)/2`, once an attitude is 2¹¹ ε away; a step
 //! in every thousand, beside it, is what more of that would give.
 
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::{
     CompensatedState, CompensatedStepper, Composition, CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3,
     Splitting, SplittingScheme, Stepper, SymmetricBody,

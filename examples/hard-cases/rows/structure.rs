@@ -1,7 +1,6 @@
 //! P1: the step is a Poisson map.
 
-use declarations::Motion;
-use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, SixthOrderTop, Top as _};
+use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _};
 use liestep::laws::samples::Random;
 use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Regular, SO3};
 use nalgebra::Vector3;

@@ -1,7 +1,6 @@
 //! T8: no gravity.
 
-use declarations::Motion;
-use declarations::{FullTop, HeavyTop};
+use declarations::{FullTop, HeavyTop, Motion};
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};

@@ -3,8 +3,7 @@
 //! an axial vector, is `Ω' = det(Q) QΩ`.
 
 use checks::random::Random;
-use declarations::Motion;
-use declarations::{FullTop, HeavyTop};
+use declarations::{FullTop, HeavyTop, Motion};
 use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;

@@ -2,8 +2,7 @@
 //! its momentum is that of the continuous body at the same time, the half kick being inside (2.7).
 
 use checks::order::errors;
-use declarations::FreeBody;
-use declarations::Motion;
+use declarations::{FreeBody, Motion};
 use workbench::measure::order;
 
 /// Well above what 10⁵ steps lose to rounding in attitude and velocity.
