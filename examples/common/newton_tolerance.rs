@@ -15,7 +15,7 @@ use crate::tenths::{Tenths, float, greater};
 pub const EXPONENTS: [i32; 11] = [-12, -10, -8, -7, -6, -5, -4, -3, -2, -1, 0];
 
 /// Where the iteration starts.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Guess {
     /// The increment of the last step.
     Last,

@@ -19,7 +19,12 @@ pub struct Equations {
 impl Equations {
     /// Of a body with these principal moments, kg m², and `m g ρ`, N m.
     pub fn new(moments: [f64; 3], lever: [f64; 3]) -> Self {
-        Self { inverse_moments: moments.map(f64::recip), lever }
+        Self::of(moments.map(f64::recip), lever)
+    }
+
+    /// The same by the inverses of the moments.
+    pub fn of(inverse_moments: [f64; 3], lever: [f64; 3]) -> Self {
+        Self { inverse_moments, lever }
     }
 
     /// The body velocity, rad/s.

@@ -59,7 +59,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         let ids: Vec<_> = rows::ALL.iter().map(|(id, _)| *id).collect();
         return Err(format!("--row is one of {}", ids.join(", ")).into());
     }
-    let effort = Effort { long: arguments.long };
+    let effort = Effort { long: arguments.long, verdict_only: false };
     let (mut done, mut curves) = (Vec::new(), Curves::default());
     let mut progress = Progress::new(rows.len().try_into()?);
     for (id, measure) in rows {

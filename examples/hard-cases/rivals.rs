@@ -1,7 +1,6 @@
 //! Other methods on the bodies of the rows.
 
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::Stepper;
 use liestep::effects::PrincipalBody;
 use liestep::mechanics::DiagonalNonstandardInertia;
@@ -70,6 +69,13 @@ impl Spin {
             self.trace("rescaled", PURPLE, engine(rescaled), steps, stride)?,
             self.trace("RK4", GREY, OnQuaternion::new(rk4, h, &attitude, momentum), steps, stride)?,
         ])
+    }
+
+    /// The same body with a full tensor of inertia.
+    pub(crate) fn full(&self, steps: u64) -> Result<Trace, Failure> {
+        let stepper = Stepper::new(FreeBody { J_d: self.inertia.into() }, self.h)?;
+        let state = stepper.start(UnitQuaternion::identity(), self.velocity)?;
+        Ok(self.trace("full tensor", BLUE, Variational { stepper: &stepper, state }, steps, 1)?)
     }
 
     fn trace<M: Method>(

@@ -9,9 +9,16 @@ pub type Failure = Box<dyn Error>;
 #[derive(Clone, Copy)]
 pub struct Effort {
     pub long: bool,
+    /// Nothing beside what the criterion asks for: neither others nor variants.
+    pub verdict_only: bool,
 }
 
 impl Effort {
+    /// So many steps of what is only shown, or none.
+    pub fn beside(self, steps: u64) -> u64 {
+        if self.verdict_only { 0 } else { steps }
+    }
+
     /// The one number of steps, or with `--long` the other.
     pub fn steps(self, default: u64, long: u64) -> u64 {
         if self.long { long } else { default }

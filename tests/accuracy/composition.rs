@@ -2,9 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::Motion;
-use declarations::{FourthOrderTop, SixthOrderTop, Top as _};
-use declarations::{FreeBody, HeavyTop};
+use declarations::{FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::CompositionScheme;

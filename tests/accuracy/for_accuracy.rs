@@ -1,8 +1,6 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
-use declarations::HeavyTop;
-use declarations::Motion;
-use declarations::{FourthOrderTop, Top as _};
+use declarations::{FourthOrderTop, HeavyTop, Motion, Top as _};
 use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates};
 use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
 use liestep::groups::{Advected, LieGroup as _, SO2};

@@ -2,13 +2,10 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::Motion;
-use declarations::{FourthOrderTop, LogTop, Top as _};
-use declarations::{FreeBody, FullTop, HeavyTop};
+use declarations::{FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, Motion, Top as _};
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::LieGroup as _;
-use liestep::mechanics::Effect as _;
-use liestep::mechanics::RigidScene;
+use liestep::mechanics::{Effect as _, RigidScene};
 use liestep::methods::{Collocated, Gauss};
 use liestep::{NonstandardInertia, SO3, SetupError, State, StepError, Stepper, effects};
 use nalgebra::{Matrix3, Vector3};

@@ -2,8 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::{FourthOrderBody, SixthOrderBody};
-use declarations::{FreeBody, HeavyTop};
+use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
 use liestep::groups::LieGroup as _;
 use liestep::methods::{KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme};
 use liestep::{SO3, Stepper};

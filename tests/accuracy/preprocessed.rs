@@ -2,8 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
-use declarations::FreeBody;
-use declarations::Motion;
+use declarations::{FreeBody, Motion};
 use liestep::effects::PrincipalBody;
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::DiagonalNonstandardInertia;

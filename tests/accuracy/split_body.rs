@@ -2,8 +2,7 @@
 
 use checks::random::Random;
 use checks::structure::poisson::TOLERANCE;
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::effects::PrincipalBody;
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::Inertia;

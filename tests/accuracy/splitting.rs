@@ -1,9 +1,7 @@
 //! Kinetic-potential splittings.
 
 use checks::random::Random;
-use declarations::Motion;
-use declarations::{FourthOrderBody, FourthOrderTop, LogTop, SixthOrderBody, Top as _};
-use declarations::{FreeBody, HeavyTop};
+use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::effects::{GravityGradient, Rotor, Spring};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia};

@@ -2,8 +2,7 @@
 
 use checks::order;
 use checks::random::Random;
-use declarations::Motion;
-use declarations::{CayleyTop, LogTop};
+use declarations::{CayleyTop, LogTop, Motion};
 use liestep::effects::{
     CayleyBody, Drag, FourthOrderBody, GeodesicBody, Gravity, PrincipalBody, RigidBody, Rotor, SixthOrderBody,
 };

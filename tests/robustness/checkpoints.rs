@@ -2,9 +2,7 @@
 //! nothing else than its own.
 
 use checks::random::Random;
-use declarations::Motion;
-use declarations::{FreeBody, HeavyTop};
-use declarations::{SixthOrderTop, Top as _};
+use declarations::{FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::{Effect, Scalar};
 use liestep::with::{Checkpoint, CheckpointError, Stored};

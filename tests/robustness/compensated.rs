@@ -1,11 +1,9 @@
 //! Rounding grows like `√N`, and with compensated sums it grows from the changes of a step instead of from the state.
 
 use checks::random::Random;
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::groups::LieGroup as _;
-use liestep::motion;
-use liestep::motion::Declared;
+use liestep::motion::{self, Declared};
 use liestep::with::Compensated;
 use liestep::{SO3, Stepper};
 use nalgebra::{SVector, Vector3};

@@ -1,8 +1,6 @@
 //! What a stepper with a policy does where there is no step, and that it says so.
 
-use declarations::HeavyTop;
-use declarations::Motion;
-use declarations::{CayleyTop, Top as _};
+use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
 use liestep::motion::{Remedy, StepReport};
 use liestep::{SO3, State, StepError, Stepper};
 use nalgebra::Vector3;

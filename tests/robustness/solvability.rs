@@ -1,9 +1,7 @@
 //! What is proved about a step before it is solved agrees with what the solver finds.
 
 use checks::random::Random;
-use declarations::Motion;
-use declarations::{CayleyTop, Top as _};
-use declarations::{FreeBody, FullTop, HeavyTop};
+use declarations::{CayleyTop, FreeBody, FullTop, HeavyTop, Motion, Top as _};
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, Regular};

@@ -5,10 +5,11 @@
 use std::ops::{Add, Mul};
 
 use liestep::mechanics::Effect as _;
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 
 use super::declaration::HeavyTop;
 use crate::run::{Method, Sample, Stopped};
+use crate::top_equations::{Equations, State};
 
 /// The body, in the form that the right-hand sides use.
 #[derive(Clone, Copy)]
@@ -35,29 +36,6 @@ impl Body {
     }
 }
 
-/// An attitude in some variables, with a body momentum; a vector, as the method wants it.
-#[derive(Clone, Copy)]
-struct Pair<A> {
-    attitude: A,
-    momentum: Vector3<f64>,
-}
-
-impl<A: Add<Output = A>> Add for Pair<A> {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { attitude: self.attitude + other.attitude, momentum: self.momentum + other.momentum }
-    }
-}
-
-impl<A: Mul<f64, Output = A>> Mul<f64> for Pair<A> {
-    type Output = Self;
-
-    fn mul(self, factor: f64) -> Self {
-        Self { attitude: self.attitude * factor, momentum: self.momentum * factor }
-    }
-}
-
 /// What a step of `h` from `y` adds to it.
 pub(crate) fn change<V: Copy + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f: impl Fn(V) -> V) -> V {
     let k1 = f(y);
@@ -70,60 +48,52 @@ pub(crate) fn change<V: Copy + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: 
 /// In a unit quaternion, brought back to unit length after every step: how a careful user would do it.
 #[derive(Clone)]
 pub struct OnQuaternion {
-    body: Body,
+    equations: Equations,
     h: f64,
-    state: Pair<Quaternion<f64>>,
+    state: State,
 }
 
-/// In the nine entries of `R`, which nothing keeps orthogonal: how the thesis did it.
+/// In the nine entries of `R`, which nothing keeps orthogonal: how the thesis did it. The momentum is beside them.
 #[derive(Clone)]
 pub struct OnMatrix {
     body: Body,
     h: f64,
-    state: Pair<Matrix3<f64>>,
+    state: Matrix3x4<f64>,
+}
+
+fn joined(attitude: &Matrix3<f64>, momentum: &Vector3<f64>) -> Matrix3x4<f64> {
+    Matrix3x4::from_fn(|i, j| if j < 3 { attitude[(i, j)] } else { momentum[i] })
+}
+
+fn apart(state: &Matrix3x4<f64>) -> (Matrix3<f64>, Vector3<f64>) {
+    (state.fixed_columns::<3>(0).into(), state.column(3).into())
 }
 
 impl OnQuaternion {
     pub fn new(body: Body, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
-        Self { body, h, state: Pair { attitude: *attitude.quaternion(), momentum } }
+        let (q, p) = (attitude.quaternion(), momentum);
+        let state = [q.w, q.i, q.j, q.k, p.x, p.y, p.z];
+        Self { equations: Equations::of(body.inverse_moments.into(), body.lever.into()), h, state }
     }
 }
 
 impl OnMatrix {
     pub fn new(body: Body, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
-        Self { body, h, state: Pair { attitude: attitude.to_rotation_matrix().into_inner(), momentum } }
+        Self { body, h, state: joined(attitude.to_rotation_matrix().matrix(), &momentum) }
     }
-}
-
-/// `Rᵀ e₃` for the quaternion `q`, whose length in the middle of a step isn't one.
-fn vertical(q: &Quaternion<f64>) -> Vector3<f64> {
-    Vector3::new(
-        2.0 * (q.i * q.k - q.w * q.j),
-        2.0 * (q.j * q.k + q.w * q.i),
-        q.w * q.w - q.i * q.i - q.j * q.j + q.k * q.k,
-    ) / q.norm_squared()
 }
 
 impl Method for OnQuaternion {
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
-        let body = self.body;
         for _ in 0..steps {
-            let next = self.state
-                + change(self.state, self.h, |y| {
-                    let rates = body.rates(&y.momentum);
-                    Pair {
-                        attitude: y.attitude * Quaternion::from_imag(rates * 0.5),
-                        momentum: body.momentum_rate(&y.momentum, &rates, &vertical(&y.attitude)),
-                    }
-                });
-            self.state = Pair { attitude: next.attitude / next.attitude.norm(), momentum: next.momentum };
+            self.state = self.equations.rk4_step(self.h, &self.state);
         }
         Ok(0)
     }
 
     fn sample(&self) -> Sample {
-        let attitude = UnitQuaternion::new_unchecked(self.state.attitude);
-        Sample { attitude: attitude.to_rotation_matrix().into_inner(), momentum: self.state.momentum }
+        let [.., p1, p2, p3] = self.state;
+        Sample { attitude: self.equations.end(&self.state).0, momentum: Vector3::new(p1, p2, p3) }
     }
 }
 
@@ -131,20 +101,18 @@ impl Method for OnMatrix {
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
         let body = self.body;
         for _ in 0..steps {
-            self.state = self.state
-                + change(self.state, self.h, |y| {
-                    let rates = body.rates(&y.momentum);
-                    let w = y.attitude.row(2).transpose();
-                    Pair {
-                        attitude: y.attitude * rates.cross_matrix(),
-                        momentum: body.momentum_rate(&y.momentum, &rates, &w),
-                    }
-                });
+            self.state += change(self.state, self.h, |y| {
+                let (attitude, momentum) = apart(&y);
+                let rates = body.rates(&momentum);
+                let w = attitude.row(2).transpose();
+                joined(&(attitude * rates.cross_matrix()), &body.momentum_rate(&momentum, &rates, &w))
+            });
         }
         Ok(0)
     }
 
     fn sample(&self) -> Sample {
-        Sample { attitude: self.state.attitude, momentum: self.state.momentum }
+        let (attitude, momentum) = apart(&self.state);
+        Sample { attitude, momentum }
     }
 }

@@ -67,7 +67,7 @@ pub(crate) fn t7(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     }
     let mut rk4 = on_quaternion(&motion, H);
     let start = energy_of(&motion.top, &rk4.sample());
-    rk4.advance(steps)?;
+    rk4.advance(effort.beside(steps))?;
     let change = energy_of(&motion.top, &rk4.sample()) - start;
     Ok(row.other(format!("RK4 (quaternion): energy {change:+.1e} J of {start:.1} J at the end")))
 }

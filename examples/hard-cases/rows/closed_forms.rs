@@ -51,7 +51,7 @@ pub(crate) fn b8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     );
     let moments = Vector3::new(1.0, 2.0, 3.0);
     let start = separatrix::velocity(&moments, 2.0, 0.0);
-    let far = (None, separatrix::velocity(&moments, 2.0, 4.0));
+    let far = (None, separatrix::velocity(&moments, 2.0, 5.0));
     let body = Vector3::new(3.0, 3.0, 4.0);
     let momentum = body.component_mul(&Vector3::new(1.0, 0.5, 2.0));
     let turned = symmetric::motion(&body, &momentum, 10.0);
@@ -60,7 +60,7 @@ pub(crate) fn b8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let tumbling = symmetric::motion(&long, &long.component_mul(&Vector3::new(1.0, 0.5, 2.0)), 10.0);
     let tumbling = (Some(tumbling.0), tumbling.1.component_div(&long));
     let cases = [
-        ("separatrix, t = 4", moments, start, 4.0, far),
+        ("separatrix, t = 5", moments, start, 5.0, far),
         ("J = (3, 3, 4), t = 10", body, Vector3::new(1.0, 0.5, 2.0), 10.0, turned),
         ("J = (2, 2, 0.5), t = 10", long, Vector3::new(1.0, 0.5, 2.0), 10.0, tumbling),
     ];

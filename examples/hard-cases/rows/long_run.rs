@@ -67,20 +67,21 @@ fn guide(name: &'static str, (at, height): (f64, f64), power: f64, end: f64) -> 
 }
 
 pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
-    let steps = effort.steps(1_000_000, 100_000_000);
+    let steps = effort.steps(10_000_000, 100_000_000);
     let motion = Motion::looping();
     let (energy, plain) = ours(&motion, steps, false)?;
-    let (_, kept) = ours(&motion, steps, true)?;
+    let compensated = effort.steps(1_000_000, 100_000_000);
+    let (_, kept) = ours(&motion, compensated, true)?;
     // The nine entries leave the rotations soon, and a million steps show it.
-    let (quaternion, change) = theirs(&motion, on_quaternion(&motion, STEP), steps)?;
-    let (matrix, _) = theirs(&motion, on_matrix(&motion, STEP), steps.min(1_000_000))?;
+    let (quaternion, change) = theirs(&motion, on_quaternion(&motion, STEP), effort.beside(compensated))?;
+    let (matrix, _) = theirs(&motion, on_matrix(&motion, STEP), effort.beside(steps.min(1_000_000)))?;
 
     let worst = plain.walk.worst;
     let mut row = Row::new(
         "T3",
-        "looping top, h = 0.01, a million steps (1e8 with --long)",
+        "looping top, h = 0.01, ten million steps (1e8 with --long)",
         "‖RᵀR − I‖ ≤ 2e-12, |w| and p·w ≤ 3e-12, energy window means within 1e-10 E, extremes to 4 digits, growth like \
-         √N (4 deviations of a walk), p₃ to the last bit",
+         √N (4 deviations of a walk), p₃ to the last bit; with compensated sums all of them to 1e-16 √N",
     )
     .shows(format!("{:.0e} steps", float(steps)))
     .at_most("‖RᵀR − I‖", worst.orthogonality, 2e-12)
@@ -92,14 +93,18 @@ pub(crate) fn t3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     .at_most("RRᵀ − I, in deviations of a walk", plain.walk.attitude_deviations(), FARTHEST)
     .at_most("|w|² and p·w, in deviations of a walk", plain.walk.casimir_deviations(), FARTHEST);
     let kept_worst = kept.walk.worst;
+    // Of independent changes, each wrong by an ε of the angle of a step.
+    let walked = 1e-16 * float(compensated).sqrt();
     row = row
-        .shows(format!(
-            "compensated: ‖RᵀR − I‖ {}, |w| {}, p·w {}, energy means {}",
-            short(kept_worst.orthogonality),
-            short(kept_worst.length),
-            short(kept_worst.vertical),
-            short(kept.energies.drift() / energy)
-        ))
+        .shows(format!("compensated, {:.0e} steps", float(compensated)))
+        .at_most("compensated: ‖RᵀR − I‖", kept_worst.orthogonality, walked)
+        .at_most("compensated: |w|", kept_worst.length, walked)
+        .at_most("compensated: p·w", kept_worst.vertical, walked)
+        .at_most("compensated: p₃", kept_worst.axial, walked.min(1e-13))
+        .at_most("compensated: energy window means, relative", kept.energies.drift() / energy, 1e-10)
+        .at_most("compensated: energy extremes, relative", kept.energies.extremes(), 5e-4)
+        .at_most("compensated: RRᵀ − I, in deviations of a walk", kept.walk.attitude_deviations(), FARTHEST)
+        .at_most("compensated: |w|² and p·w, in deviations of a walk", kept.walk.casimir_deviations(), FARTHEST)
         .shows(format!(
             "compensated: p₃ is off by {} (in {:.0e} steps by a unit of its last digit or more)",
             short(kept_worst.axial),

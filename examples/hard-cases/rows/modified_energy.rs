@@ -1,7 +1,6 @@
 //! T2: backward error analysis of (3.13).
 
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::Stepper;
 use nalgebra::Vector3;
 use workbench::measure::{four_halvings, order, steps_in};

@@ -14,13 +14,13 @@ use crate::row::{Effort, Failure, Row, short};
 const STEPS: u64 = 1_000_000;
 
 /// The relative error of attitude, momentum and `w` after steps there and back.
-fn error_on_return(motion: &Motion, h: f64) -> Result<f64, Failure> {
+fn error_on_return(motion: &Motion, h: f64, steps: u64) -> Result<f64, Failure> {
     let there = Stepper::new(motion.top.clone(), h)?;
     let back = there.inverse()?;
     let mut state = there.start(motion.attitude, motion.velocity)?;
     let before = state;
     for stepper in [there, back] {
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             stepper.step(&mut state)?;
         }
     }
@@ -29,7 +29,7 @@ fn error_on_return(motion: &Motion, h: f64) -> Result<f64, Failure> {
     Ok(attitude.max(momentum).max(relative(&state.advected(), &before.advected())))
 }
 
-pub(crate) fn s5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+pub(crate) fn s5(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let standing = Stepper::new(motion.top.clone(), 0.0)?;
     let mut state = standing.start(motion.attitude, motion.velocity)?;
@@ -39,20 +39,20 @@ pub(crate) fn s5(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
 
     let mut rk4 = on_quaternion(&motion, 1e-4);
     let start = rk4.sample();
-    rk4.advance(STEPS)?;
+    rk4.advance(effort.beside(STEPS))?;
     let turned = rk4.sample();
     let quaternion = nalgebra::UnitQuaternion::from_matrix(&turned.attitude);
     let mut rk4 = OnQuaternion::new(rk4_body(&motion.top), -1e-4, &quaternion, turned.momentum);
-    rk4.advance(STEPS)?;
+    rk4.advance(effort.beside(STEPS))?;
     let end = rk4.sample();
     let theirs = relative(&end.attitude, &start.attitude).max(relative(&end.momentum, &start.momentum));
     let row = Row::new("S5", "a million steps there and back, looping top", "h = 0 is the identity; back to 1e-12")
         .holds("h = 0 is the identity", stands)
-        .at_most("h = 1e-5: error", error_on_return(&motion, 1e-5)?, 1e-12)
-        .at_most("h = 1e-4: error", error_on_return(&motion, 1e-4)?, 1e-12)
+        .at_most("h = 1e-5: error", error_on_return(&motion, 1e-5, STEPS)?, 1e-12)
+        .at_most("h = 1e-4: error", error_on_return(&motion, 1e-4, STEPS)?, 1e-12)
         .shows(format!(
             "h = 1e-2 (10⁴ s, where a rounding of the rate has grown with time): {}",
-            short(error_on_return(&motion, 1e-2)?)
+            short(error_on_return(&motion, 1e-2, effort.beside(STEPS))?)
         ));
     Ok(row.other(format!("RK4 (quaternion), h = 1e-4: {}", short(theirs))))
 }

@@ -6,8 +6,7 @@
 //! this. The library takes one step towards the polar factor, `R (3I − RᵀR)/2`, once an attitude is 2¹¹ ε away; a step
 //! in every thousand, beside it, is what more of that would give.
 
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::{Effect as _, Inertia};
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
@@ -87,7 +86,7 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         Ok(*state)
     })?;
     let mut state = start;
-    let corrected = walk(&motion.top, &start, steps, |step| {
+    let corrected = walk(&motion.top, &start, effort.beside(steps), |step| {
         composition.step(&mut state)?;
         if step.is_multiple_of(PERIOD) {
             state = composition.start_with_momentum(orthogonal(&state), state.momentum())?;
@@ -96,7 +95,7 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     })?;
     let compensated = composition.clone().compensated();
     let mut state = compensated.start(motion.attitude, motion.velocity)?;
-    let kept = walk(&motion.top, &start, steps, |_| {
+    let kept = walk(&motion.top, &start, effort.beside(steps), |_| {
         compensated.step(&mut state)?;
         Ok(*state)
     })?;
@@ -125,7 +124,7 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         Ok(*state)
     })?;
     let mut state = start;
-    let corrected = walk(&motion.top, &start, steps, |step| {
+    let corrected = walk(&motion.top, &start, effort.beside(steps), |step| {
         splitting.step(&mut state)?;
         if step.is_multiple_of(PERIOD) {
             state = splitting.start_with_momentum(orthogonal(&state), state.momentum())?;
@@ -143,8 +142,8 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     Ok(row)
 }
 
-/// A top at a step of 0.05 s: plain, compensated, and with polar steps.
-fn three(top: &HeavyTop, velocity: Vector3<f64>, steps: u64) -> Result<[(Walk, f64); 3], Failure> {
+/// A top at a step of 0.05 s: plain, and for other numbers of steps compensated, and with polar steps.
+fn three(top: &HeavyTop, velocity: Vector3<f64>, (steps, beside): (u64, u64)) -> Result<[(Walk, f64); 3], Failure> {
     let stepper = Stepper::new(top.clone(), 0.05)?;
     let start = stepper.start(SO3::identity(), velocity)?;
     let mut state = start;
@@ -153,7 +152,7 @@ fn three(top: &HeavyTop, velocity: Vector3<f64>, steps: u64) -> Result<[(Walk, f
         Ok(*state)
     })?;
     let mut state = start;
-    let corrected = walk(top, &start, steps, |step| {
+    let corrected = walk(top, &start, beside, |step| {
         stepper.step(&mut state)?;
         if step.is_multiple_of(PERIOD) {
             state = stepper.start_with_momentum(orthogonal(&state), state.momentum())?;
@@ -162,7 +161,7 @@ fn three(top: &HeavyTop, velocity: Vector3<f64>, steps: u64) -> Result<[(Walk, f
     })?;
     let carrying = stepper.compensated();
     let mut state = carrying.adopt(&start);
-    let kept = walk(top, &start, steps, |_| {
+    let kept = walk(top, &start, beside, |_| {
         carrying.step(&mut state)?;
         Ok(*state)
     })?;
@@ -173,7 +172,7 @@ pub(crate) fn r3(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(10_000_000, 100_000_000);
     let top = Motion::looping().top;
     // Upright: neither momentum nor `w` changes, and each step adds the same `D`.
-    let [plain, kept, corrected] = three(&top, Vector3::z(), steps)?;
+    let [plain, kept, corrected] = three(&top, Vector3::z(), (steps, effort.beside(steps)))?;
     let angle = 0.05_f64.asin();
     let row = Row::new("R3", "upright spin, a turn of 0.05 in every step, 1e7 steps (1e8 with --long)", CRITERION);
     let row = told(row, "plain", &plain, true);
@@ -190,7 +189,7 @@ pub(crate) fn r4(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(10_000_000, 100_000_000);
     let top = HeavyTop { g: 0.0, ..Motion::looping().top };
     // Without weight the symmetric body precesses regularly: the angle of a step is always the same, its axis turns.
-    let [plain, kept, corrected] = three(&top, Vector3::new(1.0, 0.5, 2.0), steps)?;
+    let [plain, kept, corrected] = three(&top, Vector3::new(1.0, 0.5, 2.0), (steps, effort.beside(steps)))?;
     let row = Row::new("R4", "free precession of a symmetric body, h = 0.05, 1e7 steps (1e8 with --long)", CRITERION);
     let row = told(row, "plain", &plain, true);
     let row = told(row, "compensated", &kept, false);

@@ -1,42 +1,25 @@
 //! P8: the same in `f32`.
+//!
+//! The thresholds are those of `f64` in units of epsilon: what is 10⁻¹⁴ there is 45 ε, 10⁻¹³ is 450 ε.
 
-use liestep::effects::{Gravity, PrincipalBody};
+#![allow(non_snake_case)] // the letter of the field
+
+use declarations::Motion;
+use liestep::effects::{Gravity, PrincipalBody, RigidBody};
 use liestep::groups::LieGroup as _;
-use liestep::mechanics::DiagonalNonstandardInertia;
-use liestep::{SO3, StepError, Stepper};
-use nalgebra::{UnitQuaternion, Vector3};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, InertiaError, Regular, Sum};
+use liestep::{NonstandardInertia, SO3, State, StepError, Stepper};
+use nalgebra::{Matrix3, Vector3};
+use workbench::measure::{Tenths, four_halvings, greater, order, relative, steps_in};
 
 use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 const EPSILON: f64 = f32::EPSILON as f64;
+
 /// What a bound for `f64` is in units of its epsilon.
 fn units(bound: f64) -> f64 {
     bound / f64::EPSILON
-}
-
-/// Largest errors of the energy and of the spatial momentum of a free body, in units of epsilon, computed in `f64`.
-fn free(moments: [f64; 3], velocity: [f64; 3], h: f64, steps: u32) -> Result<[f64; 2], Failure> {
-    let moments = Vector3::from(moments);
-    let inertia = DiagonalNonstandardInertia::from_principal_moments(moments.cast::<f32>())?;
-    let stepper = Stepper::new(PrincipalBody { J_d: inertia }, single(h))?;
-    let mut state = stepper.start(SO3::identity(), Vector3::from(velocity).cast::<f32>())?;
-    // The moments that the program has, not those it was to have.
-    let d = inertia.diagonal().cast::<f64>();
-    let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
-    let kept = |momentum: Vector3<f32>, attitude: nalgebra::Matrix3<f32>| {
-        let momentum = momentum.cast::<f64>();
-        (momentum.dot(&momentum.component_div(&moments)), attitude.cast::<f64>() * momentum)
-    };
-    let start = kept(state.momentum(), state.attitude().matrix());
-    let mut worst = [0.0_f64; 2];
-    for _ in 0..steps {
-        stepper.step(&mut state)?;
-        let now = kept(state.momentum(), state.attitude().matrix());
-        worst[0] = worst[0].max((now.0 / start.0 - 1.0).abs() / EPSILON);
-        worst[1] = worst[1].max((now.1 - start.1).norm() / start.1.norm() / EPSILON);
-    }
-    Ok(worst)
 }
 
 #[allow(clippy::cast_possible_truncation)] // that is what it is for
@@ -44,63 +27,217 @@ fn single(value: f64) -> f32 {
     value as f32
 }
 
-type Scene = liestep::mechanics::Sum<PrincipalBody<f32>, Gravity<f32>>;
-/// Nothing is advected for the body, the vertical for gravity.
-type Turning = liestep::State<SO3<f32>, ((), Vector3<f32>)>;
+/// Largest errors of the energy and of the spatial momentum of a free body, in units of epsilon.
+fn free<L>(body: L, velocity: [f64; 3], h: f64, steps: u32) -> Result<[f64; 2], Failure>
+where
+    L: DiscreteLagrangian<Scalar = f32, Group = SO3<f32>, Advected = ()> + Regular,
+{
+    // Those that the program has, not those it was to have; and in double precision, so that what is measured isn't the
+    // rounding of the measurement.
+    let inverse = body.inertia().cast::<f64>().try_inverse().ok_or("a singular inertia")?;
+    let stepper = Stepper::new(body, single(h))?;
+    let mut state = stepper.start(SO3::identity(), Vector3::from(velocity).cast::<f32>())?;
+    let kept = |state: &State<SO3<f32>, ()>| {
+        let momentum = state.momentum().cast::<f64>();
+        (momentum.dot(&(inverse * momentum)), state.attitude().matrix().cast::<f64>() * momentum)
+    };
+    let (start, mut worst) = (kept(&state), [0.0; 2]);
+    for _ in 0..steps {
+        stepper.step(&mut state)?;
+        let now = kept(&state);
+        worst[0] = greater(worst[0], (now.0 / start.0 - 1.0).abs() / EPSILON);
+        worst[1] = greater(worst[1], relative(&now.1, &start.1) / EPSILON);
+    }
+    Ok(worst)
+}
 
-fn looping(h: f64) -> Result<(Stepper<Scene>, Turning), Failure> {
-    let inertia = DiagonalNonstandardInertia::new(Vector3::new(2.0, 2.0, 1.0_f32))?;
-    let gravity = Gravity { m: 1.0, g: 9.81_f32, rho: Vector3::z(), up: Vector3::z() };
-    let stepper = Stepper::new(PrincipalBody { J_d: inertia } + gravity, single(h))?;
-    let tilt = 0.8_f32;
-    let velocity = Vector3::new(0.5, 3.0 * tilt.sin(), 10.0 + 3.0 * tilt.cos());
-    let state = stepper.start(UnitQuaternion::from_axis_angle(&Vector3::x_axis(), tilt), velocity)?;
+/// B1 to B4, in principal axes and with a full tensor.
+fn bodies(mut row: Row) -> Result<Row, Failure> {
+    // Half-extents 0.1, 0.2, 0.3 and 1 kg.
+    let of_box = [0.01 / 3.0, 0.04 / 3.0, 0.09 / 3.0];
+    let [thick, thin] = [1e-4 / 16.0, 1e-5 / 16.0].map(|across| [across, across, 1.0 / 12.0]);
+    let (rod, plate) = ([1.0, 0.5, 3.0], [1.0, 0.5, 0.3]);
+    let cases = [
+        ("B1", of_box, [1.0, 2.0, 3.0], 0.01, 500, 1e-14),
+        ("B2 middle axis", of_box, [0.05, 5.0, 0.05], 0.005, 20_000, 1e-13),
+        ("B2 fast spin", of_box, [20.0, 0.05, 0.05], 0.005, 20_000, 1e-13),
+        ("B3 rod 100:1", thick, rod, 1.0 / 60.0, 10_000, 1e-13),
+        ("B3 rod 316:1", thin, rod, 1.0 / 60.0, 10_000, 1e-13),
+        ("B3 plate", [2.0, 1.0, 0.0], plate, 1.0 / 60.0, 10_000, 1e-13),
+    ];
+    for (name, diagonal, velocity, h, steps, bound) in cases {
+        let J_d = DiagonalNonstandardInertia::new(Vector3::from(diagonal).cast::<f32>())?;
+        let full = RigidBody { J_d: J_d.into() };
+        for (axes, [energy, momentum]) in
+            [("", free(PrincipalBody { J_d }, velocity, h, steps)?), (", full", free(full, velocity, h, steps)?)]
+        {
+            row = row.at_most(&format!("{name}{axes}: energy, ε"), energy, units(bound)).at_most(
+                &format!("{name}{axes}: momentum, ε"),
+                momentum,
+                units(bound),
+            );
+        }
+    }
+    let sphere = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::repeat(0.2_f32))? };
+    row = row.at_most("B4 sphere: energy, ε", free(sphere, [1.0, 2.0, 3.0], 0.01, 10_000)?[0], 0.0);
+    // A ratio of the moments that `f32` doesn't tell from zero.
+    let needle = NonstandardInertia::<f32>::from_diagonal([1e-8 / 16.0, 1e-8 / 16.0, 1.0 / 12.0].into());
+    Ok(row.holds("B3 rod 10⁴:1 is refused", matches!(needle, Err(InertiaError::Singular { .. }))))
+}
+
+type Scene = Sum<PrincipalBody<f32>, Gravity<f32>>;
+/// Nothing is advected for the body, the vertical for gravity.
+type Turning = State<SO3<f32>, ((), Vector3<f32>)>;
+
+/// The top of a motion, and where it starts.
+fn started(motion: &Motion, h: f64) -> Result<(Stepper<Scene>, Turning), Failure> {
+    let top = &motion.top;
+    let body = PrincipalBody { J_d: DiagonalNonstandardInertia::new(top.J_d.diagonal().cast::<f32>())? };
+    let gravity = Gravity { m: single(top.m), g: single(top.g), rho: top.rho.cast(), up: top.up.cast() };
+    let stepper = Stepper::new(body + gravity, single(h))?;
+    let attitude = SO3::from_matrix_unchecked(motion.attitude.matrix().cast::<f32>());
+    let state = stepper.start(attitude, motion.velocity.cast::<f32>())?;
     Ok((stepper, state))
 }
 
-pub(crate) fn p8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
-    // Half-extents 0.1, 0.2, 0.3 and 1 kg.
-    let of_box = [0.13 / 3.0, 0.1 / 3.0, 0.05 / 3.0];
-    let free_bodies = [
-        ("B1", free(of_box, [1.0, 2.0, 3.0], 0.01, 500)?, units(1e-14)),
-        ("B2 middle axis", free(of_box, [0.05, 5.0, 0.05], 0.005, 20_000)?, units(1e-13)),
-        ("B2 fast spin", free(of_box, [20.0, 0.05, 0.05], 0.005, 20_000)?, units(1e-13)),
-        ("B3 plate", free([1.0, 2.0, 3.0], [1.0, 0.5, 0.3], 1.0 / 60.0, 10_000)?, units(1e-13)),
-    ];
-    let mut row = Row::new("P8", "f32", "thresholds of f64 in units of epsilon; the same errors");
-    for (name, [energy, momentum], bound) in free_bodies {
-        row = row.at_most(&format!("{name}: energy, ε"), energy, bound).at_most(
-            &format!("{name}: momentum, ε"),
-            momentum,
-            bound,
-        );
+/// T1: the errors of attitude and velocity after a second, above what `f32` loses by then.
+fn orders(mut row: Row) -> Result<Row, Failure> {
+    for motion in Motion::of_the_thesis().iter().take(3) {
+        let (attitude, velocity) = motion.at(1.0);
+        let mut errors = Vec::new();
+        for h in four_halvings(1.0 / 100.0) {
+            let (stepper, mut state) = started(motion, h)?;
+            for _ in 0..steps_in(1.0, h) {
+                stepper.step(&mut state)?;
+            }
+            let found: Matrix3<f64> = state.attitude().matrix().cast();
+            let velocities = relative(&stepper.velocity(&state).cast::<f64>(), &velocity);
+            errors.push((h, relative(&found, &attitude).hypot(velocities)));
+        }
+        // A thousand roundings and their twist, well below the smallest error.
+        row = row.near(&format!("T1 {}: order", motion.name), order(&errors, 200.0 * EPSILON), 2.0, 0.05);
     }
+    Ok(row)
+}
 
-    // S1, S2.
-    let (wide, state) = looping(1.0)?;
+/// S1, S2: up to 0.999 of the fold a step is solved, in as many iterations as in `f64`; above it is refused, and the
+/// error names a step that would do.
+fn folds(mut row: Row, motion: &Motion) -> Result<Row, Failure> {
+    let (wide, state) = started(motion, 1.0)?;
     let fold = f64::from(wide.max_step(&state));
     row = row.near("S1 fold", fold, 0.0815, 5e-5);
-    let (stepper, mut near) = looping(0.999 * fold)?;
-    let iterations = stepper.step(&mut near).map_or(f64::NAN, |report| f64::from(report.iterations));
-    row = row.at_most("S1 iterations at 0.999 of the fold", iterations, 9.0);
-    let (stepper, mut far) = looping(0.1)?;
-    let before = far;
-    let refused = matches!(stepper.step(&mut far), Err(StepError::BeyondSolvable { .. })) && far == before;
-    row = row.holds("S2 refused, state unchanged", refused);
-
-    // T3, a million steps.
-    let (stepper, mut state) = looping(0.01)?;
-    let (axial, vertical) = (state.momentum().z, state.momentum().dot(&state.advected().1));
-    let (mut changed, mut casimirs, mut orthogonality) = (0_u32, 0.0_f64, 0.0_f64);
-    for _ in 0..1_000_000 {
-        stepper.step(&mut state)?;
-        changed += u32::from(state.momentum().z.to_bits() != axial.to_bits());
-        let relative = f64::from(state.momentum().dot(&state.advected().1) / vertical - 1.0).abs();
-        casimirs = casimirs.max(relative).max(f64::from(state.advected().1.norm() - 1.0).abs());
-        orthogonality = orthogonality.max(f64::from(state.orthogonality_defect()));
+    let (stepper, mut state) = started(motion, 0.1)?;
+    let named = match stepper.step(&mut state) {
+        Err(StepError::BeyondSolvable { largest, .. }) => f64::from(largest),
+        _ => f64::NAN,
+    };
+    row = row.near("S2 largest step named", named, 0.0815, 1e-4);
+    let (mut iterations, mut angle, mut refused) = (0.0, 0.0, true);
+    for fraction in [0.1, 0.3, 0.6, 0.9, 0.99, 0.999] {
+        let (stepper, mut state) = started(motion, named * fraction)?;
+        let before = state.attitude();
+        iterations = greater(iterations, f64::from(stepper.step(&mut state)?.iterations));
+        let turn = before.inverse().compose(&state.attitude()).log().norm().to_degrees();
+        angle = greater(angle, f64::from(turn));
+    }
+    for factor in [1.001, 1.1, 2.0, 100.0] {
+        let (stepper, mut state) = started(motion, named * factor)?;
+        let before = state;
+        refused &= matches!(stepper.step(&mut state), Err(StepError::BeyondSolvable { .. })) && state == before;
     }
     Ok(row
+        .at_most("S1 iterations up to 0.999 of the fold", iterations, 9.0)
+        .at_most("S1 angle in degrees", angle, 91.0)
+        .holds("S2 refused, state unchanged", refused))
+}
+
+/// S4: from rest, without gravity and hanging.
+fn at_rest(motion: &Motion) -> Result<bool, Failure> {
+    let (stepper, _) = started(motion, 0.01)?;
+    let Sum { first: body, second: gravity } = *stepper.scene();
+    let tilted = SO3::from_matrix_unchecked(motion.attitude.matrix().cast::<f32>());
+    let hanging = Gravity { up: -gravity.rho, ..gravity };
+    let mut stays = true;
+    for (gravity, attitude) in [(Gravity { g: 0.0, ..gravity }, tilted), (hanging, SO3::identity())] {
+        let stepper = Stepper::new(body + gravity, 0.01)?;
+        let mut state = stepper.start(attitude, Vector3::zeros())?;
+        let seen = |state: &Turning| (state.attitude(), state.momentum(), state.advected());
+        let before = seen(&state);
+        for _ in 0..1000 {
+            stepper.step(&mut state)?;
+            stays &= seen(&state) == before;
+        }
+    }
+    Ok(stays)
+}
+
+/// S5: how far from its start a motion is after a million steps there and back: attitude, momentum and vertical, in ε.
+fn there_and_back(motion: &Motion, h: f64) -> Result<[f64; 3], Failure> {
+    let (there, mut state) = started(motion, h)?;
+    let ((back, _), before) = (started(motion, -h)?, state);
+    for stepper in [there, back] {
+        for _ in 0..1_000_000 {
+            stepper.step(&mut state)?;
+        }
+    }
+    let errors = [
+        f64::from((state.attitude().matrix() - before.attitude().matrix()).norm()) / 3.0_f64.sqrt(),
+        relative(&state.momentum().cast::<f64>(), &before.momentum().cast::<f64>()),
+        relative(&state.advected().1.cast::<f64>(), &before.advected().1.cast::<f64>()),
+    ];
+    Ok(errors.map(|error| error / EPSILON))
+}
+
+/// It is a walk of roundings, and of neighbouring step sizes one comes back ten times nearer than another: so the
+/// largest of three medians over an octave.
+fn median(motion: &Motion, h: f64) -> Result<f64, Failure> {
+    let runs: Result<Vec<_>, Failure> =
+        (0..9).map(|k| there_and_back(motion, h / 2_f64.powf(f64::from(k) / 8.0))).collect();
+    let runs = runs?;
+    let medians = [0, 1, 2].map(|part| {
+        let mut units: Vec<_> = runs.iter().map(|units| units[part]).collect();
+        units.sort_by(f64::total_cmp);
+        units[4]
+    });
+    Ok(medians.into_iter().fold(0.0, greater))
+}
+
+/// T3: a million steps.
+fn million(row: Row, motion: &Motion) -> Result<Row, Failure> {
+    const STEPS: u64 = 1_000_000;
+    let (stepper, mut state) = started(motion, 0.01)?;
+    let (axial, vertical) = (state.momentum().z, state.momentum().dot(&state.advected().1));
+    // In double precision, so that what is measured isn't the rounding of the measurement.
+    let (moments, weight) = (motion.top.moments(), f64::from(single(motion.top.m * motion.top.g)));
+    let energy = |state: &Turning| {
+        let (p, w) = (state.momentum().cast::<f64>(), state.advected().1.cast::<f64>());
+        0.5 * p.dot(&p.component_div(&moments)) + weight * w.dot(&motion.top.rho)
+    };
+    let (start, mut energies) = (energy(&state), Tenths::new(STEPS));
+    let (mut changed, mut casimirs, mut orthogonality) = (0_u32, 0.0, 0.0);
+    for step in 1..=STEPS {
+        stepper.step(&mut state)?;
+        energies.after(step, || energy(&state) - start);
+        changed += u32::from(state.momentum().z.to_bits() != axial.to_bits());
+        let relative = f64::from(state.momentum().dot(&state.advected().1) / vertical - 1.0).abs();
+        casimirs = greater(greater(casimirs, relative), f64::from(state.advected().1.norm() - 1.0).abs());
+        orthogonality = greater(orthogonality, f64::from(state.orthogonality_defect()));
+    }
+    // A walk of 10⁶ roundings, as in `f64`, where 10⁻¹⁰ is allowed for ten times as many.
+    Ok(row
         .at_most("T3, 10⁶ steps: steps that changed p₃", f64::from(changed), 0.0)
+        .at_most("T3: energy window means, ε", energies.drift() / start / EPSILON, 450.0)
         .at_most("T3: ‖RᵀR − I‖, ε", orthogonality / EPSILON, units(2e-12))
         .at_most("T3: Casimirs, ε", casimirs / EPSILON, units(3e-12)))
+}
+
+pub(crate) fn p8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
+    let motion = Motion::looping();
+    let mut row = Row::new("P8", "f32", "thresholds of f64 in units of epsilon; the same errors");
+    row = folds(orders(bodies(row)?)?, &motion)?.holds("S4 at rest, weightless and hanging", at_rest(&motion)?);
+    for h in [1e-5, 1e-4] {
+        let what = format!("S5, a million steps of {h} there and back: median of nine near ones, ε");
+        row = row.at_most(&what, median(&motion, h)?, units(1e-12));
+    }
+    million(row, &motion)
 }

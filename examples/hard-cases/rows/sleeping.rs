@@ -2,7 +2,6 @@
 
 use declarations::HeavyTop;
 use liestep::Stepper;
-use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::measure::float;
@@ -13,12 +12,6 @@ use crate::rivals::rk4_body;
 use crate::row::{Effort, Failure, Row, short};
 
 const H: f64 = 0.01;
-
-fn top() -> Result<HeavyTop, Failure> {
-    #[allow(non_snake_case)] // the letter of the field
-    let J_d = DiagonalNonstandardInertia::new(Vector3::new(2.0, 2.0, 1.0))?;
-    Ok(HeavyTop { J_d, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() })
-}
 
 /// `√(4 m g l J_1)/J_3`
 fn critical_speed() -> f64 {
@@ -31,7 +24,7 @@ fn start(fraction: f64) -> (UnitQuaternion<f64>, Vector3<f64>) {
 
 /// The tilt in radians after each step.
 fn tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
-    let stepper = Stepper::new(top()?, H)?;
+    let stepper = Stepper::new(HeavyTop::thesis(), H)?;
     let (attitude, velocity) = start(fraction);
     let mut state = stepper.start(attitude, velocity)?;
     let mut tilts = Vec::with_capacity(steps);
@@ -44,7 +37,7 @@ fn tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
 
 /// The same with Runge–Kutta.
 fn rk4_tilts(fraction: f64, steps: usize) -> Result<Vec<f64>, Failure> {
-    let body = rk4_body(&top()?);
+    let body = rk4_body(&HeavyTop::thesis());
     let (attitude, velocity) = start(fraction);
     let mut method = OnQuaternion::new(body, H, &attitude, velocity.component_div(&body.inverse_moments));
     let mut tilts = Vec::with_capacity(steps);
@@ -89,15 +82,19 @@ pub(crate) fn t5(effort: Effort, _: &mut Curves) -> Result<Row, Failure> {
     }
     let steps: u32 = if effort.long { 10_000_000 } else { 200_000 };
     let largest = |tilts: &[f64]| tilts.iter().copied().fold(0.0, f64::max);
-    let tilts = tilts(1.01, steps as usize)?;
-    let (first, second) = tilts.split_at(tilts.len() / 2);
-    let what = format!("1.01 ω_c, {:.0e} steps: largest tilt", float(u64::from(steps)));
-    row = row.at_most(&what, largest(second), 1e-8).at_most(
-        "its growth from the first half to the second",
-        largest(second) / largest(first) - 1.0,
-        1e-3,
-    );
-    let theirs = rk4_tilts(1.01, steps as usize)?;
+    // The two frequencies beat, and near the threshold they all but agree: the largest tilt is the first by their mean
+    // over half their difference.
+    for fraction in [1.01, 1.1, 2.0] {
+        let tilts = tilts(fraction, steps as usize)?;
+        let (first, second) = tilts.split_at(tilts.len() / 2);
+        let what = format!("{fraction} ω_c, {:.0e} steps: largest tilt", float(u64::from(steps)));
+        row = row.at_most(&what, largest(&tilts), 1e-8).at_most(
+            "its change from the first half to the second",
+            (largest(second) / largest(first) - 1.0).abs(),
+            1e-3,
+        );
+    }
+    let theirs = rk4_tilts(1.01, if effort.verdict_only { 2 } else { steps as usize })?;
     let (first, second) = theirs.split_at(theirs.len() / 2);
     Ok(row.other(format!("RK4 at 1.01 ω_c: largest tilt {} and {}", short(largest(first)), short(largest(second)))))
 }

@@ -1,10 +1,9 @@
 //! P1: the step is a Poisson map.
 
-use declarations::Motion;
-use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, SixthOrderTop};
+use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _};
 use liestep::SO3;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{DiscreteLagrangian, Inertia, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::motion::DiscreteLiePoisson;
 use nalgebra::Vector3;
 use workbench::heavy_top::rk4::OnQuaternion;
@@ -42,22 +41,18 @@ where
 
 pub(crate) fn p1(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let top = Motion::chaotic().top;
-    let d = top.J_d.diagonal();
-    let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
-    let (phases, weight, rho, up) = (phases(&moments), top.m * top.g, top.rho, Vector3::z());
-    #[allow(non_snake_case)] // the letter of the field
-    let J = Inertia::from_principal_moments(moments)?;
+    let phases = phases(&top.moments());
     let axes = nalgebra::Rotation3::from_euler_angles(0.3, -0.7, 1.1).into_inner();
-    let full = liestep::NonstandardInertia::new(axes * top.J_d.to_matrix() * axes.transpose())?;
+    let log_trace = LogTraceTop { I1: 3.0, weight: top.m * top.g, rho: top.rho, up: top.up };
     let row =
         Row::new("P1", "Poisson structure, h = 0.1, asymmetric top", "defect below 1e-10 (six-point differences)")
             .at_most("(3.13)", worst(top.clone(), &phases)?, 1e-10)
-            .at_most("full tensor", worst(FullTop { J_d: full, m: top.m, g: top.g, rho, up }, &phases)?, 1e-10)
-            .at_most("Cayley", worst(CayleyTop { J, weight, rho, up }, &phases)?, 1e-10)
-            .at_most("geodesic", worst(LogTop { J, weight, rho, up }, &phases)?, 1e-10)
-            .at_most("log-trace", worst(LogTraceTop { I1: 3.0, weight, rho, up }, &phases)?, 1e-10)
-            .at_most("L4", worst(FourthOrderTop { J, weight, rho, up }, &phases)?, 1e-10)
-            .at_most("L6", worst(SixthOrderTop { J, weight, rho, up }, &phases)?, 1e-10)
+            .at_most("full tensor", worst(FullTop::in_axes(&top, &axes), &phases)?, 1e-10)
+            .at_most("Cayley", worst(CayleyTop::of(&top), &phases)?, 1e-10)
+            .at_most("geodesic", worst(LogTop::of(&top), &phases)?, 1e-10)
+            .at_most("log-trace", worst(log_trace, &phases)?, 1e-10)
+            .at_most("L4", worst(FourthOrderTop::of(&top), &phases)?, 1e-10)
+            .at_most("L6", worst(SixthOrderTop::of(&top), &phases)?, 1e-10)
             .shows("all other declared systems: tests/systems/poisson.rs");
 
     let mut theirs = 0.0;

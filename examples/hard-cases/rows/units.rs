@@ -1,7 +1,6 @@
 //! T9: other units of mass and time.
 
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{HeavyTop, Motion};
 use liestep::Stepper;
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::DiagonalNonstandardInertia;

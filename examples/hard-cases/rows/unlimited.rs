@@ -25,14 +25,14 @@ pub(crate) fn s6(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     }
 
     let transverse = 3.0;
-    let log_trace = Stepper::new(LogTraceTop { I1: transverse, weight, rho, up }, h)?;
-    // An integral of this discrete top, [Bobenko and Suris 1999].
-    let energy = |p: Vector3<f64>, w: Vector3<f64>| {
-        let mixed = 0.5 * h * weight / transverse * p.dot(&w.cross(&rho));
-        p.norm_squared() / (2.0 * transverse) + weight * w.dot(&rho) + mixed
-    };
     let mut drift = 0.0;
-    for velocity in [Vector3::new(0.5, 2.0, 12.0), velocity] {
+    for (h, velocity) in [(h, velocity), (h, Vector3::new(0.5, 2.0, 12.0)), (0.01, Vector3::new(0.5, 2.0, 12.0))] {
+        let log_trace = Stepper::new(LogTraceTop { I1: transverse, weight, rho, up }, h)?;
+        // An integral of this discrete top, [Bobenko and Suris 1999].
+        let energy = |p: Vector3<f64>, w: Vector3<f64>| {
+            let mixed = 0.5 * h * weight / transverse * p.dot(&w.cross(&rho));
+            p.norm_squared() / (2.0 * transverse) + weight * w.dot(&rho) + mixed
+        };
         let mut state = log_trace.start(tilted, velocity)?;
         let start = energy(state.momentum(), state.advected());
         for _ in 0..10_000 {

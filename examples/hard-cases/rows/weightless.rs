@@ -1,7 +1,6 @@
 //! T8: no gravity.
 
-use declarations::HeavyTop;
-use declarations::Motion;
+use declarations::{FullTop, HeavyTop, Motion};
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
@@ -42,9 +41,11 @@ pub(crate) fn t8(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
             HeavyTop { rho: Vector3::zeros(), ..top.clone() },
         ];
         for top in weightless {
-            let (attitude, momentum, spatial) = moved(top, &motion)?;
-            kept = greater(kept, spatial);
-            apart = greater(apart, relative(&attitude, &free.0).max(relative(&momentum, &free.1)));
+            let full = FullTop::in_axes(&top, &Matrix3::identity());
+            for (attitude, momentum, spatial) in [moved(top, &motion)?, moved(full, &motion)?] {
+                kept = greater(kept, spatial);
+                apart = greater(apart, relative(&attitude, &free.0).max(relative(&momentum, &free.1)));
+            }
         }
         let scene = body + Gravity { m: 1.0, g: 0.0, rho: top.rho, up: top.up };
         let (attitude, momentum, _) = moved(scene, &motion)?;

@@ -3,8 +3,7 @@
 //! an axial vector, is `Ω' = det(Q) QΩ`.
 
 use checks::random::Random;
-use declarations::Motion;
-use declarations::{FullTop, HeavyTop};
+use declarations::{FullTop, HeavyTop, Motion};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
 use liestep::{SO3, Stepper};

@@ -38,33 +38,6 @@ fn assert_second_order(errors: &[(f64, f64)]) {
     assert!((order - 2.0).abs() < 0.05, "order {order}, {errors:?}");
 }
 
-/// From `Ω_2 = 0` the body comes to rest about its middle axis and never turns back, `Ω_2 = Ω tanh λt` and `Ω_1`, `Ω_3`
-/// in the proportion of `sech λt`, with `λ² = Ω² (J_2 − J_1)(J_3 − J_2)/(J_1 J_3)`.
-#[test]
-fn b8_separatrix() {
-    let (j, limit, t) = (Vector3::new(1.0, 2.0, 3.0_f64), 2.0, 5.0);
-    let rate = limit * ((j.y - j.x) * (j.z - j.y) / (j.x * j.z)).sqrt();
-    let across = Vector3::new(
-        limit * (j.y * (j.z - j.y) / (j.x * (j.z - j.x))).sqrt(),
-        0.0,
-        limit * (j.y * (j.y - j.x) / (j.z * (j.z - j.x))).sqrt(),
-    );
-    let expected = across / (rate * t).cosh() + Vector3::y() * (limit * (rate * t).tanh());
-    let errors = four_halvings(0.01).map(|h| {
-        let mut first = None;
-        let (stepper, state) =
-            end(FreeBody::with_moments(j.into()), h, t, (SO3::identity(), across), |stepper, state| {
-                let now = (stepper.energy(state), state.spatial_momentum());
-                let (energy, momentum) = *first.get_or_insert(now);
-                // Less than a rounding in each of up to 8000 steps, at random.
-                assert!((now.0 / energy - 1.0).abs() < 1e-13, "{:e}", now.0 / energy - 1.0);
-                assert!(relative(&now.1, &momentum) < 1e-13);
-            });
-        (h, relative(&stepper.velocity(&state), &expected))
-    });
-    assert_second_order(&errors);
-}
-
 /// `R = R_0 exp(t p_0/J_1) exp(−t (1/J_1 − 1/J_3) p_3 E_3)`, from any state and for oblate and prolate bodies.
 #[test]
 fn b8_symmetric_bodies() {

@@ -1,5 +1,4 @@
 mod body_axes;
 mod closed_forms;
-mod flip_period;
-mod free_bodies;
 mod inertia;
+mod order;

@@ -181,19 +181,3 @@ fn p6_a_field_leaves_a_turn_about_the_major_axis() {
         assert!(along.abs() > 0.5 && -1e-12 < left && left < excess, "{k}: {left:e}");
     }
 }
-
-/// Drag in proportion to the body velocity is the same in every direction, but the major axis loses the least of its
-/// turn by it: what is left turns about that one.
-#[test]
-fn p6_drag_leaves_a_turn_about_the_major_axis() {
-    let moments = [2.0, 3.0, 4.5];
-    let stepper = Stepper::new(body(moments) + drag(0.05, moments), STEP).unwrap();
-    let mut state = stepper.start(SO3::identity(), Vector3::new(2.0, 0.1, 0.1)).unwrap();
-    let minor = |state: &_| stepper.velocity(state).x.abs() / stepper.velocity(state).norm();
-    assert!(minor(&state) > 0.99);
-    for _ in 0..20_000 {
-        stepper.step(&mut state).unwrap();
-    }
-    let velocity = stepper.velocity(&state);
-    assert!(velocity.xy().norm() < 1e-2 * velocity.z.abs(), "{velocity}");
-}

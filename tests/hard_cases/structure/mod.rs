@@ -1,9 +1,4 @@
-mod contragredient;
 mod damping;
-mod digest;
 mod momentum_laws;
 mod poisson;
-mod single_precision;
 mod steady_turns;
-mod stopping_rule;
-mod two_flows;
