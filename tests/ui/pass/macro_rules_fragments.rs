@@ -27,14 +27,14 @@ from_call!(
 macro_rules! from_both {
     ($name:ident { $field:ident: $ty:ty }, $group:path, $factor:literal, $potential:expr) => {
         #[lagrangian(
-                    group = $group,
-                    advected(w = up),
-                    l_d = {
-                        let d = F - I;
-                        let kinetic = (d * inertia * d.transpose()).trace() / (2.0 * h);
-                        kinetic - $factor * h * ($potential + w.dot(&$field))
-                    },
-                )]
+                            group = $group,
+                            advected(w = up),
+                            l_d = {
+                                let d = F - I;
+                                let kinetic = (d * inertia * d.transpose()).trace() / (2.0 * h);
+                                kinetic - $factor * h * ($potential + w.dot(&$field))
+                            },
+                        )]
         struct $name {
             inertia: NonstandardInertia,
             $field: $ty,
