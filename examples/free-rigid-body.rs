@@ -16,8 +16,9 @@
 
 use std::process::ExitCode;
 
+use liestep::Stepper;
 use liestep::effects::PrincipalBody;
-use liestep::{DiagonalNonstandardInertia, Stepper};
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::args::{Common, Failure, example};
 use workbench::common_help;
@@ -61,7 +62,7 @@ fn simulate(arguments: &Common) -> Result<(), Failure> {
     let stepper = Stepper::new(PrincipalBody { J_d: inertia }, schedule.step)?;
     let (attitude, rates) = (UnitQuaternion::identity(), Vector3::new(0.01, 2.0, 0.02));
     let state = stepper.start(attitude, rates)?;
-    let body = Moments::of(stepper.lagrangian());
+    let body = Moments::of(stepper.scene());
     let h = schedule.step;
 
     let ours = run("variational", Variational { stepper: &stepper, state }, &schedule)?;

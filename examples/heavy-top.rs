@@ -98,7 +98,7 @@ fn all_methods(case: Case, reading: Reading, schedule: &Schedule) -> Result<[Ser
     let stepper = Stepper::new(reading.top()?, schedule.step)?;
     let (attitude, velocity) = case.start();
     let state = stepper.start(attitude, velocity)?;
-    let body = Body::of(stepper.lagrangian());
+    let body = Body::of(stepper.scene());
     let (h, momentum) = (schedule.step, state.momentum());
     let ours = run("variational", Variational { stepper: &stepper, state }, schedule)?;
     let quaternion = run("RK4, quaternion", OnQuaternion::new(body, h, &attitude, momentum), schedule)?;

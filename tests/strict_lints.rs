@@ -4,7 +4,10 @@
 #![deny(clippy::all, clippy::pedantic, clippy::nursery)]
 #![forbid(unsafe_code)]
 
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, NonstandardInertia, Real, SO3, Stepper, lagrangian};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::numbers::Real;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 /// A heavy top in any scalar.

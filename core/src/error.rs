@@ -39,16 +39,16 @@ pub enum SetupError {
         defect: f64,
     },
     /// The kinetic flow of a splitting is that of another body than the Lagrangian's.
-    AnotherInertia {
+    InertiaMismatch {
         /// The largest difference of two entries, kg m².
         difference: f64,
     },
     /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
-    AnotherBias,
+    BiasMismatch,
     /// A splitting with force gradients needs the derivative of the torque.
     NoForceGradient,
     /// One of the candidates for an accuracy is another scene than the first.
-    AnotherPotential,
+    PotentialMismatch,
 }
 
 impl fmt::Display for SetupError {
@@ -76,11 +76,11 @@ impl fmt::Display for SetupError {
                 f,
                 "the Lagrangian is not K(F) − (h/2) (V(w) + V(F⁻¹·w)) (defect {defect:e}, more than rounding), so it can't be split; compose it instead"
             ),
-            Self::AnotherInertia { difference } => write!(
+            Self::InertiaMismatch { difference } => write!(
                 f,
                 "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
             ),
-            Self::AnotherBias => write!(
+            Self::BiasMismatch => write!(
                 f,
                 "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them"
             ),
@@ -88,7 +88,7 @@ impl fmt::Display for SetupError {
                 f,
                 "a term of the scene was written without `kick_derivative`, so it has no force gradient; choose a scheme without them, or write it"
             ),
-            Self::AnotherPotential => {
+            Self::PotentialMismatch => {
                 write!(
                     f,
                     "one of the methods to choose from has another potential than the first; build all of them from one scene"
@@ -118,7 +118,7 @@ pub enum StepError {
         /// The largest step that this state allows, s.
         largest: f64,
     },
-    /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::Gauss).
+    /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::methods::Gauss).
     NotConverged {
         /// How many iterations were made.
         iterations: u32,

@@ -1,95 +1,98 @@
-//! Structure-preserving integrators from declared reduced discrete Lagrangians.
+//! Structure-preserving integrators from declared reduced Lagrangians.
 //!
-//! Annotate a struct with its reduced discrete Lagrangian `l_d(F, w)`, and [`lagrangian`] derives, when the crate is
-//! compiled, the momentum maps, the diamond term, the momentum equation and its Newton Jacobian; [`Stepper`] turns
-//! them into an integrator. [`conventions`] fixes what left, right and a momentum's components mean.
+//! Annotate a struct with its reduced discrete Lagrangian `l_d(F, w)` on a Lie group. [`lagrangian`] derives the momentum
+//! maps, the diamond term, the momentum equation and its Newton Jacobian when your crate is compiled. [`Stepper`] makes
+//! an integrator of them: attitudes stay rotations, momentum maps are conserved, energy doesn't drift.
 //!
-//! The macro half runs when the user's crate is compiled; this half runs when the user's program runs. It works
-//! without the macro too: [`DiscreteLagrangian`] can be implemented by hand. Modules depend on each other in one
-//! direction: `{machine, scalar} ← entries ← coordinates ← groups ← {retraction, advected} ← effect ← {lagrangian, sum}
-//! ← newton ← flows ← stepper`, and on it `{composition, preprocessed ← splitting ← {accuracy, gauss}}`.
+//! ```
+//! use liestep::nalgebra::{UnitQuaternion, Vector3};
+//! use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+//!
+//! /// A heavy top.
+//! #[lagrangian(
+//!     group = SO3,
+//!     advected(w = up),
+//!     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+//!         - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
+//! )]
+//! struct HeavyTop {
+//!     J_d: NonstandardInertia, // about the pivot, kg m²
+//!     m: f64,                  // kg
+//!     g: f64,                  // m/s²
+//!     rho: Vector3<f64>,       // the centre of mass, body frame, m
+//!     up: Vector3<f64>,        // the vertical, in space; w is the same vector seen from the body
+//! }
+//!
+//! let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
+//! let top = HeavyTop { J_d, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+//! let stepper = Stepper::new(top, 0.01)?; // s
+//! let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+//! let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 12.0))?; // rad/s, body frame
+//! let vertical = state.momentum_along(&Vector3::z());
+//! stepper.run(&mut state, 10_000)?;
+//! assert!((state.momentum_along(&Vector3::z()) - vertical).abs() < 1e-11);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What do you want to do?
+//!
+//! | | |
+//! |---|---|
+//! | simulate a body with gravity, a spring, drag, … | [`effects`]: bodies and what acts on them; they add with `+` |
+//! | declare a Lagrangian or a force of your own | [`lagrangian`], [`force`](macro@force) |
+//! | step, run, force, save and resume a motion | [`Stepper`], [`State`] |
+//! | be more accurate | [`methods`]: orders 4 to 16 |
+//! | say how accurate, and not how | [`accuracy`] |
+//! | go on where a step has no solution, or lose less to rounding | [`with`] |
+//! | move on another group, or on one of your own | [`groups`], [`laws`] |
+//! | use `f32`, SIMD lanes, dual numbers | [`numbers::Real`] |
+//! | know what is conserved, and what left and right mean here | [`conventions::guarantees`], [`conventions`] |
+//! | find an equation of the thesis | [`conventions::equations`] |
+//! | work without the macro | [`mechanics::DiscreteLagrangian`] |
+//!
+//! # Features
+//!
+//! | feature | |
+//! |---|---|
+//! | `serde` | [`Stepper::checkpoint`](motion::Stepper#method.checkpoint): files that a run goes on from, bit for bit |
+//!
+//! # How it is built
+//!
+//! A folder of the sources is a room, and each room's page is one of the modules below. Rooms import each other in one
+//! direction, which `tests/rooms.rs` checks:
+//!
+//! ```text
+//! error, numbers ← groups ← mechanics ← {effects, solving} ← motion ← methods ← {with, accuracy};  groups ← laws
+//! ```
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
 
+mod error;
+mod solving;
+
+pub mod accuracy;
 pub mod conventions;
 pub mod effects;
 pub mod groups;
 pub mod laws;
-
-mod accuracy;
-mod advected;
-mod bisection;
-#[cfg(feature = "serde")]
-mod checkpoint;
-mod compensated;
-mod composition;
-mod control;
-mod coordinates;
-mod effect;
-mod entries;
-mod error;
-mod flows;
-mod force;
-mod functions;
-mod gauss;
-mod inertia;
-mod kinetic;
-mod lagrangian;
-mod machine;
-mod newton;
-mod operations;
-mod preprocessed;
-mod remedy;
-mod retraction;
-mod scalar;
-mod scene;
-mod solvability;
-mod splitting;
-mod state;
-mod stepper;
-mod sum;
-mod symmetry;
+pub mod mechanics;
+pub mod methods;
+pub mod motion;
+pub mod numbers;
+pub mod prelude;
+pub mod with;
 
 #[doc(hidden)]
 #[path = "private.rs"]
 pub mod __private;
 
-pub use accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates, Choice, Offer};
-pub use advected::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-#[cfg(feature = "serde")]
-pub use checkpoint::{Checkpoint, CheckpointError, Stored};
-pub use compensated::{CompensatedState, CompensatedStepper};
-pub use composition::{Composition, CompositionScheme};
-pub use coordinates::Coordinates;
-pub use effect::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
-pub use effects::{Gravity, RigidBody};
-pub use entries::Entries;
 pub use error::{SetupError, StepError};
-pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
-pub use force::Force;
-pub use gauss::{Gauss, GaussState};
-pub use groups::{Generators, LieGroup, MatrixGroup, NotARotation, NotInGroup};
-pub use groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2};
-pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use kinetic::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
-pub use lagrangian::DiscreteLagrangian;
+pub use groups::SO3;
 pub use liestep_macros::{force, lagrangian};
-pub use operations::Operations;
-pub use preprocessed::{PreprocessedBody, PreprocessedOrder};
-pub use remedy::{Fallback, OnFailure, RemediedStepper, Remedy, Substeps};
-pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
-pub use scalar::{Mask, Real};
-pub use scene::SceneVisitor;
-pub use solvability::{Solvability, TurningLimits};
-pub use splitting::{
-    DeclaredDrift, Flow, KineticFlow, PreprocessedDrift, PreprocessedFlow, SplitBody, SplitDrift, Splitting,
-    SplittingScheme, SymmetricBody, SymmetricDrift, Turn,
-};
-pub use state::State;
-pub use stepper::{StepReport, Stepper};
-pub use sum::{SharedBy, Sum};
-pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
+pub use mechanics::NonstandardInertia;
+pub use motion::{State, Stepper};
+pub use nalgebra;
 
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]

@@ -3,17 +3,26 @@
 pub use core;
 pub use nalgebra;
 
+// What asks a group of one's own for its generators, and declares it.
+pub use liestep_macros::{force, lagrangian, matrix_group};
+
+// What a declaration becomes.
+pub use crate::error::SetupError;
+pub use crate::groups::rotation_functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
+pub use crate::groups::{CayleyRetraction, Retraction, inverse_increment};
+pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
+pub use crate::mechanics::{
+    DiscreteLagrangian, Effect, Force, LeftInvariant, Operations, Parts, SceneVisitor, SharedBy, Sum, WithKinetic,
+    WithoutKinetic,
+};
+pub use crate::numbers::{Real, real};
+
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
-use crate::LieGroup;
-use crate::advected::homogeneous;
-pub use crate::advected::inverse_increment;
-use crate::entries::Entries as _;
-pub use crate::functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
-pub use crate::scalar::real;
-pub use crate::scene::SceneVisitor;
-use crate::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use crate::{DiagonalNonstandardInertia, Generators, Inertia, MatrixGroup, NonstandardInertia, Real, SetupError};
+use crate::groups::homogeneous;
+use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
+use crate::numbers::Entries as _;
 
 /// `F⁻¹` of a group element.
 #[inline]
@@ -53,7 +62,7 @@ pub trait Parameter {
 ///
 /// [`SetupError::Parameter`] with the name of the field.
 pub fn validate_scalar<T: Real>(value: T, field: &'static str) -> Result<(), SetupError> {
-    if crate::scalar::is_finite(value) { Ok(()) } else { Err(SetupError::Parameter { field, cause: "is not finite" }) }
+    if crate::numbers::is_finite(value) { Ok(()) } else { Err(SetupError::Parameter { field, cause: "is not finite" }) }
 }
 
 /// The value of a vector or a matrix is itself, that of an inertia its matrix.
@@ -71,7 +80,7 @@ impl<T: Real, const R: usize, const C: usize> Parameter for SMatrix<T, R, C> {
     }
 
     fn is_finite(&self) -> bool {
-        self.iter().all(|&entry| crate::scalar::is_finite(entry))
+        self.iter().all(|&entry| crate::numbers::is_finite(entry))
     }
 }
 

@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::time::Duration;
 
-use liestep::{
-    Accuracy, AccurateStepper, Candidates, PreprocessedFlow, PreprocessedOrder, SO3, SplitBody, SymmetricBody,
-};
+use liestep::SO3;
+use liestep::accuracy::{Accuracy, AccurateStepper, Candidates};
+use liestep::methods::{PreprocessedFlow, PreprocessedOrder, SplitBody, SymmetricBody};
 use nalgebra::Vector3;
 use workbench::table::{aligned, number};
 
@@ -36,7 +36,7 @@ pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> Effort) -> Result<Strin
 pub struct Question {
     /// The end of a run that has the accuracy, with the name of its method, its step and the cost of the trials in
     /// runs.
-    pub ask: Box<dyn Fn(Accuracy) -> Result<Answer, liestep::AccuracyError>>,
+    pub ask: Box<dyn Fn(Accuracy) -> Result<Answer, liestep::accuracy::AccuracyError>>,
     pub fixed: Vec<methods::Method>,
 }
 
@@ -51,7 +51,7 @@ pub struct Answer {
 impl Answer {
     pub fn new<A>(stepper: AccurateStepper<SO3, A>) -> Self
     where
-        A: liestep::Advected<SO3> + 'static,
+        A: liestep::groups::Advected<SO3> + 'static,
     {
         let choice = stepper.choice();
         let (name, step, trials) = (choice.chosen().name.clone(), choice.chosen().step, choice.trials);
@@ -112,9 +112,9 @@ pub fn asking<A>(
     candidates: Candidates<SO3, A>,
     attitude: SO3,
     velocity: Vector3<f64>,
-) -> Box<dyn Fn(Accuracy) -> Result<Answer, liestep::AccuracyError>>
+) -> Box<dyn Fn(Accuracy) -> Result<Answer, liestep::accuracy::AccuracyError>>
 where
-    A: liestep::Advected<SO3> + 'static,
+    A: liestep::groups::Advected<SO3> + 'static,
 {
     Box::new(move |accuracy| candidates.for_accuracy(accuracy, attitude, velocity).map(Answer::new))
 }
@@ -142,7 +142,7 @@ fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, 
                 ));
                 row.push(format!("{:.1}", answer.trials));
             }
-            Err(liestep::AccuracyError::Unreachable { floor, .. }) => {
+            Err(liestep::accuracy::AccuracyError::Unreachable { floor, .. }) => {
                 row.push(format!("only {floor:.0e} can be reached"));
             }
             Err(refusal) => row.push(refusal.to_string()),

@@ -1,10 +1,13 @@
 //! The methods, ours and others', behind one way to run them.
 
 use declarations::motions::End;
-use liestep::{
-    Composition, CompositionScheme, DiscreteLagrangian, Gauss, KineticFlow, PreprocessedBody, PreprocessedFlow,
-    PreprocessedOrder, Regular, SO3, SplitBody, Splitting, SplittingScheme, Stepper, SymmetricBody,
+use liestep::effects::PrincipalBody;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::methods::{
+    CompositionScheme, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody,
 };
+use liestep::motion::Plan;
+use liestep::{SO3, Stepper};
 
 use crate::rivals::{dop853, library};
 use crate::scenes::{Kind, Scene};
@@ -141,33 +144,15 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {
     let name = format!("Gauss, {} stages", 2 * PAIRS);
-    Method::new(name, Family::Poisson, Control::Step(2.0), move |scene, t, h| {
-        let (gauss, steps) = (Gauss::<L, PAIRS>::new(lagrangian(scene), h).ok()?, count(t, h));
-        let start = gauss.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
-        Some(Box::new(move || {
-            let mut state = start;
-            for _ in 0..steps {
-                gauss.step(&mut state).ok()?;
-            }
-            Some((*state.attitude().as_matrix(), gauss.velocity(&state)))
-        }))
-    })
+    stepped(name, Family::Poisson, 2.0, move |scene, h| Stepper::collocated::<PAIRS>(lagrangian(scene), h).ok())
 }
 
 /// The free body with modified moments of inertia.
 fn preprocessed() -> [Method; 4] {
     use PreprocessedOrder::{Eight, Four, Six, Ten};
     [("4", Four), ("6", Six), ("8", Eight), ("10", Ten)].map(|(name, order)| {
-        Method::new(format!("preprocessed, {name}"), Family::Poisson, Control::Step(2.0), move |scene, t, h| {
-            let (body, steps) = (PreprocessedBody::new(scene.nonstandard(), h, order).ok()?, count(t, h));
-            let start = body.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
-            Some(Box::new(move || {
-                let mut state = start;
-                for _ in 0..steps {
-                    body.step(&mut state).ok()?;
-                }
-                Some((*state.attitude().as_matrix(), body.velocity(&state)))
-            }))
+        stepped(format!("preprocessed, {name}"), Family::Poisson, 2.0, move |scene, h| {
+            Stepper::preprocessed(PrincipalBody { J_d: scene.nonstandard() }, h, order).ok()
         })
     })
 }
@@ -180,18 +165,12 @@ pub fn splittings<L, K>(
     kinetic: impl Fn(&Scene) -> Option<K> + Copy + 'static,
 ) -> Vec<Method>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
     K: KineticFlow<f64> + 'static,
 {
     let method = |scheme: SplittingScheme| {
-        Method::new(format!("{name}, {}", scheme.name()), family, Control::Step(5.0), move |scene, t, h| {
-            let (splitting, steps) = (Splitting::new(lagrangian(scene), kinetic(scene)?, h, scheme).ok()?, count(t, h));
-            let start = splitting.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
-            Some(Box::new(move || {
-                let mut state = start;
-                splitting.advance(&mut state, steps).ok()?;
-                Some((*state.attitude().as_matrix(), splitting.velocity(&state)))
-            }))
+        stepped(format!("{name}, {}", scheme.name()), family, 5.0, move |scene, h| {
+            Stepper::split(lagrangian(scene), h, kinetic(scene)?, scheme).ok()
         })
     };
     SplittingScheme::ALL.map(method).into()
@@ -200,35 +179,38 @@ where
 /// The step of a declared Lagrangian of this order, and its compositions.
 pub fn declared<L>(name: &'static str, lagrangian: impl Fn(&Scene) -> L + Copy + 'static, order: u32) -> Vec<Method>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone + 'static,
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {
-    let alone = Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
-        let (stepper, steps) = (Stepper::new(lagrangian(scene), h).ok()?, count(t, h));
-        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
-        Some(Box::new(move || {
-            let mut state = start;
-            for _ in 0..steps {
-                stepper.step(&mut state).ok()?;
-            }
-            Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
-        }))
-    });
+    let alone = stepped(name, Family::Poisson, 1.0, move |scene, h| Stepper::new(lagrangian(scene), h).ok());
     let schemes = CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == order);
     let composed = schemes.map(|scheme| {
-        let name = format!("{name}, {}", scheme.name());
-        Method::new(name, Family::Poisson, Control::Step(1.0), move |scene, t, h| {
-            let (composed, steps) = (Composition::new(lagrangian(scene), h, scheme).ok()?, count(t, h));
-            let start = composed.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
-            Some(Box::new(move || {
-                let mut state = start;
-                for _ in 0..steps {
-                    composed.step(&mut state).ok()?;
-                }
-                Some((*state.attitude().as_matrix(), composed.velocity(&state)))
-            }))
+        stepped(format!("{name}, {}", scheme.name()), Family::Poisson, 1.0, move |scene, h| {
+            Stepper::composed(lagrangian(scene), h, scheme).ok()
         })
     });
     core::iter::once(alone).chain(composed).collect()
+}
+
+/// A stepper, with steps from the longest on, s.
+fn stepped<S, P>(
+    name: impl Into<String>,
+    family: Family,
+    longest: f64,
+    stepper: impl Fn(&Scene, f64) -> Option<Stepper<S, P>> + 'static,
+) -> Method
+where
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + 'static,
+    P: Plan<S> + 'static,
+{
+    Method::new(name, family, Control::Step(longest), move |scene, t, h| {
+        let (stepper, steps) = (stepper(scene, h)?, count(t, h));
+        let start = stepper.start(SO3::from_matrix_unchecked(scene.attitude), scene.velocity).ok()?;
+        Some(Box::new(move || {
+            let mut state = start;
+            stepper.run(&mut state, steps).ok()?;
+            Some((*state.attitude().as_matrix(), stepper.velocity(&state)))
+        }))
+    })
 }
 
 fn rivals() -> [Method; 4] {

@@ -6,11 +6,11 @@
 use std::error::Error;
 
 use declarations::motions::End;
+use liestep::accuracy::Candidates;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Spring};
-use liestep::{
-    Candidates, Composition, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, NonstandardInertia,
-    PreprocessedFlow, PreprocessedOrder, Regular, SO3, SymmetricBody,
-};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
+use liestep::methods::{CompositionScheme, PreprocessedFlow, PreprocessedOrder, SymmetricBody};
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::asked::{Question, asking};
@@ -75,7 +75,7 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
 {
     const A_SECOND: u32 = 100;
-    let fine = Composition::new(scene, f64::from(A_SECOND).recip(), CompositionScheme::SOFRONIOU_SPALETTA_10)?;
+    let fine = Stepper::composed(scene, f64::from(A_SECOND).recip(), CompositionScheme::SOFRONIOU_SPALETTA_10)?;
     let mut state = fine.start(attitude, velocity)?;
     while fine.time(&state) < t - 1e-6 {
         fine.step(&mut state)?;

@@ -4,7 +4,9 @@
 
 use declarations::motions::End;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderBody, SixthOrderTop};
-use liestep::{DiagonalNonstandardInertia, Inertia, LieGroup as _, SO3};
+use liestep::SO3;
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
 use nalgebra::{Matrix3, Vector3};
 use workbench::top_equations::{Equations, State};
 

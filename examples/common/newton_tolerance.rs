@@ -3,10 +3,10 @@
 //! The library's own stops at rounding and has no such option; here its equations, derived by the macro, are solved by
 //! a loop of a few lines.
 
-use liestep::{
-    Advected, Coordinates as _, DiscreteLagrangian, Effect, LieGroup as _, Retraction as _, SO3, State, StepError,
-    Stepper,
-};
+use liestep::groups::{Advected, LieGroup as _, Retraction as _};
+use liestep::mechanics::{DiscreteLagrangian, Effect};
+use liestep::numbers::Coordinates as _;
+use liestep::{SO3, State, StepError, Stepper};
 use nalgebra::Vector3;
 
 use crate::tenths::{Tenths, float, greater};

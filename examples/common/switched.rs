@@ -1,7 +1,9 @@
 //! An effect that a scene has or hasn't: asked in each step, as simulators have it that hold every effect in every
 //! scene, and so that all scenes are of few types.
 
-use liestep::{DiscreteLagrangian, Effect, Entries as _, Matrix, Operations, Parts, SO3, SceneVisitor, SetupError};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Matrix, Operations, Parts, SceneVisitor};
+use liestep::numbers::Entries as _;
+use liestep::{SO3, SetupError};
 use nalgebra::{Matrix3, Vector3};
 
 /// The effect, or nothing, of which all shares are zero.

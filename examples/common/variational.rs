@@ -1,6 +1,7 @@
 //! The integrator that a declared Lagrangian gives, as a method to run.
 
-use liestep::{DiscreteLagrangian, SO3, State, Stepper};
+use liestep::mechanics::DiscreteLagrangian;
+use liestep::{SO3, State, Stepper};
 
 use super::run::{Method, Sample, Stopped};
 

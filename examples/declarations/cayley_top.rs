@@ -1,6 +1,7 @@
 //! The heavy top with the Cayley kinetic term.
 
-use liestep::{Inertia, SO3, lagrangian};
+use liestep::mechanics::Inertia;
+use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 
 /// The heavy top with the Cayley kinetic term: `x = tan(θ/2) n` has the Legendre transform

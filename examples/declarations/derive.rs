@@ -10,7 +10,7 @@
 
 use std::process::ExitCode;
 
-use liestep::DiscreteLagrangian;
+use liestep::mechanics::DiscreteLagrangian;
 use workbench::args::{Failure, Word, example};
 use workbench::output::print;
 

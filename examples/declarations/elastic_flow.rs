@@ -1,6 +1,7 @@
 //! A left-invariant motion on SL(2).
 
-use liestep::{CovariantTensor, SL2, lagrangian};
+use liestep::groups::{CovariantTensor, SL2};
+use liestep::lagrangian;
 use nalgebra::Matrix2;
 
 /// The area-preserving deformations of the plane with a left-invariant kinetic energy and an elastic potential.

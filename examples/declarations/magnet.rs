@@ -1,6 +1,7 @@
 //! A magnetised body.
 
-use liestep::{CovariantTensor, NonstandardInertia, SO3, lagrangian};
+use liestep::groups::CovariantTensor;
+use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix3, Vector3};
 
 /// A body about a pivot with a magnetic dipole and a quadrupole of its own, in a field with a gradient.

@@ -1,6 +1,7 @@
 //! Motions with exact states: `tests/data/README.md` says how each was validated.
 
-use liestep::{DiagonalNonstandardInertia, SO3};
+use liestep::SO3;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 use workbench::heavy_top::declaration::HeavyTop;

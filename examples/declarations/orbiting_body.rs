@@ -1,6 +1,7 @@
 //! Gravity gradient without expansion, orbit and attitude together.
 
-use liestep::{SE3, lagrangian};
+use liestep::groups::SE3;
+use liestep::lagrangian;
 use nalgebra::{Matrix4, Point3};
 
 /// A rigid body in the 1/r field of a centre fixed in space, attracted at two of its points.

@@ -1,6 +1,7 @@
 //! A planar body on a tether.
 
-use liestep::{SE2, lagrangian};
+use liestep::groups::SE2;
+use liestep::lagrangian;
 use nalgebra::{Matrix3, Point2};
 
 /// A rigid body in the plane, one of whose points is tied by an elastic tether to a point of the plane.

@@ -1,6 +1,6 @@
 //! The tops that differ by their kinetic term or order alone: one body, one weight, one constructor.
 
-use liestep::Inertia;
+use liestep::mechanics::Inertia;
 use nalgebra::Vector3;
 use workbench::heavy_top::declaration::HeavyTop;
 

@@ -1,6 +1,7 @@
 //! Kirchhoff's body in a fluid.
 
-use liestep::{SE3, lagrangian};
+use liestep::groups::SE3;
+use liestep::lagrangian;
 use nalgebra::{Matrix4, Point3, Vector4};
 
 /// A rigid body in an ideal fluid at rest, after Kirchhoff, with weight and buoyancy.

@@ -1,8 +1,9 @@
 //! Other methods on the bodies of the rows.
 
 use declarations::{FreeBody, HeavyTop, Motion};
+use liestep::Stepper;
 use liestep::effects::PrincipalBody;
-use liestep::{DiagonalNonstandardInertia, Stepper};
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use plotters::style::RGBColor;
 use workbench::free_body::engines::{Engine, Moments, explicit, implicit, rescaled};
@@ -57,7 +58,7 @@ impl Spin {
         let (attitude, rates, h) = (UnitQuaternion::identity(), self.velocity, self.h);
         let stepper = Stepper::new(self.body(), h)?;
         let state = stepper.start(attitude, rates)?;
-        let body = Moments::of(stepper.lagrangian());
+        let body = Moments::of(stepper.scene());
         let rk4 = Body { inverse_moments: self.moments().map(f64::recip), lever: Vector3::zeros() };
         let momentum = state.momentum();
         let engine = |update: Update| Engine { body, h, attitude, rates, update };

@@ -1,11 +1,13 @@
 //! Long runs: defects of the group and of the Casimirs while they grow.
 
-use liestep::{LieGroup as _, SO3, State};
+use liestep::SO3;
+use liestep::groups::LieGroup as _;
+use liestep::motion::Motion;
 use nalgebra::{Matrix3, SVector, Vector3};
 use workbench::measure::{float, greater};
 
-/// A state with one advected vector.
-pub(crate) type TopState = State<SO3, Vector3<f64>>;
+/// A motion with one advected vector.
+pub(crate) type TopMotion = Motion<SO3, Vector3<f64>>;
 
 /// `‖RᵀR − I‖`.
 pub(crate) fn orthogonality(attitude: &Matrix3<f64>) -> f64 {
@@ -79,7 +81,7 @@ impl Walk {
         Self { start, followed, stride, worst, history: Vec::new(), next: 100.0 }
     }
 
-    pub(crate) fn from_state(state: &TopState, steps: u64) -> Self {
+    pub(crate) fn from_state(state: &TopMotion, steps: u64) -> Self {
         Self::from(&state.momentum(), &state.advected(), steps)
     }
 
@@ -91,7 +93,7 @@ impl Walk {
     }
 
     /// As [`after`](Self::after), for our states.
-    pub(crate) fn after_step(&mut self, step: u64, state: &TopState) {
+    pub(crate) fn after_step(&mut self, step: u64, state: &TopMotion) {
         self.after(step, || (state.attitude().matrix(), state.momentum(), state.advected()));
     }
 

@@ -1,25 +1,18 @@
 //! The attribute macro of liestep; use it through the crate `liestep`.
 //!
-//! This half runs when the user's crate is compiled. One direction of dependency:
-//! `lib → expand → {parse, check, lower, choose, hypotheses, verify, explain} → ast`, `derive → symbolic`,
-//! `scalar → symbolic`; `emit` alone quotes tokens.
+//! This half runs when the user's crate is compiled. Its rooms depend on each other in one direction:
+//!
+//! `lib → expand → emit → judged → {declared, program} → mathematics`
+//!
+//! Tokens are quoted in `emit` alone. Syntax is known in `declared`, where it is read, and in `emit`, where it is
+//! written; `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 
-mod ast;
-mod check;
-mod choose;
-mod derive;
+mod declared;
 mod emit;
-mod errors;
 mod expand;
-mod explain;
-mod fallback;
-mod group;
-mod hypotheses;
-mod lower;
-mod parse;
-mod scalar;
-mod symbolic;
-mod verify;
+mod judged;
+mod mathematics;
+mod program;
 
 /// Derives an integrator from a reduced discrete Lagrangian: `impl Effect`, `impl DiscreteLagrangian` and `impl Add`
 /// for the annotated struct.
@@ -27,7 +20,8 @@ mod verify;
 /// ```text
 /// #[lagrangian(
 ///     group = SO3,                    the group that F belongs to
-///     generators = […],               its generators, row by row, if it is a group of your own
+///     generators = […],               its generators, row by row, if it is a group of your own; of one that
+///                                     `matrix_group!` declares, `group = Name!` finds them
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings
 ///     crate = path,                   where liestep is found, if not at `::liestep`
@@ -56,7 +50,7 @@ mod verify;
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
 pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(ast::Role::Lagrangian, arguments.into(), &item.into()).into()
+    expand::expand(declared::Role::Lagrangian, arguments.into(), &item.into()).into()
 }
 
 /// Derives the stages of a force from its virtual work in a step: `impl Effect` and `impl Add` for the annotated
@@ -78,5 +72,32 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 /// equation, and its derivative the Newton Jacobian.
 #[proc_macro_attribute]
 pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    expand::expand(ast::Role::Force, arguments.into(), &item.into()).into()
+    expand::expand(declared::Role::Force, arguments.into(), &item.into()).into()
+}
+
+/// Declares a matrix group of one's own: a type alias for it, and its generators, written once.
+///
+/// ```text
+/// matrix_group! {
+///     /// The affine maps `x ↦ a x + b` of the line, `a > 0`.
+///     pub type Affine = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
+///
+///     fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+///         m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
+///     }
+/// }
+///
+/// #[lagrangian(group = Affine!, …)]
+/// ```
+///
+/// The matrices are the basis `E_k` of the group's Lie algebra, each by rows. The functions are those of the trait
+/// `Generators`, which the marker `AffineGenerators` implements; `relation` is required. `crate = path;` in front says
+/// where liestep is found, if not at `::liestep`.
+///
+/// `group = Affine!` asks a macro of the group's name for the generators. The macro is found where the type is, within
+/// the crate; from another crate, write `group = Affine` with `generators = […]`, which the compiler compares with those
+/// of the group.
+#[proc_macro]
+pub fn matrix_group(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand::matrix_group(tokens.into()).into()
 }

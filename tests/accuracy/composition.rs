@@ -3,7 +3,10 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
-use liestep::{Composition, CompositionScheme, DiscreteLagrangian, LieGroup as _, Regular, SO3, StepError};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::methods::CompositionScheme;
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
@@ -22,7 +25,7 @@ fn end<L>(lagrangian: L, scheme: CompositionScheme, motion: &Motion, h: f64, ste
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + Clone,
 {
-    let composed = Composition::new(lagrangian, h, scheme).unwrap();
+    let composed = Stepper::composed(lagrangian, h, scheme).unwrap();
     let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
     for _ in 0..steps {
         composed.step(&mut state).unwrap();
@@ -103,7 +106,7 @@ fn p1_compositions_are_poisson_maps() {
             let (momentum, w) = (random.vector() * 5.0, random.vector());
             let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
                 let top = HeavyTop { up: *w, ..HeavyTop::asymmetric() };
-                let composed = Composition::new(top, h, scheme).unwrap();
+                let composed = Stepper::composed(top, h, scheme).unwrap();
                 let mut state = composed.start_with_momentum(SO3::identity(), *momentum).unwrap();
                 composed.step(&mut state).unwrap();
                 (state.momentum(), state.advected())
@@ -120,7 +123,7 @@ fn s5_negative_composed_step_is_the_inverse_map() {
     let mut random = Random::new(22);
     for scheme in SCHEMES {
         for h in [0.1, 0.01, 1e-6] {
-            let [there, back] = [h, -h].map(|h| Composition::new(HeavyTop::asymmetric(), h, scheme).unwrap());
+            let [there, back] = [h, -h].map(|h| Stepper::composed(HeavyTop::asymmetric(), h, scheme).unwrap());
             for _ in 0..10 {
                 let mut state = there.start(random.rotation(), random.vector()).unwrap();
                 let before = state;
@@ -139,7 +142,7 @@ fn s5_negative_composed_step_is_the_inverse_map() {
 fn a_composed_step_of_zero_is_the_identity() {
     let motion = Motion::looping();
     for scheme in SCHEMES {
-        let composed = Composition::new(motion.top.clone(), 0.0, scheme).unwrap();
+        let composed = Stepper::composed(motion.top.clone(), 0.0, scheme).unwrap();
         let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
         let before = state;
         composed.step(&mut state).unwrap();
@@ -155,7 +158,7 @@ fn a_composed_step_of_zero_is_the_identity() {
 fn compositions_keep_the_vertical_momentum() {
     let motion = Motion::looping();
     for scheme in SCHEMES {
-        let composed = Composition::new(motion.top.clone(), 0.02, scheme).unwrap();
+        let composed = Stepper::composed(motion.top.clone(), 0.02, scheme).unwrap();
         let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
         let (vertical, spin) = (state.momentum_along(&Vector3::z()), state.momentum().z);
         for _ in 0..10_000 {
@@ -171,7 +174,7 @@ fn compositions_keep_the_vertical_momentum() {
 #[test]
 fn compositions_keep_the_energy_of_the_free_body() {
     let composed =
-        Composition::new(FreeBody::with_moments([1.0, 2.0, 3.0]), 0.1, CompositionScheme::KAHAN_LI_8).unwrap();
+        Stepper::composed(FreeBody::with_moments([1.0, 2.0, 3.0]), 0.1, CompositionScheme::KAHAN_LI_8).unwrap();
     let mut state = composed.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02)).unwrap();
     let energy = composed.energy(&state);
     for _ in 0..10_000 {
@@ -186,7 +189,7 @@ fn a_substep_that_is_too_long_is_an_error() {
     let motion = Motion::looping();
     for scheme in SCHEMES {
         let limit = 0.0815 / scheme.largest();
-        let composed = Composition::new(motion.top.clone(), 1.2 * limit, scheme).unwrap();
+        let composed = Stepper::composed(motion.top.clone(), 1.2 * limit, scheme).unwrap();
         let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
         let before = state;
         let error = composed.step(&mut state).unwrap_err();
@@ -195,7 +198,7 @@ fn a_substep_that_is_too_long_is_an_error() {
         println!("{}: {step} s, largest {largest} s, estimated {limit}", scheme.name());
         assert!((step - 1.2 * limit).abs() < 1e-15 && largest < step);
         assert!((largest / limit - 1.0).abs() < 0.1, "{}: {largest}, {limit}", scheme.name());
-        let shorter = Composition::new(motion.top.clone(), largest, scheme).unwrap();
+        let shorter = Stepper::composed(motion.top.clone(), largest, scheme).unwrap();
         let mut state = shorter.start(motion.attitude, motion.velocity).unwrap();
         shorter.step(&mut state).unwrap();
     }
@@ -206,7 +209,7 @@ fn a_substep_that_is_too_long_is_an_error() {
 fn a_stage_takes_few_iterations() {
     let motion = Motion::looping();
     for scheme in SCHEMES {
-        let composed = Composition::new(motion.top.clone(), 0.02, scheme).unwrap();
+        let composed = Stepper::composed(motion.top.clone(), 0.02, scheme).unwrap();
         let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
         let mut iterations = 0;
         for _ in 0..100 {
@@ -222,10 +225,10 @@ fn a_stage_takes_few_iterations() {
 fn a_composition_of_one_stage_is_the_step_itself() {
     let one = CompositionScheme::new("one", 2, 2, &[1.0]);
     let motion = Motion::looping();
-    let composed = Composition::new(motion.top.clone(), 0.01, one).unwrap();
-    let stepper = liestep::Stepper::new(motion.top.clone(), 0.01).unwrap();
+    let composed = Stepper::composed(motion.top.clone(), 0.01, one).unwrap();
+    let stepper = Stepper::new(motion.top.clone(), 0.01).unwrap();
     let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
-    let mut alone = state;
+    let mut alone = stepper.start(motion.attitude, motion.velocity).unwrap();
     for _ in 0..100 {
         composed.step(&mut state).unwrap();
         stepper.step(&mut alone).unwrap();

@@ -13,7 +13,7 @@
 use core::ops::{Add, Div, Mul, Sub};
 use std::collections::BTreeMap;
 
-use liestep::{CompositionScheme, Flow, SplittingScheme};
+use liestep::methods::{CompositionScheme, Flow, SplittingScheme};
 
 /// What coefficients are computed in.
 pub(crate) trait Number:

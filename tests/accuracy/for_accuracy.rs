@@ -1,12 +1,12 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
 use declarations::{FourthOrderTop, HeavyTop, Motion, Top as _};
+use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates};
 use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
-use liestep::{
-    Accuracy, AccuracyError, AccurateStepper, Advected, Candidates, Composition, CompositionScheme,
-    DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _, NonstandardInertia, PreprocessedFlow,
-    PreprocessedOrder, Regular, SO2, SO3, SetupError, Stepper, SymmetricBody, lagrangian,
-};
+use liestep::groups::{Advected, LieGroup as _, SO2};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
+use liestep::methods::{CompositionScheme, PreprocessedFlow, PreprocessedOrder, SymmetricBody};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3};
 
 /// The five scenes of the example accuracy-cost.
@@ -95,7 +95,7 @@ fn a_step_twice_as_long_misses_the_tolerance() {
         [CompositionScheme::KAHAN_LI_6, CompositionScheme::KAHAN_LI_8, CompositionScheme::SOFRONIOU_SPALETTA_10];
     let scheme = schemes.into_iter().find(|scheme| scheme.name() == chosen.name).unwrap();
     let steps = stepper.choice().steps.div_ceil(2);
-    let composed = Composition::new(motion.top.clone(), horizon / steps as f64, scheme).unwrap();
+    let composed = Stepper::composed(motion.top.clone(), horizon / steps as f64, scheme).unwrap();
     let mut state = composed.start(motion.attitude, motion.velocity).unwrap();
     for _ in 0..steps {
         composed.step(&mut state).unwrap();
@@ -116,7 +116,7 @@ where
 {
     let (attitude, velocity) = (UnitQuaternion::from_scaled_axis(turn.into()), Vector3::from(velocity));
     for (horizon, tolerance) in [10.0, 100.0].into_iter().flat_map(|t| TOLERANCES.map(|tolerance| (t, tolerance))) {
-        let fine = Composition::new(scene.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
+        let fine = Stepper::composed(scene.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
         let mut state = fine.start(attitude, velocity).unwrap();
         while fine.time(&state) < horizon - 1e-3 {
             fine.step(&mut state).unwrap();
@@ -174,7 +174,7 @@ struct Pendulum {
 fn the_tolerance_is_reached_on_another_group() {
     let pendulum = Pendulum { inertia: 1.5, weight: 9.81, rho: Vector2::x(), up: -Vector2::x() };
     let (horizon, tolerance, velocity) = (10.0, 1e-7, Vector1::new(2.0));
-    let fine = Composition::new(pendulum.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
+    let fine = Stepper::composed(pendulum.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
     let mut exact = fine.start(SO2::identity(), velocity).unwrap();
     for _ in 0..1000 {
         fine.step(&mut exact).unwrap();
@@ -317,26 +317,26 @@ fn candidates_of_another_scene_are_refused() {
     let mut heavier = motion.top.clone();
     heavier.m *= 1.01;
     let refusal = ask(all(&motion).and_declared("heavier", heavier, 2));
-    assert_eq!(refusal, AccuracyError::Setup(SetupError::AnotherPotential));
+    assert_eq!(refusal, AccuracyError::Setup(SetupError::PotentialMismatch));
     let rounder = SymmetricBody::new(&Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap()).unwrap();
     let refusal = ask(all(&motion).and_splittings("rounder", motion.top.clone(), rounder));
-    assert!(matches!(refusal, AccuracyError::Setup(SetupError::AnotherInertia { .. })), "{refusal}");
+    assert!(matches!(refusal, AccuracyError::Setup(SetupError::InertiaMismatch { .. })), "{refusal}");
     let leaning = HeavyTop { up: Vector3::new(0.6, 0.0, 0.8), ..motion.top.clone() };
     let refusal = ask(all(&motion).and_declared("leaning", leaning, 2));
-    assert_eq!(refusal, AccuracyError::Setup(SetupError::AnotherPotential));
+    assert_eq!(refusal, AccuracyError::Setup(SetupError::PotentialMismatch));
     let spun = |speed: f64| motion.top.clone() + Rotor { spin: Vector3::z() * speed };
     let candidates = Candidates::of(spun(1.0), 2).and_declared("faster", spun(1.1), 2);
     let accuracy = Accuracy { tolerance: 1e-6, horizon: 1.0 };
     let refusal = candidates.for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap_err();
-    assert_eq!(refusal, AccuracyError::Setup(SetupError::AnotherBias));
+    assert_eq!(refusal, AccuracyError::Setup(SetupError::BiasMismatch));
     let mut longer = motion.top.clone();
     longer.rho *= 1.01;
-    assert_eq!(ask(all(&motion).and_gauss(longer)), AccuracyError::Setup(SetupError::AnotherPotential));
+    assert_eq!(ask(all(&motion).and_gauss(longer)), AccuracyError::Setup(SetupError::PotentialMismatch));
     let coupled = FourthOrderTop::of(&motion.top);
     let refusal = ask(all(&motion).and_gauss(coupled));
     assert!(matches!(refusal, AccuracyError::Setup(SetupError::NotSeparable { .. })), "{refusal}");
     let mut rounder = motion.top.clone();
     rounder.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 3.9)).unwrap();
     let refusal = ask(all(&motion).and_gauss(rounder));
-    assert!(matches!(refusal, AccuracyError::Setup(SetupError::AnotherInertia { .. })), "{refusal}");
+    assert!(matches!(refusal, AccuracyError::Setup(SetupError::InertiaMismatch { .. })), "{refusal}");
 }

@@ -3,10 +3,12 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, Motion, Top as _};
-use liestep::{
-    DiscreteLagrangian, Effect as _, Gauss, GaussState, Gravity, LieGroup as _, NonstandardInertia, Regular, RigidBody,
-    SO3, SetupError, StepError, effects,
-};
+use liestep::effects::{Gravity, RigidBody};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Effect as _;
+use liestep::mechanics::RigidScene;
+use liestep::methods::{Collocated, Gauss};
+use liestep::{NonstandardInertia, SO3, SetupError, State, StepError, Stepper, effects};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 
@@ -15,9 +17,13 @@ use crate::many_digits;
 use crate::many_digits::collocation::{self, Tableau};
 
 /// `L` of `PAIRS` pairs of stages after so many steps.
-fn run<L, const PAIRS: usize>(gauss: &Gauss<L, PAIRS>, mut state: GaussState<PAIRS>, steps: u32) -> GaussState<PAIRS>
+fn run<L, const PAIRS: usize>(
+    gauss: &Stepper<L, Gauss<L, PAIRS>>,
+    mut state: State<SO3, L::Advected, Collocated<PAIRS>>,
+    steps: u32,
+) -> State<SO3, L::Advected, Collocated<PAIRS>>
 where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular,
+    L: RigidScene<Scalar = f64>,
 {
     for _ in 0..steps {
         gauss.step(&mut state).unwrap();
@@ -26,7 +32,7 @@ where
 }
 
 fn end<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> End {
-    let gauss = Gauss::<_, PAIRS>::new(motion.top.clone(), h).unwrap();
+    let gauss = Stepper::collocated::<PAIRS>(motion.top.clone(), h).unwrap();
     let state = run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), steps);
     (state.attitude(), gauss.velocity(&state))
 }
@@ -87,9 +93,9 @@ fn eight_stages_reach_rounding_in_long_steps() {
 /// vertical it is.
 fn poisson_defect<const PAIRS: usize>(top: &HeavyTop, h: f64, momentum: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
     let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
-        let gauss = Gauss::<_, PAIRS>::new(HeavyTop { up: *w, ..top.clone() }, h).unwrap();
+        let gauss = Stepper::collocated::<PAIRS>(HeavyTop { up: *w, ..top.clone() }, h).unwrap();
         let state = run(&gauss, gauss.start_with_momentum(SO3::identity(), *momentum).unwrap(), 1);
-        (state.momentum(), gauss.advected(&state))
+        (state.momentum(), state.advected())
     };
     defect_of::<HeavyTop, 3, 3>(step, momentum, w).0
 }
@@ -144,7 +150,7 @@ fn p1_collocation_of_the_reduced_equations_is_not_poisson() {
 
 /// A million steps.
 fn assert_kept<const PAIRS: usize>(motion: &Motion, h: f64) {
-    let gauss = Gauss::<_, PAIRS>::new(motion.top.clone(), h).unwrap();
+    let gauss = Stepper::collocated::<PAIRS>(motion.top.clone(), h).unwrap();
     let start = gauss.start(motion.attitude, motion.velocity).unwrap();
     let vertical = start.momentum_along(&Vector3::z());
     let (mut drift, mut state) = (0.0_f64, start);
@@ -153,7 +159,7 @@ fn assert_kept<const PAIRS: usize>(motion: &Motion, h: f64) {
         drift = drift.max(((state.momentum_along(&Vector3::z()) - vertical) / vertical).abs());
     }
     let orthogonality = state.attitude().defect();
-    let parameter = (gauss.advected(&state).norm() - 1.0).abs();
+    let parameter = (state.advected().norm() - 1.0).abs();
     println!("{} stages: vertical {drift:.1e}, orthogonality {orthogonality:.1e}, |w| {parameter:.1e}", 2 * PAIRS);
     assert!(drift < 5e-13 && orthogonality < 2e-15 && parameter < 1e-15, "{drift:e}, {orthogonality:e}, {parameter:e}");
     let d = motion.top.J_d.diagonal();
@@ -176,7 +182,7 @@ fn steps_of_few_stages_keep_the_momenta() {
 
 /// The largest error of the energy in the first and the second half of so many steps, relative.
 fn energy_errors<const PAIRS: usize>(motion: &Motion, h: f64, steps: u32) -> [f64; 2] {
-    let gauss = Gauss::<_, PAIRS>::new(motion.top.clone(), h).unwrap();
+    let gauss = Stepper::collocated::<PAIRS>(motion.top.clone(), h).unwrap();
     let mut state = gauss.start(motion.attitude, motion.velocity).unwrap();
     let energy = gauss.energy(&state);
     [0.0; 2].map(|start: f64| {
@@ -210,7 +216,7 @@ fn the_energy_is_kept_at_shorter_steps() {
 fn s5_negative_collocation_step_is_the_inverse_map() {
     let mut random = Random::new(52);
     for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
-        let [there, back] = [0.1, -0.1].map(|h| Gauss::<_, 4>::new(top.clone(), h).unwrap());
+        let [there, back] = [0.1, -0.1].map(|h| Stepper::collocated::<4>(top.clone(), h).unwrap());
         for _ in 0..10 {
             let before = there.start(random.rotation(), random.vector() * 3.0).unwrap();
             let after = run(&back, run(&there, before, 1), 1);
@@ -231,8 +237,8 @@ fn scenes_of_several_effects_are_integrated() {
     let scene = RigidBody { J_d } + gravity + spring + effects::Rotor { spin: Vector3::new(0.5, 0.0, 1.0) };
     let mut random = Random::new(53);
     let (attitude, velocity) = (random.rotation(), random.vector());
-    let coarse = Gauss::<_, 4>::new(scene, 0.1).unwrap();
-    let fine = Gauss::<_, 1>::new(scene, 0.002).unwrap();
+    let coarse = Stepper::collocated::<4>(scene, 0.1).unwrap();
+    let fine = Stepper::collocated::<1>(scene, 0.002).unwrap();
     let start = coarse.start(attitude, velocity).unwrap();
     let few = run(&coarse, start, 20);
     let many = run(&fine, fine.start(attitude, velocity).unwrap(), 1000);
@@ -247,13 +253,13 @@ fn only_the_continuous_limit_matters() {
     let motion = Motion::looping();
     let log = LogTop::of(&motion.top);
     let full = FullTop::in_axes(&motion.top, &Matrix3::identity());
-    let (a, b) = (Gauss::<_, 4>::new(log, 0.05).unwrap(), Gauss::<_, 4>::new(full, 0.05).unwrap());
+    let (a, b) = (Stepper::collocated::<4>(log, 0.05).unwrap(), Stepper::collocated::<4>(full, 0.05).unwrap());
     let [a, b] = [
         run(&a, a.start(motion.attitude, motion.velocity).unwrap(), 100).momentum(),
         run(&b, b.start(motion.attitude, motion.velocity).unwrap(), 100).momentum(),
     ];
     let expected = {
-        let gauss = Gauss::<_, 4>::new(motion.top.clone(), 0.05).unwrap();
+        let gauss = Stepper::collocated::<4>(motion.top.clone(), 0.05).unwrap();
         run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), 100).momentum()
     };
     assert!(relative(&a, &expected) < 1e-12 && relative(&b, &expected) < 1e-12);
@@ -261,7 +267,7 @@ fn only_the_continuous_limit_matters() {
 
 #[test]
 fn a_free_body_keeps_its_spatial_momentum() {
-    let gauss = Gauss::<_, 4>::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.3).unwrap();
+    let gauss = Stepper::collocated::<4>(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.3).unwrap();
     let start = gauss.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02)).unwrap();
     let state = run(&gauss, start, 10_000);
     assert!(relative(&state.spatial_momentum(), &start.spatial_momentum()) < 2e-14);
@@ -270,7 +276,7 @@ fn a_free_body_keeps_its_spatial_momentum() {
 #[test]
 fn a_copy_goes_on_with_the_same_bits() {
     let motion = Motion::looping();
-    let gauss = Gauss::<_, 3>::new(motion.top.clone(), 0.05).unwrap();
+    let gauss = Stepper::collocated::<3>(motion.top.clone(), 0.05).unwrap();
     let state = run(&gauss, gauss.start(motion.attitude, motion.velocity).unwrap(), 10);
     assert_eq!(run(&gauss, state, 10), run(&gauss, state, 10));
     assert_eq!(state.steps(), 10);
@@ -278,10 +284,10 @@ fn a_copy_goes_on_with_the_same_bits() {
 
 #[test]
 fn a_body_at_rest_begins_to_move_and_one_that_nothing_moves_stays() {
-    let gauss = Gauss::<_, 2>::new(HeavyTop::asymmetric(), 0.05).unwrap();
+    let gauss = Stepper::collocated::<2>(HeavyTop::asymmetric(), 0.05).unwrap();
     let state = run(&gauss, gauss.start(SO3::identity(), Vector3::zeros()).unwrap(), 1);
     assert!(state.momentum().norm() > 0.1);
-    let free = Gauss::<_, 2>::new(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.05).unwrap();
+    let free = Stepper::collocated::<2>(FreeBody::with_moments([1.0, 2.0, 2.5]), 0.05).unwrap();
     let start = free.start(SO3::identity(), Vector3::zeros()).unwrap();
     assert_eq!(run(&free, start, 3).attitude(), start.attitude());
 }
@@ -289,7 +295,7 @@ fn a_body_at_rest_begins_to_move_and_one_that_nothing_moves_stays() {
 #[test]
 fn a_step_too_long_is_an_error_and_leaves_the_state() {
     let motion = Motion::looping();
-    let gauss = Gauss::<_, 4>::new(motion.top.clone(), 2.0).unwrap();
+    let gauss = Stepper::collocated::<4>(motion.top.clone(), 2.0).unwrap();
     let mut state = gauss.start(motion.attitude, motion.velocity).unwrap();
     let before = state;
     let error = gauss.step(&mut state).unwrap_err();
@@ -300,6 +306,6 @@ fn a_step_too_long_is_an_error_and_leaves_the_state() {
 #[test]
 fn a_lagrangian_whose_potential_is_not_apart_is_refused() {
     let coupled = FourthOrderTop::of(&HeavyTop::thesis());
-    let error = Gauss::<_, 4>::new(coupled, 0.01).unwrap_err();
+    let error = Stepper::collocated::<4>(coupled, 0.01).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }

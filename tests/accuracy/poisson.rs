@@ -3,7 +3,9 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
-use liestep::{KineticFlow, LieGroup as _, PreprocessedFlow, PreprocessedOrder, SO3, Splitting, SplittingScheme};
+use liestep::groups::LieGroup as _;
+use liestep::methods::{KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme};
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 
 use crate::splitting::symmetric;
@@ -17,7 +19,7 @@ pub(crate) fn poisson_defect<K: KineticFlow<f64>>(
     (momentum, w): (&Vector3<f64>, &Vector3<f64>),
 ) -> f64 {
     let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
-        let splitting = Splitting::new(HeavyTop { up: *w, ..top.clone() }, kinetic(), h, scheme).unwrap();
+        let splitting = Stepper::split(HeavyTop { up: *w, ..top.clone() }, h, kinetic(), scheme).unwrap();
         let mut state = splitting.start_with_momentum(SO3::identity(), *momentum).unwrap();
         splitting.step(&mut state).unwrap();
         (state.momentum(), state.advected())

@@ -3,7 +3,11 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FreeBody, Motion};
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, PreprocessedBody, PreprocessedOrder, SO3, StepError};
+use liestep::effects::PrincipalBody;
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::methods::PreprocessedOrder;
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
@@ -28,7 +32,7 @@ fn preprocessed_bodies_have_their_order() {
     {
         for motion in ["free", "free flip"] {
             assert_order(("preprocessed", order), (motion, 10.0), &counts(coarsest, ratio, 5), |motion, h, steps| {
-                let body = PreprocessedBody::new(motion.top.J_d, h, preprocessing).unwrap();
+                let body = Stepper::preprocessed(PrincipalBody { J_d: motion.top.J_d }, h, preprocessing).unwrap();
                 let mut state = body.start(motion.attitude, motion.velocity).unwrap();
                 for _ in 0..steps {
                     body.step(&mut state).unwrap();
@@ -43,7 +47,7 @@ fn preprocessed_bodies_have_their_order() {
 fn p1_the_momentum_map_is_poisson() {
     let mut random = Random::new(41);
     for (order, preprocessing) in ORDERS {
-        let body = PreprocessedBody::new(asymmetric(), 0.3, preprocessing).unwrap();
+        let body = Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, 0.3, preprocessing).unwrap();
         let step = |momentum: &Vector3<f64>, (): &()| {
             let mut state = body.start_with_momentum(SO3::identity(), *momentum).unwrap();
             body.step(&mut state).unwrap();
@@ -57,7 +61,7 @@ fn p1_the_momentum_map_is_poisson() {
 #[test]
 fn preprocessed_bodies_keep_energy_and_momentum() {
     for (order, preprocessing) in ORDERS {
-        let body = PreprocessedBody::new(asymmetric(), 0.2, preprocessing).unwrap();
+        let body = Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, 0.2, preprocessing).unwrap();
         let mut state = body.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02)).unwrap();
         let (energy, spatial) = (body.energy(&state), state.spatial_momentum());
         for _ in 0..100_000 {
@@ -74,7 +78,8 @@ fn preprocessed_bodies_keep_energy_and_momentum() {
 fn s5_negative_preprocessed_step_is_the_inverse_map() {
     let mut random = Random::new(42);
     for (_, preprocessing) in ORDERS {
-        let [there, back] = [0.2, -0.2].map(|h| PreprocessedBody::new(asymmetric(), h, preprocessing).unwrap());
+        let [there, back] =
+            [0.2, -0.2].map(|h| Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, h, preprocessing).unwrap());
         for _ in 0..10 {
             let mut state = there.start(random.rotation(), random.vector()).unwrap();
             let before = state;
@@ -88,7 +93,7 @@ fn s5_negative_preprocessed_step_is_the_inverse_map() {
 
 #[test]
 fn a_preprocessed_step_of_zero_is_the_identity() {
-    let body = PreprocessedBody::new(asymmetric(), 0.0, PreprocessedOrder::Ten).unwrap();
+    let body = Stepper::preprocessed(PrincipalBody { J_d: asymmetric() }, 0.0, PreprocessedOrder::Ten).unwrap();
     let mut state = body.start(SO3::identity(), Vector3::x()).unwrap();
     let before = state;
     body.step(&mut state).unwrap();
@@ -99,14 +104,14 @@ fn a_preprocessed_step_of_zero_is_the_identity() {
 fn a_preprocessed_step_that_is_too_long_is_an_error() {
     let motion = Motion::read("free");
     for (_, preprocessing) in ORDERS {
-        let body = PreprocessedBody::new(motion.top.J_d, 5.0, preprocessing).unwrap();
+        let body = Stepper::preprocessed(PrincipalBody { J_d: motion.top.J_d }, 5.0, preprocessing).unwrap();
         let mut state = body.start(motion.attitude, motion.velocity).unwrap();
         let before = state;
         let error = body.step(&mut state).unwrap_err();
         assert_eq!(state, before);
         let StepError::BeyondSolvable { largest, .. } = error else { panic!("{error}") };
         assert!(largest > 0.1, "{largest}");
-        let body = PreprocessedBody::new(motion.top.J_d, largest, preprocessing).unwrap();
+        let body = Stepper::preprocessed(PrincipalBody { J_d: motion.top.J_d }, largest, preprocessing).unwrap();
         let mut state = body.start(motion.attitude, motion.velocity).unwrap();
         body.step(&mut state).unwrap();
     }

@@ -3,10 +3,12 @@
 use checks::random::Random;
 use checks::structure::poisson::TOLERANCE;
 use declarations::{HeavyTop, Motion};
-use liestep::{
-    Inertia, KineticFlow, LieGroup as _, PreprocessedBody, PreprocessedOrder, Real, SO3, SetupError, SplitBody,
-    Splitting, SplittingScheme, StepError, SymmetricBody, Turn,
-};
+use liestep::effects::PrincipalBody;
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Inertia;
+use liestep::methods::{KineticFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody, Turn};
+use liestep::numbers::Real;
+use liestep::{SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use workbench::measure::{order, relative};
@@ -32,9 +34,9 @@ fn drifted<K: KineticFlow<T>, T: Real>(body: &K, h: T, momentum: &Vector3<T>) ->
 
 fn end<const N: usize>(scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
     let kinetic = SplitBody::<N>::new(&motion.top.ordinary_inertia()).unwrap();
-    let splitting = Splitting::new(motion.top.clone(), kinetic, h, scheme).unwrap();
+    let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
-    splitting.advance(&mut state, steps.into()).unwrap();
+    splitting.run(&mut state, steps.into()).unwrap();
     (state.attitude(), splitting.velocity(&state))
 }
 
@@ -70,9 +72,10 @@ fn moved<K: KineticFlow<f64>>(body: &K, t: f64, steps: u32, momentum: &Vector3<f
 
 /// The same by another method, to rounding.
 fn expected(moments: [f64; 3], t: f64, momentum: &Vector3<f64>) -> (Matrix3<f64>, Vector3<f64>) {
-    let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
+    let nonstandard = liestep::mechanics::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
     let steps = 1000;
-    let body = PreprocessedBody::new(nonstandard, t / f64::from(steps), PreprocessedOrder::Ten).unwrap();
+    let body = Stepper::preprocessed(PrincipalBody { J_d: nonstandard }, t / f64::from(steps), PreprocessedOrder::Ten)
+        .unwrap();
     let mut state = body.start_with_momentum(SO3::identity(), *momentum).unwrap();
     for _ in 0..steps {
         body.step(&mut state).unwrap();
@@ -189,7 +192,8 @@ fn symmetric_bodies_move_exactly() {
 #[test]
 fn p1_they_are_poisson_maps() {
     fn assert_poisson<const N: usize>(moments: [f64; 3], scheme: SplittingScheme, h: f64, random: &mut Random) {
-        let nonstandard = liestep::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
+        let nonstandard =
+            liestep::mechanics::DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap();
         let top = HeavyTop { J_d: nonstandard, ..HeavyTop::asymmetric() };
         let (momentum, w) = (random.vector() * 3.0, random.vector());
         let defect = poisson_defect(&top, || split::<N>(moments), (scheme, h), (&momentum, &w));
@@ -212,10 +216,10 @@ fn p1_they_are_poisson_maps() {
 fn momenta_are_kept() {
     fn assert_kept<const N: usize>(motion: &Motion, scheme: SplittingScheme, h: f64) {
         let kinetic = SplitBody::<N>::new(&motion.top.ordinary_inertia()).unwrap();
-        let splitting = Splitting::new(motion.top.clone(), kinetic, h, scheme).unwrap();
+        let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
         let before = state.spatial_momentum();
-        splitting.advance(&mut state, 100_000).unwrap();
+        splitting.run(&mut state, 100_000).unwrap();
         let after = state.spatial_momentum();
         let is_free = motion.top.m * motion.top.g == 0.0;
         let moved = if is_free { relative(&after, &before) } else { ((after.z - before.z) / before.z).abs() };
@@ -324,7 +328,7 @@ fn what_is_not_finite_is_refused() {
     assert!(matches!(split::<7>(MOMENTS[0]).drift(f64::NAN), Err(SetupError::InvalidStep { .. })));
     let top = HeavyTop::asymmetric();
     let kinetic = SplitBody::<7>::new(&top.ordinary_inertia()).unwrap();
-    let splitting = Splitting::new(top, kinetic, 0.1, SplittingScheme::STRANG).unwrap();
+    let splitting = Stepper::split(top, 0.1, kinetic, SplittingScheme::STRANG).unwrap();
     let mut state = splitting.start_with_momentum(SO3::identity(), Vector3::repeat(1e200)).unwrap();
     let before = state;
     let error = splitting.step(&mut state).unwrap_err();

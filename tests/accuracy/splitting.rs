@@ -3,10 +3,12 @@
 use checks::random::Random;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::effects::{GravityGradient, Rotor, Spring};
-use liestep::{
-    CompositionScheme, DiagonalNonstandardInertia, Effect, Flow, Inertia, KineticFlow, LieGroup as _, PreprocessedFlow,
-    PreprocessedOrder, SO3, SetupError, Splitting, SplittingScheme, Stepper, SymmetricBody,
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia};
+use liestep::methods::{
+    CompositionScheme, Flow, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme, SymmetricBody,
 };
+use liestep::{SO3, SetupError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
@@ -19,9 +21,9 @@ pub(crate) fn symmetric(top: &HeavyTop) -> SymmetricBody {
 }
 
 fn end<K: KineticFlow<f64>>(kinetic: K, scheme: SplittingScheme, motion: &Motion, h: f64, steps: u32) -> End {
-    let splitting = Splitting::new(motion.top.clone(), kinetic, h, scheme).unwrap();
+    let splitting = Stepper::split(motion.top.clone(), h, kinetic, scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
-    splitting.advance(&mut state, steps.into()).unwrap();
+    splitting.run(&mut state, steps.into()).unwrap();
     (state.attitude(), splitting.velocity(&state))
 }
 
@@ -146,9 +148,9 @@ fn force_gradients_of_any_potential() {
         top.clone() + spring + gradient
     };
     let run = |scheme, steps: u32| {
-        let splitting = Splitting::new(scene(), symmetric(&top), 2.0 / f64::from(steps), scheme).unwrap();
+        let splitting = Stepper::split(scene(), 2.0 / f64::from(steps), symmetric(&top), scheme).unwrap();
         let mut state = splitting.start(SO3::identity(), Vector3::new(0.5, 2.0, 6.0)).unwrap();
-        splitting.advance(&mut state, steps.into()).unwrap();
+        splitting.run(&mut state, steps.into()).unwrap();
         (*state.attitude().as_matrix(), state.momentum())
     };
     let exact = run(SplittingScheme::NYSTROM_14, 800);
@@ -217,10 +219,10 @@ fn strang_with_the_flow_of_3_13_is_3_13() {
 fn many_steps_are_single_steps() {
     let motion = Motion::looping();
     for scheme in SplittingScheme::ALL {
-        let splitting = Splitting::new(motion.top.clone(), symmetric(&motion.top), 0.05, scheme).unwrap();
+        let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
         let mut many = splitting.start(motion.attitude, motion.velocity).unwrap();
         let mut single = many;
-        splitting.advance(&mut many, 100).unwrap();
+        splitting.run(&mut many, 100).unwrap();
         for _ in 0..100 {
             splitting.step(&mut single).unwrap();
         }
@@ -249,7 +251,7 @@ fn s5_negative_split_step_is_the_inverse_map() {
     let mut random = Random::new(32);
     for scheme in SplittingScheme::ALL {
         let top = HeavyTop::thesis();
-        let [there, back] = [0.1, -0.1].map(|h| Splitting::new(top.clone(), symmetric(&top), h, scheme).unwrap());
+        let [there, back] = [0.1, -0.1].map(|h| Stepper::split(top.clone(), h, symmetric(&top), scheme).unwrap());
         for _ in 0..10 {
             let mut state = there.start(random.rotation(), random.vector() * 5.0).unwrap();
             let before = state;
@@ -266,10 +268,10 @@ fn s5_negative_split_step_is_the_inverse_map() {
 fn splittings_keep_the_momenta() {
     let motion = Motion::looping();
     for scheme in SplittingScheme::ALL {
-        let splitting = Splitting::new(motion.top.clone(), symmetric(&motion.top), 0.05, scheme).unwrap();
+        let splitting = Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap();
         let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
         let (vertical, spin) = (state.momentum_along(&Vector3::z()), state.momentum().z);
-        splitting.advance(&mut state, 100_000).unwrap();
+        splitting.run(&mut state, 100_000).unwrap();
         let drift = ((state.momentum_along(&Vector3::z()) - vertical) / vertical).abs();
         let defect = state.orthogonality_defect();
         println!("{}: vertical momentum {drift:.1e}, orthogonality {defect:.1e}", scheme.name());
@@ -282,8 +284,8 @@ fn splittings_keep_the_momenta() {
 fn another_body_is_refused() {
     let top = HeavyTop::thesis();
     let other = SymmetricBody::new(&Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.5)).unwrap()).unwrap();
-    let error = Splitting::new(top, other, 0.01, SplittingScheme::STRANG).unwrap_err();
-    assert_eq!(error, SetupError::AnotherInertia { difference: 0.5 });
+    let error = Stepper::split(top, 0.01, other, SplittingScheme::STRANG).unwrap_err();
+    assert_eq!(error, SetupError::InertiaMismatch { difference: 0.5 });
 }
 
 #[test]
@@ -299,7 +301,7 @@ fn a_body_without_symmetry_has_no_exact_flow() {
 fn a_lagrangian_that_cannot_be_split_is_refused() {
     let top = HeavyTop::thesis();
     let coupled = FourthOrderTop::of(&top);
-    let error = Splitting::new(coupled, symmetric(&top), 0.01, SplittingScheme::STRANG).unwrap_err();
+    let error = Stepper::split(coupled, 0.01, symmetric(&top), SplittingScheme::STRANG).unwrap_err();
     assert!(matches!(error, SetupError::NotSeparable { defect } if defect > 1e-3), "{error:?}");
 }
 
@@ -309,10 +311,10 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
 fn the_exact_flow_keeps_lengths() {
     let motion = Motion::looping();
     let scheme = SplittingScheme::NEAR_INTEGRABLE_10_6_4;
-    let splitting = Splitting::new(motion.top.clone(), symmetric(&motion.top), 0.19, scheme).unwrap();
+    let splitting = Stepper::split(motion.top.clone(), 0.19, symmetric(&motion.top), scheme).unwrap();
     let mut state = splitting.start(motion.attitude, motion.velocity).unwrap();
     let before = state.advected().norm_squared();
-    splitting.advance(&mut state, 10_000).unwrap();
+    splitting.run(&mut state, 10_000).unwrap();
     let change = (state.advected().norm_squared() / before - 1.0).abs();
     assert!(change < 6e-14, "{change:e}");
 }
@@ -322,8 +324,8 @@ fn the_exact_flow_keeps_lengths() {
 fn a_rotor_that_the_flow_does_not_have_is_refused() {
     let top = HeavyTop::thesis();
     let scene = top.clone() + Rotor { spin: Vector3::new(0.0, 0.0, 0.5) };
-    let error = Splitting::new(scene, symmetric(&top), 0.01, SplittingScheme::STRANG).unwrap_err();
-    assert_eq!(error, SetupError::AnotherBias);
+    let error = Stepper::split(scene, 0.01, symmetric(&top), SplittingScheme::STRANG).unwrap_err();
+    assert_eq!(error, SetupError::BiasMismatch);
 }
 
 /// The kinetic part of the declared Lagrangian doesn't matter, as it is replaced.
@@ -333,13 +335,13 @@ fn the_kinetic_part_is_replaced() {
     let log = LogTop::of(&motion.top);
     let scheme = SplittingScheme::NYSTROM_11;
     let (a, b) = (
-        Splitting::new(log, symmetric(&motion.top), 0.05, scheme).unwrap(),
-        Splitting::new(motion.top.clone(), symmetric(&motion.top), 0.05, scheme).unwrap(),
+        Stepper::split(log, 0.05, symmetric(&motion.top), scheme).unwrap(),
+        Stepper::split(motion.top.clone(), 0.05, symmetric(&motion.top), scheme).unwrap(),
     );
     let mut states =
         (a.start(motion.attitude, motion.velocity).unwrap(), b.start(motion.attitude, motion.velocity).unwrap());
-    a.advance(&mut states.0, 100).unwrap();
-    b.advance(&mut states.1, 100).unwrap();
+    a.run(&mut states.0, 100).unwrap();
+    b.run(&mut states.1, 100).unwrap();
     assert!(relative(&states.0.momentum(), &states.1.momentum()) < 1e-13);
 }
 
@@ -348,9 +350,9 @@ fn a_failed_step_leaves_the_state() {
     let top = HeavyTop::asymmetric();
     let kinetic = FreeBody { J_d: DiagonalNonstandardInertia::new(*top.J_d.diagonal()).unwrap().into() };
     assert!((Effect::inertia(&kinetic) - Effect::inertia(&top)).norm() < 1e-14);
-    let splitting = Splitting::new(top, kinetic, 1.0, SplittingScheme::STRANG).unwrap();
+    let splitting = Stepper::split(top, 1.0, kinetic, SplittingScheme::STRANG).unwrap();
     let mut state = splitting.start(SO3::identity(), Vector3::new(5.0, 5.0, 5.0)).unwrap();
     let before = state;
-    splitting.advance(&mut state, 10).unwrap_err();
+    splitting.run(&mut state, 10).unwrap_err();
     assert_eq!(state, before);
 }

@@ -22,10 +22,10 @@
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::{
-    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _, Real, Retraction, SO3,
-    lagrangian,
-};
+use liestep::groups::{CayleyRetraction, LieGroup as _, Retraction};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia};
+use liestep::numbers::Real;
+use liestep::{SO3, lagrangian};
 use nalgebra::{Matrix3, RealField, RowVector3, Vector3, convert};
 use num_dual::{Derivative, DualNum, HyperDual64, HyperDualSVec64};
 

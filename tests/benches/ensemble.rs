@@ -21,7 +21,9 @@
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::{DiagonalNonstandardInertia, Real, SO3, State, Stepper, lagrangian};
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::numbers::Real;
+use liestep::{SO3, State, Stepper, lagrangian};
 use nalgebra::{RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 

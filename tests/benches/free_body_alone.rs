@@ -11,8 +11,8 @@
 
 mod stepping;
 
-use liestep::DiagonalNonstandardInertia;
 use liestep::effects::PrincipalBody;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::Vector3;
 
 use stepping::{Count, Time, Visit};

@@ -22,7 +22,11 @@ mod by_hand;
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::{CompensatedState, CompensatedStepper, DiagonalNonstandardInertia, SO3, State, Stepper, lagrangian};
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::motion::Declared;
+use liestep::motion::Warm;
+use liestep::with::{Carried, Compensated as Plan};
+use liestep::{SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::top_equations::Equations;
 
@@ -52,8 +56,8 @@ struct HeavyTop {
 
 type Derived = Stepper<HeavyTop>;
 type DerivedState = State<SO3, Vector3<f64>>;
-type Compensated = CompensatedStepper<HeavyTop>;
-type CompensatedMotion = CompensatedState<SO3, Vector3<f64>>;
+type Compensated = Stepper<HeavyTop, Plan<Declared<HeavyTop>>>;
+type CompensatedMotion = State<SO3, Vector3<f64>, Carried<Warm<Vector3<f64>>, SO3, Vector3<f64>>>;
 
 fn derived() -> (Derived, DerivedState) {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(MOMENTS.into()).expect("a body");
@@ -147,7 +151,8 @@ fn compare() {
     let (stepper, mut a) = derived();
     let (top, mut b) = written_by_hand(&a);
     let (rival, mut c) = runge_kutta(&a);
-    let (compensated, mut d) = (derived().0.compensated(), CompensatedMotion::from(a));
+    let compensated = derived().0.compensated();
+    let mut d = compensated.adopt(&a);
     let mut times = [const { Vec::new() }; 4];
     for _ in 0..ROUNDS {
         times[0].push(nanoseconds(|| run_derived(black_box(&stepper), black_box(&mut a), BATCH)));
@@ -170,7 +175,8 @@ fn count(kernel: &str, steps: u32) {
     match kernel {
         "derived" => run_derived(black_box(&stepper), black_box(&mut a), steps),
         "compensated" => {
-            let (compensated, mut d) = (stepper.compensated(), CompensatedMotion::from(a));
+            let compensated = stepper.compensated();
+            let mut d = compensated.adopt(&a);
             run_compensated(black_box(&compensated), black_box(&mut d), steps);
         }
         "by-hand" => {

@@ -14,7 +14,8 @@ use core::hint::black_box;
 use std::time::Instant;
 
 use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, SixthOrderTop};
-use liestep::{DiscreteLagrangian, Inertia, Regular, SO3, Stepper};
+use liestep::mechanics::{DiscreteLagrangian, Inertia, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEPS: [f64; 2] = [0.01, 0.05];

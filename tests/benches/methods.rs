@@ -26,7 +26,7 @@ const STEP: f64 = 0.01;
 /// Long enough to hide the clock, short enough that some batches meet no other process.
 const BATCH: u32 = 500;
 const ROUNDS: u32 = 40;
-/// Enough to count, and of the dearest method no more than takes a second.
+/// Enough to count, and of the most expensive method no more than takes a second.
 const COUNTED: u32 = 500;
 
 /// A run of so many steps.

@@ -23,7 +23,8 @@ use liestep::effects::{
     CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
     RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
 };
-use liestep::{DiagonalNonstandardInertia, Inertia, Regular, SO3, lagrangian};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Regular};
+use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 use workbench::switched::Switched;
 

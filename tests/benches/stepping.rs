@@ -3,7 +3,8 @@
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::{Regular, SO3, State, Stepper};
+use liestep::mechanics::Regular;
+use liestep::{SO3, State, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.01;

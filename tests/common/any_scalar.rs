@@ -1,6 +1,8 @@
 //! A top of any scalar: of SIMD lanes, dual numbers or plain ones.
 
-use liestep::{DiagonalNonstandardInertia, Real, SO3, lagrangian};
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::numbers::Real;
+use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 
 /// (3.13) in principal axes, for any scalar.

@@ -1,7 +1,9 @@
 //! Orders of declared Lagrangians, measured at motions of `tests/data`.
 
 use declarations::Motion;
-use liestep::{LieGroup as _, Regular, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Regular;
+use liestep::{SO3, Stepper};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 
 /// Above what some hundred steps lose to rounding.

@@ -3,10 +3,12 @@
 use core::cell::Cell;
 use core::fmt::Debug;
 
-use liestep::{
-    DiscreteLagrangian, Effect, Group, LieGroup as _, Matrix, Parts, Real, Retraction as _, SO3, Scalar, SceneVisitor,
-    SetupError, Square, Vector, WithKinetic,
+use liestep::groups::{LieGroup as _, Retraction as _};
+use liestep::mechanics::{
+    DiscreteLagrangian, Effect, Group, Matrix, Parts, Scalar, SceneVisitor, Square, Vector, WithKinetic,
 };
+use liestep::numbers::Real;
+use liestep::{SO3, SetupError};
 use nalgebra::{Matrix3, Vector3};
 
 /// The terms that don't know stages.
@@ -145,7 +147,7 @@ pub fn needs_jacobian<T>(run: impl FnOnce() -> T) -> (T, bool) {
     (outcome, jacobians > 0)
 }
 
-/// As if the Jacobian were dear. The second field is the inertia that the limit is said to have.
+/// As if the Jacobian were expensive. The second field is the inertia that the limit is said to have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithoutJacobian<L, T: Real>(pub L, pub Matrix3<T>);
 
@@ -173,7 +175,7 @@ where
 
     staged_as!(L);
 
-    const JACOBIAN_IS_DEAR: bool = true;
+    const JACOBIAN_IS_EXPENSIVE: bool = true;
 
     fn inertia(&self) -> Matrix3<T> {
         self.1

@@ -1,9 +1,10 @@
 //! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
 
-use liestep::{
-    Accuracy, Candidates, CayleyRetraction, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia,
-    SO3, SceneVisitor, SetupError, Splitting, SplittingScheme, Stepper, SymmetricBody, WithKinetic,
-};
+use liestep::accuracy::{Accuracy, Candidates};
+use liestep::groups::{CayleyRetraction, LieGroup as _};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, SceneVisitor, WithKinetic};
+use liestep::methods::{SplittingScheme, SymmetricBody};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 #[derive(Clone, Debug)]
@@ -155,7 +156,7 @@ fn a_force_gradient_has_to_be_written() {
         rho: Vector3::z(),
     };
     let body = SymmetricBody::new(&Inertia::from_principal_moments(moments).unwrap()).unwrap();
-    let split = |scheme| Splitting::new(top.clone(), body, 0.01, scheme).map(|splitting| *splitting.scheme());
+    let split = |scheme| Stepper::split(top.clone(), 0.01, body, scheme).map(|splitting| *splitting.plan().scheme());
     assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(SplittingScheme::NYSTROM_6));
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
     // Nor is it chosen.

@@ -3,7 +3,9 @@
 
 use declarations::HeavyTop;
 use declarations::motions::{matrix, number, read, vector};
-use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, LieGroup as _};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -2,7 +2,10 @@
 
 use declarations::motions::{matrix, number, read, vector};
 use declarations::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop, Top};
-use liestep::{DiscreteLiePoisson, Inertia, LieGroup as _, SO3};
+use liestep::SO3;
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Inertia;
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
@@ -28,7 +31,7 @@ fn golden_entries_of_the_sixth_order_top_are_reproduced() {
 
 fn golden<L>(name: &str)
 where
-    L: Top + liestep::Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    L: Top + liestep::mechanics::Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
 {
     let data = read("golden steps");
     let steps = data["steps"].as_array().unwrap();

@@ -2,10 +2,12 @@
 
 use checks::any_scalar::Top;
 use checks::random::Random;
-use liestep::{
-    CompensatedState, Composition, CompositionScheme, DiagonalNonstandardInertia, LieGroup as _, Real, SO3, State,
-    StepError, Stepper, lagrangian,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::methods::CompositionScheme;
+use liestep::motion::Motion;
+use liestep::numbers::Real;
+use liestep::{SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
@@ -107,23 +109,28 @@ fn each_lane_moves_as_alone() {
 fn composed_and_compensated_lanes_move_as_alone() {
     let lanes: [Lane<f64>; 8] = spread(12, 16.0);
     let composed = |(stepper, state): Running<f64>| {
-        let composition = Composition::new(*stepper.lagrangian(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
+        let composition = Stepper::composed(*stepper.scene(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
+        let state = composition.adopt(&state);
         (composition, state)
     };
-    let (wide, mut all) = together::<AutoF64x8, 8>(&lanes, 0.01);
-    let mut compensated_all = CompensatedState::from(all);
+    let (wide, all) = together::<AutoF64x8, 8>(&lanes, 0.01);
     let step = wide.step_size();
-    let wide_composition = Composition::new(*wide.lagrangian(), step, CompositionScheme::SUZUKI_4).unwrap();
+    let wide_composition = Stepper::composed(*wide.scene(), step, CompositionScheme::SUZUKI_4).unwrap();
     let wide = wide.compensated();
+    let (mut all, mut compensated_all) = (wide_composition.adopt(&all), wide.adopt(&all));
     let mut compositions = alone::<AutoF64x8, 8>(&lanes, 0.01).map(composed);
-    let mut singles = alone::<AutoF64x8, 8>(&lanes, 0.01).map(|(s, state)| (s.compensated(), state.into()));
+    let mut singles = alone::<AutoF64x8, 8>(&lanes, 0.01).map(|(stepper, state)| {
+        let carrying = stepper.compensated();
+        let state = carrying.adopt(&state);
+        (carrying, state)
+    });
     for number in 0..1500 {
         wide_composition.step(&mut all).unwrap();
         wide.step(&mut compensated_all).unwrap();
         for (k, ((composition, one), (single, compensated))) in compositions.iter_mut().zip(&mut singles).enumerate() {
             composition.step(one).unwrap();
             single.step(compensated).unwrap();
-            let pairs: [(_, &State<_, _>); 2] = [(&all, one), (compensated_all.state(), compensated.state())];
+            let pairs: [(&Motion<_, _>, &Motion<_, _>); 2] = [(&all, one), (&compensated_all, compensated)];
             for (wide, single) in pairs {
                 let momentum = wide.momentum().extract(k);
                 assert_eq!(momentum, single.momentum(), "step {number}, lane {k}");
@@ -227,7 +234,7 @@ fn a_lane_that_is_not_finite_is_refused() {
     let mut attitude = *state.attitude().as_matrix();
     attitude.m11.replace(2, 0.0);
     assert!(stepper.start_with_momentum(SO3::from_matrix_unchecked(attitude), state.momentum()).is_err());
-    let top = *stepper.lagrangian();
+    let top = *stepper.scene();
     for bad in [0.0, f64::NAN] {
         assert!(Stepper::new(top, WideF64x4::from([0.01, 0.01, bad, 0.01])).is_err(), "{bad}");
     }

@@ -3,11 +3,12 @@
 
 use checks::random::Random;
 use checks::structure::{System, momenta, stages};
-use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use liestep::{
-    Coordinates, DiscreteLiePoisson, Generators, Heisenberg, LieGroup, MatrixGroup, R2, Regular, SE2, SE3, SL2, SO2,
-    SU2, Stepper, lagrangian,
-};
+use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use liestep::groups::{Generators, Heisenberg, LieGroup, MatrixGroup, R2, SE2, SE3, SL2, SO2, SU2};
+use liestep::mechanics::Regular;
+use liestep::motion::DiscreteLiePoisson;
+use liestep::numbers::Coordinates;
+use liestep::{Stepper, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
 
 /// A planar pendulum.

@@ -3,10 +3,9 @@
 #![allow(dead_code)] // nothing here is stepped
 
 use declarations::{OrbitingBody, TetheredPlate};
-use liestep::{
-    ContravariantVector, DiscreteLagrangian, Effect as _, Inertia, LieGroup as _, NonstandardInertia, SE3, SO3,
-    lagrangian,
-};
+use liestep::groups::{ContravariantVector, LieGroup as _, SE3};
+use liestep::mechanics::{DiscreteLagrangian, Effect as _, Inertia};
+use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix4, Point3, UnitQuaternion, Vector3, Vector4};
 
 /// The kinetic term of (3.13) with all of the potential at one end.

@@ -1,8 +1,10 @@
 //! Dual numbers through the stepper: derivatives of a whole trajectory with respect to a parameter.
 
 use checks::any_scalar::Top;
-use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian as _, LieGroup as _};
-use liestep::{Real, SO3, State, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian as _};
+use liestep::numbers::Real;
+use liestep::{SO3, State, Stepper};
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 
@@ -95,7 +97,7 @@ fn of_one_solve() {
             let warm = stepper.flow().step(&momentum, &vertical, &constant).unwrap();
             for step in [cold, warm] {
                 let f = step.element().matrix();
-                let solved = stepper.lagrangian().legendre_minus(&f, &vertical, STEP.into());
+                let solved = stepper.scene().legendre_minus(&f, &vertical, STEP.into());
                 let residual = (solved - momentum).map(|entry| entry.eps).norm();
                 let size = momentum.map(|entry| entry.re).norm() + momentum.map(|entry| entry.eps).norm();
                 assert!(residual < 1e-14 * size, "{scaled:?}: {residual:e} of {size}");

@@ -2,10 +2,10 @@
 //! central differences of it, and the thesis' formulas typed by hand.
 
 use checks::random::Random;
-use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, Inertia, NonstandardInertia, Real, Retraction as _,
-    SO3, lagrangian,
-};
+use liestep::groups::Retraction as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect as _, Inertia};
+use liestep::numbers::Real;
+use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix3, RealField, Vector3, convert};
 use num_dual::{Dual64, HyperDual64};
 
@@ -230,7 +230,7 @@ fn stages<L>(system: &L, f: &Matrix3<f64>, w: &L::Advected, h: f64)
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3>,
 {
-    use liestep::{Advected as _, LieGroup as _};
+    use liestep::groups::{Advected as _, LieGroup as _};
     let element = SO3::from_matrix_unchecked(*f);
     let Some(xi) = L::Retraction::local_coordinates(&element) else { return };
     if xi.norm() > 1e3 {

@@ -1,7 +1,9 @@
 //! Torques that are given anew each step.
 
 use liestep::effects::{Drag, Gravity, RigidBody, Thrust, Torque};
-use liestep::{LieGroup as _, NonstandardInertia, Regular, SO3, State, StepError, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::Regular;
+use liestep::{NonstandardInertia, SO3, State, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
@@ -26,7 +28,7 @@ fn no_torque_changes_no_bit() {
     let mut controlled = free;
     for _ in 0..1000 {
         stepper.step(&mut free).unwrap();
-        stepper.step_with(&mut controlled, &Vector3::zeros()).unwrap();
+        stepper.step_forced(&mut controlled, &Vector3::zeros()).unwrap();
         assert_eq!(controlled, free);
         assert_eq!(controlled.momentum().map(f64::to_bits), free.momentum().map(f64::to_bits));
     }
@@ -41,7 +43,7 @@ fn a_constant_torque_is_the_effect() {
     let (effect, mut turned) = started(body() + gravity() + Torque { torque }, 0.01);
     let (engine, mut pushed) = started(body() + gravity() + thruster, 0.01);
     for _ in 0..500 {
-        alone.step_with(&mut controlled, &torque).unwrap();
+        alone.step_forced(&mut controlled, &torque).unwrap();
         effect.step(&mut turned).unwrap();
         engine.step(&mut pushed).unwrap();
     }
@@ -57,7 +59,7 @@ fn impulses_add_up() {
     let mut sum = 0.0;
     for step in 0..200_i32 {
         let torque = f64::from(step % 7 - 3) * 0.125;
-        stepper.step_with(&mut state, &Vector3::new(0.0, 0.0, torque)).unwrap();
+        stepper.step_forced(&mut state, &Vector3::new(0.0, 0.0, torque)).unwrap();
         sum += torque * 0.0625;
         assert_eq!(state.momentum(), Vector3::new(0.0, 0.0, sum));
     }
@@ -71,7 +73,7 @@ fn a_smooth_input_keeps_the_order() {
         let (stepper, mut state) = started(body() + gravity(), h);
         for step in 0..steps {
             let t = (f64::from(step) + 0.5) * h;
-            stepper.step_with(&mut state, &Vector3::new((3.0 * t).sin(), t * t, (5.0 * t).cos())).unwrap();
+            stepper.step_forced(&mut state, &Vector3::new((3.0 * t).sin(), t * t, (5.0 * t).cos())).unwrap();
         }
         state.momentum()
     };
@@ -85,11 +87,11 @@ fn a_bad_torque_is_an_error_and_changes_nothing() {
     let (stepper, mut state) = started(body() + gravity(), 0.01);
     let before = state;
     for bad in [f64::NAN, f64::INFINITY] {
-        let error = stepper.step_with(&mut state, &Vector3::new(0.0, bad, 0.0));
+        let error = stepper.step_forced(&mut state, &Vector3::new(0.0, bad, 0.0));
         assert_eq!(error, Err(StepError::NonFinite { what: "control force" }));
     }
     // So much that the body would turn too far in one step.
-    let error = stepper.step_with(&mut state, &Vector3::new(0.0, 1e9, 0.0));
+    let error = stepper.step_forced(&mut state, &Vector3::new(0.0, 1e9, 0.0));
     assert!(matches!(error, Err(StepError::BeyondSolvable { .. })), "{error:?}");
     assert_eq!(state, before);
 }

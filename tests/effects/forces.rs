@@ -2,8 +2,10 @@
 
 use checks::random::Random;
 use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Thrust, Torque};
+use liestep::groups::{Advected as _, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
-use liestep::{Advected as _, Force, LieGroup as _, NonstandardInertia, Retraction as _, SO3, Stepper, force};
+use liestep::mechanics::Force;
+use liestep::{NonstandardInertia, SO3, Stepper, force};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

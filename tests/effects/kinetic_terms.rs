@@ -6,7 +6,9 @@ use declarations::{CayleyTop, LogTop, Motion};
 use liestep::effects::{
     CayleyBody, Drag, FourthOrderBody, GeodesicBody, Gravity, PrincipalBody, RigidBody, Rotor, SixthOrderBody,
 };
-use liestep::{DiagonalNonstandardInertia, Inertia, LieGroup as _, Regular, SO3, State, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Regular};
+use liestep::{SO3, State, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

@@ -2,9 +2,9 @@
 
 use checks::random::Random;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
-use liestep::{
-    AxiallyInvariant, DiagonalNonstandardInertia, Effect, Inertia, LieGroup as _, Regular, SO3, State, Stepper,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{AxiallyInvariant, DiagonalNonstandardInertia, Effect, Inertia, Regular};
+use liestep::{SO3, State, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

@@ -8,8 +8,10 @@ use std::sync::OnceLock;
 
 use checks::examples;
 use expect_test::expect;
+use liestep::accuracy::Accuracy;
 use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, PrincipalBody, Rotor, Spring, Torque};
-use liestep::{Accuracy, DiagonalNonstandardInertia, NonstandardInertia, Stepper};
+use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::{NonstandardInertia, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const TOP: &str = r#"title = "A heavy top with drag"

@@ -3,11 +3,10 @@
 use checks::random::Random;
 use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
+use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
-use liestep::{
-    Advected, DiscreteLagrangian, Effect, Inertia, LieGroup as _, NonstandardInertia, Regular, Retraction as _, SO3,
-    State, Stepper, lagrangian,
-};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Regular};
+use liestep::{NonstandardInertia, SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
@@ -254,7 +253,7 @@ fn a_scene_holds_what_its_terms_name() {
         size_of::<State<SO3, (A::Advected, B::Advected)>>()
     }
     const VECTOR: usize = 3 * size_of::<f64>();
-    // Seven differences of increments and their number, in the state of any scene: dear Lagrangians guess by them.
+    // Seven differences of increments and their number, in the state of any scene: expensive Lagrangians guess by them.
     const HISTORY: usize = 7 * VECTOR + size_of::<usize>();
     const {
         assert!(size::<RigidBody>() == size_of::<[f64; 9]>() + 3 * VECTOR + HISTORY + size_of::<u64>());

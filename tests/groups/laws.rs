@@ -7,25 +7,25 @@ macro_rules! laws {
             liestep::advected_laws!($group);
 
             mod cayley {
-                liestep::retraction_laws!($group, liestep::CayleyRetraction);
+                liestep::retraction_laws!($group, liestep::groups::CayleyRetraction);
             }
 
             mod exponential {
-                liestep::retraction_laws!($group, liestep::ExponentialRetraction);
+                liestep::retraction_laws!($group, liestep::groups::ExponentialRetraction);
             }
         }
     )+};
 }
 
 laws! {
-    so2: liestep::SO2;
+    so2: liestep::groups::SO2;
     so3: liestep::SO3;
-    se2: liestep::SE2;
-    se3: liestep::SE3;
-    su2: liestep::SU2;
-    sl2: liestep::SL2;
-    heisenberg: liestep::Heisenberg;
-    r1: liestep::R1;
-    r2: liestep::R2;
-    r3: liestep::R3;
+    se2: liestep::groups::SE2;
+    se3: liestep::groups::SE3;
+    su2: liestep::groups::SU2;
+    sl2: liestep::groups::SL2;
+    heisenberg: liestep::groups::Heisenberg;
+    r1: liestep::groups::R1;
+    r2: liestep::groups::R2;
+    r3: liestep::groups::R3;
 }

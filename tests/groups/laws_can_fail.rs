@@ -1,7 +1,8 @@
 //! Each law refuses a group, a retraction or a parameter that breaks it: the controls of `group_laws.rs`.
 
+use liestep::groups::{Advected, CayleyRetraction, ExponentialRetraction, LieGroup, Retraction, SE2};
 use liestep::laws::{advected, group, retraction};
-use liestep::{Advected, CayleyRetraction, Entries, ExponentialRetraction, LieGroup, Retraction, SE2};
+use liestep::numbers::Entries;
 use nalgebra::{Matrix3, Vector3};
 use std::panic::catch_unwind;
 

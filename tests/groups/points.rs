@@ -1,7 +1,7 @@
 //! Points, moved by groups of affine maps.
 
+use liestep::groups::{Advected, Heisenberg, LieGroup as _, R1, R2, R3, SE2, SE3};
 use liestep::laws::samples::{MatrixLieGroup, ROUNDING, Random};
-use liestep::{Advected, Heisenberg, LieGroup as _, R1, R2, R3, SE2, SE3};
 use nalgebra::{Isometry2, Isometry3, Point, Point2, Point3, SMatrix, Translation3, UnitComplex, UnitQuaternion};
 
 /// A point of `N − 1` coordinates is acted on, and stays where it was for the identity.

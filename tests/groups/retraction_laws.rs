@@ -4,8 +4,9 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use checks::random::Random;
+use liestep::SO3;
+use liestep::groups::{CayleyRetraction, ExponentialRetraction, LieGroup as _, Retraction};
 use liestep::laws::samples::derivative;
-use liestep::{CayleyRetraction, ExponentialRetraction, LieGroup as _, Retraction, SO3};
 use nalgebra::{Matrix3, Vector3};
 
 /// On both sides of the places where a formula changes: `θ² = 0.01` and `0.04`, the latter also by way of `θ/2`.

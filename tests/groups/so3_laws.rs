@@ -2,8 +2,10 @@
 //! hat and vee, exp and log, and the reconstruction.
 
 use checks::random::Random;
+use liestep::SO3;
+use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
-use liestep::{ExponentialRetraction, LieGroup as _, Retraction as _, SO3, reconstruct};
+use liestep::motion::reconstruct;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

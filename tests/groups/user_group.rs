@@ -1,10 +1,11 @@
 //! How to declare a group, and a kind of parameter it carries: the affine maps `x ↦ a x + b` of the line, `a > 0`.
 
 use liestep::groups::matrix;
-use liestep::{
-    Advected, CayleyRetraction, Entries, ExponentialRetraction, Generators, LieGroup as _, MatrixGroup, NotInGroup,
+use liestep::groups::{
+    Advected, CayleyRetraction, ExponentialRetraction, Generators, LieGroup as _, MatrixGroup, NotInGroup,
     Retraction as _,
 };
+use liestep::numbers::Entries;
 use nalgebra::{Matrix2, RealField, SMatrix, Vector2};
 
 /// The group, under an alias: matrices `[a, b; 0, 1]`, of size 2 and dimension 2.
@@ -30,11 +31,11 @@ mod laws {
     liestep::advected_laws!(Affine);
 
     mod cayley {
-        liestep::retraction_laws!(super::Affine, liestep::CayleyRetraction);
+        liestep::retraction_laws!(super::Affine, liestep::groups::CayleyRetraction);
     }
 
     mod exponential {
-        liestep::retraction_laws!(super::Affine, liestep::ExponentialRetraction);
+        liestep::retraction_laws!(super::Affine, liestep::groups::ExponentialRetraction);
     }
 
     mod density {

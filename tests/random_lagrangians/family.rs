@@ -3,9 +3,10 @@
 // The letters of the field; all of it is seen by this crate alone.
 #![allow(non_snake_case, unreachable_pub)]
 
+use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use liestep::groups::{Generators, Heisenberg, MatrixGroup, R1, R2, R3, SE2, SE3, SL2, SO2, SU2};
 use liestep::laws::samples::Random;
-use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use liestep::{Generators, Heisenberg, MatrixGroup, R1, R2, R3, SE2, SE3, SL2, SO2, SO3, SU2, lagrangian};
+use liestep::{SO3, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, Vector2, Vector3, Vector4};
 
 /// A group of one's own, the affine maps `x ↦ a x + b` of the line, `a > 0`.

@@ -7,7 +7,8 @@ mod family;
 
 use checks::structure::{System, momenta, poisson, stages, symmetry};
 use liestep::laws::samples::{Random, along};
-use liestep::{Coordinates, DiscreteLiePoisson};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::numbers::Coordinates;
 use nalgebra::{SMatrix, SVector};
 use proptest::prelude::*;
 

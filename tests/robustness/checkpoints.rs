@@ -3,7 +3,10 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
-use liestep::{Checkpoint, CheckpointError, Effect, LieGroup as _, SO3, Scalar, Stepper, Stored};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{Effect, Scalar};
+use liestep::with::{Checkpoint, CheckpointError, Stored};
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
@@ -72,9 +75,13 @@ fn p7_save_and_resume_with_compensation_terms() {
         assert_eq!(format!("{on:?}"), format!("{resumed:?}"));
     }
     // Neither is taken for the other.
-    assert_eq!(plain.resume(&checkpoint), Err(CheckpointError::AnotherSummation { compensated: true }));
-    let without = plain.checkpoint(state.state());
-    assert_eq!(stepper.resume(&without), Err(CheckpointError::AnotherSummation { compensated: false }));
+    let refused = plain.resume(&checkpoint).unwrap_err();
+    assert!(
+        refused.to_string().contains("\"compensated, its own step\", this stepper's is \"its own step\""),
+        "{refused}"
+    );
+    let without = plain.checkpoint(&plain.adopt(&state));
+    assert!(matches!(stepper.resume(&without), Err(CheckpointError::AnotherMethod { .. })));
 }
 
 /// A stepper of the looping top, and a checkpoint of it after some steps.
@@ -99,7 +106,7 @@ fn p7_another_scene_is_refused() {
 #[test]
 fn p7_other_parameters_are_refused_by_name() {
     let (stepper, stored) = checkpoint();
-    let top = stepper.lagrangian();
+    let top = stepper.scene();
     let refused = |top: HeavyTop, h: f64| Stepper::new(top, h).unwrap().resume(&stored).unwrap_err();
     // `m g` alone is in the equations; the field is another all the same.
     let error = refused(HeavyTop { m: 2.0, g: top.g / 2.0, ..top.clone() }, 0.01);
@@ -127,6 +134,11 @@ fn edited(stored: &Checkpoint<f64>, edit: impl FnOnce(&mut Value)) -> Checkpoint
     serde_json::from_value(value).unwrap()
 }
 
+/// The error where the number of increments that the guess is made of is another.
+fn refused_with_count(stepper: &Stepper<HeavyTop>, stored: &Checkpoint<f64>, count: f64) -> CheckpointError {
+    stepper.resume(&edited(stored, |value| value["kept"][6] = json!(count))).unwrap_err()
+}
+
 #[test]
 fn p7_what_is_no_state_of_the_scene_is_refused() {
     let (stepper, stored) = checkpoint();
@@ -139,22 +151,22 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
         refused(|value| value["attitude"] = json!(vec![0.5; 1000])),
         CheckpointError::WrongSize { what: "attitude", found: 1000, expected: 9 }
     );
-    assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 2 });
-    let edits: [fn(&mut Value); 3] = [
-        |value| value["increments"] = json!(3),
-        |value| value["increments"] = json!(20),
-        |value| value["increments"] = json!(1_u64 << 63),
-    ];
-    for edit in edits {
-        let error = refused(edit);
-        assert!(matches!(error, CheckpointError::WrongSize { what: "differences", found: 3, .. }), "{error}");
+    assert_eq!(refused(|value| value["format"] = json!(1)), CheckpointError::AnotherFormat { found: 1, known: 3 });
+    assert_eq!(
+        refused(|value| value["kept"] = json!([1.0, 2.0])),
+        CheckpointError::WrongSize { what: "kept", found: 2, expected: 28 }
+    );
+    // How many increments the guess is made of, a number in the file: with the digest made anew it isn't one.
+    for count in ["2.5", "-1.0", "20.0", "9.2e18"] {
+        let error = refused_with_count(&stepper, &stored, count.parse().unwrap());
+        assert!(matches!(error, CheckpointError::Altered | CheckpointError::NotKept), "{error}");
     }
     let scaled = refused(|value| value["attitude"][4] = json!(0.5));
     assert!(matches!(scaled, CheckpointError::NotInGroup { defect } if defect > 1e-3), "{scaled}");
     let elsewhere = refused(|value| value["advected"] = json!([0.0, 0.0, 1.0]));
     assert!(matches!(elsewhere, CheckpointError::NotAdvected { distance } if distance > 1e-3), "{elsewhere}");
     // One digit of what nothing else could tell from the right one.
-    for name in ["momentum", "coordinates", "guess", "differences"] {
+    for name in ["momentum", "kept"] {
         let mut value = serde_json::to_value(&stored).unwrap();
         value[name][0] = json!(f64::from_bits(value[name][0].as_f64().unwrap().to_bits() ^ 1));
         assert_eq!(stepper.resume(&serde_json::from_value(value).unwrap()), Err(CheckpointError::Altered), "{name}");
@@ -166,7 +178,7 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
 #[test]
 fn p7_what_is_not_finite_is_refused() {
     let (stepper, stored) = checkpoint();
-    for what in ["attitude", "momentum", "advected", "coordinates", "guess", "differences"] {
+    for what in ["attitude", "momentum", "advected", "kept"] {
         for number in ["nan", "inf", "-inf"] {
             let mut table: toml::Table = toml::to_string(&stored).unwrap().parse().unwrap();
             table[what][0] = toml::Value::Float(number.parse().unwrap());
@@ -211,6 +223,6 @@ fn p7_unknown_and_missing_names_are_refused() {
     value["velocity"] = json!([0.0, 0.0, 0.0]);
     assert!(serde_json::from_value::<Checkpoint<f64>>(value).unwrap_err().to_string().contains("velocity"));
     let mut value = serde_json::to_value(&stored).unwrap();
-    value.as_object_mut().unwrap().remove("guess");
-    assert!(serde_json::from_value::<Checkpoint<f64>>(value).unwrap_err().to_string().contains("guess"));
+    value.as_object_mut().unwrap().remove("kept");
+    assert!(serde_json::from_value::<Checkpoint<f64>>(value).unwrap_err().to_string().contains("kept"));
 }

@@ -2,14 +2,18 @@
 
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
-use liestep::{CompensatedState, CompensatedStepper, LieGroup as _, SO3, State, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::motion;
+use liestep::motion::Declared;
+use liestep::with::Compensated;
+use liestep::{SO3, Stepper};
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{relative, slope, steps_in};
 
-type TopState = State<SO3, Vector3<f64>>;
+type TopMotion = motion::Motion<SO3, Vector3<f64>>;
 
 /// The six entries of `RRᵀ − I`, `|w|² − 1`, and the change of `p·w` relative to `|p|`.
-fn defects(state: &TopState, vertical: f64) -> SVector<f64, 8> {
+fn defects(state: &TopMotion, vertical: f64) -> SVector<f64, 8> {
     let (w, r) = (state.advected(), state.attitude().matrix());
     let gram = r * r.transpose();
     let casimirs = [w.norm_squared() - 1.0, (state.momentum().dot(&w) - vertical) / state.momentum().norm()];
@@ -48,7 +52,8 @@ fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Ve
     for _ in 0..motions {
         let start = stepper.start(random.rotation(), random.vector() * 4.0).unwrap();
         let vertical = start.momentum().dot(&start.advected());
-        let (mut plain, mut kept, carrying) = (start, CompensatedState::from(start), stepper.clone().compensated());
+        let carrying = stepper.clone().compensated();
+        let (mut plain, mut kept) = (start, carrying.adopt(&start));
         let mut done = 0;
         for (decade, steps) in decades.into_iter().enumerate() {
             for _ in done..steps {
@@ -59,7 +64,7 @@ fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Ve
                 }
             }
             done = steps;
-            found[decade].push(defects(if compensated { kept.state() } else { &plain }, vertical));
+            found[decade].push(defects(if compensated { &*kept } else { &*plain }, vertical));
         }
     }
     found.iter().map(|defects| sizes(defects)).collect()
@@ -150,8 +155,8 @@ fn t4_tiny_steps() {
     };
     // Richardson's extrapolation of the order 2 leaves an error of the order of h⁴.
     let (coarse, fine) = (end(2e-5), end(1e-5));
-    let expected = fine.state().momentum() + (fine.state().momentum() - coarse.state().momentum()) / 3.0;
-    let error = relative(&end(1e-8).state().momentum(), &expected);
+    let expected = fine.momentum() + (fine.momentum() - coarse.momentum()) / 3.0;
+    let error = relative(&end(1e-8).momentum(), &expected);
     println!("relative error of the momentum {error:e}");
     assert!(error < 5e-16, "{error:e}");
 }
@@ -161,17 +166,18 @@ fn t4_tiny_steps() {
 fn t3_compensation_changes_nothing_but_rounding() {
     let stepper = Stepper::new(HeavyTop::asymmetric(), 0.01).unwrap();
     let start = stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap();
-    let (mut plain, mut kept, carrying) = (start, CompensatedState::from(start), stepper.clone().compensated());
+    let carrying = stepper.clone().compensated();
+    let (mut plain, mut kept) = (start, carrying.adopt(&start));
     for _ in 0..100 {
         assert_eq!(stepper.step(&mut plain), carrying.step(&mut kept));
     }
-    assert!(relative(&kept.state().momentum(), &plain.momentum()) < 1e-14);
-    assert!(relative(&kept.state().advected(), &plain.advected()) < 1e-14);
-    assert!(relative(&kept.state().attitude().matrix(), &plain.attitude().matrix()) < 1e-14);
-    assert_eq!(kept.state().steps(), plain.steps());
+    assert!(relative(&kept.momentum(), &plain.momentum()) < 1e-14);
+    assert!(relative(&kept.advected(), &plain.advected()) < 1e-14);
+    assert!(relative(&kept.attitude().matrix(), &plain.attitude().matrix()) < 1e-14);
+    assert_eq!(kept.steps(), plain.steps());
 }
 
-fn compensated(top: HeavyTop, h: f64) -> CompensatedStepper<HeavyTop> {
+fn compensated(top: HeavyTop, h: f64) -> Stepper<HeavyTop, Compensated<Declared<HeavyTop>>> {
     Stepper::new(top, h).unwrap().compensated()
 }
 
@@ -182,8 +188,8 @@ fn s5_zero_step_and_the_inverse_map() {
     let mut state = standing.start(motion.attitude, motion.velocity).unwrap();
     let before = state;
     standing.step(&mut state).unwrap();
-    assert_eq!(state.state().momentum(), before.state().momentum());
-    assert_eq!(state.state().attitude(), before.state().attitude());
+    assert_eq!(state.momentum(), before.momentum());
+    assert_eq!(state.attitude(), before.attitude());
 
     let [there, back] = [1e-5, -1e-5].map(|h| compensated(motion.top.clone(), h));
     for _ in 0..1_000_000 {
@@ -192,8 +198,8 @@ fn s5_zero_step_and_the_inverse_map() {
     for _ in 0..1_000_000 {
         back.step(&mut state).unwrap();
     }
-    let error = relative(&state.state().momentum(), &before.state().momentum())
-        .max(relative(&state.state().attitude().matrix(), &before.state().attitude().matrix()));
+    let error = relative(&state.momentum(), &before.momentum())
+        .max(relative(&state.attitude().matrix(), &before.attitude().matrix()));
     println!("a million steps there and back: {error:e}");
     assert!(error < 1e-14, "{error:e}");
 }

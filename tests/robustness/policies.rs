@@ -1,7 +1,8 @@
 //! What a stepper with a policy does where there is no step, and that it says so.
 
 use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
-use liestep::{Fallback, Remedy, SO3, State, StepError, StepReport, Stepper, Substeps};
+use liestep::motion::{Remedy, StepReport};
+use liestep::{SO3, State, StepError, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
@@ -26,14 +27,14 @@ fn assert_kept(state: &TopState, start: &TopState) {
 #[test]
 fn s2_substeps_in_the_place_of_the_published_step() {
     let (stepper, start) = published();
-    let remedied = stepper.clone().on_failure(Substeps { at_most: 16 });
+    let remedied = stepper.clone().or_substeps(16);
     let mut state = start;
     let report = remedied.step(&mut state).unwrap();
     assert_eq!(report.remedy, Some(Remedy::Substeps(2)));
     assert_eq!(state.steps(), 1);
 
     // Two steps of half the size, to the bit.
-    let half = Stepper::new(stepper.lagrangian().clone(), 0.05).unwrap();
+    let half = Stepper::new(stepper.scene().clone(), 0.05).unwrap();
     let mut expected = half.start(Motion::looping().attitude, Motion::looping().velocity).unwrap();
     let iterations: u32 = (0..2).map(|_| half.step(&mut expected).unwrap().iterations).sum();
     assert_eq!(report.iterations, iterations);
@@ -52,15 +53,15 @@ fn s2_substeps_in_the_place_of_the_published_step() {
 #[test]
 fn s2_cayley_step_in_the_place_of_the_published_step() {
     let (stepper, start) = published();
-    let other = CayleyTop::of(stepper.lagrangian());
-    let remedied = stepper.clone().on_failure(Fallback::new(other.clone(), &stepper).unwrap());
+    let other = CayleyTop::of(stepper.scene());
+    let remedied = stepper.clone().or_fallback(Stepper::new(other.clone(), 0.1).unwrap()).unwrap();
     let mut state = start;
     assert_eq!(remedied.step(&mut state).unwrap().remedy, Some(Remedy::Fallback));
 
     let mut expected = start;
     let alone = Stepper::new(other, 0.1).unwrap();
     alone.step(&mut expected).unwrap();
-    assert_eq!(state, expected);
+    assert_eq!(*state, *expected);
 
     for _ in 0..100 {
         remedied.step(&mut state).unwrap();
@@ -73,8 +74,8 @@ fn s2_cayley_step_in_the_place_of_the_published_step() {
 fn s2_a_policy_does_nothing_where_there_is_a_step() {
     let Motion { top, attitude, velocity, .. } = Motion::looping();
     let stepper = Stepper::new(top, 0.01).unwrap();
-    let substeps = stepper.clone().on_failure(Substeps { at_most: 16 });
-    let fallback = stepper.clone().on_failure(Fallback::new(CayleyTop::of(stepper.lagrangian()), &stepper).unwrap());
+    let substeps = stepper.clone().or_substeps(16);
+    let fallback = stepper.clone().or_fallback(Stepper::new(CayleyTop::of(stepper.scene()), 0.01).unwrap()).unwrap();
     let start = stepper.start(attitude, velocity).unwrap();
     let (mut plain, mut first, mut second) = (start, start, start);
     for _ in 0..1000 {
@@ -90,7 +91,7 @@ fn s2_a_policy_does_nothing_where_there_is_a_step() {
 #[test]
 fn s2_substeps_move_by_the_whole_step() {
     let (stepper, mut state) = published();
-    let remedied = stepper.on_failure(Substeps { at_most: 16 });
+    let remedied = stepper.or_substeps(16);
     let half = Stepper::new(HeavyTop::thesis(), 0.05).unwrap();
     let mut expected = half.start(Motion::looping().attitude, Motion::looping().velocity).unwrap();
     for _ in 0..10 {
@@ -99,7 +100,7 @@ fn s2_substeps_move_by_the_whole_step() {
         half.step(&mut expected).unwrap();
     }
     assert!(relative(&state.advected(), &expected.advected()) < 1e-13);
-    assert!((remedied.stepper().time(&state) - half.time(&expected)).abs() < 1e-15);
+    assert!((remedied.time(&state) - half.time(&expected)).abs() < 1e-15);
 }
 
 /// Nothing helps: the first error, and the state to the bit.
@@ -107,13 +108,12 @@ fn s2_substeps_move_by_the_whole_step() {
 fn s2_without_a_remedy_the_state_is_left_alone() {
     let (stepper, start) = published();
     let mut state = start;
-    let error = stepper.clone().on_failure(Substeps { at_most: 1 }).step(&mut state).unwrap_err();
+    let error = stepper.clone().or_substeps(1).step(&mut state).unwrap_err();
     assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error:?}");
     assert_eq!(format!("{start:?}"), format!("{state:?}"));
 
     // A Lagrangian with the same limit is no way out.
-    let same = Fallback::new(stepper.lagrangian().clone(), &stepper).unwrap();
-    let error = stepper.on_failure(same).step(&mut state).unwrap_err();
+    let error = stepper.clone().or_fallback(stepper).unwrap().step(&mut state).unwrap_err();
     assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error:?}");
     assert_eq!(format!("{start:?}"), format!("{state:?}"));
 }

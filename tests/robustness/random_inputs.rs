@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use checks::random::Random;
 use declarations::HeavyTop;
-use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian as _, Effect as _, InertiaError, LieGroup as _, NonstandardInertia,
-    SO3, SetupError, Solvability, State, StepError, Stepper,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian as _, Effect as _, InertiaError};
+use liestep::motion::Solvability;
+use liestep::{NonstandardInertia, SO3, SetupError, State, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 
 /// How many; the environment may ask for another number.
@@ -180,7 +180,7 @@ fn check_start_error(attitude: &SO3, momentum: &Vector3<f64>, error: &SetupError
 
 /// `𝔽l_d⁻(F, w) = μ` and `𝔽l_d⁺(F, w) = μ⁺`, to the roundings of `F = RᵀR⁺` and of terms that cancel.
 fn check_equations(stepper: &Stepper<HeavyTop>, before: &State<SO3, Vector3<f64>>, after: &State<SO3, Vector3<f64>>) {
-    let (top, h) = (stepper.lagrangian(), stepper.step_size());
+    let (top, h) = (stepper.scene(), stepper.step_size());
     assert!(finite(after.attitude().as_matrix().as_slice()), "{after:?}");
     assert!(finite(after.momentum().as_slice()) && finite(after.advected().as_slice()), "{after:?}");
     if h == 0.0 {
@@ -203,7 +203,7 @@ fn check_step_error(
     inertia: &Matrix3<f64>,
     error: &StepError,
 ) -> &'static str {
-    let (top, h) = (stepper.lagrangian(), stepper.step_size());
+    let (top, h) = (stepper.scene(), stepper.step_size());
     let (momentum, w) = (state.momentum(), state.advected());
     let turn = (momentum + w.cross(&top.rho) * (0.5 * h * top.m * top.g)) * h;
     match *error {

@@ -1,15 +1,15 @@
-//! Where the Jacobian is dear a step is solved without it: to the same root, to rounding, and where that is in doubt by
-//! Newton's iteration.
+//! Where the Jacobian is expensive a step is solved without it: to the same root, to rounding, and where that is in
+//! doubt by Newton's iteration.
 
 use checks::any_scalar::Top;
 use checks::random::Random;
 use checks::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use declarations::{self, FourthOrderTop, SixthOrderTop};
+use liestep::groups::{CayleyRetraction, LieGroup as _};
 use liestep::laws::samples::derivative;
-use liestep::{
-    CayleyRetraction, DiagonalNonstandardInertia, DiscreteLagrangian, DiscreteLiePoisson, Effect, Inertia,
-    LieGroup as _, Regular, SO3, StepError, Stepper, lagrangian,
-};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia, Regular};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{SO3, StepError, Stepper, lagrangian};
 use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use simba::simd::WideF64x4;
@@ -37,9 +37,9 @@ fn sixth() -> SixthOrderTop {
 }
 
 #[test]
-fn the_macro_finds_out_which_jacobians_are_dear() {
-    const { assert!(SixthOrderTop::JACOBIAN_IS_DEAR && FourthOrderTop::JACOBIAN_IS_DEAR) };
-    const { assert!(!Top::<f64>::JACOBIAN_IS_DEAR) };
+fn the_macro_finds_out_which_jacobians_are_expensive() {
+    const { assert!(SixthOrderTop::JACOBIAN_IS_EXPENSIVE && FourthOrderTop::JACOBIAN_IS_EXPENSIVE) };
+    const { assert!(!Top::<f64>::JACOBIAN_IS_EXPENSIVE) };
 }
 
 /// The derivative of the residual for the sixth-order top without weight is nearly that of the free body's momentum.
@@ -52,7 +52,7 @@ fn the_model_is_right_to_the_fourth_power_of_the_angle() {
     let errors = [0.4, 0.2, 0.1, 0.05].map(|size| {
         let xi = axis * size;
         let (_, jacobian) = SixthOrderTop::newton_system(&constants, &terms, &(xi * 0.5));
-        let model = <CayleyRetraction as liestep::Retraction<SO3>>::free_momentum_tangent(&top.inertia(), &xi);
+        let model = <CayleyRetraction as liestep::groups::Retraction<SO3>>::free_momentum_tangent(&top.inertia(), &xi);
         (model - jacobian).norm() / model.norm()
     });
     let points: Vec<_> = errors.iter().zip([0.4_f64, 0.2, 0.1, 0.05]).map(|(e, size)| (size.ln(), e.ln())).collect();
@@ -74,7 +74,7 @@ fn the_residual_alone_is_the_systems() {
         assert!((alone - residual).norm() <= 1e-13 * residual.norm());
         let along = derivative(|s| SixthOrderTop::newton_residual(&constants, &terms, &(xi + Vector3::x() * s)).0);
         assert!((along - jacobian.column(0)).norm() < 1e-9 * jacobian.norm());
-        let f = <CayleyRetraction as liestep::Retraction<SO3>>::retract(&(xi + xi));
+        let f = <CayleyRetraction as liestep::groups::Retraction<SO3>>::retract(&(xi + xi));
         let after = SixthOrderTop::kick_after(&constants, &f.increment(), &(f.matrix().transpose() * w));
         assert!((f.adjoint_transpose(&moved.unwrap()) - after).norm() < 1e-13 * after.norm());
     }
@@ -147,13 +147,13 @@ where
     let (mut largest, mut counts) = (0.0_f64, [0; 3]);
     for _ in 0..200 {
         let (velocity, w) = (random.direction() * (angle / h), random.direction());
-        let momentum = with.lagrangian().inertia() * velocity;
+        let momentum = with.scene().inertia() * velocity;
         let guess = velocity * h;
-        let (outcome, is_dear) = needs_jacobian(|| without.step(&momentum, &w, &guess));
+        let (outcome, is_expensive) = needs_jacobian(|| without.step(&momentum, &w, &guess));
         match (with.step(&momentum, &w, &guess), outcome) {
             (Ok(a), Ok(b)) => {
                 largest = largest.max((a.coordinates - b.coordinates).norm() / a.coordinates.norm());
-                counts[usize::from(is_dear)] += 1;
+                counts[usize::from(is_expensive)] += 1;
             }
             (Err(a), Err(b)) => {
                 assert_eq!(core::mem::discriminant(&a), core::mem::discriminant(&b), "{a} {b}");
@@ -209,7 +209,7 @@ fn lanes_are_independent() {
         let angles = [0.01, 0.1, 0.3, if round % 2 == 0 { 0.5 } else { 0.85 }];
         let velocity = angles.map(|angle| random.direction() * (angle / h));
         let w = angles.map(|_| random.direction());
-        let momentum = [0, 1, 2, 3].map(|k| alone[k].lagrangian().inertia() * velocity[k]);
+        let momentum = [0, 1, 2, 3].map(|k| alone[k].scene().inertia() * velocity[k]);
         let guess = velocity.map(|velocity| velocity * h);
         let wide = together.step(&gathered(|k| momentum[k]), &gathered(|k| w[k]), &gathered(|k| guess[k])).unwrap();
         let outcomes = [0, 1, 2, 3].map(|k| needs_jacobian(|| alone[k].step(&momentum[k], &w[k], &guess[k]).unwrap()));

@@ -3,7 +3,9 @@
 
 use checks::solvers::WithJacobian;
 use declarations::{self, FourthOrderTop, SixthOrderTop};
-use liestep::{DiscreteLagrangian, Inertia, LieGroup as _, Regular, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Inertia, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEPS: u32 = 100_000;

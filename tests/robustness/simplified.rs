@@ -3,7 +3,9 @@
 
 use checks::any_scalar::Top;
 use checks::solvers::{WithJacobian, jacobians};
-use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Effect as _, Stepper};
+use liestep::Stepper;
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use num_dual::Dual64;
 use workbench::measure::relative;
@@ -26,7 +28,7 @@ fn missing(moments: [f64; 3], h: f64, speed: f64) -> ([f64; 2], u32) {
     let stepper = Stepper::new(top::<f64>(moments), h).unwrap();
     let tilt = UnitQuaternion::from_scaled_axis(Vector3::x() * 0.8);
     let mut state = stepper.start(tilt, Vector3::new(0.1, 0.3, 0.9) * speed).unwrap();
-    let constants = stepper.lagrangian().constants(h);
+    let constants = stepper.scene().constants(h);
     let mut last = [Vector3::zeros(); 3];
     let (mut sums, mut single) = ([0.0; 2], 0);
     for step in 0..1003 {

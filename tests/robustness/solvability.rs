@@ -3,10 +3,10 @@
 use checks::random::Random;
 use declarations::{CayleyTop, FreeBody, FullTop, HeavyTop, Motion, Top as _};
 use liestep::effects::{Gravity, RigidBody};
-use liestep::{
-    DiagonalNonstandardInertia, DiscreteLiePoisson, LieGroup as _, NonstandardInertia, Regular, SO3, Solvability,
-    StepError, Stepper,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, Regular};
+use liestep::motion::{DiscreteLiePoisson, Solvability};
+use liestep::{NonstandardInertia, SO3, StepError, Stepper};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// Steps and directions all around the two bounds: the sure ones have a solution under 90°, the impossible ones none.

@@ -1,8 +1,8 @@
 //! `Coordinates` in all dimensions that a group may have: the solution of a linear system, and what a singular one
 //! gives.
 
-use liestep::Coordinates;
 use liestep::laws::samples::Random;
+use liestep::numbers::Coordinates;
 use nalgebra::{SMatrix, SVector};
 
 /// A symmetric positive definite matrix and a smaller one without symmetry, like a Jacobian at a finite step.

@@ -1,7 +1,9 @@
 //! Symmetric compositions of the declared systems on other groups than SO(3): the order that their scheme has.
 
 use checks::structure::System;
-use liestep::{Composition, CompositionScheme, LieGroup as _};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
+use liestep::methods::CompositionScheme;
 use nalgebra::SVector;
 use workbench::measure::{four_halvings, order, relative, steps_in};
 
@@ -29,7 +31,7 @@ where
     let momentum: SVector<f64, D> = body.inertia * velocity;
     let exact: Phase<N, D> = body.solution::<L::Group>((attitude.matrix(), momentum), TIME, 1000);
     four_halvings(coarsest).map(|h| {
-        let composed = Composition::new(system.clone(), h, scheme).unwrap();
+        let composed = Stepper::composed(system.clone(), h, scheme).unwrap();
         let mut state = composed.start_with_momentum(attitude, momentum).unwrap();
         for _ in 0..steps_in(TIME, h) {
             composed.step(&mut state).unwrap();

@@ -1,7 +1,7 @@
 //! P2 for every declared system: its momenta, its step in stages, and the step.
 
 use checks::structure::{System, momenta, stages};
-use liestep::Coordinates;
+use liestep::numbers::Coordinates;
 use nalgebra::{SMatrix, SVector};
 
 use crate::samples::every_system;

@@ -5,7 +5,9 @@
 #![allow(non_snake_case)]
 
 use checks::structure::reversal;
-use liestep::{CovariantTensor, DiscreteLagrangian, LieGroup as _, SE3, SL2, lagrangian};
+use liestep::groups::{CovariantTensor, LieGroup as _, SE3, SL2};
+use liestep::lagrangian;
+use liestep::mechanics::DiscreteLagrangian;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
 use workbench::measure::order;
 

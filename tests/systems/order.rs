@@ -5,7 +5,8 @@
 
 use checks::structure::System;
 use declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
-use liestep::{LieGroup as _, SL2, Stepper};
+use liestep::Stepper;
+use liestep::groups::{LieGroup as _, SL2};
 use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 

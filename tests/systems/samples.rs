@@ -7,7 +7,9 @@ use declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
     OrbitingBody, Satellite, SixthOrderTop, Spring, TetheredPlate, Top, UnderwaterBody,
 };
-use liestep::{CovariantTensor, DiagonalNonstandardInertia, Inertia, NonstandardInertia, SE2, SE3, SL2, SO3};
+use liestep::groups::{CovariantTensor, SE2, SE3, SL2};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+use liestep::{NonstandardInertia, SO3};
 use nalgebra::{
     Matrix2, Matrix3, Matrix4, Point2, Point3, SVector, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6,
 };

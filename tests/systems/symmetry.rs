@@ -6,7 +6,9 @@
 
 use checks::structure::System;
 use checks::structure::symmetry::{drift, symmetries};
-use liestep::{DiagonalNonstandardInertia, DiscreteLiePoisson, Inertia, NonstandardInertia, Stepper};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{NonstandardInertia, Stepper};
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, SVector, Vector3, Vector4};
 
 use crate::samples::{self, Start};

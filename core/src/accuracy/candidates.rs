@@ -2,25 +2,19 @@
 
 use super::error::AccuracyError;
 use super::ladder::Start;
-use super::method::Method;
 use super::search::search;
 use super::{Accuracy, AccurateStepper, Choice};
-use crate::advected::Advected;
-use crate::composition::{Composition, CompositionScheme};
-use crate::effect::{Effect, Group, Scalar, Vector};
+use crate::effects::PrincipalBody;
 use crate::error::SetupError;
-use crate::gauss::Gauss;
-use crate::groups::{LieGroup, SO3};
-use crate::inertia::DiagonalNonstandardInertia;
-use crate::kinetic::Regular;
-use crate::lagrangian::DiscreteLagrangian;
-use crate::preprocessed::{PreprocessedBody, PreprocessedOrder};
-use crate::retraction::Retraction as _;
-use crate::splitting::{KineticFlow, Splitting, SplittingScheme, has_force_gradient};
-use crate::stepper::Stepper;
+use crate::groups::{Advected, LieGroup, Retraction as _, SO3};
+use crate::mechanics::{DiagonalNonstandardInertia, Effect, Group, Operations, Scalar, Scene, Vector};
+use crate::methods::{
+    CompositionScheme, Gauss, KineticFlow, Preprocessed, PreprocessedOrder, SplittingScheme, has_force_gradient,
+};
+use crate::motion::{AnyStepper, Cost, Plan, Stepper};
 
 /// A method, to be made for a step.
-pub(super) struct Candidate<G: LieGroup, A: Advected<G>> {
+pub(super) struct Candidate<G: LieGroup, A> {
     pub(super) name: String,
     pub(super) order: u32,
     /// Solves or flows in a step.
@@ -30,7 +24,7 @@ pub(super) struct Candidate<G: LieGroup, A: Advected<G>> {
     pub(super) make: Make<G, A>,
 }
 
-type Make<G, A> = Box<dyn Fn(f64) -> Result<Box<dyn Method<G, A>>, SetupError>>;
+type Make<G, A> = Box<dyn Fn(f64) -> Result<AnyStepper<G, A>, SetupError>>;
 
 /// The methods that [`Stepper::for_accuracy`] chooses from, with more than a scene alone can tell.
 ///
@@ -42,7 +36,11 @@ type Make<G, A> = Box<dyn Fn(f64) -> Result<Box<dyn Method<G, A>>, SetupError>>;
 ///
 /// ```
 /// use liestep::effects::{Gravity, PrincipalBody};
-/// use liestep::{Accuracy, Candidates, DiagonalNonstandardInertia, LieGroup, NonstandardInertia, SO3, SymmetricBody};
+/// use liestep::{NonstandardInertia, SO3};
+/// use liestep::accuracy::{Accuracy, Candidates};
+/// use liestep::groups::LieGroup;
+/// use liestep::mechanics::DiagonalNonstandardInertia;
+/// use liestep::methods::SymmetricBody;
 /// use nalgebra::Vector3;
 ///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
@@ -67,12 +65,12 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     /// The step of a scene that is a method of this order (2, if its terms are those of [`effects`](crate::effects)),
     /// and its symmetric compositions.
     ///
-    /// A scene that isn't self-adjoint is refused when the user's crate is built, as by [`Composition::new`].
+    /// A scene that isn't self-adjoint is refused when the user's crate is built, as by [`Stepper::composed`].
     #[must_use]
     #[allow(clippy::needless_pass_by_value)] // as `Stepper::new`
-    pub fn of<L>(scene: L, order: u32) -> Self
+    pub fn of<S>(scene: S, order: u32) -> Self
     where
-        L: DiscreteLagrangian<Scalar = f64, Group = G, Advected = A> + Regular + Clone + 'static,
+        S: Scene<Scalar = f64, Group = G, Advected = A>,
     {
         let empty = Self { methods: Vec::new(), inertia: inertia(&scene), seen: seen(&scene), mistake: None };
         empty.and_steps_of("", &scene, order)
@@ -81,38 +79,43 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     /// The step of another declaration of the same scene, of this order, and its symmetric compositions.
     #[must_use]
     #[allow(clippy::needless_pass_by_value)] // as `of`
-    pub fn and_declared<L>(mut self, name: &str, scene: L, order: u32) -> Self
+    pub fn and_declared<S>(mut self, name: &str, scene: S, order: u32) -> Self
     where
-        L: DiscreteLagrangian<Scalar = f64, Group = G, Advected = A> + Regular + Clone + 'static,
+        S: Scene<Scalar = f64, Group = G, Advected = A>,
     {
         self.compare(&scene);
         self.and_steps_of(&format!("{name}, "), &scene, order)
     }
 
-    fn and_steps_of<L>(mut self, prefix: &str, scene: &L, order: u32) -> Self
+    fn and_steps_of<S>(mut self, prefix: &str, scene: &S, order: u32) -> Self
     where
-        L: DiscreteLagrangian<Scalar = f64, Group = G, Advected = A> + Regular + Clone + 'static,
+        S: Scene<Scalar = f64, Group = G, Advected = A>,
     {
-        let solve = super::method::least(L::OPERATIONS);
         let alone = scene.clone();
-        self.methods.push(Candidate {
-            name: format!("{prefix}its own step"),
-            order,
-            stages: 1,
-            least: solve,
-            make: Box::new(move |h| Ok(Box::new(Stepper::new(alone.clone(), h)?))),
-        });
+        let make = move |h| Stepper::new(alone.clone(), h);
+        self.add(format!("{prefix}its own step"), (order, 1), Cost::of_stages(S::OPERATIONS, 1).least(), make);
         for scheme in CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == order) {
             let (scene, stages) = (scene.clone(), count(scheme.stages().count()));
-            self.methods.push(Candidate {
-                name: format!("{prefix}{}", scheme.name()),
-                order: scheme.order(),
-                stages,
-                least: f64::from(stages) * solve,
-                make: Box::new(move |h| Ok(Box::new(Composition::new(scene.clone(), h, scheme)?))),
-            });
+            let make = move |h| Stepper::composed(scene.clone(), h, scheme);
+            let least = Cost::of_stages(S::OPERATIONS, stages).least();
+            self.add(format!("{prefix}{}", scheme.name()), (scheme.order(), stages), least, make);
         }
         self
+    }
+
+    /// A method of this order and so many stages, which makes at least so many operations a step.
+    fn add<S, P>(
+        &mut self,
+        name: String,
+        (order, stages): (u32, u32),
+        least: f64,
+        make: impl Fn(f64) -> Result<Stepper<S, P>, SetupError> + 'static,
+    ) where
+        S: Scene<Scalar = f64, Group = G, Advected = A>,
+        P: Plan<S, Kept: 'static> + 'static,
+    {
+        let make = Box::new(move |h| make(h).map(Stepper::into_any));
+        self.methods.push(Candidate { name, order, stages, least, make });
     }
 
     fn compare<L>(&mut self, scene: &L)
@@ -122,7 +125,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         let size = self.inertia.iter().map(|entry| entry.abs()).sum::<f64>();
         let difference = apart(&self.inertia, &inertia(scene));
         if difference > SAME * size {
-            self.mistake.get_or_insert(SetupError::AnotherInertia { difference });
+            self.mistake.get_or_insert(SetupError::InertiaMismatch { difference });
         }
         let seen = seen(scene);
         // A potential is given but for a constant.
@@ -130,12 +133,12 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         let (own, other): (Vec<_>, Vec<_>) = (potentials(&self.seen), potentials(&seen));
         let largest = self.seen.iter().chain(&seen).map(|place| place.potential.abs()).fold(0.0, f64::max);
         if apart(&own, &other) > SAME * largest {
-            self.mistake.get_or_insert(SetupError::AnotherPotential);
+            self.mistake.get_or_insert(SetupError::PotentialMismatch);
         }
         for (own, other) in self.seen.iter().zip(&seen) {
             let largest = own.bias.iter().chain(&other.bias).map(|entry| entry.abs()).fold(0.0, f64::max);
             if apart(&own.bias, &other.bias) > SAME * largest {
-                self.mistake.get_or_insert(SetupError::AnotherBias);
+                self.mistake.get_or_insert(SetupError::BiasMismatch);
             }
         }
     }
@@ -159,82 +162,76 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         let start = Start { attitude: attitude.into(), velocity, horizon: accuracy.horizon };
         // What is wrong with the scene or with the start is wrong with any step.
         for candidate in &self.methods {
-            let method = (candidate.make)(accuracy.horizon / 1024.0)?;
-            method.start(start.attitude, start.velocity)?;
+            let stepper = (candidate.make)(accuracy.horizon / 1024.0)?;
+            stepper.start(start.attitude, start.velocity)?;
         }
         let found = search(&self.methods, accuracy, &start)?;
-        let method = (self.methods[found.run.index].make)(accuracy.horizon / found.run.steps)?;
-        let state = method.start(start.attitude, start.velocity)?;
+        let stepper = (self.methods[found.run.index].make)(accuracy.horizon / found.run.steps)?;
+        let state = stepper.start(start.attitude, start.velocity)?;
         let choice = Choice::new(&self.methods, accuracy, &found);
-        Ok(AccurateStepper { method, start: state, choice })
+        Ok(AccurateStepper { stepper, start: state, choice })
     }
 }
 
 impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
     /// The kinetic-potential splittings of a declaration of the same scene, with this flow of its body.
     #[must_use]
-    #[allow(clippy::needless_pass_by_value)] // as `Splitting::new`
-    pub fn and_splittings<L, K>(mut self, name: &str, scene: L, kinetic: K) -> Self
+    #[allow(clippy::needless_pass_by_value)] // as `Stepper::split`
+    pub fn and_splittings<S, K>(mut self, name: &str, scene: S, kinetic: K) -> Self
     where
-        L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = A> + Regular + Clone + 'static,
-        K: KineticFlow<f64> + Clone + 'static,
+        S: Scene<Scalar = f64, Group = SO3, Advected = A>,
+        K: KineticFlow<f64> + 'static,
     {
         self.compare(&scene);
         let has_gradient = has_force_gradient(&scene);
+        // What is left of a drift whose spin has been taken out.
+        let Operations { step, iteration } = K::OPERATIONS;
+        let drift = Operations { step: step.saturating_sub(K::OPERATIONS_OF_SPIN), iteration };
         for scheme in SplittingScheme::ALL.into_iter().filter(|scheme| has_gradient || !scheme.has_gradients()) {
             let (scene, kinetic, stages) = (scene.clone(), kinetic.clone(), count(scheme.drifts()));
-            self.methods.push(Candidate {
-                name: format!("{name}, {}", scheme.name()),
-                order: scheme.order(),
-                stages,
-                least: f64::from(stages) * super::method::least_of_a_drift::<K>(),
-                make: Box::new(move |h| Ok(Box::new(Splitting::new(scene.clone(), kinetic.clone(), h, scheme)?))),
-            });
+            let make = move |h| Stepper::split(scene.clone(), h, kinetic.clone(), scheme);
+            let least = Cost::of_stages(drift, stages).least();
+            self.add(format!("{name}, {}", scheme.name()), (scheme.order(), stages), least, make);
         }
         self
     }
 
-    /// [`Gauss`] collocation with 4 and 8 stages of a declaration of the same scene; any will do, as only inertia and
-    /// potential matter. Six stages don't fill the machine's vectors, and take longer than eight.
+    /// [`Gauss`](crate::methods::Gauss) collocation with 4 and 8 stages of a declaration of the same scene; any will do,
+    /// as only inertia and potential matter. Six stages don't fill the machine's vectors, and take longer than eight.
     #[must_use]
-    #[allow(clippy::needless_pass_by_value)] // as `Gauss::new`
-    pub fn and_gauss<L>(mut self, scene: L) -> Self
+    #[allow(clippy::needless_pass_by_value)] // as `Stepper::collocated`
+    pub fn and_gauss<S>(mut self, scene: S) -> Self
     where
-        L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = A> + Regular + Clone + 'static,
+        S: Scene<Scalar = f64, Group = SO3, Advected = A>,
     {
         self.compare(&scene);
-        self.methods.extend([collocation::<L, 2>(&scene), collocation::<L, 4>(&scene)]);
+        self.add_gauss::<S, 2>(&scene);
+        self.add_gauss::<S, 4>(&scene);
         self
     }
-}
 
-fn collocation<L, const PAIRS: usize>(scene: &L) -> Candidate<SO3, L::Advected>
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: 'static> + Regular + Clone + 'static,
-{
-    let (scene, stages) = (scene.clone(), count(2 * PAIRS));
-    Candidate {
-        name: format!("Gauss, {stages} stages"),
-        order: 2 * stages,
-        stages,
-        least: super::method::least_of_collocation::<L, PAIRS>(),
-        make: Box::new(move |h| Ok(Box::new(Gauss::<L, PAIRS>::new(scene.clone(), h)?))),
+    fn add_gauss<S, const PAIRS: usize>(&mut self, scene: &S)
+    where
+        S: Scene<Scalar = f64, Group = SO3, Advected = A>,
+    {
+        let (scene, stages) = (scene.clone(), count(2 * PAIRS));
+        let make = move |h| Stepper::collocated::<PAIRS>(scene.clone(), h);
+        let least = Gauss::<S, PAIRS>::COST.least();
+        self.add(format!("Gauss, {stages} stages"), (2 * stages, stages), least, make);
     }
 }
 
 impl Candidates<SO3, ()> {
-    /// The [`PreprocessedBody`] with this inertia, to all its orders.
+    /// The [`Preprocessed`](crate::methods::Preprocessed) step of the free body with this inertia, to all its orders.
     #[must_use]
     pub fn and_preprocessed(mut self, body: DiagonalNonstandardInertia) -> Self {
         use PreprocessedOrder::{Eight, Four, Six, Ten};
-        self.compare(&crate::effects::PrincipalBody { J_d: body });
+        let body = PrincipalBody { J_d: body };
+        self.compare(&body);
         for (order, number) in [(Four, 4), (Six, 6), (Eight, 8), (Ten, 10)] {
-            self.methods.push(Candidate {
-                name: format!("preprocessed, {number}"),
-                order: number,
-                stages: 1,
-                least: super::method::least(<crate::PreprocessedFlow as KineticFlow<f64>>::OPERATIONS),
-                make: Box::new(move |h| Ok(Box::new(PreprocessedBody::new(body, h, order)?))),
+            let least = Cost::of_stages(Preprocessed::<f64>::OPERATIONS, 1).least();
+            self.add(format!("preprocessed, {number}"), (number, 1), least, move |h| {
+                Stepper::preprocessed(body, h, order)
             });
         }
         self
@@ -248,8 +245,8 @@ fn count(stages: usize) -> u32 {
 fn inertia<L: Effect<Scalar = f64>>(scene: &L) -> Vec<f64> {
     let mut entries = Vec::new();
     for k in 0..<Group<L> as LieGroup>::DIMENSION {
-        let column: Vector<L> = scene.inertia() * <Vector<L> as crate::coordinates::Coordinates<Scalar<L>>>::axis(k);
-        crate::entries::Entries::each(&column, &mut |entry| entries.push(entry));
+        let column: Vector<L> = scene.inertia() * <Vector<L> as crate::numbers::Coordinates<Scalar<L>>>::axis(k);
+        crate::numbers::Entries::each(&column, &mut |entry| entries.push(entry));
     }
     entries
 }
@@ -267,14 +264,14 @@ struct Seen {
 
 /// At places enough to tell the potentials of a body apart.
 fn seen<L: Effect<Scalar = f64>>(scene: &L) -> Vec<Seen> {
-    use crate::coordinates::Coordinates as _;
+    use crate::numbers::Coordinates as _;
     let dimension = <Group<L> as LieGroup>::DIMENSION;
     let turned = (0..dimension).map(|k| L::Retraction::retract(&(Vector::<L>::axis(k) * 0.7)));
     let places = core::iter::once(Group::<L>::identity()).chain(turned);
     let look = |place| {
         let w = scene.advected().seen_from(&place);
         let mut bias = Vec::new();
-        crate::entries::Entries::each(&scene.momentum_bias(&w), &mut |entry| bias.push(entry));
+        crate::numbers::Entries::each(&scene.momentum_bias(&w), &mut |entry| bias.push(entry));
         Seen { potential: scene.potential(&w), bias }
     };
     places.map(look).collect()

@@ -6,8 +6,7 @@ use super::Accuracy;
 use super::candidates::Candidate;
 use super::ladder::Estimate;
 use super::search::Found;
-use crate::advected::Advected;
-use crate::groups::LieGroup;
+use crate::groups::{Advected, LieGroup};
 
 /// A method for an accuracy.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,11 +19,11 @@ pub struct Offer {
     pub step: f64,
     /// The arithmetic of the run, relative to that of the method chosen.
     pub cost: f64,
-    /// Whether its trials ended early, as it could only have been dearer.
+    /// Whether its trials ended early, as it could only have been more expensive.
     pub is_bound: bool,
 }
 
-/// What [`Stepper::for_accuracy`](crate::Stepper::for_accuracy) has chosen, with its reasons; as text, a table.
+/// What [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy) has chosen, with its reasons; as text, a table.
 ///
 /// # Examples
 ///
@@ -32,7 +31,10 @@ pub struct Offer {
 ///
 /// ```
 /// use liestep::effects::{Gravity, PrincipalBody};
-/// use liestep::{Accuracy, DiagonalNonstandardInertia, LieGroup, SO3, Stepper};
+/// use liestep::{SO3, Stepper};
+/// use liestep::accuracy::Accuracy;
+/// use liestep::groups::LieGroup;
+/// use liestep::mechanics::DiagonalNonstandardInertia;
 /// use nalgebra::Vector3;
 ///
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;

@@ -2,10 +2,8 @@
 
 use super::error::AccuracyError;
 use super::{Accuracy, Candidate};
-use crate::advected::Advected;
-use crate::coordinates::Coordinates as _;
-use crate::entries::Entries;
-use crate::groups::LieGroup;
+use crate::groups::{Advected, LieGroup};
+use crate::numbers::{Coordinates as _, Entries};
 
 /// Attitude and velocity.
 #[derive(Clone, Copy, Debug)]
@@ -125,10 +123,11 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number, far below the largest
     fn run(&mut self, start: &Start<G>, steps: f64) -> Trial<G> {
         let run = || -> Result<_, AccuracyError> {
-            let method = (self.candidate.make)(start.horizon / steps)?;
-            let mut state = method.start(start.attitude, start.velocity)?;
-            let cost = method.advance(&mut state, steps as u64).map_err(AccuracyError::Step)?;
-            Ok((cost, End { attitude: state.attitude(), velocity: method.velocity(&state) }))
+            let stepper = (self.candidate.make)(start.horizon / steps)?;
+            let mut state = stepper.start(start.attitude, start.velocity)?;
+            let iterations = stepper.run_unexplained(&mut state, steps as u64).map_err(AccuracyError::Step)?;
+            let cost = stepper.cost().of_run(steps as u64, iterations);
+            Ok((cost, End { attitude: state.attitude(), velocity: stepper.velocity(&state) }))
         };
         let least = steps * self.candidate.least;
         let (cost, end) = match run() {

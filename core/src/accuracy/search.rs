@@ -1,17 +1,15 @@
 //! The search for the cheapest method: the one that looks cheapest is tried a step finer, until it is near enough.
 
-use super::Accuracy;
-use super::Candidate;
 use super::error::AccuracyError;
 use super::ladder::{AIM, Estimate, Ladder, Start};
-use crate::advected::Advected;
-use crate::groups::LieGroup;
+use super::{Accuracy, Candidate};
+use crate::groups::{Advected, LieGroup};
 
 /// A run with more stages isn't tried.
 const MOST_STAGES: f64 = 2e8;
 /// Nor is one where no two trials agree so long.
 const MOST_STAGES_IN_VAIN: f64 = 4e6;
-/// A method that comes to its floor is followed by others only so much dearer.
+/// A method that comes to its floor is followed by others only so much more expensive.
 const BEYOND_THE_FLOOR: f64 = 4.0;
 /// What of the tolerance a run may differ from the reference by, whose own error is a quarter at most.
 const ACCEPTED: f64 = 0.75;
@@ -59,7 +57,7 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
     let mut open: Vec<usize> = (0..ladders.len()).collect();
     let mut best: Option<Run> = None;
     let mut refused = Refused { steps: 0.0, in_vain: None, floor: f64::INFINITY };
-    // The dearest run worth trying.
+    // The most expensive run worth trying.
     let mut limit = f64::INFINITY;
     loop {
         let costs = open.iter().map(|&index| (index, ladders[index].estimate(aim)));

@@ -42,7 +42,7 @@
 //!
 //! # What the macro derives
 //!
-//! Files are relative to `macros/src/derive`; the rules of differentiation are in `macros/src/symbolic/variation.rs`.
+//! Files are relative to `macros/src/mathematics/derive`; the rules of differentiation are in `macros/src/mathematics/symbolic/variation.rs`.
 //!
 //! | equation | what | file |
 //! |---|---|---|
@@ -69,26 +69,26 @@
 //! | (3.19) | change of the spatial momentum | | a consequence of (2.9): the two half kicks, in space |
 //! | (3.20) | `e₃·R Π` is constant | `state.rs` | [`State::momentum_along`] |
 //!
-//! [`Advected::advect`]: crate::Advected::advect
-//! [`DiscreteEulerPoincare`]: crate::DiscreteEulerPoincare
-//! [`DiscreteEulerPoincare::step`]: crate::DiscreteEulerPoincare::step
-//! [`DiscreteLagrangian::diamond`]: crate::DiscreteLagrangian::diamond
-//! [`DiscreteLagrangian::l_d`]: crate::DiscreteLagrangian::l_d
-//! [`DiscreteLiePoisson`]: crate::DiscreteLiePoisson
-//! [`DiscreteLiePoisson::step`]: crate::DiscreteLiePoisson::step
-//! [`LieGroup::advance`]: crate::LieGroup::advance
-//! [`State::momentum_along`]: crate::State::momentum_along
-//! [`State::spatial_momentum`]: crate::State::spatial_momentum
-//! [`Stepper::energy`]: crate::Stepper::energy
-//! [`Stepper::start`]: crate::Stepper::start
-//! [`Stepper::step`]: crate::Stepper::step
-//! [`Stepper::velocity`]: crate::Stepper::velocity
-//! [`inertia`]: crate::Effect::inertia
-//! [`invert_legendre_minus`]: crate::DiscreteLiePoisson::invert_legendre_minus
-//! [`legendre_minus`]: crate::DiscreteLagrangian::legendre_minus
-//! [`legendre_plus`]: crate::DiscreteLagrangian::legendre_plus
-//! [`lie_bracket_transpose`]: crate::LieGroup::lie_bracket_transpose
-//! [`newton_system`]: crate::Effect::newton_system
-//! [`potential`]: crate::Effect::potential
-//! [`reconstruct`]: crate::reconstruct
-//! [`right_momentum`]: crate::DiscreteLagrangian::right_momentum
+//! [`Advected::advect`]: crate::groups::Advected::advect
+//! [`DiscreteEulerPoincare`]: crate::motion::DiscreteEulerPoincare
+//! [`DiscreteEulerPoincare::step`]: crate::motion::DiscreteEulerPoincare::step
+//! [`DiscreteLagrangian::diamond`]: crate::mechanics::DiscreteLagrangian::diamond
+//! [`DiscreteLagrangian::l_d`]: crate::mechanics::DiscreteLagrangian::l_d
+//! [`DiscreteLiePoisson`]: crate::motion::DiscreteLiePoisson
+//! [`DiscreteLiePoisson::step`]: crate::motion::DiscreteLiePoisson::step
+//! [`LieGroup::advance`]: crate::groups::LieGroup::advance
+//! [`State::momentum_along`]: crate::motion::State::momentum_along
+//! [`State::spatial_momentum`]: crate::motion::State::spatial_momentum
+//! [`Stepper::energy`]: crate::motion::Stepper::energy
+//! [`Stepper::start`]: crate::motion::Stepper::start
+//! [`Stepper::step`]: crate::motion::Stepper::step
+//! [`Stepper::velocity`]: crate::motion::Stepper::velocity
+//! [`inertia`]: crate::mechanics::Effect::inertia
+//! [`invert_legendre_minus`]: crate::motion::DiscreteLiePoisson::invert_legendre_minus
+//! [`legendre_minus`]: crate::mechanics::DiscreteLagrangian::legendre_minus
+//! [`legendre_plus`]: crate::mechanics::DiscreteLagrangian::legendre_plus
+//! [`lie_bracket_transpose`]: crate::groups::LieGroup::lie_bracket_transpose
+//! [`newton_system`]: crate::mechanics::Effect::newton_system
+//! [`potential`]: crate::mechanics::Effect::potential
+//! [`reconstruct`]: crate::motion::reconstruct
+//! [`right_momentum`]: crate::mechanics::DiscreteLagrangian::right_momentum

@@ -15,7 +15,7 @@
 //! | the Lie–Poisson structure of `(μ, w)` | exactly | every Lagrangian |
 //! | `R p`, the spatial momentum | exactly | nothing advected |
 //! | `p_3` | exactly | `J_1 = J_2`, `ρ` along the third axis |
-//! | a step back by `−h` undoes the step | exactly | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`; (3.13) is such, others by [`SELF_ADJOINT`](crate::DiscreteLagrangian::SELF_ADJOINT) |
+//! | a step back by `−h` undoes the step | exactly | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`; (3.13) is such, others by [`SELF_ADJOINT`](crate::mechanics::DiscreteLagrangian::SELF_ADJOINT) |
 //! | kinetic energy `½ p·J⁻¹p` | exactly | the kinetic term of (3.13) alone; not for other kinetic terms |
 //! | energy with a potential | nearly: it oscillates with an amplitude of order `h²` and doesn't drift | steps well inside the limit below |
 //! | phase, period | not: the error is of order `h²` and grows with time | |
@@ -37,10 +37,10 @@
 //!
 //! | scene | trait | what it gives |
 //! |---|---|---|
-//! | has a kinetic part | [`Regular`](crate::Regular) | it can be stepped |
-//! | only Lagrangians, no force | [`DiscreteLagrangian`](crate::DiscreteLagrangian) | bounded energy, Poisson structure, [`Stepper::inverse`](crate::Stepper::inverse) |
-//! | and nothing advected | [`LeftInvariant`](crate::LeftInvariant) | [`Stepper::spatial_momentum`](crate::Stepper::spatial_momentum) |
-//! | or one vector advected, on SO(3) | [`AxiallyInvariant`](crate::AxiallyInvariant) | [`Stepper::momentum_along_advected`](crate::Stepper::momentum_along_advected) |
+//! | has a kinetic part | [`Regular`](crate::mechanics::Regular) | it can be stepped |
+//! | only Lagrangians, no force | [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian) | bounded energy, Poisson structure, [`Stepper::inverse`](crate::motion::Stepper::inverse) |
+//! | and nothing advected | [`LeftInvariant`](crate::mechanics::LeftInvariant) | [`Stepper::spatial_momentum`](crate::motion::Stepper::spatial_momentum) |
+//! | or one vector advected, on SO(3) | [`AxiallyInvariant`](crate::mechanics::AxiallyInvariant) | [`Stepper::momentum_along_advected`](crate::motion::Stepper::momentum_along_advected) |
 //!
 //! # Solvability
 //!
@@ -56,7 +56,7 @@
 //! About a principal axis the equation reads `sin θ = h Ω`, which shows the fold at 90° a step and the second solution
 //! `π − θ`. The other solutions are the reason for the check in a step: along the branch that begins at `F = I` the
 //! determinant of the Jacobian `tr(F J_d) I − F J_d` keeps its sign up to the fold. A step beyond it is the error
-//! [`StepError::BeyondSolvable`](crate::StepError::BeyondSolvable), which names the largest step that would do.
+//! [`StepError::BeyondSolvable`](crate::error::StepError::BeyondSolvable), which names the largest step that would do.
 //!
 //! A `J_d` with a negative eigenvalue has no such limit at 90°, but one that may lie anywhere; it isn't the inertia of
 //! a body and is refused. A rod or a point (`J` singular) has no solution for a momentum along the axis, and is

@@ -1,6 +1,8 @@
 //! The kinetic energy of a rigid body in Cayley coordinates.
 
-use crate::{Inertia, SO3, lagrangian};
+use crate::groups::SO3;
+use crate::mechanics::Inertia;
+use liestep_macros::lagrangian;
 
 /// A rigid body with the kinetic term `(2/h) x·Jx` in `x = tan(θ/2) n`: of second order, with a solution at every step.
 ///

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::{SO3, lagrangian};
+use crate::groups::SO3;
+use liestep_macros::lagrangian;
 
 /// A magnetic moment fixed in the body, in a uniform field: the energy `−m·B`.
 #[lagrangian(group = SO3, advected(b = field), l_d = 0.5 * h * b.dot(&(moment + F * moment)))]

@@ -1,6 +1,8 @@
 //! Viscous drag.
 
-use crate::{Inertia, SO3, force};
+use crate::groups::SO3;
+use crate::mechanics::Inertia;
+use liestep_macros::force;
 
 /// A torque `−c Ω` against the body velocity, which `((F − Fᵀ)/2)^∨/h` stands for in a step.
 ///

@@ -1,6 +1,8 @@
 //! The kinetic energy of a rigid body along geodesics.
 
-use crate::{Inertia, SO3, lagrangian};
+use crate::groups::SO3;
+use crate::mechanics::Inertia;
+use liestep_macros::lagrangian;
 
 /// A rigid body with the geodesic kinetic term `ξ·Jξ/(2h)`, `F = exp(ξ̂)`: of second order, and exact for a sphere and
 /// for a spin about a principal axis.

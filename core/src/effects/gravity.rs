@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::{SO3, lagrangian};
+use crate::groups::SO3;
+use liestep_macros::lagrangian;
 
 /// The weight of a body that turns about a fixed point: the potential term of (3.13).
 #[lagrangian(group = SO3, advected(w = up), l_d = -0.5 * h * m * g * w.dot(&(rho + F * rho)))]

@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::{Inertia, SO3, lagrangian};
+use crate::groups::SO3;
+use crate::mechanics::Inertia;
+use liestep_macros::lagrangian;
 
 /// The second-order term of the potential of a body about its centre of mass in the field of a far point mass,
 /// `3 GM/(2 r³) n·Jn` with the direction `n` of that mass; it turns the axis of the least moment into that direction.

@@ -1,6 +1,8 @@
 //! Kinetic terms of higher order.
 
-use crate::{Inertia, SO3, lagrangian};
+use crate::groups::SO3;
+use crate::mechanics::Inertia;
+use liestep_macros::lagrangian;
 
 /// A rigid body to the fourth order: the geodesic kinetic term less what the acceleration `a = J⁻¹(Jξ × ξ)` bends the
 /// path, `K = (ξ·Jξ/2 − a·Ja/24)/h`.

@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::{Inertia, SO3, force};
+use crate::groups::SO3;
+use crate::mechanics::Inertia;
+use liestep_macros::force;
 
 /// The torque `m × B` of a magnetic moment `m = −k dB/dt` against the change of the field that the body sees, `−Ω × B`.
 ///

@@ -1,6 +1,8 @@
 //! The kinetic energy of a rigid body.
 
-use crate::{DiagonalNonstandardInertia, NonstandardInertia, SO3, lagrangian};
+use crate::groups::SO3;
+use crate::mechanics::{DiagonalNonstandardInertia, NonstandardInertia};
+use liestep_macros::lagrangian;
 
 /// A rigid body about a fixed point or its centre of mass: the kinetic term of (3.13).
 ///

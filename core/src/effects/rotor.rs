@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::{SO3, lagrangian};
+use crate::groups::SO3;
+use liestep_macros::lagrangian;
 
 /// A balanced rotor on an axis fixed in the body, with a constant momentum about it: the Lagrangian `s·Ω`.
 ///

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::{SO3, lagrangian};
+use crate::groups::SO3;
+use liestep_macros::lagrangian;
 
 /// A linear spring from a point of the body to a point of space, both from the fixed point that the body turns about.
 ///

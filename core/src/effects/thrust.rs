@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::{SO3, force};
+use crate::groups::SO3;
+use liestep_macros::force;
 
 /// The thrust of an engine that is fixed to the body: a force that turns with it, of constant size, with the torque
 /// `at × thrust` about the point that the body turns about.

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::{SO3, force};
+use crate::groups::SO3;
+use liestep_macros::force;
 
 /// A torque from within the body, as of a thruster that is fixed to it.
 #[force(group = SO3, work = 0.5 * h * torque.dot(&(eta + eta_next)))]

@@ -4,7 +4,7 @@
 
 use super::{SetupError, StepError};
 use crate::groups::{NotARotation, NotInGroup};
-use crate::inertia::InertiaError;
+use crate::mechanics::InertiaError;
 
 /// What a user can do begins with one of these.
 const ADVICE: [&str; 12] =
@@ -29,10 +29,10 @@ fn setup_errors() {
         SetupError::NonFinite { what: "velocity" },
         SetupError::NotInGroup { defect: 0.125 },
         SetupError::NotSeparable { defect: 0.25 },
-        SetupError::AnotherInertia { difference: 0.5 },
-        SetupError::AnotherBias,
+        SetupError::InertiaMismatch { difference: 0.5 },
+        SetupError::BiasMismatch,
         SetupError::NoForceGradient,
-        SetupError::AnotherPotential,
+        SetupError::PotentialMismatch,
     ];
     for error in errors {
         let parts: &[&str] = match error {
@@ -42,10 +42,10 @@ fn setup_errors() {
             SetupError::NonFinite { .. } => &["velocity", "not finite"],
             SetupError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "more than rounding"],
             SetupError::NotSeparable { .. } => &["K(F) − (h/2) (V(w) + V(F⁻¹·w))", "2.5e-1", "more than rounding"],
-            SetupError::AnotherInertia { .. } => &["another body", "5e-1"],
-            SetupError::AnotherBias => &["momentum at rest", "rotors"],
+            SetupError::InertiaMismatch { .. } => &["another body", "5e-1"],
+            SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
-            SetupError::AnotherPotential => &["another potential"],
+            SetupError::PotentialMismatch => &["another potential"],
         };
         assert_says(&error.to_string(), parts);
     }
@@ -103,14 +103,14 @@ fn matrices_that_are_not_in_a_group() {
 #[cfg(feature = "serde")]
 #[test]
 fn checkpoint_errors() {
-    use crate::checkpoint::CheckpointError;
+    use crate::with::CheckpointError;
     let errors = [
         CheckpointError::AnotherFormat { found: 7, known: 1 },
         CheckpointError::AnotherScene,
         CheckpointError::AnotherParameter { field: "rho", stored: 0.5, own: 0.25 },
         CheckpointError::AnotherStep { stored: 0.5, own: 0.25 },
-        CheckpointError::AnotherSummation { compensated: true },
-        CheckpointError::AnotherSummation { compensated: false },
+        CheckpointError::AnotherMethod { stored: "Gauss".to_owned(), own: "its own step".to_owned() },
+        CheckpointError::NotKept,
         CheckpointError::WrongSize { what: "momentum", found: 2, expected: 3 },
         CheckpointError::NonFinite { what: "guess" },
         CheckpointError::NotInGroup { defect: 0.125 },
@@ -123,7 +123,8 @@ fn checkpoint_errors() {
             CheckpointError::AnotherScene => &["another scene"],
             CheckpointError::AnotherParameter { .. } => &["`rho`", "5e-1 in the checkpoint", "2.5e-1 here"],
             CheckpointError::AnotherStep { .. } => &["step", "5e-1 s in the checkpoint", "2.5e-1 s here"],
-            CheckpointError::AnotherSummation { .. } => &["compensat"],
+            CheckpointError::AnotherMethod { .. } => &["\"Gauss\"", "\"its own step\"", "adopt"],
+            CheckpointError::NotKept => &["keeps", "damaged"],
             CheckpointError::WrongSize { .. } => &["momentum", "2 numbers instead of 3", "damaged"],
             CheckpointError::NonFinite { .. } => &["guess", "not finite", "damaged"],
             CheckpointError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "damaged"],

@@ -3,7 +3,7 @@
 use nalgebra::{RealField, SMatrix};
 
 use super::generators::inverse;
-use crate::scalar::real;
+use crate::numbers::real;
 
 /// Beyond `2⁶⁴` a matrix is scaled no further; its exponential overflows or means nothing.
 const MAX_HALVINGS: u32 = 64;

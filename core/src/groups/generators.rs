@@ -4,16 +4,16 @@ use core::fmt::Debug;
 
 use nalgebra::{RealField, SMatrix};
 
-use crate::scalar::{Real, real};
+use crate::numbers::{Real, real};
 
 /// The declaration of a matrix group: the basis `E_k` of its Lie algebra, and the relation its elements satisfy.
 ///
 /// `N` is the size of the matrices and `D` the dimension of the group. Implement it for an empty marker type; the group
-/// is then [`MatrixGroup`](crate::MatrixGroup) of that marker, best under an alias.
+/// is then [`MatrixGroup`](crate::groups::MatrixGroup) of that marker, best under an alias.
 ///
 /// The basis must be orthogonal, `tr(E_jᵀ E_k) = 0` for `j ≠ k`, of any lengths, and span a Lie algebra. Both are
 /// checked when the user's crate is compiled. That the elements satisfy the relation is a law to be tested:
-/// [`lie_group_laws`](crate::lie_group_laws).
+/// [`lie_group_laws`](crate::laws::lie_group_laws).
 ///
 /// # Examples
 ///
@@ -21,7 +21,7 @@ use crate::scalar::{Real, real};
 ///
 /// ```
 /// use liestep::groups::matrix;
-/// use liestep::{CayleyRetraction, Generators, LieGroup, MatrixGroup, Retraction};
+/// use liestep::groups::{CayleyRetraction, Generators, LieGroup, MatrixGroup, Retraction};
 /// use nalgebra::{Matrix2, RealField, SMatrix, Vector2};
 ///
 /// #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +46,7 @@ use crate::scalar::{Real, real};
 ///
 /// ```compile_fail,E0080
 /// # use liestep::groups::matrix;
-/// # use liestep::{CayleyRetraction, Generators, MatrixGroup, Retraction};
+/// # use liestep::groups::{CayleyRetraction, Generators, MatrixGroup, Retraction};
 /// # use nalgebra::{RealField, SMatrix, Vector1};
 /// # #[derive(Clone, Copy, Debug, PartialEq)]
 /// # struct Stretch;

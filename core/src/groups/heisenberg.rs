@@ -19,7 +19,7 @@ use super::matrix_group::MatrixGroup;
 /// # Examples
 ///
 /// ```
-/// use liestep::{Heisenberg, LieGroup};
+/// use liestep::groups::{Heisenberg, LieGroup};
 /// let (first, second) = (Heisenberg::new(1.0, 0.0, 0.0), Heisenberg::new(0.0, 1.0, 0.0));
 /// assert_eq!(first.compose(&second), Heisenberg::new(1.0, 1.0, 1.0));
 /// assert_eq!(second.compose(&first), Heisenberg::new(1.0, 1.0, 0.0));

@@ -7,7 +7,7 @@ use nalgebra::{RealField, SMatrix, SVector};
 
 use super::LieGroup;
 use super::generators::{Generators, dynamic, squared_lengths, structure_constants};
-use crate::scalar::{real, reported};
+use crate::numbers::{real, reported};
 
 /// An element of the matrix group that `K` declares by its [`Generators`].
 ///

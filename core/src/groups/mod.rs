@@ -8,7 +8,6 @@
 //! | `⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩` | [`adjoint_transpose`](LieGroup::adjoint_transpose) |
 //! | `ad_ξ η = (ξ̂ η̂ − η̂ ξ̂)^∨` | [`lie_bracket`](LieGroup::lie_bracket) |
 //! | `⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩` | [`lie_bracket_transpose`](LieGroup::lie_bracket_transpose) |
-
 //!
 //! The groups, and what declares each:
 //!
@@ -23,10 +22,13 @@
 //!
 //! Any other is declared in the same way, outside of this crate too: see [`Generators`].
 
+mod advected;
 mod exponential;
 mod generators;
 mod heisenberg;
 mod matrix_group;
+mod retraction;
+pub(crate) mod rotation_functions;
 mod se2;
 mod se3;
 mod sl2;
@@ -35,12 +37,18 @@ mod so3;
 mod su2;
 mod translations;
 
+pub(crate) use advected::homogeneous;
+pub use advected::{
+    Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor, inverse_increment,
+};
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
 pub(crate) use generators::{inverse, is_closed_under_cayley};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
+pub use liestep_macros::matrix_group;
 pub(crate) use matrix_group::basis;
 pub use matrix_group::{MatrixGroup, NotInGroup};
+pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub use se2::{SE2, SE2Generators};
 pub use se3::{SE3, SE3Generators};
 pub use sl2::{SL2, SL2Generators};
@@ -51,21 +59,19 @@ pub use translations::{R1, R2, R3, TranslationGenerators};
 
 use core::fmt::Debug;
 
-use crate::coordinates::Coordinates;
-use crate::entries::{Entries, sum};
-use crate::scalar::{Mask, Real};
-use crate::solvability::TurningLimits;
+use crate::numbers::{Coordinates, Entries, Mask, Real, sum};
+use crate::solving::TurningLimits;
 
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
 /// Covectors are given by their components `μ_k = ⟨μ, E_k⟩`, so that no factor ½ appears anywhere.
-pub trait LieGroup: Copy + Debug + PartialEq {
+pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// The scalar of the matrices.
     type Scalar: Real;
     /// Components of algebra elements and of covectors.
-    type Vector: Coordinates<Self::Scalar>;
+    type Vector: Coordinates<Self::Scalar> + 'static;
     /// The ambient matrices.
-    type Matrix: Entries<Self::Scalar> + Debug + PartialEq;
+    type Matrix: Entries<Self::Scalar> + Debug + PartialEq + 'static;
 
     /// The dimension of the group.
     const DIMENSION: usize;

@@ -21,7 +21,7 @@ use super::so2::rotation_defect_squared;
 /// # Examples
 ///
 /// ```
-/// use liestep::{LieGroup, SE2};
+/// use liestep::groups::{LieGroup, SE2};
 /// use nalgebra::{UnitComplex, Vector2};
 /// let motion = SE2::from_rotation_and_translation(UnitComplex::new(0.8), Vector2::new(1.0, 2.0));
 /// assert_eq!(motion.translation(), Vector2::new(1.0, 2.0));

@@ -23,7 +23,7 @@ use super::se2::{last_row_defect_squared, rigid_inverse, rotates_little};
 /// # Examples
 ///
 /// ```
-/// use liestep::{LieGroup, SE3};
+/// use liestep::groups::{LieGroup, SE3};
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
 /// let motion = SE3::from_rotation_and_translation(turn, Vector3::new(1.0, 2.0, 3.0));

@@ -23,7 +23,7 @@ use super::matrix_group::MatrixGroup;
 /// # Examples
 ///
 /// ```
-/// use liestep::{NotInGroup, SL2};
+/// use liestep::groups::{NotInGroup, SL2};
 /// use nalgebra::Matrix2;
 /// assert!(SL2::try_from(Matrix2::new(2.0, 1.0, 1.0, 1.0)).is_ok());
 /// assert_eq!(SL2::try_from(Matrix2::new(2.0, 0.0, 0.0, 1.0)), Err(NotInGroup { defect: 1.0 }));

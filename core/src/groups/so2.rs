@@ -19,7 +19,7 @@ use super::matrix_group::MatrixGroup;
 /// # Examples
 ///
 /// ```
-/// use liestep::{LieGroup, SO2};
+/// use liestep::groups::{LieGroup, SO2};
 /// use nalgebra::UnitComplex;
 /// let turn = SO2::from(UnitComplex::new(0.8));
 /// assert!(turn.defect() < 1e-15 && (turn.angle() - 0.8_f64).abs() < 1e-15);

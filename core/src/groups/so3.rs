@@ -5,8 +5,8 @@ use core::fmt;
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
-use crate::scalar::{Mask, Real, gathered, real};
-use crate::solvability::{self, TurningLimits};
+use crate::numbers::{Mask, Real, gathered, real};
+use crate::solving::{TurningLimits, solvability};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -20,7 +20,8 @@ use crate::solvability::{self, TurningLimits};
 /// # Examples
 ///
 /// ```
-/// use liestep::{LieGroup, SO3};
+/// use liestep::SO3;
+/// use liestep::groups::LieGroup;
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// let attitude = SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0)));
 /// assert!(attitude.defect() < 1e-15);
@@ -116,8 +117,8 @@ impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
             Ok(candidate)
         } else {
             Err(NotARotation {
-                defect: crate::scalar::reported(defect),
-                determinant: crate::scalar::reported(determinant),
+                defect: crate::numbers::reported(defect),
+                determinant: crate::numbers::reported(determinant),
             })
         }
     }

@@ -22,7 +22,7 @@ use super::matrix_group::MatrixGroup;
 /// # Examples
 ///
 /// ```
-/// use liestep::{LieGroup, SU2};
+/// use liestep::groups::{LieGroup, SU2};
 /// use nalgebra::{UnitQuaternion, Vector3};
 /// let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
 /// let element = SU2::from(turn);

@@ -27,7 +27,7 @@ pub type R2<T = f64> = MatrixGroup<TranslationGenerators, T, 3, 2>;
 /// # Examples
 ///
 /// ```
-/// use liestep::{LieGroup, R3};
+/// use liestep::groups::{LieGroup, R3};
 /// use nalgebra::Vector3;
 /// let shift = R3::from(Vector3::new(1.0, 2.0, 3.0));
 /// assert_eq!(shift.compose(&shift).translation(), Vector3::new(2.0, 4.0, 6.0));

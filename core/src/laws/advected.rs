@@ -3,7 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::samples::{MatrixLieGroup, ROUNDING, Random, assert_small, condition, eliminated_inverse};
-use crate::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, Entries, MixedTensor};
+use crate::groups::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use crate::numbers::Entries;
 
 /// `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, and linear in `w`.
 pub fn parameter_is_acted_on<G, A, const N: usize, const D: usize>()

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::samples::{
     DIFFERENCE, MatrixLieGroup, ROUNDING, Random, assert_close, assert_small, condition, derivative, eliminated_inverse,
 };
-use crate::Retraction;
+use crate::groups::Retraction;
 
 /// `τ(0) = e` with the identity as its derivative.
 pub fn retraction_at_zero<G: MatrixLieGroup<N, D>, R: Retraction<G>, const N: usize, const D: usize>() {

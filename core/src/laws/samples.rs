@@ -4,8 +4,8 @@ use core::ops::{Add, Mul, Sub};
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::Entries;
 use crate::groups::{LieGroup, exponential};
+use crate::numbers::Entries;
 
 /// A group of `N` × `N` matrices of dimension `D` over `f64`.
 pub trait MatrixLieGroup<const N: usize, const D: usize>:

@@ -3,8 +3,8 @@
 //! All work on `J Ω' = JΩ × Ω` in the body frame. The quaternion turns by the exact rotation through `hΩ` and is
 //! normalised, so that what differs between them is the gyroscopic term alone.
 
-use liestep::Effect as _;
 use liestep::effects::PrincipalBody;
+use liestep::mechanics::Effect as _;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::run::{Method, Sample, Stopped};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use liestep::{DiagonalNonstandardInertia, InertiaError};
+use liestep::mechanics::{DiagonalNonstandardInertia, InertiaError};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::declaration::HeavyTop;

@@ -3,7 +3,8 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::{DiagonalNonstandardInertia, Inertia, SO3, lagrangian};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 
 /// A heavy top: the reduced discrete Lagrangian \[RDAE, (3.13)\].

@@ -4,7 +4,7 @@
 
 use std::ops::{Add, Mul};
 
-use liestep::Effect as _;
+use liestep::mechanics::Effect as _;
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 
 use super::declaration::HeavyTop;

@@ -1,6 +1,6 @@
 //! B1, B2: a box, in the way that a physics engine tests itself.
 
-use liestep::DiagonalNonstandardInertia;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::Vector3;
 
 use crate::curves::{Curve, Curves};

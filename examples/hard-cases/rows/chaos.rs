@@ -1,7 +1,9 @@
 //! T7: an asymmetric top in chaotic motion.
 
+use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{CompensatedState, Stepper};
+use liestep::Stepper;
+use liestep::motion::Plan;
 use workbench::measure::{Tenths, float};
 use workbench::run::Method as _;
 
@@ -15,20 +17,21 @@ const H: f64 = 0.02;
 /// The largest change of the energy in the first and in the last tenth, and the Casimirs.
 fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(Tenths, Walk), Failure> {
     let stepper = Stepper::new(motion.top.clone(), H)?;
-    let carrying = stepper.clone().compensated();
-    let mut plain = stepper.start(motion.attitude, motion.velocity)?;
-    let mut kept = CompensatedState::from(plain);
-    let start = stepper.energy(&plain);
-    let (mut energies, mut walk) = (Tenths::new(steps), Walk::from_state(&plain, steps));
+    if compensated { stepped(&stepper.compensated(), motion, steps) } else { stepped(&stepper, motion, steps) }
+}
+
+fn stepped<P: Plan<HeavyTop>>(
+    stepper: &Stepper<HeavyTop, P>,
+    motion: &Motion,
+    steps: u64,
+) -> Result<(Tenths, Walk), Failure> {
+    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let start = stepper.energy(&state);
+    let (mut energies, mut walk) = (Tenths::new(steps), Walk::from_state(&state, steps));
     for step in 1..=steps {
-        if compensated {
-            carrying.step(&mut kept)?;
-            plain = *kept.state();
-        } else {
-            stepper.step(&mut plain)?;
-        }
-        energies.after(step, || stepper.energy(&plain) - start);
-        walk.after_step(step, &plain);
+        stepper.step(&mut state)?;
+        energies.after(step, || stepper.energy(&state) - start);
+        walk.after_step(step, &state);
     }
     Ok((energies, walk))
 }

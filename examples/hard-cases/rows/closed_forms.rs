@@ -1,7 +1,8 @@
 //! B8: on the separatrix, and symmetric bodies, against closed forms.
 
 use liestep::effects::PrincipalBody;
-use liestep::{LieGroup as _, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
@@ -25,7 +26,7 @@ fn end(
     (t, h): (f64, f64),
     exact: &(Option<nalgebra::Matrix3<f64>>, Vector3<f64>),
 ) -> Result<End, Failure> {
-    let inertia = liestep::DiagonalNonstandardInertia::from_principal_moments(*moments)?;
+    let inertia = liestep::mechanics::DiagonalNonstandardInertia::from_principal_moments(*moments)?;
     let stepper = Stepper::new(PrincipalBody { J_d: inertia }, h)?;
     let mut state = stepper.start(SO3::identity(), *velocity)?;
     let (energy, spatial) = (stepper.energy(&state), state.spatial_momentum());

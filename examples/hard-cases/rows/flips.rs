@@ -2,10 +2,10 @@
 
 use declarations::SixthOrderBody;
 use liestep::effects::PrincipalBody;
-use liestep::{
-    Composition, CompositionScheme, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, LieGroup as _,
-    PreprocessedBody, PreprocessedOrder, Regular, SO3, Stepper,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
+use liestep::methods::{CompositionScheme, PreprocessedOrder};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::free_body::engines::{Moments, explicit, implicit, rescaled};
 use workbench::heavy_top::rk4::{Body, OnQuaternion};
@@ -71,7 +71,7 @@ where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = ()> + Regular + Clone + 'a,
 {
     move |h| {
-        let composition = Composition::new(lagrangian.clone(), h, scheme)?;
+        let composition = Stepper::composed(lagrangian.clone(), h, scheme)?;
         Ok(Box::new(move |momentum| {
             let mut state = composition.start_with_momentum(SO3::identity(), *momentum)?;
             composition.step(&mut state)?;
@@ -101,7 +101,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     }
     let sixth = SixthOrderBody { J: Inertia::from_principal_moments(moments)? };
     let preprocessed = |h: f64| -> Result<Map<'_>, Failure> {
-        let body = PreprocessedBody::new(inertia, h, PreprocessedOrder::Ten)?;
+        let body = Stepper::preprocessed(PrincipalBody { J_d: inertia }, h, PreprocessedOrder::Ten)?;
         Ok(Box::new(move |momentum| {
             let mut state = body.start_with_momentum(SO3::identity(), *momentum)?;
             body.step(&mut state)?;

@@ -2,9 +2,11 @@
 
 use declarations::{FreeBody, FullTop, Motion};
 use liestep::effects::{Gravity, PrincipalBody};
-use liestep::{
-    DiscreteEulerPoincare, DiscreteLagrangian, Entries as _, LieGroup as _, Regular, SO3, Stepper, reconstruct,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::{DiscreteEulerPoincare, reconstruct};
+use liestep::numbers::Entries as _;
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 use workbench::measure::{greater, relative};
 

@@ -1,7 +1,9 @@
 //! S1, S2: steps up to the fold, where the momentum equation loses its solution, and beyond.
 
 use declarations::Motion;
-use liestep::{LieGroup as _, Solvability, StepError, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::motion::Solvability;
+use liestep::{StepError, Stepper};
 use workbench::measure::{greater, relative};
 use workbench::plot::BLUE;
 use workbench::run::Method as _;
@@ -51,7 +53,8 @@ pub(crate) fn s1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let known = |h: f64| -> Result<Solvability, Failure> {
         let stepper = Stepper::new(motion.top.clone(), h)?;
-        Ok(stepper.solvability(&stepper.start(motion.attitude, motion.velocity)?))
+        let state = stepper.start(motion.attitude, motion.velocity)?;
+        Ok(stepper.solvability(&state))
     };
     let certain = largest(|h| Ok(known(h)? == Solvability::Certain))?;
     let impossible = largest(|h| Ok(known(h)? != Solvability::Impossible))?;

@@ -1,7 +1,9 @@
 //! T3: many steps of the looping top.
 
+use declarations::HeavyTop;
 use declarations::Motion;
-use liestep::{CompensatedState, Stepper};
+use liestep::Stepper;
+use liestep::motion::Plan;
 use workbench::measure::{Tenths, float};
 use workbench::plot::{BLUE, GREEN, ORANGE};
 use workbench::run::{Method, Sample};
@@ -9,7 +11,7 @@ use workbench::run::{Method, Sample};
 use crate::curves::{Curve, Curves};
 use crate::rivals::{GREY, energy_of, on_matrix, on_quaternion};
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::{FARTHEST, TopState, Walk};
+use crate::walk::{FARTHEST, Walk};
 
 const STEP: f64 = 0.01;
 
@@ -23,21 +25,22 @@ struct Run {
 
 fn ours(motion: &Motion, steps: u64, compensated: bool) -> Result<(f64, Run), Failure> {
     let stepper = Stepper::new(motion.top.clone(), STEP)?;
-    let carrying = stepper.clone().compensated();
-    let mut plain: TopState = stepper.start(motion.attitude, motion.velocity)?;
-    let mut kept = CompensatedState::from(plain);
-    let (start, axial) = (stepper.energy(&plain), plain.momentum().z);
-    let mut run = Run { walk: Walk::from_state(&plain, steps), energies: Tenths::new(steps), axial: 0 };
+    if compensated { stepped(&stepper.compensated(), motion, steps) } else { stepped(&stepper, motion, steps) }
+}
+
+fn stepped<P: Plan<HeavyTop>>(
+    stepper: &Stepper<HeavyTop, P>,
+    motion: &Motion,
+    steps: u64,
+) -> Result<(f64, Run), Failure> {
+    let mut state = stepper.start(motion.attitude, motion.velocity)?;
+    let (start, axial) = (stepper.energy(&state), state.momentum().z);
+    let mut run = Run { walk: Walk::from_state(&state, steps), energies: Tenths::new(steps), axial: 0 };
     for step in 1..=steps {
-        if compensated {
-            carrying.step(&mut kept)?;
-            plain = *kept.state();
-        } else {
-            stepper.step(&mut plain)?;
-        }
-        run.axial += u64::from(plain.momentum().z.to_bits() != axial.to_bits());
-        run.energies.after(step, || stepper.energy(&plain) - start);
-        run.walk.after_step(step, &plain);
+        stepper.step(&mut state)?;
+        run.axial += u64::from(state.momentum().z.to_bits() != axial.to_bits());
+        run.energies.after(step, || stepper.energy(&state) - start);
+        run.walk.after_step(step, &state);
     }
     Ok((start, run))
 }

@@ -1,11 +1,11 @@
 //! P2, P3: momentum maps, Casimirs, and how a covector is advected.
 
 use declarations::{CayleyTop, FourthOrderTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _};
+use liestep::SO3;
+use liestep::groups::{Advected, ContravariantVector, Heisenberg, LieGroup as _, SE2, SE3, SL2, SO2, SU2};
 use liestep::laws::samples::{MatrixLieGroup, Random, eliminated_inverse};
-use liestep::{
-    Advected, ContravariantVector, DiscreteLagrangian, DiscreteLiePoisson, Heisenberg, LieGroup as _, Regular, SE2,
-    SE3, SL2, SO2, SO3, SU2,
-};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{greater, relative};
 
@@ -24,7 +24,7 @@ where
         let (sample, w): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
         let (momentum, w) = (sample * size, w.normalize());
         let step = flow.step(&momentum, &w, &Vector3::zeros())?;
-        let (l, f) = (flow.lagrangian(), step.element());
+        let (l, f) = (flow.scene(), step.element());
         let right = l.right_momentum(&f.matrix(), &w, h);
         let left = l.left_momentum(&f.matrix(), &w, h);
         let transported = f.adjoint_transpose(&(momentum + l.diamond(&f.matrix(), &w, h)));

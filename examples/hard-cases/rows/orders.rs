@@ -1,7 +1,8 @@
 //! T1: the tops of the thesis against references of 33 digits.
 
 use declarations::Motion;
-use liestep::{LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
 use workbench::run::Method as _;
 

@@ -1,6 +1,7 @@
 //! B6: what isn't the inertia of a body is refused when it is built.
 
-use liestep::{Inertia, InertiaError, NonstandardInertia};
+use liestep::NonstandardInertia;
+use liestep::mechanics::{Inertia, InertiaError};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::curves::Curves;

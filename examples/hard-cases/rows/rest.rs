@@ -1,7 +1,8 @@
 //! S4: where nothing acts nothing happens.
 
 use declarations::{FreeBody, HeavyTop, Motion};
-use liestep::{DiscreteLagrangian, Regular, SO3, Stepper};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::run::Method as _;

@@ -1,7 +1,8 @@
 //! S5: the step of zero, and the step of `−h`.
 
 use declarations::Motion;
-use liestep::{LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
 use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::measure::relative;
 use workbench::run::Method as _;

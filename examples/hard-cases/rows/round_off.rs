@@ -7,10 +7,10 @@
 //! in every thousand, beside it, is what more of that would give.
 
 use declarations::{HeavyTop, Motion};
-use liestep::{
-    CompensatedState, CompensatedStepper, Composition, CompositionScheme, Effect as _, Inertia, LieGroup as _, SO3,
-    Splitting, SplittingScheme, Stepper, SymmetricBody,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{Effect as _, Inertia};
+use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
+use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
 use workbench::measure::{Tenths, float};
@@ -19,14 +19,14 @@ use workbench::plot::{BLUE, GREEN, ORANGE, PURPLE};
 
 use crate::curves::{Curve, Curves};
 use crate::row::{Effort, Failure, Row, short};
-use crate::walk::{FARTHEST, TopState, Walk};
+use crate::walk::{FARTHEST, TopMotion, Walk};
 
 /// Steps and looks.
 fn walk(
     top: &HeavyTop,
-    start: &TopState,
+    start: &TopMotion,
     steps: u64,
-    mut step: impl FnMut(u64) -> Result<TopState, Failure>,
+    mut step: impl FnMut(u64) -> Result<TopMotion, Failure>,
 ) -> Result<(Walk, f64), Failure> {
     let (mut walk, mut energies) = (Walk::from_state(start, steps), Tenths::new(steps));
     let before = energy(top, &start.momentum(), &start.advected());
@@ -63,28 +63,9 @@ fn told(row: Row, name: &str, (walk, energy): &(Walk, f64), is_judged: bool) -> 
 const PERIOD: u64 = 1000;
 
 /// The attitude after a step towards its polar factor.
-fn orthogonal(state: &TopState) -> SO3 {
+fn orthogonal(state: &TopMotion) -> SO3 {
     let r = state.attitude().matrix();
     SO3::from_matrix_unchecked(r * (Matrix3::identity() * 3.0 - r.transpose() * r) * 0.5)
-}
-
-/// A composition with the sums of each stage compensated. The library compensates single steps; the stages are those.
-struct CompensatedComposition {
-    stages: Vec<CompensatedStepper<HeavyTop>>,
-}
-
-impl CompensatedComposition {
-    fn new(top: &HeavyTop, h: f64, scheme: &CompositionScheme) -> Result<Self, Failure> {
-        let stages = scheme.stages().map(|gamma| Stepper::new(top.clone(), gamma * h).map(Stepper::compensated));
-        Ok(Self { stages: stages.collect::<Result<_, _>>()? })
-    }
-
-    fn step(&self, state: &mut CompensatedState<SO3, Vector3<f64>>) -> Result<(), Failure> {
-        for stage in &self.stages {
-            stage.step(state)?;
-        }
-        Ok(())
-    }
 }
 
 const CRITERION: &str = "‖RᵀR − I‖ ≤ 2e-12, growing like √N (4 deviations of a walk)";
@@ -97,12 +78,12 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let (h, scheme) = (0.05, CompositionScheme::KAHAN_LI_8);
     let steps = effort.steps(500_000, 5_000_000);
     let motion = Motion::looping();
-    let composition = Composition::new(motion.top.clone(), h, scheme)?;
+    let composition = Stepper::composed(motion.top.clone(), h, scheme)?;
     let start = composition.start(motion.attitude, motion.velocity)?;
     let mut state = start;
     let plain = walk(&motion.top, &start, steps, |_| {
         composition.step(&mut state)?;
-        Ok(state)
+        Ok(*state)
     })?;
     let mut state = start;
     let corrected = walk(&motion.top, &start, effort.beside(steps), |step| {
@@ -110,13 +91,13 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         if step.is_multiple_of(PERIOD) {
             state = composition.start_with_momentum(orthogonal(&state), state.momentum())?;
         }
-        Ok(state)
+        Ok(*state)
     })?;
-    let compensated = CompensatedComposition::new(&motion.top, h, &scheme)?;
-    let mut state = CompensatedState::from(start);
+    let compensated = composition.clone().compensated();
+    let mut state = compensated.start(motion.attitude, motion.velocity)?;
     let kept = walk(&motion.top, &start, effort.beside(steps), |_| {
         compensated.step(&mut state)?;
-        Ok(*state.state())
+        Ok(*state)
     })?;
     let row = Row::new(
         "R1",
@@ -135,12 +116,12 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
     let motion = Motion::looping();
     let kinetic = SymmetricBody::new(&Inertia::new(motion.top.inertia())?)?;
-    let splitting = Splitting::new(motion.top.clone(), kinetic, 0.02, SplittingScheme::NYSTROM_11)?;
+    let splitting = Stepper::split(motion.top.clone(), 0.02, kinetic, SplittingScheme::NYSTROM_11)?;
     let start = splitting.start(motion.attitude, motion.velocity)?;
     let mut state = start;
     let plain = walk(&motion.top, &start, steps, |_| {
         splitting.step(&mut state)?;
-        Ok(state)
+        Ok(*state)
     })?;
     let mut state = start;
     let corrected = walk(&motion.top, &start, effort.beside(steps), |step| {
@@ -148,7 +129,7 @@ pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
         if step.is_multiple_of(PERIOD) {
             state = splitting.start_with_momentum(orthogonal(&state), state.momentum())?;
         }
-        Ok(state)
+        Ok(*state)
     })?;
     let row = Row::new(
         "R2",
@@ -168,7 +149,7 @@ fn three(top: &HeavyTop, velocity: Vector3<f64>, (steps, beside): (u64, u64)) ->
     let mut state = start;
     let plain = walk(top, &start, steps, |_| {
         stepper.step(&mut state)?;
-        Ok(state)
+        Ok(*state)
     })?;
     let mut state = start;
     let corrected = walk(top, &start, beside, |step| {
@@ -176,13 +157,13 @@ fn three(top: &HeavyTop, velocity: Vector3<f64>, (steps, beside): (u64, u64)) ->
         if step.is_multiple_of(PERIOD) {
             state = stepper.start_with_momentum(orthogonal(&state), state.momentum())?;
         }
-        Ok(state)
+        Ok(*state)
     })?;
     let carrying = stepper.compensated();
-    let mut state = CompensatedState::from(start);
+    let mut state = carrying.adopt(&start);
     let kept = walk(top, &start, beside, |_| {
         carrying.step(&mut state)?;
-        Ok(*state.state())
+        Ok(*state)
     })?;
     Ok([plain, kept, corrected])
 }

@@ -11,7 +11,9 @@
 //! changes the digest, and belongs in the history with it.
 
 use declarations::{FreeBody, HeavyTop, Motion};
-use liestep::{Advected, LieGroup as _, Regular, SO3, State, Stepper};
+use liestep::groups::{Advected, LieGroup as _};
+use liestep::mechanics::Regular;
+use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 
 use crate::curves::Curves;
@@ -23,7 +25,7 @@ struct Digest(u64);
 impl Digest {
     const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
 
-    fn add<A: Advected<SO3>>(&mut self, state: &State<SO3, A>) {
+    fn add<A: Advected<SO3>>(&mut self, state: &liestep::motion::Motion<SO3, A>) {
         let mut number = |number: f64| {
             for byte in number.to_bits().to_le_bytes() {
                 self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
@@ -56,7 +58,7 @@ fn compensated_digest(motion: &Motion) -> Result<u64, Failure> {
     let (mut state, mut digest) = (stepper.start(motion.attitude, motion.velocity)?, Digest::EMPTY);
     for _ in 0..1000 {
         stepper.step(&mut state)?;
-        digest.add(state.state());
+        digest.add(&state);
     }
     Ok(digest.0)
 }

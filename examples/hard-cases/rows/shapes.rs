@@ -1,9 +1,9 @@
 //! B3 to B5: thin, flat, round, and in other axes.
 
 use declarations::FreeBody;
-use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, NonstandardInertia, Regular, SO3, Stepper,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::measure::{greater, relative};
 

@@ -6,10 +6,9 @@
 
 use declarations::Motion;
 use liestep::effects::{Gravity, PrincipalBody, RigidBody};
-use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian, InertiaError, LieGroup as _, NonstandardInertia, Regular, SO3,
-    State, StepError, Stepper, Sum,
-};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, InertiaError, Regular, Sum};
+use liestep::{NonstandardInertia, SO3, State, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{Tenths, four_halvings, greater, order, relative, steps_in};
 
@@ -155,7 +154,7 @@ fn folds(mut row: Row, motion: &Motion) -> Result<Row, Failure> {
 /// S4: from rest, without gravity and hanging.
 fn at_rest(motion: &Motion) -> Result<bool, Failure> {
     let (stepper, _) = started(motion, 0.01)?;
-    let Sum { first: body, second: gravity } = *stepper.lagrangian();
+    let Sum { first: body, second: gravity } = *stepper.scene();
     let tilted = SO3::from_matrix_unchecked(motion.attitude.matrix().cast::<f32>());
     let hanging = Gravity { up: -gravity.rho, ..gravity };
     let mut stays = true;

@@ -1,8 +1,10 @@
 //! P1: the step is a Poisson map.
 
 use declarations::{CayleyTop, FourthOrderTop, FullTop, LogTop, LogTraceTop, Motion, SixthOrderTop, Top as _};
+use liestep::SO3;
 use liestep::laws::samples::Random;
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Regular, SO3};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::Vector3;
 use workbench::heavy_top::rk4::OnQuaternion;
 use workbench::measure::greater;

@@ -1,7 +1,10 @@
 //! S3: about a principal axis `sin θ = hΩ` has a second root at `π − θ`.
 
 use declarations::{FreeBody, HeavyTop};
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Regular, Retraction as _, SO3, StepError};
+use liestep::groups::Retraction as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::greater;
 

@@ -1,7 +1,9 @@
 //! T9: other units of mass and time.
 
 use declarations::{HeavyTop, Motion};
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, Stepper};
+use liestep::Stepper;
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::curves::Curves;

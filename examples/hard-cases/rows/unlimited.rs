@@ -1,7 +1,8 @@
 //! S6: kinetic terms whose momentum equation has a solution at every step.
 
 use declarations::{CayleyTop, LogTraceTop};
-use liestep::{Inertia, Stepper};
+use liestep::Stepper;
+use liestep::mechanics::Inertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::greater;
 

@@ -2,7 +2,9 @@
 
 use declarations::{FullTop, HeavyTop, Motion};
 use liestep::effects::{Gravity, PrincipalBody};
-use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{greater, relative};
 

@@ -5,8 +5,9 @@
 
 use std::fmt;
 
+use liestep::NonstandardInertia;
 use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, PrincipalBody, Rotor, Spring, Torque};
-use liestep::{DiagonalNonstandardInertia, InertiaError, NonstandardInertia};
+use liestep::mechanics::{DiagonalNonstandardInertia, InertiaError};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
 

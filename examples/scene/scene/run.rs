@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use liestep::{
-    Accuracy, AccuracyError, Advected, Choice, DiscreteLagrangian, LieGroup as _, Regular, SO3, SetupError, State,
-    StepError, Stepper,
-};
+use liestep::accuracy::{Accuracy, AccuracyError, Choice};
+use liestep::groups::{Advected, LieGroup as _};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::{AnyState, Motion};
+use liestep::{SO3, SetupError, State, StepError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::csv;
 
@@ -25,7 +26,7 @@ pub(crate) struct Sample {
 }
 
 impl Sample {
-    fn of<A: Advected<SO3>>(state: &State<SO3, A>, time: f64, velocity: Vector3<f64>, energy: f64) -> Self {
+    fn of<A: Advected<SO3>>(state: &Motion<SO3, A>, time: f64, velocity: Vector3<f64>, energy: f64) -> Self {
         Self { time, attitude: state.attitude().matrix(), momentum: state.momentum(), velocity, energy }
     }
 
@@ -122,7 +123,9 @@ where
         Ok(_) => Ok(()),
         Err(cause) => Err(Stopped::Step { time: stepper.time(state), cause }),
     };
-    let sample = |state: &_| Sample::of(state, stepper.time(state), stepper.velocity(state), stepper.energy(state));
+    let sample = |state: &State<SO3, L::Advected>| {
+        Sample::of(state, stepper.time(state), stepper.velocity(state), stepper.energy(state))
+    };
     let (step, steps) = (task.step, u64::from(task.steps));
     Ok(Run { samples: sampled(steps, state, advance, sample)?, step, steps, choice: None })
 }
@@ -139,7 +142,9 @@ where
         Ok(_) => Ok(()),
         Err(cause) => Err(Stopped::Step { time: stepper.time(state), cause }),
     };
-    let sample = |state: &_| Sample::of(state, stepper.time(state), stepper.velocity(state), stepper.energy(state));
+    let sample = |state: &AnyState<SO3, L::Advected>| {
+        Sample::of(state, stepper.time(state), stepper.velocity(state), stepper.energy(state))
+    };
     let choice = stepper.choice().clone();
     let samples = sampled(choice.steps, stepper.start(), advance, sample)?;
     Ok(Run { samples, step: stepper.step_size(), steps: choice.steps, choice: Some(choice) })

@@ -7,8 +7,8 @@ use quote::{ToTokens as _, quote_spanned};
 use syn::Ident;
 
 use super::Emitter;
-use crate::scalar::{Graph, Node, NodeId};
-use crate::symbolic::{Function, Rational};
+use crate::mathematics::symbolic::{Function, Rational};
+use crate::program::{Graph, Node, NodeId};
 
 /// What the outputs make together.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,7 @@ impl Emitter<'_> {
         form: Form,
         graph: &Graph,
         outputs: &[NodeId],
-        input: &dyn Fn(crate::scalar::Input) -> TokenStream,
+        input: &dyn Fn(crate::program::Input) -> TokenStream,
     ) -> TokenStream {
         let given = |id: NodeId| match graph.node(id) {
             Node::Input(entry) => Some(input(entry)),
@@ -41,9 +41,9 @@ impl Emitter<'_> {
 
     /// One value from its entries, a square matrix row by row.
     pub(super) fn assembled(&self, form: Form, values: &[TokenStream]) -> TokenStream {
-        let (root, span) = (&self.header.root, Span::mixed_site());
+        let (private, span) = (&self.header.private, Span::mixed_site());
         let dimension = self.derived.group.dimension();
-        let nalgebra = quote_spanned!(span=> #root::__private::nalgebra);
+        let nalgebra = quote_spanned!(span=> #private::nalgebra);
         match (form, dimension, values) {
             (Form::Scalar, ..) => values.iter().cloned().collect(),
             (Form::Vector, 3, entries) => quote_spanned!(span=> #nalgebra::Vector3::new(#(#entries),*)),
@@ -57,8 +57,8 @@ impl Emitter<'_> {
     }
 
     fn columns(&self, rows: usize, columns: &[Vec<TokenStream>]) -> TokenStream {
-        let (root, span, scalar) = (&self.header.root, Span::mixed_site(), &self.header.scalar);
-        let nalgebra = quote_spanned!(span=> #root::__private::nalgebra);
+        let (private, span, scalar) = (&self.header.private, Span::mixed_site(), &self.header.scalar);
+        let nalgebra = quote_spanned!(span=> #private::nalgebra);
         let (rows, count) = (Literal::usize_unsuffixed(rows), Literal::usize_unsuffixed(columns.len()));
         let columns = columns.iter().map(|entries| quote_spanned!(span=> [#(#entries),*]));
         quote_spanned! {span=>
@@ -68,7 +68,7 @@ impl Emitter<'_> {
 
     /// Code for the outputs: the statements, and a token for each output.
     ///
-    /// What is used once stands where it is used; the rest is bound by a `let`.
+    /// A value that is used once is written where it is used. All others are bound by a `let`.
     pub(super) fn statements(
         &self,
         graph: &Graph,
@@ -135,10 +135,10 @@ impl Emitter<'_> {
     }
 
     fn call(&self, function: Function, argument: &TokenStream) -> TokenStream {
-        let (root, span) = (&self.header.root, Span::mixed_site());
+        let (private, span) = (&self.header.private, Span::mixed_site());
         let ours = |name: &str, order: u8| {
             let (name, order) = (Ident::new(name, span), Literal::u8_unsuffixed(order));
-            quote_spanned!(span=> #root::__private::#name::<_, #order>(#argument))
+            quote_spanned!(span=> #private::#name::<_, #order>(#argument))
         };
         match function {
             Function::Stumpff(k) => return ours("stumpff", k),
@@ -146,16 +146,16 @@ impl Emitter<'_> {
             _ => {}
         }
         let name = Ident::new(&format!("simd_{}", function.name()), span);
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SimdComplexField::#name(#argument))
+        quote_spanned!(Span::mixed_site()=> #private::nalgebra::SimdComplexField::#name(#argument))
     }
 
     fn literal(&self, value: Rational) -> TokenStream {
-        let (span, root) = (Span::mixed_site(), &self.header.root);
+        let (span, private) = (Span::mixed_site(), &self.header.private);
         let mut size = Literal::f64_unsuffixed(value.to_f64().abs());
         size.set_span(span);
         let literal = if value.is_negative() { quote_spanned!(span=> -#size) } else { quote_spanned!(span=> #size) };
         match &self.header.parameter {
-            Some(parameter) => quote_spanned!(span=> #root::__private::real::<#parameter>(#literal)),
+            Some(parameter) => quote_spanned!(span=> #private::real::<#parameter>(#literal)),
             None if value.is_negative() => quote_spanned!(span=> (#literal)),
             None => literal,
         }

@@ -1,12 +1,10 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
-use syn::ext::IdentExt as _;
-
-use super::Findings;
-use crate::ast::Declaration;
-use crate::derive::{Declared, Derived, SelfAdjointness};
-use crate::scalar::{Candidate, Graph, Kernel, NodeId, count};
-use crate::symbolic::{Stage, Variance, covector_text, text};
+use crate::declared::Declaration;
+use crate::judged::{Chosen, Findings};
+use crate::mathematics::derive::{Declared, Derived, SelfAdjointness};
+use crate::mathematics::symbolic::{Stage, Variance, covector_text, text};
+use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
 pub(super) struct Equation {
@@ -14,6 +12,14 @@ pub(super) struct Equation {
     left: &'static str,
     right: String,
     source: &'static str,
+}
+
+impl Equation {
+    /// `left = right    [source]`.
+    pub(super) fn line(&self) -> String {
+        let source = if self.source.is_empty() { String::new() } else { format!("    [{}]", self.source) };
+        format!("{} = {}{source}", self.left, self.right)
+    }
 }
 
 /// The closed `let`s and their multipliers, which the equations are written in.
@@ -41,7 +47,7 @@ pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation>
     let scalar = |expression| text(expression, symbols);
     let equation = |method, left, right, source| Equation { method, left, right, source };
     let mut equations = vec![
-        equation("l_d", "l_d", scalar(&declared.l_d), "as declared, in normal form"),
+        equation("l_d", "l_d", scalar(&declared.expression), "as declared, in normal form"),
         equation("right_momentum", "(R_F)* δl_d/δF", covector(&derived.right_momentum), "section 3.2.1, item 2"),
         equation("left_momentum", "(L_F)* δl_d/δF", covector(&derived.left_momentum), "section 3.2.1, item 1; (2.6)"),
         equation("diamond", "δl_d/δw ⋄ w", covector(&derived.diamond), "(2.1)"),
@@ -65,7 +71,7 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
     let symbols = &derived.symbols;
     let covector = |expression| covector_text(expression, derived.directions.first, symbols);
     let equation = |method, left, right, source| Equation { method, left, right, source };
-    let (work, jacobian) = (text(&declared.l_d, symbols), text(&derived.jacobian, symbols));
+    let (work, jacobian) = (text(&declared.expression, symbols), text(&derived.jacobian, symbols));
     vec![
         equation("virtual_work", "f⁻·η + f⁺·η⁺", work, "as declared, with FᵀF = I used"),
         equation("momentum", "−f⁻", covector(&derived.momentum), "the share in (2.7)"),
@@ -79,9 +85,8 @@ pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<
 pub(super) fn of(equations: &[Equation], method: &str, graph: &Graph, outputs: &[NodeId]) -> String {
     let operations = count(graph, outputs, None);
     let found = equations.iter().find(|equation| equation.method == method);
-    let (left, right, source) = found.map_or(("", "", ""), |e| (e.left, e.right.as_str(), e.source));
-    let source = if source.is_empty() { String::new() } else { format!("    [{source}]") };
-    format!("```text\n{left} = {right}{source}\n```\n\n{operations}.")
+    let equation = found.map(|equation| format!("```text\n{}\n```\n\n", equation.line()));
+    format!("{}{operations}.", equation.unwrap_or_default())
 }
 
 /// The documentation of a stage.
@@ -92,50 +97,56 @@ pub(super) fn stage(graph: &Graph, outputs: &[NodeId], stage: Stage, when: &str)
 /// The equations, what they rest on, and what they cost, as one text.
 pub(super) fn derivation(
     declaration: &Declaration,
-    derived: &Derived,
+    chosen: &Chosen,
     equations: &[Equation],
     findings: &Findings,
 ) -> String {
-    let line = |equation: &Equation| {
-        let source = if equation.source.is_empty() { String::new() } else { format!("    [{}]", equation.source) };
-        format!("{}\n    {} = {}{source}\n", equation.method, equation.left, equation.right)
-    };
+    let line = |equation: &Equation| format!("{}\n    {}\n", equation.method, equation.line());
     let hypotheses = match findings.hypotheses.as_slice() {
         [] => "none".to_owned(),
         used => used.join(", "),
     };
-    let kernel = &findings.kernel;
+    let sections = [
+        ("hypotheses used", hypotheses),
+        ("self-adjoint", adjoint(findings.self_adjointness)),
+        ("Newton system", candidates(&chosen.kernel)),
+        ("operations", costs(&chosen.kernel)),
+    ];
+    let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
+    let beginning = [setting(declaration), lets(&chosen.derived)];
+    beginning.into_iter().chain(equations.iter().map(line)).chain(sections).collect()
+}
+
+/// The operations of each stage, one a line.
+pub(super) fn costs(kernel: &Kernel) -> String {
     let before = [kernel.kick_before.as_slice(), &kernel.residual, &kernel.jacobian].concat();
     // With a = μ + k₀.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
     before_the_solve.arithmetic += kernel.residual.len();
-    let alone = if kernel.jacobian_is_dear() {
+    let alone = if kernel.jacobian_is_expensive() {
         let gradient = count(&kernel.graph, &kernel.gradient(), Some(Stage::Iteration));
         format!("; residual and diamond without it, with which a solve begins: {gradient}")
     } else {
         String::new()
     };
-    let operations = format!(
+    format!(
         "construction: {}\n    step, before the solve: {}\n    Newton iteration: {}{alone}\n    step, after the solve: {}",
         count(&kernel.graph, &[before.as_slice(), &kernel.kick_after].concat(), Some(Stage::Construction)),
         before_the_solve,
         count(&kernel.graph, &before, Some(Stage::Iteration)),
         count(&kernel.graph, &kernel.kick_after, Some(Stage::Step))
             + count(&kernel.graph, &kernel.kick_after, Some(Stage::Iteration)),
-    );
-    let sections = [
-        ("hypotheses used", hypotheses),
-        ("self-adjoint", adjoint(findings.self_adjointness)),
-        ("Newton system", candidates(kernel)),
-        ("operations", operations),
-    ];
-    let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
-    [setting(declaration), lets(derived)].into_iter().chain(equations.iter().map(line)).chain(sections).collect()
+    )
 }
 
 /// The group, and how it moves the advected parameters.
 fn setting(declaration: &Declaration) -> String {
-    let group = declaration.group.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+    let group = declaration
+        .group_path
+        .as_ref()
+        .and_then(|path| path.segments.last())
+        .map(|segment| segment.ident.to_string())
+        .unwrap_or_default();
     let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
         let (space, moved) = match declaration.advected_kind(index).variance() {
             Variance::Vector => ("V", "F⁻¹ w"),
@@ -144,7 +155,7 @@ fn setting(declaration: &Declaration) -> String {
             Variance::Covariant => ("V* ⊗ V*", "Fᵀ w F"),
             Variance::Mixed => ("V ⊗ V*", "F⁻¹ w F"),
         };
-        let name = w.name.unraw().to_string();
+        let name = w.plain_name();
         format!("    {name}⁺ = F⁻¹·{name} = {} for {name} in {space}\n", moved.replace('w', &name))
     });
     let advected: String = advected.collect();
@@ -167,16 +178,13 @@ pub(super) fn candidates(kernel: &Kernel) -> String {
 
 /// Whether the Lagrangian is self-adjoint, how that was found, and what follows.
 fn adjoint(found: SelfAdjointness) -> String {
+    let even = "even order; a step of −h undoes a step of h";
     let (sign, how, consequence) = match found {
-        SelfAdjointness::Symbolic => ("=", "by the normal forms", "even order; a step of −h undoes a step of h"),
-        SelfAdjointness::Exact => (
-            "=",
-            "at random points of the field of 2⁶¹ − 1 elements, wrong with a probability below 2⁻⁵⁰",
-            "even order; a step of −h undoes a step of h",
-        ),
-        SelfAdjointness::Numeric => {
-            ("=", "at random points, to rounding", "even order; a step of −h undoes a step of h")
+        SelfAdjointness::Symbolic => ("=", "by the normal forms", even),
+        SelfAdjointness::Exact => {
+            ("=", "at random points of the field of 2⁶¹ − 1 elements, wrong with a probability below 2⁻⁵⁰", even)
         }
+        SelfAdjointness::Numeric => ("=", "at random points, to rounding", even),
         SelfAdjointness::ForPoints => (
             "≠",
             "equal, at random points, if all vectors have 1 for their last coordinate, as the types of points promise",

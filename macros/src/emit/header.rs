@@ -4,13 +4,14 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
-use crate::ast::{Declaration, FieldKind, Scalar};
-use crate::symbolic::Variance;
+use crate::declared::{Declaration, FieldKind, Scalar};
+use crate::mathematics::symbolic::Variance;
 
 /// What the signatures are written with.
 pub(crate) struct Header {
-    pub(crate) root: Path,
-    group: Path,
+    /// The module of liestep that expansions name, and nothing beside it: where the rest of the library stands is free.
+    pub(crate) private: Path,
+    group_path: Path,
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
     pub(crate) parameter: Option<Ident>,
@@ -23,24 +24,24 @@ pub(crate) struct Header {
 
 impl Header {
     pub(crate) fn new(declaration: &Declaration) -> Self {
+        let root = declaration.root.clone().unwrap_or_else(|| syn::parse_quote!(::liestep));
+        let private: Path = syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private);
+        let group_path = declaration.group_path.clone().unwrap_or_else(|| syn::parse_quote!(#private::SO3));
         let (scalar, parameter) = match &declaration.scalar {
             // The primitive type even where the name is shadowed.
-            Scalar::Primitive(name) => {
-                let root = &declaration.root;
-                (quote_spanned!(Span::mixed_site()=> #root::__private::core::primitive::#name), None)
-            }
+            Scalar::Primitive(name) => (quote_spanned!(Span::mixed_site()=> #private::core::primitive::#name), None),
             Scalar::Parameter(name) => (name.to_token_stream(), Some(name.clone())),
         };
         Self {
-            root: declaration.root.clone(),
-            group: declaration.group.clone(),
+            private,
+            group_path,
             scalar,
             parameter,
             name: declaration.item.ident.clone(),
             generics: declaration.item.generics.clone(),
             advected: (0..declaration.advected.len()).map(|index| declaration.advected_kind(index)).collect(),
-            size: declaration.structure.size,
-            dimension: declaration.structure.dimension(),
+            size: declaration.group.size,
+            dimension: declaration.group.dimension(),
         }
     }
 
@@ -60,8 +61,8 @@ impl Header {
     }
 
     fn column(&self, rows: usize) -> TokenStream {
-        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SVector<#scalar, #rows>)
+        let (private, scalar, rows) = (&self.private, &self.scalar, Literal::usize_unsuffixed(rows));
+        quote_spanned!(Span::mixed_site()=> #private::nalgebra::SVector<#scalar, #rows>)
     }
 
     fn advected_type(&self, kind: FieldKind) -> TokenStream {
@@ -76,37 +77,37 @@ impl Header {
             Variance::Covariant => "CovariantTensor",
             Variance::Mixed => "MixedTensor",
         };
-        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
+        let (private, scalar, rows) = (&self.private, &self.scalar, Literal::usize_unsuffixed(rows));
         let name = Ident::new(name, Span::mixed_site());
-        quote_spanned!(Span::mixed_site()=> #root::#name<#scalar, #rows>)
+        quote_spanned!(Span::mixed_site()=> #private::#name<#scalar, #rows>)
     }
 
     fn point(&self, coordinates: usize) -> TokenStream {
-        let (root, scalar, coordinates) = (&self.root, &self.scalar, Literal::usize_unsuffixed(coordinates));
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::Point<#scalar, #coordinates>)
+        let (private, scalar, coordinates) = (&self.private, &self.scalar, Literal::usize_unsuffixed(coordinates));
+        quote_spanned!(Span::mixed_site()=> #private::nalgebra::Point<#scalar, #coordinates>)
     }
 
     fn matrix_of(&self, rows: usize) -> TokenStream {
-        let (root, scalar, rows) = (&self.root, &self.scalar, Literal::usize_unsuffixed(rows));
-        quote_spanned!(Span::mixed_site()=> #root::__private::nalgebra::SMatrix<#scalar, #rows, #rows>)
+        let (private, scalar, rows) = (&self.private, &self.scalar, Literal::usize_unsuffixed(rows));
+        quote_spanned!(Span::mixed_site()=> #private::nalgebra::SMatrix<#scalar, #rows, #rows>)
     }
 
     /// `impl … liestep::Trait for …`.
     pub(crate) fn implementation(&self, name: &str) -> TokenStream {
-        let (root, implemented) = (&self.root, Ident::new(name, Span::mixed_site()));
-        self.implementation_of(None, &quote_spanned!(Span::mixed_site()=> #root::#implemented))
+        let (private, implemented) = (&self.private, Ident::new(name, Span::mixed_site()));
+        self.implementation_of(None, &quote_spanned!(Span::mixed_site()=> #private::#implemented))
     }
 
     /// `impl … Add<Other> for …`: the sum with any effect of the same group.
     pub(crate) fn addition(&self) -> TokenStream {
-        let (span, root, group, scalar) = (Span::mixed_site(), &self.root, &self.group, &self.scalar);
-        let core = quote_spanned!(span=> #root::__private::core);
+        let (span, private, group, scalar) = (Span::mixed_site(), &self.private, &self.group_path, &self.scalar);
+        let core = quote_spanned!(span=> #private::core);
         // A name that no type of the user's has.
         let other = Ident::new("LiestepOtherEffect", span);
         let bounds = [
-            syn::parse_quote_spanned!(span=> #other: #root::Effect),
+            syn::parse_quote_spanned!(span=> #other: #private::Effect),
             syn::parse_quote_spanned! {span=>
-                <#other as #root::Effect>::Group: #root::SharedBy<#group<#scalar>, Self, #other>
+                <#other as #private::Effect>::Group: #private::SharedBy<#group<#scalar>, Self, #other>
             },
         ];
         let added = quote_spanned!(span=> #core::ops::Add<#other>);
@@ -115,10 +116,10 @@ impl Header {
             #[automatically_derived]
             #[allow(clippy::all, clippy::pedantic, clippy::nursery)]
             #implementation {
-                type Output = #root::Sum<Self, #other>;
+                type Output = #private::Sum<Self, #other>;
 
-                fn add(self, other: #other) -> #root::Sum<Self, #other> {
-                    #root::Sum::new(self, other)
+                fn add(self, other: #other) -> #private::Sum<Self, #other> {
+                    #private::Sum::new(self, other)
                 }
             }
         }
@@ -130,10 +131,10 @@ impl Header {
         more: Option<(&Ident, [syn::WherePredicate; 2])>,
         implemented: &TokenStream,
     ) -> TokenStream {
-        let (root, name) = (&self.root, &self.name);
+        let (private, name) = (&self.private, &self.name);
         let mut generics = self.generics.clone();
         if let Some(parameter) = &self.parameter {
-            generics.make_where_clause().predicates.push(syn::parse_quote!(#parameter: #root::Real));
+            generics.make_where_clause().predicates.push(syn::parse_quote!(#parameter: #private::Real));
         }
         if let Some((parameter, bounds)) = more {
             generics.params.push(syn::parse_quote!(#parameter));
@@ -148,7 +149,7 @@ impl Header {
     /// The associated types of an effect.
     pub(crate) fn types(&self, has_kinetic: bool, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
         let kinetic = Ident::new(if has_kinetic { "WithKinetic" } else { "WithoutKinetic" }, Span::mixed_site());
-        let (root, group, scalar) = (&self.root, &self.group, &self.scalar);
+        let (private, group, scalar) = (&self.private, &self.group_path, &self.scalar);
         let values: Vec<TokenStream> = self.advected.iter().map(|kind| self.advected_type(*kind)).collect();
         let advected = match values.as_slice() {
             [single] => single.clone(),
@@ -157,8 +158,8 @@ impl Header {
         quote_spanned! {Span::mixed_site()=>
             type Scalar = #scalar;
             type Group = #group<#scalar>;
-            type Retraction = #root::CayleyRetraction;
-            type Kinetic = #root::#kinetic;
+            type Retraction = #private::CayleyRetraction;
+            type Kinetic = #private::#kinetic;
             type Advected = #advected;
             type Constants = #constants;
             type StepTerms = #step_terms;

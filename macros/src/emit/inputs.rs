@@ -4,8 +4,8 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
 
 use super::Emitter;
-use crate::ast::{FieldKind, Name};
-use crate::scalar::Input;
+use crate::declared::{FieldKind, Name};
+use crate::program::Input;
 
 impl Emitter<'_> {
     /// An entry of `F`, `w`, `h` or a parameter; arrays are indexed by numbers, so nothing can panic.

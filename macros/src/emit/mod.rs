@@ -1,51 +1,53 @@
-//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`. Makes no mathematical decision.
+//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`, and their stand-in after a mistake.
+//!
+//! The only room that quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
 
 mod code;
 mod docs;
+mod fallback;
 mod header;
 mod inputs;
+mod own_group;
+mod page;
 mod stages;
 mod verbatim;
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
-use crate::ast::{Declaration, Role};
-use crate::derive::{Derived, SelfAdjointness};
-use crate::lower::Lowered;
-use crate::scalar::{Given, Graph, Kernel, Scalariser, components, square, with_lets};
-use crate::symbolic::{Expression, SymbolId};
+use crate::declared::lower::Lowered;
+use crate::declared::{Declaration, Role};
+use crate::judged::{Chosen, Findings};
+use crate::mathematics::derive::Derived;
+use crate::mathematics::symbolic::{Expression, SymbolId};
+use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
 
 use code::Form;
-pub(crate) use header::Header;
+pub(crate) use fallback::mistakes;
+use header::Header;
+pub(crate) use own_group::{ask, own_group};
 
-/// What has been found out about a derivation.
-pub(crate) struct Findings {
-    pub(crate) kernel: Kernel,
-    pub(crate) self_adjointness: SelfAdjointness,
-    pub(crate) hypotheses: Vec<String>,
-}
-
-/// The whole implementation.
+/// The item with the whole implementation.
 pub(crate) fn implementation(
+    item: &TokenStream,
     declaration: &Declaration,
-    lowered: &Lowered,
-    derived: &Derived,
+    chosen: &Chosen,
     findings: &Findings,
 ) -> TokenStream {
-    let (header, kernel) = (Header::new(declaration), &findings.kernel);
+    let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
     let mut graph = Graph::default();
     let given = with_lets(&mut graph, derived, Given::new());
     let emitter = Emitter { declaration, lowered, derived, header: &header, lets: (graph, given) };
     let (mathematics, effect, texts) = emitter.mathematics();
     let stages = stages::stages(&emitter, kernel, &texts);
     let declared = verbatim::declared(declaration, &header);
-    let derivation = docs::derivation(declaration, derived, &texts, findings);
+    let derivation = docs::derivation(declaration, chosen, &texts, findings);
     let documentation = format!("```text\n{derivation}```");
+    let item = page::documented(item, &page::page(declaration, chosen, &texts, findings));
     let validate = emitter.validate();
     let describe = emitter.describe();
     let advected = emitter.advected();
-    let root = &header.root;
+    let private = &header.private;
     let span = Span::mixed_site();
     let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, kernel);
@@ -59,9 +61,11 @@ pub(crate) fn implementation(
     let body = &stages.methods;
     let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
-        quote_spanned!(span=> const SELF_ADJOINT: #root::__private::core::primitive::bool = #is_self_adjoint;)
+        quote_spanned!(span=> const SELF_ADJOINT: #private::core::primitive::bool = #is_self_adjoint;)
     });
     quote_spanned! {span=>
+        #item
+
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #of_role {
@@ -77,7 +81,11 @@ pub(crate) fn implementation(
             #parts
 
             #[doc = #documentation]
-            const DERIVATION: &'static #root::__private::core::primitive::str = #derivation;
+            const DERIVATION: &'static #private::core::primitive::str = {
+                // So that rustdoc shows no value: it would escape each letter that isn't ASCII.
+                const TEXT: &#private::core::primitive::str = #derivation;
+                TEXT
+            };
 
             #validate
             #describe
@@ -156,7 +164,7 @@ impl Emitter<'_> {
         expression: &Expression,
         equations: &[docs::Equation],
     ) -> TokenStream {
-        let (span, d, root) = (Span::mixed_site(), self.derived, &self.header.root);
+        let (span, d, private) = (Span::mixed_site(), self.derived, &self.header.private);
         let (mut graph, none) = self.lets.clone();
         let (outputs, result) = match form {
             Form::Scalar => {
@@ -168,12 +176,12 @@ impl Emitter<'_> {
         };
         let documentation = docs::of(equations, name, &graph, &outputs);
         let inverse = stages::uses(&graph, &outputs, d.directions.inverse).then(
-            || quote_spanned!(span=> let inverse = #root::__private::inverse_of::<<Self as #root::Effect>::Group>(*f);),
+            || quote_spanned!(span=> let inverse = #private::inverse_of::<<Self as #private::Effect>::Group>(*f);),
         );
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
-        let w = quote_spanned!(span=> w: &<Self as #root::Effect>::Advected);
+        let w = quote_spanned!(span=> w: &<Self as #private::Effect>::Advected);
         let arguments = match takes {
             Takes::Nothing => TokenStream::new(),
             Takes::Advected => w,
@@ -187,40 +195,40 @@ impl Emitter<'_> {
 
     fn validate(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let root = &self.header.root;
+        let private = &self.header.private;
         let checks = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
-            if field.kind == crate::ast::FieldKind::Scalar {
-                quote_spanned!(span=> #root::__private::validate_scalar(self.#name, #text)?;)
+            if field.kind == crate::declared::FieldKind::Scalar {
+                quote_spanned!(span=> #private::validate_scalar(self.#name, #text)?;)
             } else {
-                quote_spanned!(span=> #root::__private::Parameter::validate(&self.#name, #text)?;)
+                quote_spanned!(span=> #private::Parameter::validate(&self.#name, #text)?;)
             }
         });
         quote_spanned! {span=>
-            fn validate(&self) -> #root::__private::core::result::Result<(), #root::SetupError> {
+            fn validate(&self) -> #private::core::result::Result<(), #private::SetupError> {
                 #(#checks)*
-                #root::__private::core::result::Result::Ok(())
+                #private::core::result::Result::Ok(())
             }
         }
     }
 
     fn describe(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let root = &self.header.root;
+        let private = &self.header.private;
         let scalar = &self.header.scalar;
         let fields = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
-            if field.kind == crate::ast::FieldKind::Scalar {
-                quote_spanned!(span=> #root::__private::SceneVisitor::parameter(visitor, #text, self.#name);)
+            if field.kind == crate::declared::FieldKind::Scalar {
+                quote_spanned!(span=> #private::SceneVisitor::parameter(visitor, #text, self.#name);)
             } else {
-                quote_spanned!(span=> #root::__private::Parameter::describe(&self.#name, #text, visitor);)
+                quote_spanned!(span=> #private::Parameter::describe(&self.#name, #text, visitor);)
             }
         });
         quote_spanned! {span=>
-            fn describe(&self, visitor: &mut dyn #root::__private::SceneVisitor<#scalar>) {
-                #root::__private::SceneVisitor::term(visitor, Self::DERIVATION);
+            fn describe(&self, visitor: &mut dyn #private::SceneVisitor<#scalar>) {
+                #private::SceneVisitor::term(visitor, Self::DERIVATION);
                 #(#fields)*
             }
         }

@@ -7,8 +7,8 @@ use quote::quote_spanned;
 
 use super::Emitter;
 use super::code::{Form, needed};
-use crate::scalar::{Graph, Kernel, Node, NodeId};
-use crate::symbolic::{Stage, SymbolId};
+use crate::mathematics::symbolic::{Stage, SymbolId};
+use crate::program::{Graph, Kernel, Node, NodeId};
 
 /// The methods of the stages, and the arrays that pass values between them.
 pub(super) struct Stages {
@@ -21,13 +21,13 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let graph = &kernel.graph;
     let system: Vec<NodeId> = [kernel.residual.as_slice(), &kernel.jacobian].concat();
     // The moved part of the diamond is emitted only with a residual alone.
-    let moved: &[NodeId] = if kernel.jacobian_is_dear() { &kernel.moved } else { &[] };
+    let moved: &[NodeId] = if kernel.jacobian_is_expensive() { &kernel.moved } else { &[] };
     let solved = [system.as_slice(), moved].concat();
     let change = kernel.kick_derivative.as_deref().unwrap_or_default();
     let everything: Vec<NodeId> = [kernel.kick_before.as_slice(), &solved, &kernel.kick_after, change].concat();
     let constants = boundary(graph, &everything, Stage::Construction);
     let step_terms = boundary(graph, &solved, Stage::Step);
-    let (span, root) = (Span::mixed_site(), &emitter.header.root);
+    let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let (vector, square, scalar) = (emitter.header.vector(), emitter.header.square(), &emitter.header.scalar);
     let matrix = emitter.header.matrix();
     let from_parameters = |id: NodeId| input(emitter, graph, id);
@@ -54,10 +54,10 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let (lets, values) = emitter.statements(graph, &system, &from_terms);
     let (residual, jacobian) = values.split_at(kernel.residual.len());
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
-    let residual_alone = kernel.jacobian_is_dear().then(|| residual_alone(emitter, kernel, &from_terms));
+    let residual_alone = kernel.jacobian_is_expensive().then(|| residual_alone(emitter, kernel, &from_terms));
     let (increment, jacobian) = in_coordinates(emitter, kernel, &system, jacobian);
     let inverse = uses(graph, &kernel.kick_after, emitter.derived.directions.inverse).then(|| {
-        let group = quote_spanned!(span=> <Self::Group as #root::LieGroup>);
+        let group = quote_spanned!(span=> <Self::Group as #private::LieGroup>);
         quote_spanned! {span=>
             let inverse = #group::matrix(&#group::inverse(&#group::from_increment(increment)));
         }
@@ -134,11 +134,11 @@ fn in_coordinates(
     if !kernel.in_increment {
         return (TokenStream::new(), jacobian);
     }
-    let (span, root) = (Span::mixed_site(), &emitter.header.root);
-    let retraction = quote_spanned!(span=> <Self::Retraction as #root::Retraction<Self::Group>>);
-    let inverse = uses(&kernel.graph, system, emitter.derived.directions.small_inverse).then(|| {
-        quote_spanned!(span=> let inverse_increment = #root::__private::inverse_increment::<Self::Group, _, _>(&increment);)
-    });
+    let (span, private) = (Span::mixed_site(), &emitter.header.private);
+    let retraction = quote_spanned!(span=> <Self::Retraction as #private::Retraction<Self::Group>>);
+    let inverse = uses(&kernel.graph, system, emitter.derived.directions.small_inverse).then(
+        || quote_spanned!(span=> let inverse_increment = #private::inverse_increment::<Self::Group, _, _>(&increment);),
+    );
     (
         quote_spanned!(span=> let increment = #retraction::increment_of_half(half); #inverse),
         quote_spanned!(span=> (#jacobian) * #retraction::tangent_of_half(half)),
@@ -147,23 +147,23 @@ fn in_coordinates(
 
 /// Which parts of a step aren't zero, and the factor of the Newton system.
 pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
-    let (span, root, derived) = (Span::mixed_site(), &emitter.header.root, emitter.derived);
+    let (span, private, derived) = (Span::mixed_site(), &emitter.header.private, emitter.derived);
     let [unknown, before, after] =
         [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero());
     let denominators = Literal::u32_unsuffixed(kernel.denominators);
-    let u32 = quote_spanned!(span=> #root::__private::core::primitive::u32);
+    let u32 = quote_spanned!(span=> #private::core::primitive::u32);
     let [step, iteration] = kernel.operations().map(Literal::u32_unsuffixed);
     quote_spanned! {span=>
-        const PARTS: #root::Parts = #root::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
+        const PARTS: #private::Parts = #private::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
-        const OPERATIONS: #root::Operations = #root::Operations { step: #step, iteration: #iteration };
+        const OPERATIONS: #private::Operations = #private::Operations { step: #step, iteration: #iteration };
     }
 }
 
 /// How a kick changes as the body turns.
 fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) -> TokenStream {
-    let (span, root, vector) = (Span::mixed_site(), &emitter.header.root, emitter.header.vector());
-    let option = quote_spanned!(span=> #root::__private::core::option::Option);
+    let (span, private, vector) = (Span::mixed_site(), &emitter.header.private, emitter.header.vector());
+    let option = quote_spanned!(span=> #private::core::option::Option);
     quote_spanned! {span=>
         #[doc = #documentation]
         #[inline(always)]
@@ -179,16 +179,16 @@ fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) 
 
 /// The residual for itself, where the solve can do without the Jacobian.
 fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::Given) -> TokenStream {
-    let (span, root, vector) = (Span::mixed_site(), &emitter.header.root, emitter.header.vector());
+    let (span, private, vector) = (Span::mixed_site(), &emitter.header.private, emitter.header.vector());
     let gradient = kernel.gradient();
     let (lets, values) = emitter.statements(&kernel.graph, &gradient, from_terms);
     let (residual, moved) = values.split_at(kernel.residual.len());
     let (residual, moved) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Vector, moved));
     let when = "an iteration without the Jacobian";
     let documentation = super::docs::stage(&kernel.graph, &gradient, Stage::Iteration, when);
-    let option = quote_spanned!(span=> #root::__private::core::option::Option);
+    let option = quote_spanned!(span=> #private::core::option::Option);
     quote_spanned! {span=>
-        const JACOBIAN_IS_DEAR: #root::__private::core::primitive::bool = true;
+        const JACOBIAN_IS_EXPENSIVE: #private::core::primitive::bool = true;
 
         #[doc = #documentation]
         #[inline(always)]
@@ -205,7 +205,7 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
 
 /// The compiler's check that the generators that were derived with are those of the group that is run with.
 fn same_generators(emitter: &Emitter) -> TokenStream {
-    let (span, root, group) = (Span::mixed_site(), &emitter.header.root, &emitter.derived.group);
+    let (span, private, group) = (Span::mixed_site(), &emitter.header.private, &emitter.derived.group);
     if group.is_so3 {
         return TokenStream::new();
     }
@@ -222,7 +222,7 @@ fn same_generators(emitter: &Emitter) -> TokenStream {
     });
     quote_spanned! {span=>
         const {
-            #root::__private::core::assert!(
+            #private::core::assert!(
                 <Self::Group>::has_generators(&[#(#matrices),*]),
                 "the generators of the declaration aren't those of the group"
             )

@@ -11,13 +11,13 @@ use syn::visit_mut::{self, VisitMut};
 use syn::{Expr, Ident};
 
 use super::Header;
-use crate::ast::{Declaration, FieldKind, Role};
+use crate::declared::{Declaration, FieldKind, Role};
 
 /// The Lagrangian's `l_d`, or a force's `virtual_work`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
-    let (root, scalar, square) = (&header.root, &header.scalar, header.matrix());
-    let Some(mut expression) = declaration.l_d.clone() else { return TokenStream::new() };
+    let (private, scalar, square) = (&header.private, &header.scalar, header.matrix());
+    let Some(mut expression) = declaration.expression.clone() else { return TokenStream::new() };
     let mut rewrite = Rewrite { header, mentioned: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let mut names: Vec<Ident> = Vec::new();
@@ -30,12 +30,12 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     };
     bind("F", quote_spanned!(span=> *f));
     bind("I", quote_spanned!(span=> <#square>::identity()));
-    let three = quote_spanned!(span=> #root::__private::nalgebra::Matrix3<#scalar>);
-    bind("vee", quote_spanned!(span=> |matrix: #three| <#root::SO3<#scalar> as #root::LieGroup>::vee(&matrix)));
+    let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
+    bind("vee", quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)));
     bind("eta", quote_spanned!(span=> *eta));
     bind("eta_next", quote_spanned!(span=> *eta_next));
-    bind("log", quote_spanned!(span=> #root::__private::rotation_log::<#scalar>));
-    bind("exp", quote_spanned!(span=> #root::__private::rotation_exp::<#scalar>));
+    bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
+    bind("exp", quote_spanned!(span=> #private::rotation_exp::<#scalar>));
     for (index, parameter) in declaration.advected.iter().enumerate() {
         let part = if declaration.advected.len() == 1 {
             quote_spanned!(span=> (*w))
@@ -45,25 +45,25 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         };
         let value = match declaration.advected_kind(index) {
             FieldKind::Advected(..) => quote_spanned!(span=> #part.0),
-            FieldKind::Point(_) => quote_spanned!(span=> #root::__private::Parameter::value(&#part)),
+            FieldKind::Point(_) => quote_spanned!(span=> #private::Parameter::value(&#part)),
             _ => part,
         };
-        bind(&parameter.name.unraw().to_string(), value);
+        bind(&parameter.plain_name(), value);
     }
     for field in &declaration.fields {
         let member = &field.name;
         let value = if field.kind == FieldKind::Scalar {
             quote_spanned!(span=> self.#member)
         } else {
-            quote_spanned!(span=> #root::__private::Parameter::value(&self.#member))
+            quote_spanned!(span=> #private::Parameter::value(&self.#member))
         };
-        bind(&field.name.unraw().to_string(), value);
+        bind(&field.plain_name(), value);
     }
     // In the user's scope `F` and `I` may be constants or unit structs, which a pattern would compare with instead of
     // binding the name; the nearer functions can be hidden.
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
     let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
-    let traits = header.parameter.as_ref().map(|_| quote!(use #root::__private::nalgebra::SimdComplexField as _;));
+    let traits = header.parameter.as_ref().map(|_| quote!(use #private::nalgebra::SimdComplexField as _;));
     let vector = header.vector();
     let signature = match declaration.role {
         Role::Lagrangian => quote_spanned! {span=>
@@ -122,9 +122,8 @@ impl VisitMut for Rewrite<'_> {
         if let (Expr::Lit(literal), Some(parameter)) = (&*expression, &self.header.parameter)
             && matches!(literal.lit, syn::Lit::Float(_))
         {
-            let root = &self.header.root;
-            *expression =
-                syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::real::<#parameter>(#literal));
+            let private = &self.header.private;
+            *expression = syn::parse_quote_spanned!(Span::mixed_site()=> #private::real::<#parameter>(#literal));
         }
     }
 
@@ -132,11 +131,11 @@ impl VisitMut for Rewrite<'_> {
         visit_mut::visit_expr_call_mut(self, call);
         // A path, as one closure can't be for matrices of several sizes.
         if matches!(&*call.func, Expr::Path(path) if path.path.is_ident("inverse")) {
-            let root = &self.header.root;
+            let private = &self.header.private;
             *call.func = if call.args.first().is_some_and(is_increment) {
-                syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::inverse_of::<<Self as #root::Effect>::Group>)
+                syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse_of::<<Self as #private::Effect>::Group>)
             } else {
-                syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private::inverse)
+                syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse)
             };
         }
     }

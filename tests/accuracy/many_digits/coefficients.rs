@@ -1,6 +1,6 @@
 //! The coefficients of a composition beyond the digits of a double.
 
-use liestep::CompositionScheme;
+use liestep::methods::CompositionScheme;
 use nalgebra::{DMatrix, DVector};
 
 use super::DoubleDouble;

@@ -9,7 +9,7 @@ use super::heavy_top::Top;
 use super::motion::Motion;
 use super::{DoubleDouble, Matrix, Vector, coefficients, hat, long};
 use crate::convergence::TOPS;
-use liestep::CompositionScheme;
+use liestep::methods::CompositionScheme;
 
 /// Momentum and vertical.
 type Phase = Vector6<DoubleDouble>;

@@ -1,6 +1,8 @@
 //! (3.13) in principal axes, declared and stepped.
 
-use liestep::{DiagonalNonstandardInertia, LieGroup as _, SO3, Stepper, lagrangian};
+use liestep::{SO3, Stepper, lagrangian};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::DiagonalNonstandardInertia;
 use nalgebra::Vector3;
 
 const EDIT: u32 = 0;

@@ -5,6 +5,6 @@ use liestep::SO3;
 const EDIT: u32 = 0;
 
 fn main() {
-    let attitude: SO3 = liestep::LieGroup::identity();
+    let attitude: SO3 = liestep::groups::LieGroup::identity();
     println!("{EDIT} {attitude:?}");
 }

@@ -7,8 +7,10 @@ pub mod reversal;
 pub mod stages;
 pub mod symmetry;
 
+use liestep::groups::Advected as _;
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
-use liestep::{Advected as _, DiscreteLagrangian, DiscreteLiePoisson, Increment, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::{DiscreteLiePoisson, Increment};
 use nalgebra::SVector;
 
 use numbers::Numbers;

@@ -4,9 +4,9 @@
 //! (L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF,     μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)
 //! ```
 
+use liestep::groups::{Advected as _, LieGroup as _};
 use liestep::laws::samples::derivative;
 use liestep::laws::samples::{Random, along};
-use liestep::{Advected as _, LieGroup as _};
 use nalgebra::SVector;
 
 use super::{System, random_advected, turn};

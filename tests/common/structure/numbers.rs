@@ -1,6 +1,6 @@
 //! Advected parameters as columns of numbers.
 
-use liestep::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use nalgebra::{Point, SMatrix, SVector};
 
 /// What can be taken apart into numbers and put together again: the parameters of one kind, none, or several.

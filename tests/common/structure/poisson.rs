@@ -1,8 +1,9 @@
 //! P1: the flow (2.8) is a Poisson map of the semidirect product, `DΦ B(z) DΦᵀ = B(Φ(z))` for `z = (μ, w)`.
 
+use liestep::groups::{Advected as _, LieGroup};
 use liestep::laws::samples::derivative;
 use liestep::laws::samples::{Random, along};
-use liestep::{Advected as _, DiscreteLiePoisson, LieGroup};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;

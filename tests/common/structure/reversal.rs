@@ -1,8 +1,9 @@
 //! The step of `−h` undoes that of `h` where `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`, for parameters off the orbit of the
 //! declared ones too.
 
+use liestep::groups::LieGroup as _;
 use liestep::laws::samples::{Random, along};
-use liestep::{DiscreteLiePoisson, LieGroup as _};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::SVector;
 
 use super::numbers::Numbers as _;

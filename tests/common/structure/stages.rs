@@ -1,9 +1,11 @@
 //! P2: the step in stages says the same as the equations: the Newton system vanishes where `𝔽l_d⁻ = μ`, its Jacobian is
 //! its derivative, and a step ends at `𝔽l_d⁺`.
 
+use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
 use liestep::laws::samples::{Random, along};
-use liestep::{Advected, Coordinates, DiscreteLiePoisson, LieGroup as _, Retraction as _};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::numbers::Coordinates;
 use nalgebra::{DVector, SMatrix, SVector};
 
 use super::numbers::Numbers as _;

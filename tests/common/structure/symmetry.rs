@@ -5,8 +5,9 @@
 //! exact for every `l_d` (Noether). On SO(3) with one vector that is `μ·w`; where nothing is advected it is all of the
 //! spatial momentum.
 
+use liestep::groups::{Advected as _, LieGroup as _};
 use liestep::laws::samples::derivative;
-use liestep::{Advected as _, DiscreteLiePoisson, LieGroup as _};
+use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;
@@ -40,7 +41,7 @@ pub fn drift<L: System<N, D>, const N: usize, const D: usize>(
     (mut attitude, velocity): (L::Group, SVector<f64, D>),
     steps: u32,
 ) -> (f64, f64) {
-    let lagrangian = flow.lagrangian();
+    let lagrangian = flow.scene();
     let symmetries = symmetries::<L, N, D>(lagrangian);
     let mut w = lagrangian.advected().seen_from(&attitude);
     let mut momentum = lagrangian.inertia() * velocity + lagrangian.momentum_bias(&w);

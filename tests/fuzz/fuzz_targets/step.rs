@@ -6,9 +6,9 @@
 #![allow(non_snake_case)]
 
 use libfuzzer_sys::fuzz_target;
-use liestep::{
-    DiagonalNonstandardInertia, DiscreteLagrangian as _, LieGroup as _, SO3, State, StepError, Stepper, lagrangian,
-};
+use liestep::{SO3, State, StepError, Stepper, lagrangian};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian as _};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// (3.13).

@@ -4,7 +4,9 @@
 
 use checks::random::Random;
 use declarations::{FullTop, HeavyTop, Motion};
-use liestep::{DiagonalNonstandardInertia, DiscreteLagrangian, LieGroup as _, Regular, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 

@@ -3,7 +3,9 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
-use liestep::{DiscreteLagrangian, LieGroup as _, Regular, SO3, State, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::{SO3, State, Stepper};
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 

@@ -2,9 +2,8 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
-use liestep::{
-    DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError, NonstandardInertia, SetupError, Stepper,
-};
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError};
+use liestep::{NonstandardInertia, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 

@@ -2,7 +2,8 @@
 //! by the weight.
 
 use declarations::HeavyTop;
-use liestep::{LieGroup as _, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
 fn tilted() -> UnitQuaternion<f64> {

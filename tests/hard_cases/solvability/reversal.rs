@@ -3,7 +3,8 @@
 
 use checks::random::Random;
 use declarations::HeavyTop;
-use liestep::{DiscreteLiePoisson, LieGroup as _};
+use liestep::groups::LieGroup as _;
+use liestep::motion::DiscreteLiePoisson;
 use workbench::measure::relative;
 
 #[test]

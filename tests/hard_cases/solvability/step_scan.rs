@@ -4,7 +4,10 @@
 
 use checks::random::Random;
 use declarations::{FullTop, HeavyTop};
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, LieGroup as _, Regular, SO3, StepError};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{SO3, StepError};
 use nalgebra::Vector3;
 
 /// Other bodies, other directions: near the fold nothing but a rotation on the branch of the identity comes out, and

@@ -3,7 +3,10 @@
 //! doesn't continue the identity.
 
 use declarations::FreeBody;
-use liestep::{DiscreteLagrangian, DiscreteLiePoisson, Effect as _, Retraction, SO3, StepError};
+use liestep::groups::Retraction;
+use liestep::mechanics::{DiscreteLagrangian, Effect as _};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::{SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.1;

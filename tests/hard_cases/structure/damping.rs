@@ -5,7 +5,9 @@
 
 use checks::random::Random;
 use liestep::effects::{Drag, MagneticDamping, PrincipalBody, Torque};
-use liestep::{DiagonalNonstandardInertia, Inertia, LieGroup as _, Regular, SO3, Stepper};
+use liestep::groups::LieGroup as _;
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Regular};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 

@@ -1,5 +1,8 @@
 use liestep::effects::{Drag, RigidBody};
-use liestep::{Accuracy, LieGroup, SO3, Stepper, Sum};
+use liestep::{SO3, Stepper};
+use liestep::accuracy::Accuracy;
+use liestep::groups::LieGroup;
+use liestep::mechanics::Sum;
 use nalgebra::Vector3;
 
 fn claim(damped: Sum<RigidBody, Drag>, accuracy: Accuracy) {

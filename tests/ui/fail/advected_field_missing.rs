@@ -1,4 +1,5 @@
-use liestep::{Effect, NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::mechanics::Effect;
 use nalgebra::Vector3;
 
 #[lagrangian(
@@ -14,7 +15,7 @@ struct Top {
 
 fn run(top: Top) {
     let stepper = Stepper::new(top, 0.01).unwrap();
-    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+    println!("{} {}", stepper.scene().inertia(), Top::DERIVATION);
 }
 
 fn main() {}

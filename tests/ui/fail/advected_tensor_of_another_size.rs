@@ -1,4 +1,5 @@
-use liestep::{MixedTensor, SE3, lagrangian};
+use liestep::lagrangian;
+use liestep::groups::{MixedTensor, SE3};
 use nalgebra::Matrix4;
 
 #[lagrangian(

@@ -1,4 +1,5 @@
-use liestep::{SE3, lagrangian};
+use liestep::lagrangian;
+use liestep::groups::SE3;
 use nalgebra::{Matrix4, Vector3};
 
 #[lagrangian(

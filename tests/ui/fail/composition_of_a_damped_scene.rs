@@ -1,8 +1,9 @@
 use liestep::effects::{Drag, RigidBody};
-use liestep::{Composition, CompositionScheme};
+use liestep::Stepper;
+use liestep::methods::CompositionScheme;
 
 fn claim(body: RigidBody, drag: Drag) {
-    let _ = Composition::new(body + drag, 0.01, CompositionScheme::KAHAN_LI_8);
+    let _ = Stepper::composed(body + drag, 0.01, CompositionScheme::KAHAN_LI_8);
 }
 
 fn main() {}

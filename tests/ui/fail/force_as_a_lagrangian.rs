@@ -1,4 +1,4 @@
-use liestep::DiscreteEulerPoincare;
+use liestep::motion::DiscreteEulerPoincare;
 use liestep::effects::{RigidBody, Torque};
 
 fn claim(body: RigidBody, torque: Torque) {

@@ -1,4 +1,5 @@
-use liestep::{SE2, force};
+use liestep::force;
+use liestep::groups::SE2;
 
 #[force(group = SE2, work = h * c * eta[0])]
 struct Push {

@@ -1,4 +1,5 @@
-use liestep::{Effect, NonstandardInertia, Stepper, lagrangian};
+use liestep::{NonstandardInertia, Stepper, lagrangian};
+use liestep::mechanics::Effect;
 
 #[lagrangian(group = SO4, l_d = (F * J_d).trace() / h)]
 struct Top {
@@ -7,7 +8,7 @@ struct Top {
 
 fn run(top: Top) {
     let stepper = Stepper::new(top, 0.01).unwrap();
-    println!("{} {}", stepper.lagrangian().inertia(), Top::DERIVATION);
+    println!("{} {}", stepper.scene().inertia(), Top::DERIVATION);
 }
 
 fn main() {}

@@ -1,5 +1,6 @@
 use liestep::effects::{Drag, RigidBody};
-use liestep::{Stepper, Sum};
+use liestep::Stepper;
+use liestep::mechanics::Sum;
 
 fn claim(damped: &Stepper<Sum<RigidBody, Drag>>) {
     let _ = damped.inverse();

@@ -1,4 +1,5 @@
-use liestep::{SE3, lagrangian};
+use liestep::lagrangian;
+use liestep::groups::SE3;
 
 #[lagrangian(group = SE3, l_d = k * (4.0 - F.trace()) / h)]
 struct Body {

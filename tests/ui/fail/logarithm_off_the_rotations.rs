@@ -1,4 +1,5 @@
-use liestep::{SE2, lagrangian};
+use liestep::lagrangian;
+use liestep::groups::SE2;
 
 #[lagrangian(group = SE2, l_d = m * log(F).norm_squared() / h)]
 struct Plate {

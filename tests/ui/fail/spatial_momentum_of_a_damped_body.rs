@@ -1,5 +1,6 @@
 use liestep::effects::{Drag, RigidBody};
-use liestep::{SO3, State, Stepper, Sum};
+use liestep::{SO3, State, Stepper};
+use liestep::mechanics::Sum;
 use nalgebra::Vector3;
 
 fn claim(stepper: &Stepper<Sum<RigidBody, Drag>>, state: &State<SO3, ((), ())>) -> Vector3<f64> {

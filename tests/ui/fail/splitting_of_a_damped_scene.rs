@@ -1,8 +1,9 @@
 use liestep::effects::{Drag, Gravity, PrincipalBody};
-use liestep::{Splitting, SplittingScheme, SymmetricBody};
+use liestep::Stepper;
+use liestep::methods::{SplittingScheme, SymmetricBody};
 
 fn claim(body: PrincipalBody, gravity: Gravity, drag: Drag, kinetic: SymmetricBody) {
-    let _ = Splitting::new(body + gravity + drag, kinetic, 0.01, SplittingScheme::STRANG);
+    let _ = Stepper::split(body + gravity + drag, 0.01, kinetic, SplittingScheme::STRANG);
 }
 
 fn main() {}

@@ -1,5 +1,6 @@
 use liestep::effects::Gravity;
-use liestep::{SE2, lagrangian};
+use liestep::lagrangian;
+use liestep::groups::SE2;
 use nalgebra::Vector3;
 
 #[lagrangian(group = SE2, l_d = m * ((F - I) * (F - I).transpose()).trace() / (2.0 * h))]

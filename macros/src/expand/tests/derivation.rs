@@ -2,7 +2,8 @@
 
 use expect_test::expect;
 
-use super::{HEAVY_TOP, expanded, top};
+use super::{HEAVY_TOP, expanded, tokens, top};
+use crate::declared::Role;
 
 /// The text of `const DERIVATION` in an expansion.
 fn derivation(arguments: &str, item: &str) -> String {
@@ -13,12 +14,94 @@ fn derivation(arguments: &str, item: &str) -> String {
     });
     let mut texts = constants.flatten().filter_map(|item| match item {
         syn::ImplItem::Const(constant) => match &constant.expr {
-            syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) => Some(text.value()),
+            syn::Expr::Block(block) => block.block.stmts.iter().find_map(|statement| match statement {
+                syn::Stmt::Item(syn::Item::Const(constant)) => text_of(&constant.expr),
+                _ => None,
+            }),
             _ => None,
         },
         _ => None,
     });
     texts.next().expect("a derivation")
+}
+
+fn text_of(value: &syn::Expr) -> Option<String> {
+    match value {
+        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) => Some(text.value()),
+        _ => None,
+    }
+}
+
+/// What the struct's own documentation says, in the lines of `///`.
+fn page(arguments: &str, item: &str) -> String {
+    let file: syn::File = syn::parse2(expanded(arguments, item)).expect("items");
+    let Some(syn::Item::Struct(item)) = file.items.first() else { panic!("no struct") };
+    let values = item.attrs.iter().filter_map(|attribute| match &attribute.meta {
+        syn::Meta::NameValue(doc) if doc.path.is_ident("doc") => text_of(&doc.value),
+        _ => None,
+    });
+    let lines = values.collect::<Vec<_>>().join("\n");
+    lines.lines().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n")
+}
+
+/// Where an editor shows it; the user's own attributes come first, and the item stays as it is.
+#[test]
+#[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them
+fn on_the_struct() {
+    let item = format!("/// A top.\n#[derive(Clone)] #[repr(C)] pub {}", top("NonstandardInertia"));
+    expect![[r#"
+         A top.
+
+ 
+         # Derived integrator
+ 
+         The momentum equation, solved for `F` in each step:
+ 
+         ```text
+         μ = (1/h) (F J_d − J_d Fᵀ)^∨ + (h m g/2) (w rhoᵀ − rho wᵀ)^∨    [(2.7)]
+         k₀ = (h m g/2) (rho wᵀ − w rhoᵀ)^∨    [a = μ + k₀]
+         k₁⁺ = (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
+         ```
+ 
+         * Order: even, as `l_d` is self-adjoint: a step of −h undoes a step of h.
+         * Limit of a step: the part of `μ` with `F` is a polynomial in `F`, so it is bounded. Where the body turns too fast for the step, there is no solution, and the error names the largest step that has one.
+         * Cost:
+           * construction: 9 operations
+           * step, before the solve: 18 operations
+           * Newton iteration: 97 operations
+           * step, after the solve: 9 operations
+ 
+         All equations are in `DERIVATION` and in the documentation of the methods."#]].assert_eq(&page(HEAVY_TOP, &item));
+    let text = expanded(HEAVY_TOP, &item).to_string();
+    let (attributes, rest) = text.split_once("# [allow (non_snake_case)]").expect("the letters of the field");
+    assert!(attributes.starts_with("# [doc = \" A top.\"] # [derive (Clone)] # [repr (C)] # [doc ="), "{attributes}");
+    assert!(rest.starts_with(" pub struct Top { J_d : NonstandardInertia , m : f64 ,"), "{rest}");
+    let pull = "group = SO3, advected(w = up), l_d = -h * k * w.dot(&(F * rho))";
+    expect![[r#"
+
+ 
+         # Derived terms
+ 
+         The share in the momentum equation of a body that this is added to:
+ 
+         ```text
+         μ = 0    [(2.7)]
+         k₀ = 0    [a = μ + k₀]
+         k₁⁺ = h k (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
+         ```
+ 
+         * Order: 1 in general, as `l_d` isn't self-adjoint: a step of −h doesn't undo a step of h.
+         * Cost:
+           * construction: 5 operations
+           * step, before the solve: 6 operations, 3 sign flips
+           * Newton iteration: 0 operations
+           * step, after the solve: 9 operations
+ 
+         All equations are in `DERIVATION` and in the documentation of the methods."#]]
+    .assert_eq(&page(pull, "struct Pull { k: f64, rho: Vector3<f64>, up: Vector3<f64> }"));
+    let drag = "group = SO3, work = -0.5 * c * vee(F).dot(&(eta + eta_next))";
+    let drag = crate::expand::expand(Role::Force, tokens(drag), &tokens("struct Drag { c: f64 }")).to_string();
+    assert!(drag.contains("# Derived terms") && !drag.contains("* Order"), "{drag}");
 }
 
 /// (3.17) is `μ`, (3.18) is `(L_F)* δl_d/δF`, and the diamond is that of section 3.2.1, item 3.

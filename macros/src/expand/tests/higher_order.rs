@@ -1,8 +1,8 @@
 //! How many operations the Lagrangians of higher order come to.
 
 use super::derived;
-use crate::scalar::{Given, Graph, NodeId, count, kernel, with_values};
-use crate::symbolic::Stage;
+use crate::mathematics::symbolic::Stage;
+use crate::program::{Given, Graph, NodeId, count, kernel, with_values};
 
 const GEODESIC: &str = include_str!("../../../../examples/declarations/log_top.rs");
 const FOURTH: &str = include_str!("../../../../examples/declarations/fourth_order_top.rs");
@@ -65,10 +65,10 @@ fn a_gradient_costs_less_than_three_values_of_the_sixth_order_top() {
 }
 
 #[test]
-fn the_jacobians_of_the_higher_orders_are_dear() {
-    let is_dear = |file| {
+fn the_jacobians_of_the_higher_orders_are_expensive() {
+    let is_expensive = |file| {
         let (arguments, item) = parts(file);
-        kernel(&derived(arguments, item)).jacobian_is_dear()
+        kernel(&derived(arguments, item)).jacobian_is_expensive()
     };
-    assert_eq!([GEODESIC, FOURTH, SIXTH].map(is_dear), [false, true, true]);
+    assert_eq!([GEODESIC, FOURTH, SIXTH].map(is_expensive), [false, true, true]);
 }

@@ -1,0 +1,127 @@
+//! Advected parameters: what the group carries along, seen from the body.
+//!
+//! The spatial value `a_0` is constant; the body sees `w_i = g_i⁻¹ · a_0`. A parameter in `V*` moves by the
+//! contragredient action, in columns `w_{i+1} = ρ(f)ᵀ w_i`; on SO(3) that is the rotation `Fᵀ w`. The product `F⁻¹ w`,
+//! which is the same there, belongs to `V` and is another parameter on a group that isn't orthogonal.
+//!
+//! | parameter in | type | `f⁻¹ · w` | for example |
+//! |---|---|---|---|
+//! | `V*` | `SVector<T, N>`, as `Vector3` | `Fᵀ w` | a direction, a plane, a potential's gradient |
+//! | `V` | [`ContravariantVector`] | `F⁻¹ w` | a displacement fixed in space |
+//! | `V`, its last coordinate one | `Point1`, `Point2`, `Point3` of nalgebra | `F⁻¹ (p, 1)` | a point fixed in space |
+//! | `V ⊗ V` | [`ContravariantTensor`] | `F⁻¹ S F⁻ᵀ` | a conductivity |
+//! | `V* ⊗ V*` | [`CovariantTensor`] | `Fᵀ S F` | a metric, a strain, the gradient of a field of force |
+//! | `V ⊗ V*` | [`MixedTensor`] | `F⁻¹ S F` | a velocity gradient |
+//!
+//! `V` is the space that the group's matrices act on, `F` the matrix itself. Points are moved by groups of affine maps,
+//! as SE(2) and SE(3) are, and written in homogeneous coordinates; vectors with another last coordinate move by the
+//! same matrices, but keep no distances.
+
+use core::fmt::Debug;
+
+mod points;
+mod tensors;
+
+pub(crate) use points::homogeneous;
+pub use tensors::inverse_increment;
+pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
+
+use nalgebra::{SMatrix, SVector};
+
+use crate::groups::LieGroup;
+use crate::numbers::{Coordinates, Entries, Real, sum};
+
+/// The advected parameters of a Lagrangian: `()` for none, a vector for one, a tuple for several.
+pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
+    /// `g⁻¹ · a_0`: the spatial value as the body with attitude `g` sees it.
+    #[must_use]
+    fn seen_from(&self, attitude: &G) -> Self;
+
+    /// `f⁻¹ · w − w` for `f = I + D`, formed without subtracting `w`.
+    #[must_use]
+    fn change(&self, increment: &G::Matrix) -> Self;
+
+    /// `f⁻¹ · w` for `f = I + D`, \[RDAE, (2.4)\].
+    #[inline(always)]
+    #[must_use]
+    fn advect(&self, increment: &G::Matrix) -> Self {
+        sum(self, &self.change(increment))
+    }
+
+    /// Whether all components are finite.
+    fn is_finite(&self) -> bool;
+}
+
+impl<G: LieGroup> Advected<G> for () {
+    fn seen_from(&self, _: &G) -> Self {}
+
+    fn change(&self, _: &G::Matrix) -> Self {}
+
+    fn is_finite(&self) -> bool {
+        true
+    }
+}
+
+/// An element of `V*`.
+impl<G, T: Real, const N: usize> Advected<G> for SVector<T, N>
+where
+    G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
+{
+    /// `ρ(g)ᵀ a_0`.
+    #[inline]
+    fn seen_from(&self, attitude: &G) -> Self {
+        transpose_mul(&attitude.matrix(), self)
+    }
+
+    /// `Dᵀ w`.
+    #[inline(always)]
+    fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
+        transpose_mul(increment, self)
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        Coordinates::is_finite(self)
+    }
+}
+
+/// `Aᵀ v`, unrolled.
+#[inline(always)]
+fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
+    let mut product = SVector::zeros();
+    for i in 0..N {
+        let mut sum = a[(0, i)] * v[0];
+        for j in 1..N {
+            sum += a[(j, i)] * v[j];
+        }
+        product[i] = sum;
+    }
+    product
+}
+
+macro_rules! tuple {
+    ($($name:ident $index:tt),+) => {
+        impl<G: LieGroup, $($name: Advected<G>),+> Advected<G> for ($($name,)+) {
+            #[inline(always)]
+            fn seen_from(&self, attitude: &G) -> Self {
+                ($(self.$index.seen_from(attitude),)+)
+            }
+
+            #[inline(always)]
+            fn change(&self, increment: &G::Matrix) -> Self {
+                ($(self.$index.change(increment),)+)
+            }
+
+            #[inline(always)]
+            fn is_finite(&self) -> bool {
+                $(self.$index.is_finite())&&+
+            }
+        }
+    };
+}
+
+tuple!(A 0, B 1);
+tuple!(A 0, B 1, C 2);
+tuple!(A 0, B 1, C 2, D 3);
+tuple!(A 0, B 1, C 2, D 3, E 4);
+tuple!(A 0, B 1, C 2, D 3, E 4, F 5);

@@ -1,0 +1,58 @@
+//! Points, which a group of affine maps moves.
+//!
+//! Its matrices act on homogeneous coordinates `(p, 1)`, and their last row is that of the identity. The last
+//! coordinate isn't stored: that it is one is what the type promises.
+
+use nalgebra::{Point, SMatrix, SVector};
+
+use super::Advected;
+use crate::groups::LieGroup;
+use crate::numbers::{Entries, Real, is_finite};
+
+/// `(p, 1)`.
+#[inline(always)]
+pub(crate) fn homogeneous<T: Real, const N: usize, const M: usize>(point: &Point<T, N>) -> SVector<T, M> {
+    const { assert!(M == N + 1) };
+    SVector::from_fn(|row, _| if row < N { point[row] } else { T::one() })
+}
+
+impl<T: Real, const N: usize> Entries<T> for Point<T, N> {
+    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+        Self::from(SVector::from_entries(next))
+    }
+
+    fn each(&self, visit: &mut impl FnMut(T)) {
+        self.coords.each(visit);
+    }
+
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+        Self::from(self.coords.zip(&other.coords, combine))
+    }
+}
+
+macro_rules! points {
+    ($($dimension:literal in $size:literal),+) => {
+        $(impl<G, T: Real> Advected<G> for Point<T, $dimension>
+        where
+            G: LieGroup<Scalar = T, Matrix = SMatrix<T, $size, $size>>,
+        {
+            fn seen_from(&self, attitude: &G) -> Self {
+                let moved: SVector<T, $size> = attitude.inverse().matrix() * homogeneous(self);
+                Self::from(moved.fixed_rows::<$dimension>(0).into_owned())
+            }
+
+            fn change(&self, increment: &SMatrix<T, $size, $size>) -> Self {
+                // F⁻¹(p, 1) − (p, 1) = −F⁻¹D(p, 1).
+                let inverse = G::from_increment(increment).inverse().matrix();
+                let change: SVector<T, $size> = -(inverse * (increment * homogeneous(self)));
+                Self::from(change.fixed_rows::<$dimension>(0).into_owned())
+            }
+
+            fn is_finite(&self) -> bool {
+                self.iter().all(|&entry| is_finite(entry))
+            }
+        })+
+    };
+}
+
+points!(1 in 2, 2 in 3, 3 in 4);

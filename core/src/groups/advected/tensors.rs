@@ -1,0 +1,111 @@
+//! The kinds of advected parameters other than covectors.
+//!
+//! With `F = I + D` and `F⁻¹ = I + E`, `E = −F⁻¹D`, each product becomes the old value and a small change, so that a
+//! small step loses no digit.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::Advected;
+use crate::groups::LieGroup;
+use crate::numbers::{Entries, Real, is_finite};
+
+/// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
+///
+/// On SE(3) with `N = 4` for example a direction `(d, 0)`. A point is better declared as one, by nalgebra's `Point3`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContravariantVector<T, const N: usize>(pub SVector<T, N>);
+
+/// An element of `V ⊗ V`, moved by `ρ(f)⁻¹ S ρ(f)⁻ᵀ`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContravariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
+
+/// An element of `V* ⊗ V*`, a bilinear form, moved by `ρ(f)ᵀ S ρ(f)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
+
+/// An element of `V ⊗ V*`, a linear map, moved by `ρ(f)⁻¹ S ρ(f)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
+
+/// `F⁻¹ − I = −F⁻¹D`.
+pub fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
+where
+    G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
+{
+    -(G::from_increment(increment).inverse().matrix() * increment)
+}
+
+macro_rules! kind {
+    ($type:ident, $seen:expr, $change:expr) => {
+        impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
+            fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+                Self(Entries::from_entries(next))
+            }
+
+            fn each(&self, visit: &mut impl FnMut(T)) {
+                self.0.each(visit);
+            }
+
+            fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+                Self(self.0.zip(&other.0, combine))
+            }
+        }
+
+        impl<G, T: Real, const N: usize> Advected<G> for $type<T, N>
+        where
+            G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
+        {
+            fn seen_from(&self, attitude: &G) -> Self {
+                Self($seen(&self.0, attitude))
+            }
+
+            fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
+                Self($change(&self.0, increment))
+            }
+
+            fn is_finite(&self) -> bool {
+                self.0.iter().all(|&entry| is_finite(entry))
+            }
+        }
+    };
+}
+
+kind!(ContravariantVector, |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v, |v: &SVector<T, N>, d| {
+    inverse_increment::<G, T, N>(d) * v
+});
+
+kind!(
+    ContravariantTensor,
+    |s: &SMatrix<T, N, N>, g: &G| {
+        let inverse = g.inverse().matrix();
+        inverse * s * inverse.transpose()
+    },
+    |s: &SMatrix<T, N, N>, d| {
+        let inverse = inverse_increment::<G, T, N>(d);
+        let change = inverse * s;
+        change + (s + change) * inverse.transpose()
+    }
+);
+
+kind!(CovariantTensor, |s: &SMatrix<T, N, N>, g: &G| g.matrix().transpose() * s * g.matrix(), |s: &SMatrix<
+    T,
+    N,
+    N,
+>,
+                                                                                               d: &SMatrix<
+    T,
+    N,
+    N,
+>| {
+    let change = d.transpose() * s;
+    change + (s + change) * d
+});
+
+kind!(
+    MixedTensor,
+    |s: &SMatrix<T, N, N>, g: &G| g.inverse().matrix() * s * g.matrix(),
+    |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
+        let change = inverse_increment::<G, T, N>(d) * s;
+        change + (s + change) * d
+    }
+);

@@ -1,0 +1,91 @@
+//! The two retractions of a group that is declared by generators.
+
+use nalgebra::{RealField, SMatrix, SVector};
+
+use super::{CayleyRetraction, ExponentialRetraction, Retraction};
+use crate::groups::{
+    Generators, LieGroup as _, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, logarithm,
+};
+use crate::numbers::{Coordinates as _, Mask, real};
+
+/// Fails to compile for a group that the Cayley map leaves.
+struct Closure<K, const N: usize, const D: usize>(K);
+
+impl<K: Generators<N, D>, const N: usize, const D: usize> Closure<K, N, D> {
+    const CHECKED: () =
+        assert!(is_closed_under_cayley(&K::GENERATORS), "the Cayley map leaves this group; use ExponentialRetraction");
+}
+
+/// The two factors `I − ξ̂/2` and `I + ξ̂/2`.
+fn factors<T: RealField + Copy, const N: usize>(hat: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
+    let half = hat * real::<T>(0.5);
+    (SMatrix::identity() - half, SMatrix::identity() + half)
+}
+
+/// Compiles for the groups that the Cayley map doesn't leave; it is an error for others, like SL(3).
+impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>
+    for CayleyRetraction
+{
+    /// `D = (I − ξ̂/2)⁻¹ ξ̂`.
+    #[inline]
+    fn increment(xi: &SVector<T, D>) -> SMatrix<T, N, N> {
+        let () = Closure::<K, N, D>::CHECKED;
+        let hat = MatrixGroup::<K, T, N, D>::hat(xi);
+        inverse(&factors(&hat).0) * hat
+    }
+
+    /// `2 ((F + I)⁻¹ (F − I))^∨`.
+    fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
+        let sum = element.matrix() + SMatrix::identity();
+        let xi = MatrixGroup::<K, T, N, D>::vee(&(inverse(&sum) * element.increment())) * real::<T>(2.0);
+        xi.is_finite().then_some(xi)
+    }
+
+    /// Columns `((I − ξ̂/2)⁻¹ E_j (I + ξ̂/2)⁻¹)^∨`.
+    fn tangent(xi: &SVector<T, D>) -> SMatrix<T, D, D> {
+        let (minus, plus) = factors(&MatrixGroup::<K, T, N, D>::hat(xi));
+        let (minus, plus) = (inverse(&minus), inverse(&plus));
+        let mut tangent = SMatrix::<T, D, D>::zeros();
+        for j in 0..D {
+            let moved = minus * basis::<K, T, N, D>(j) * plus;
+            tangent.set_column(j, &MatrixGroup::<K, T, N, D>::vee(&moved));
+        }
+        tangent
+    }
+
+    #[inline]
+    fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
+        K::is_near_identity(&MatrixGroup::<K, T, N, D>::hat(xi))
+    }
+}
+
+impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>
+    for ExponentialRetraction
+{
+    fn increment(xi: &SVector<T, D>) -> SMatrix<T, N, N> {
+        exponential(&MatrixGroup::<K, T, N, D>::hat(xi)).0
+    }
+
+    /// The principal logarithm, if its exponential is `F`.
+    fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
+        let xi = MatrixGroup::<K, T, N, D>::vee(&logarithm(&element.increment()));
+        let missed = <Self as Retraction<MatrixGroup<K, T, N, D>>>::increment(&xi) - element.increment();
+        // Half of the digits tell a logarithm from what the series gives where there is none.
+        (missed.norm() <= T::default_epsilon().sqrt() * element.matrix().norm()).then_some(xi)
+    }
+
+    /// `T = Σ ad_ξ^k / (k + 1)!`.
+    fn tangent(xi: &SVector<T, D>) -> SMatrix<T, D, D> {
+        let mut bracket = SMatrix::<T, D, D>::zeros();
+        for j in 0..D {
+            let mut unit = SVector::zeros();
+            unit[j] = T::one();
+            bracket.set_column(j, &MatrixGroup::<K, T, N, D>::lie_bracket(xi, &unit));
+        }
+        exponential(&bracket).1
+    }
+
+    fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
+        K::is_near_identity(&MatrixGroup::<K, T, N, D>::hat(xi))
+    }
+}

@@ -1,0 +1,214 @@
+//! Retractions: coordinates for the increments of a step.
+//!
+//! A retraction `τ` maps the Lie algebra to the group with `τ(0) = e` and derivative the identity there. The unknown
+//! of a Newton solve is such a coordinate vector, and `F` is rebuilt from it in every step: composing small
+//! corrections onto the previous `F` would let its rounding errors pile up.
+
+mod free_body;
+mod matrix_group;
+
+use nalgebra::{Matrix3, RealField, Vector3};
+
+use crate::groups::{LieGroup, SO3};
+use crate::numbers::{Mask, Real, real};
+
+/// Coordinates `ξ ↦ τ(ξ)` of a group about its identity.
+pub trait Retraction<G: LieGroup> {
+    /// `D = τ(ξ) − I`, formed without subtracting `I`, so that a small `ξ` keeps all its digits.
+    fn increment(xi: &G::Vector) -> G::Matrix;
+
+    /// `D` for half the coordinates, `y = ξ/2`, which are what Newton's iteration solves for: on SO(3) in Cayley
+    /// coordinates `tan(θ/2) n`, in which formulas are shortest.
+    #[must_use]
+    #[inline(always)]
+    fn increment_of_half(half: &G::Vector) -> G::Matrix {
+        Self::increment(&(*half + *half))
+    }
+
+    /// `τ(ξ)`.
+    #[must_use]
+    fn retract(xi: &G::Vector) -> G {
+        G::from_increment(&Self::increment(xi))
+    }
+
+    /// `ξ` with `τ(ξ) = F`, or `None` where the coordinates don't reach `F`.
+    fn local_coordinates(element: &G) -> Option<G::Vector>;
+
+    /// The right-trivialised tangent `T` at `ξ`: `dF F⁻¹ = (T dξ)^`.
+    fn tangent(xi: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square;
+
+    /// The same for half the coordinates, `y = ξ/2`: `dF F⁻¹ = (T dy)^`.
+    #[must_use]
+    #[inline(always)]
+    fn tangent_of_half(half: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
+        Self::tangent(&(*half + *half)) * real::<G::Scalar>(2.0)
+    }
+
+    /// `h ∂p/∂ξ` for the momentum `p` that a free motion with the kinetic energy `½ η·Jη` needs to reach `τ(ξ)` within
+    /// `h`, with the given `J`.
+    ///
+    /// An approximation will do: a solver takes it for the Jacobian of a momentum equation where the exact one is
+    /// expensive, see [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE), and corrects
+    /// it as it goes. This default is its value at the identity, `J`.
+    #[must_use]
+    fn free_momentum_tangent(
+        inertia: &<G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square,
+        _xi: &G::Vector,
+    ) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
+        *inertia
+    }
+
+    /// Whether `ξ` lies so near to the identity that a solution there is the one that continues the identity.
+    ///
+    /// On SO(3) that is an angle below 90°: for a body whose `J_d` is positive semidefinite there is at most one
+    /// such solution. On a [`MatrixGroup`](crate::groups::MatrixGroup) it is what the
+    /// [`Generators`](crate::groups::Generators::is_near_identity) say. Farther out a solver looks closer. Each lane has its
+    /// own answer.
+    fn is_near_identity(xi: &G::Vector) -> Mask<G::Scalar>;
+
+    /// [`is_near_identity`](Self::is_near_identity) for half the coordinates.
+    #[must_use]
+    #[inline(always)]
+    fn is_half_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
+        Self::is_near_identity(&(*half + *half))
+    }
+
+    /// The same for 3/2 of these, which keeps well away from where increments change fast from step to step.
+    #[must_use]
+    #[inline(always)]
+    fn is_half_well_near_identity(half: &G::Vector) -> Mask<G::Scalar> {
+        Self::is_near_identity(&(*half * real(3.0)))
+    }
+}
+
+/// The Cayley map `cay(ξ) = (I − ξ̂/2)⁻¹ (I + ξ̂/2)`.
+///
+/// No transcendental function is evaluated, so a step in these coordinates gives the same bits on every IEEE machine.
+/// On SO(3) `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`, and only half turns are out of reach; elsewhere it is
+/// the elements with the eigenvalue −1. A group that the map leaves, like SL(3), is an error when the user's crate is
+/// built.
+#[derive(Clone, Copy, Debug)]
+pub struct CayleyRetraction;
+
+impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
+    /// `D = (ξ̂ + ξ̂²/2) · 4/(4 + |ξ|²)`.
+    #[inline(always)]
+    fn increment(xi: &Vector3<T>) -> Matrix3<T> {
+        let squared = xi.x * xi.x + xi.y * xi.y + xi.z * xi.z;
+        let four = real::<T>(4.0);
+        let scale = four / (four + squared);
+        quadratic_increment(xi, scale, scale * real(0.5))
+    }
+
+    /// `D = (ŷ + ŷ²) · 2/(1 + |y|²)`: the same bits.
+    #[inline(always)]
+    fn increment_of_half(half: &Vector3<T>) -> Matrix3<T> {
+        let squared = half.x * half.x + half.y * half.y + half.z * half.z;
+        let scale = real::<T>(2.0) / (T::one() + squared);
+        quadratic_increment(half, scale, scale)
+    }
+
+    /// `2 (F − Fᵀ)^∨ / (1 + tr F)`.
+    fn local_coordinates(element: &SO3<T>) -> Option<Vector3<T>> {
+        let f = element.as_matrix();
+        let scale = real::<T>(2.0) / (T::one() + f.m11 + f.m22 + f.m33);
+        let xi = SO3::vee(f) * (scale + scale);
+        crate::numbers::Coordinates::is_finite(&xi).then_some(xi)
+    }
+
+    /// `T = (I + ξ̂/2) · 4/(4 + |ξ|²)`.
+    fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
+        let four = real::<T>(4.0);
+        let scale = four / (four + xi.norm_squared());
+        (Matrix3::identity() + SO3::hat(xi) * real::<T>(0.5)) * scale
+    }
+
+    /// To the relative order of `|ξ|⁴`.
+    #[inline(always)]
+    fn free_momentum_tangent(inertia: &Matrix3<T>, xi: &Vector3<T>) -> Matrix3<T> {
+        free_body::momentum_tangent(inertia, xi)
+    }
+
+    #[inline(always)]
+    fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
+        (xi.x * xi.x + xi.y * xi.y + xi.z * xi.z).simd_lt(real(4.0))
+    }
+
+    #[inline(always)]
+    fn is_half_near_identity(half: &Vector3<T>) -> Mask<T> {
+        (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(T::one())
+    }
+
+    #[inline(always)]
+    fn is_half_well_near_identity(half: &Vector3<T>) -> Mask<T> {
+        (half.x * half.x + half.y * half.y + half.z * half.z).simd_lt(real(4.0 / 9.0))
+    }
+}
+
+/// The exponential map; on SO(3) `ξ = θ n`.
+///
+/// For a group declared by [`Generators`](crate::groups::Generators) it is a series with scaling and squaring, exact to some
+/// roundings for `‖ξ̂‖` up to a few; coordinates are the principal logarithm, `None` where an eigenvalue is negative.
+#[derive(Clone, Copy, Debug)]
+pub struct ExponentialRetraction;
+
+impl<T: RealField + Copy> Retraction<SO3<T>> for ExponentialRetraction {
+    /// Rodrigues' formula, `D = (sin θ/θ) ξ̂ + ½ (sin(θ/2)/(θ/2))² ξ̂²`, free of cancellation.
+    fn increment(xi: &Vector3<T>) -> Matrix3<T> {
+        let angle_squared = xi.norm_squared();
+        let (first, half) = (sinc(angle_squared), sinc(angle_squared * real(0.25)));
+        quadratic_increment(xi, first, half * half * real(0.5))
+    }
+
+    fn local_coordinates(element: &SO3<T>) -> Option<Vector3<T>> {
+        let xi = element.log();
+        crate::numbers::Coordinates::is_finite(&xi).then_some(xi)
+    }
+
+    /// `T = I + (1 − cos θ)/θ² ξ̂ + (θ − sin θ)/θ³ ξ̂²`.
+    fn tangent(xi: &Vector3<T>) -> Matrix3<T> {
+        let angle_squared = xi.norm_squared();
+        let half = sinc(angle_squared * real(0.25));
+        // (θ − sin θ)/θ³ cancels for small θ; below this its Taylor polynomial is exact to a rounding.
+        let third = if angle_squared < real(0.04) {
+            let t = angle_squared;
+            let [a, b, c, d, e] =
+                [1.0 / 6.0, -1.0 / 120.0, 1.0 / 5040.0, -1.0 / 362_880.0, 1.0 / 39_916_800.0].map(real::<T>);
+            a + t * (b + t * (c + t * (d + t * e)))
+        } else {
+            (T::one() - sinc(angle_squared)) / angle_squared
+        };
+        Matrix3::identity() + quadratic_increment(xi, half * half * real(0.5), third)
+    }
+
+    fn is_near_identity(xi: &Vector3<T>) -> Mask<T> {
+        xi.norm_squared() < T::frac_pi_2() * T::frac_pi_2()
+    }
+}
+
+/// `a ξ̂ + b ξ̂²`.
+#[inline(always)]
+fn quadratic_increment<T: Real>(xi: &Vector3<T>, a: T, b: T) -> Matrix3<T> {
+    let (x, y, z) = (xi.x, xi.y, xi.z);
+    let (bx, by, bz) = (b * x, b * y, b * z);
+    let (ax, ay, az) = (a * x, a * y, a * z);
+    let (xx, yy, zz) = (bx * x, by * y, bz * z);
+    let (xy, xz, yz) = (bx * y, bx * z, by * z);
+    Matrix3::new(-(yy + zz), xy - az, xz + ay, xy + az, -(xx + zz), yz - ax, xz - ay, yz + ax, -(xx + yy))
+}
+
+/// `sin θ / θ` as a function of `θ²`.
+///
+/// Below `θ² = 0.01` the Taylor polynomial to `θ¹⁰` is exact to a rounding; there is no square root at zero, whose
+/// derivative a dual number couldn't carry.
+fn sinc<T: RealField + Copy>(angle_squared: T) -> T {
+    if angle_squared < real(0.01) {
+        let t = angle_squared;
+        let [a, b, c, d, e] =
+            [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0, -1.0 / 39_916_800.0].map(real::<T>);
+        T::one() + t * (a + t * (b + t * (c + t * (d + t * e))))
+    } else {
+        let angle = angle_squared.sqrt();
+        angle.sin() / angle
+    }
+}

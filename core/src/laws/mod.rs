@@ -1,0 +1,127 @@
+//! The laws of groups, retractions and advected parameters, as tests that can be generated for any of them.
+//!
+//! They are run at the identity, next to it and at random places, with a fixed seed, so that a failure repeats.
+
+pub mod advected;
+pub mod group;
+pub mod retraction;
+pub mod samples;
+
+#[doc(inline)]
+pub use crate::{advected_laws, lie_group_laws, retraction_laws};
+
+/// Generates the tests of the laws of [`LieGroup`](crate::groups::LieGroup) for a group over `f64`.
+///
+/// | test | laws |
+/// |---|---|
+/// | `group_axioms` | products and inverses are in the group, `(FG)H = F(GH)`, `F F⁻¹ = F⁻¹F = I` |
+/// | `hat_and_vee` | `ξ̂^∨ = ξ`, linear |
+/// | `brackets` | `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`, antisymmetry, Jacobi |
+/// | `adjoint_action` | `Ad_F ξ = (F ξ̂ F⁻¹)^∨`, `Ad_{FG} = Ad_F Ad_G`, an automorphism of the bracket |
+/// | `pairings` | `⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩`, `⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩` |
+/// | `brackets_are_derivatives` | `ad` and `ad*` are the derivatives of `Ad` and `Ad*` at the identity |
+/// | `increments` | `g + gD = gF`, `Ad*_F μ − μ` from `D`, to all digits for a small `D` |
+/// | `the_relation_tells` | a matrix off the group has a defect |
+///
+/// Invoke it in a test module of its own, one for each group.
+///
+/// # Examples
+///
+/// ```
+/// #[cfg(test)]
+/// mod rigid_motions {
+///     liestep::lie_group_laws!(liestep::groups::SE3);
+/// }
+/// ```
+#[doc(hidden)]
+#[macro_export]
+macro_rules! lie_group_laws {
+    ($group:ty) => {
+        $crate::__law_tests! {
+            group::<$group>: group_axioms hat_and_vee brackets adjoint_action pairings brackets_are_derivatives increments
+            the_relation_tells
+        }
+    };
+}
+
+/// Generates the tests of the laws of [`Retraction`](crate::groups::Retraction) for a group over `f64`.
+///
+/// | test | laws |
+/// |---|---|
+/// | `retraction_at_zero` | `τ(0) = e`, the tangent there is the identity, and zero is near it |
+/// | `retraction_stays_in_the_group` | `τ(ξ)` satisfies the relation |
+/// | `retraction_round_trips` | `local_coordinates` is the inverse |
+/// | `retraction_tangent` | `dF F⁻¹ = (T dξ)^`, against differences |
+/// | `retraction_keeps_digits` | `τ(ξ) − I = ξ̂` to first order, to all digits for a small `ξ` |
+///
+/// Invoke it in a test module of its own, one for each pair.
+///
+/// # Examples
+///
+/// ```
+/// #[cfg(test)]
+/// mod rigid_motions_by_cayley {
+///     liestep::retraction_laws!(liestep::groups::SE3, liestep::groups::CayleyRetraction);
+/// }
+/// ```
+#[doc(hidden)]
+#[macro_export]
+macro_rules! retraction_laws {
+    ($group:ty, $retraction:ty) => {
+        $crate::__law_tests! {
+            retraction::<$group, $retraction>: retraction_at_zero retraction_stays_in_the_group retraction_round_trips
+            retraction_tangent retraction_keeps_digits
+        }
+    };
+}
+
+/// Generates the tests of the laws of [`Advected`](crate::groups::Advected) for a group over `f64`.
+///
+/// With a group alone they are those of the five kinds of parameters that its matrices move:
+///
+/// | test | laws |
+/// |---|---|
+/// | `kinds_move_as_declared` | the product that each kind is defined by |
+/// | `kinds_act` | the laws of an action, below |
+/// | `pairings_are_invariant` | `⟨w, v⟩` and the values of tensors don't change when all move |
+///
+/// With a type of parameters as well, which must implement [`Entries`](crate::numbers::Entries), they are the
+/// laws of an action for that type: `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`.
+///
+/// Invoke it in a test module of its own.
+///
+/// # Examples
+///
+/// ```
+/// #[cfg(test)]
+/// mod carried_by_rigid_motions {
+///     liestep::advected_laws!(liestep::groups::SE3);
+/// }
+/// #[cfg(test)]
+/// mod planes_carried_by_rigid_motions {
+///     liestep::advected_laws!(liestep::groups::SE3, nalgebra::Vector4<f64>);
+/// }
+/// ```
+#[doc(hidden)]
+#[macro_export]
+macro_rules! advected_laws {
+    ($group:ty) => {
+        $crate::__law_tests! { advected::<$group>: kinds_move_as_declared kinds_act pairings_are_invariant }
+    };
+    ($group:ty, $kind:ty) => {
+        $crate::__law_tests! { advected::<$group, $kind>: parameter_is_acted_on }
+    };
+}
+
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __law_tests {
+    ($module:ident::<$($type:ty),+>: $first:ident $($rest:ident)*) => {
+        #[test]
+        fn $first() {
+            $crate::laws::$module::$first::<$($type),+, _, _>();
+        }
+        $crate::__law_tests! { $module::<$($type),+>: $($rest)* }
+    };
+    ($module:ident::<$($type:ty),+>:) => {};
+}

@@ -1,0 +1,219 @@
+//! The trait of a term of a scene: its share of each stage of a step.
+
+use core::fmt::Debug;
+
+use crate::error::SetupError;
+use crate::groups::{Advected, LieGroup, Retraction};
+use crate::mechanics::description::SceneVisitor;
+use crate::mechanics::kinetic_part::KineticPart;
+use crate::mechanics::operations::Operations;
+use crate::numbers::{Coordinates, Real};
+
+/// The scalar of an effect.
+pub type Scalar<E> = <E as Effect>::Scalar;
+/// The group of an effect.
+pub type Group<E> = <E as Effect>::Group;
+/// The matrices of its group.
+pub type Matrix<E> = <Group<E> as LieGroup>::Matrix;
+/// Components of covectors and algebra elements.
+pub type Vector<E> = <Group<E> as LieGroup>::Vector;
+/// Linear maps of components.
+pub type Square<E> = <Vector<E> as Coordinates<Scalar<E>>>::Square;
+
+/// Which parts of a step an effect has a share in; the other shares are zero, whatever the parameters.
+///
+/// It is known when the crate is built, so a sum adds no zeros and asks no questions at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// `U(F, w)`, what is solved for `F`. A potential of the positions at both ends of a step has none: moving `F` and
+    /// `w` together from the left leaves `F⁻¹·w` where it is.
+    pub unknown: bool,
+    /// `kick_before(w)`.
+    pub kick_before: bool,
+    /// `kick_after(F, w⁺)`.
+    pub kick_after: bool,
+}
+
+impl Parts {
+    /// A share in everything.
+    pub const ALL: Self = Self { unknown: true, kick_before: true, kick_after: true };
+
+    /// The parts that at least one of two effects has.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        Self {
+            unknown: self.unknown || other.unknown,
+            kick_before: self.kick_before || other.kick_before,
+            kick_after: self.kick_after || other.kick_after,
+        }
+    }
+}
+
+/// One term of a scene, with all that a stepper needs of it: a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), or a
+/// sum.
+///
+/// The equations are those of `DiscreteLagrangian` in stages: what depends on the parameters and `h` is computed once
+/// ([`constants`](Self::constants)), what depends on the state once a step, and only what depends on the unknown once a
+/// Newton iteration. A step is
+///
+/// ```text
+/// a  = μ + kick_before(w)                      the part of (2.7) without F moves to the other side
+/// solve   U(F, w) = a     for F = τ(2y)        newton_system, up to a factor
+/// w⁺ = F⁻¹ · w                                 (2.9)
+/// μ⁺ = Ad*_F a + kick_after(F, w⁺)             (2.9), in the transport form μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)
+/// g⁺ = g F                                     (2.10)
+/// ```
+///
+/// Everything in it is additive, so effects of one group add: see [`Sum`](crate::mechanics::Sum). An effect that isn't the
+/// gradient of a Lagrangian fits as well: a discrete force `(f⁻, f⁺)` of the Lagrange–d'Alembert principle has the
+/// unknown part `−f⁻(F, w)` and the kick after the step `Ad*_F f⁻ + f⁺`.
+///
+/// # Source
+///
+/// \[RDAE\], section 2.2; see [`conventions`](crate::conventions).
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` isn't an effect, so it can't be in a scene",
+    label = "not an effect",
+    note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums"
+)]
+pub trait Effect {
+    /// The scalar.
+    type Scalar: Real;
+    /// The group that `F` belongs to.
+    type Group: LieGroup<Scalar = Self::Scalar>;
+    /// The coordinates of the Newton unknown.
+    type Retraction: Retraction<Self::Group>;
+    /// Whether there is a kinetic part: [`WithKinetic`](crate::mechanics::WithKinetic) or
+    /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic).
+    type Kinetic: KineticPart;
+    /// The advected parameters: `()`, a vector, or a tuple.
+    type Advected: Advected<Self::Group>;
+    /// What the parameters and `h` determine.
+    type Constants: Copy + Debug + PartialEq;
+    /// What `a` and `w` determine.
+    type StepTerms: Copy;
+
+    /// Which parts aren't zero.
+    const PARTS: Parts = Parts::ALL;
+
+    /// The power of the Cayley denominator in the factor of [`newton_system`](Self::newton_system).
+    const DENOMINATORS: u32 = 0;
+
+    /// Whether the Jacobian of [`newton_system`](Self::newton_system) costs more than several residuals.
+    ///
+    /// Then a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with the
+    /// same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`], with which
+    /// [`DENOMINATORS`](Self::DENOMINATORS) must be zero. The macro decides it by counting operations.
+    const JACOBIAN_IS_EXPENSIVE: bool = false;
+
+    /// How much arithmetic its share of a step is; the macro counts it.
+    const OPERATIONS: Operations = Operations::UNCOUNTED;
+
+    /// What was declared and everything derived from it, as text.
+    const DERIVATION: &'static str;
+
+    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and of a sum those of all its terms, each once it is asked
+    /// for: a constant can't be put together from others.
+    #[must_use]
+    fn derivation() -> String {
+        Self::DERIVATION.to_owned()
+    }
+
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] naming the first field whose value can't be used.
+    fn validate(&self) -> Result<(), SetupError>;
+
+    /// Shows the derivations and, field by field in the order of the declaration, every scalar of the parameters.
+    ///
+    /// Two scenes that show the same make the same steps.
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>);
+
+    /// The spatial values `a_0` of the advected parameters.
+    fn advected(&self) -> Self::Advected;
+
+    /// The exact right-trivialised Newton Jacobian: entry `(k, j)` is the derivative of component `k` of the momentum
+    /// equation (2.7), [`legendre_minus`](crate::mechanics::DiscreteLagrangian::legendre_minus), along `F ↦ exp(t E_j) F`.
+    fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self>;
+
+    /// The matrix `J` of the continuous limit `l(ξ, w) = ½ ξ·Jξ + s·ξ − V`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`.
+    fn inertia(&self) -> Square<Self>;
+
+    /// The covector `s` of the continuous limit: what is linear in the velocity.
+    fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self>;
+
+    /// The potential `V(w)` of the continuous limit, in J.
+    fn potential(&self, w: &Self::Advected) -> Self::Scalar;
+
+    /// Folds the parameters and the step into the constants of the stages below.
+    fn constants(&self, h: Self::Scalar) -> Self::Constants;
+
+    /// The part of the diamond that doesn't depend on `F`.
+    fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self>;
+
+    /// The derivative of [`kick_before`](Self::kick_before) as the body turns with this velocity: `d/dt` of it at
+    /// `exp(−t v̂)·w`. `None` where it isn't known.
+    ///
+    /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
+    #[inline(always)]
+    #[must_use]
+    fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
+        None
+    }
+
+    /// What one solve needs of `a = μ + kick_before(w)` and `w`.
+    fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms;
+
+    /// `(h/2) (1 + |y|²)ⁿ (U(τ(2y), w) − a)` with `n` = [`DENOMINATORS`](Self::DENOMINATORS), and its derivative with
+    /// respect to `y`, half the coordinates of `F`.
+    ///
+    /// In this form the derivative at rest is the inertia, whatever the step and its sign, and for (3.13) the moments
+    /// of inertia are the only constants in it.
+    fn newton_system(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Square<Self>);
+
+    /// The residual of [`newton_system`](Self::newton_system) alone; with it, where one gradient of `l_d` gives both,
+    /// the part `k` of the diamond that depends on `F`, which stands for [`kick_after`](Self::kick_after) then:
+    /// `Ad*_F k = kick_after(F, w⁺)`.
+    #[inline(always)]
+    fn newton_residual(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Option<Vector<Self>>) {
+        (Self::newton_system(constants, terms, half).0, None)
+    }
+
+    /// What of [`kick_after`](Self::kick_after) isn't in the `k` of [`newton_residual`](Self::newton_residual): that of
+    /// the other terms of a sum.
+    #[inline(always)]
+    #[must_use]
+    fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
+        None
+    }
+
+    /// `Ad*_F` of the part of the diamond that depends on `F`, written in the new `w⁺`; `increment` is `F − I`.
+    fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;
+}
+
+/// `μ = Jξ + s(w)`: the momentum of the body velocity `ξ`.
+pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
+    effect.inertia() * *velocity + effect.momentum_bias(w)
+}
+
+/// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`.
+pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
+    Vector::<E>::solve(&effect.inertia(), &(*momentum - effect.momentum_bias(w))).0
+}
+
+/// `½ ξ·Jξ + V(w)`, the energy of the continuous limit.
+pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Scalar<E> {
+    let velocity = velocity_of_momentum(effect, momentum, w);
+    let kinetic = velocity.dot(&(effect.inertia() * velocity)) * crate::numbers::real(0.5);
+    kinetic + effect.potential(w)
+}

@@ -1,0 +1,302 @@
+//! The two inertia tensors of a rigid body.
+//!
+//! Both are symmetric 3 × 3 matrices in the body frame, in kg m², and each is a valid value of the other's matrix,
+//! which is why they are two types. With `X` the place of a mass element relative to the pivot,
+//!
+//! ```text
+//! nonstandard   J_d = ∫ X Xᵀ dm            = ½ tr(J) I − J
+//! ordinary      J   = ∫ (|X|² I − X Xᵀ) dm = tr(J_d) I − J_d
+//! ```
+//!
+//! A real body has a positive semidefinite `J_d` (equivalently, its moments satisfy the triangle inequality) and a
+//! positive definite `J`. The solvability of a step rests on both, so the constructors insist on them.
+
+use core::fmt;
+
+use nalgebra::{Matrix3, RealField, Vector3};
+
+use crate::numbers::{Real, gathered, real, reported};
+
+/// Why a matrix isn't the inertia of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum InertiaError {
+    /// An entry is NaN or infinite.
+    NotFinite,
+    /// The matrix differs from its transpose by more than rounding.
+    NotSymmetric {
+        /// The largest `|A_ij − A_ji|`, kg m².
+        defect: f64,
+    },
+    /// `J_d` has a negative eigenvalue, so the principal moments violate the triangle inequality.
+    TriangleInequality {
+        /// The smallest eigenvalue of `J_d`, kg m².
+        smallest: f64,
+    },
+    /// `J` isn't positive definite: a rod, a point mass, or nothing at all.
+    Singular {
+        /// The smallest eigenvalue of `J`, kg m².
+        smallest: f64,
+    },
+    /// So large or small that products of three entries leave the range of the scalar.
+    OutOfRange {
+        /// The trace, kg m².
+        trace: f64,
+    },
+}
+
+impl fmt::Display for InertiaError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite => write!(f, "the inertia has an entry that is not finite; give finite numbers"),
+            Self::NotSymmetric { defect } => {
+                write!(
+                    f,
+                    "the inertia is not symmetric: two entries differ by {defect:e}, more than rounding; give it symmetric"
+                )
+            }
+            Self::TriangleInequality { smallest } => write!(
+                f,
+                "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given"
+            ),
+            Self::Singular { smallest } => write!(
+                f,
+                "the inertia is singular: its smallest principal moment is {smallest:e}; give a rod or a point a small thickness"
+            ),
+            Self::OutOfRange { trace } => {
+                write!(
+                    f,
+                    "the inertia has the trace {trace:e}, out of range; choose units in which it is nearer to one"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for InertiaError {}
+
+/// The nonstandard moment of inertia `J_d = ∫ X Xᵀ dm` of a body about its pivot.
+///
+/// The reduced discrete Lagrangian (3.13) is written with it rather than with the ordinary [`Inertia`]. Passing one
+/// where the other is meant would still give a structure-preserving step, of a different body.
+///
+/// # Shape and units
+///
+/// 3 × 3, symmetric, body frame, kg m².
+///
+/// # Source
+///
+/// The kinetic term of \[RDAE, (3.13)\]; \[LML05\] for the name.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::NonstandardInertia;
+/// use nalgebra::Vector3;
+/// let body = NonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
+/// assert_eq!(body.as_matrix().diagonal(), Vector3::new(2.0, 2.0, 1.0));
+/// # Ok::<(), liestep::mechanics::InertiaError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(alias = "J_d")]
+pub struct NonstandardInertia<T = f64>(Matrix3<T>);
+
+/// A [`NonstandardInertia`] in principal axes: a diagonal `J_d`.
+///
+/// The type tells the macro that six entries are zero, and the derived step is smaller for it.
+///
+/// # Shape and units
+///
+/// The diagonal of a 3 × 3 matrix, body frame, kg m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(alias = "J_d")]
+pub struct DiagonalNonstandardInertia<T = f64>(Vector3<T>);
+
+/// The ordinary moment of inertia `J = ∫ (|X|² I − X Xᵀ) dm` of a body about its pivot.
+///
+/// # Shape and units
+///
+/// 3 × 3, symmetric, body frame, kg m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(alias = "J")]
+pub struct Inertia<T = f64>(Matrix3<T>);
+
+impl<T: RealField + Copy> NonstandardInertia<T> {
+    /// From the symmetric matrix `J_d`, kg m².
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where the matrix isn't that of a body.
+    pub fn new(matrix: Matrix3<T>) -> Result<Self, InertiaError> {
+        check(&matrix).map(Self)
+    }
+
+    /// From the diagonal of `J_d` in principal axes, kg m²; not the principal moments.
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where the matrix isn't that of a body.
+    pub fn from_diagonal(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
+        Self::new(Matrix3::from_diagonal(&diagonal))
+    }
+
+    /// From the principal moments of the ordinary inertia `J`, kg m².
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where no body has these moments.
+    pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
+        Self::from_diagonal(nonstandard_diagonal(&moments))
+    }
+}
+
+impl<T: Real> NonstandardInertia<T> {
+    /// The matrix `J_d`, kg m².
+    #[must_use]
+    pub fn as_matrix(&self) -> &Matrix3<T> {
+        &self.0
+    }
+
+    /// The ordinary inertia `J = tr(J_d) I − J_d` of the same body.
+    #[must_use]
+    pub fn to_inertia(&self) -> Inertia<T> {
+        Inertia(Matrix3::from_diagonal_element(self.0.trace()) - self.0)
+    }
+}
+
+impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
+    /// From the diagonal of `J_d` in principal axes, kg m²; not the principal moments.
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where the matrix isn't that of a body.
+    pub fn new(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
+        check(&Matrix3::from_diagonal(&diagonal)).map(|_| Self(diagonal))
+    }
+
+    /// From the principal moments of the ordinary inertia `J`, kg m².
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where no body has these moments.
+    pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
+        Self::new(nonstandard_diagonal(&moments))
+    }
+}
+
+impl<T: Real> DiagonalNonstandardInertia<T> {
+    /// From principal moments, of which nothing is asked: those of a body nearly flat may be modified beyond it.
+    #[inline(always)]
+    pub(crate) fn of_moments_unchecked(moments: &Vector3<T>) -> Self {
+        let half = (moments.x + moments.y + moments.z) * real(0.5);
+        Self(moments.map(|moment| half - moment))
+    }
+
+    /// The diagonal of `J_d`, kg m².
+    #[must_use]
+    pub fn diagonal(&self) -> &Vector3<T> {
+        &self.0
+    }
+
+    /// The matrix `J_d`, kg m².
+    #[must_use]
+    pub fn to_matrix(&self) -> Matrix3<T> {
+        Matrix3::from_diagonal(&self.0)
+    }
+}
+
+impl<T: RealField + Copy> Inertia<T> {
+    /// From the symmetric matrix `J`, kg m².
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where the matrix isn't that of a body.
+    pub fn new(matrix: Matrix3<T>) -> Result<Self, InertiaError> {
+        check(&(Matrix3::from_diagonal_element(matrix.trace() * real(0.5)) - matrix))?;
+        Ok(Self(symmetric_part(&matrix)))
+    }
+
+    /// From the principal moments, kg m².
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where no body has these moments.
+    pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
+        Self::new(Matrix3::from_diagonal(&moments))
+    }
+}
+
+impl<T: Real> Inertia<T> {
+    /// The matrix `J`, kg m².
+    #[must_use]
+    pub fn as_matrix(&self) -> &Matrix3<T> {
+        &self.0
+    }
+
+    /// The nonstandard inertia `J_d = ½ tr(J) I − J` of the same body.
+    #[must_use]
+    pub fn to_nonstandard(&self) -> NonstandardInertia<T> {
+        NonstandardInertia(Matrix3::from_diagonal_element(self.0.trace() * real::<T>(0.5)) - self.0)
+    }
+}
+
+impl<T: Real> From<DiagonalNonstandardInertia<T>> for NonstandardInertia<T> {
+    fn from(inertia: DiagonalNonstandardInertia<T>) -> Self {
+        Self(inertia.to_matrix())
+    }
+}
+
+macro_rules! from_lanes {
+    ($($type:ident),+) => {$(
+        /// One body in each lane.
+        impl<T, const LANES: usize> From<[$type<T::Element>; LANES]> for $type<T>
+        where
+            T: Real<Element: Real> + From<[T::Element; LANES]>,
+        {
+            fn from(lanes: [$type<T::Element>; LANES]) -> Self {
+                Self(gathered(&lanes.map(|lane| lane.0)))
+            }
+        }
+    )+};
+}
+
+from_lanes!(NonstandardInertia, DiagonalNonstandardInertia, Inertia);
+
+fn nonstandard_diagonal<T: RealField + Copy>(moments: &Vector3<T>) -> Vector3<T> {
+    Vector3::from_element(moments.sum() * real(0.5)) - moments
+}
+
+fn symmetric_part<T: RealField + Copy>(matrix: &Matrix3<T>) -> Matrix3<T> {
+    (matrix + matrix.transpose()) * real::<T>(0.5)
+}
+
+/// The exactly symmetric `J_d`, if it is that of a body.
+fn check<T: RealField + Copy>(nonstandard: &Matrix3<T>) -> Result<Matrix3<T>, InertiaError> {
+    if !nonstandard.iter().all(|&entry| crate::numbers::is_finite(entry)) {
+        return Err(InertiaError::NotFinite);
+    }
+    let trace = nonstandard.trace();
+    // Products of three entries and of inverse step lengths must stay within range: a quarter of the exponents does.
+    let largest = T::max_value().map_or(real(1e75), |max| max.sqrt().sqrt());
+    let size = nonstandard.amax().max(trace.abs());
+    if size > largest || (size > T::zero() && size * largest < T::one()) {
+        return Err(InertiaError::OutOfRange { trace: reported(trace) });
+    }
+    // What forming, rotating or printing a tensor to 15 digits leaves.
+    let rounding = T::default_epsilon() * size * real(64.0);
+    let defect = (nonstandard - nonstandard.transpose()).amax();
+    if defect > rounding {
+        return Err(InertiaError::NotSymmetric { defect: reported(defect) });
+    }
+    let symmetric = symmetric_part(nonstandard);
+    let mut eigenvalues = symmetric.symmetric_eigenvalues();
+    eigenvalues.as_mut_slice().sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
+    if eigenvalues[0] < -rounding {
+        return Err(InertiaError::TriangleInequality { smallest: reported(eigenvalues[0]) });
+    }
+    let smallest_moment = eigenvalues[0] + eigenvalues[1];
+    if smallest_moment <= rounding {
+        return Err(InertiaError::Singular { smallest: reported(smallest_moment) });
+    }
+    Ok(symmetric)
+}

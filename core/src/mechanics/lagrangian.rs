@@ -1,0 +1,68 @@
+//! The trait of reduced discrete Lagrangians that `#[lagrangian]` implements, and that can be implemented by hand.
+
+use crate::groups::SO3;
+use crate::mechanics::effect::{Effect, Matrix, Vector};
+use crate::mechanics::kinetic_part::Regular;
+
+/// A reduced discrete Lagrangian `l_d(F, w)` with all that an integrator needs of it.
+///
+/// `F = g_i⁻¹ g_{i+1}` is the increment of a step, `w` the advected parameters as the body sees them, `h` the step in
+/// seconds. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are body-frame angular momenta in kg m²/s.
+/// The derived terms use the relation of the group (`FᵀF = I`), so they mean nothing at a matrix off it; `l_d` itself
+/// is the declared expression and accepts any matrix.
+///
+/// How a step is made of it is said in [`Effect`]. An effect that is a Lagrangian is conservative: its flow is Poisson,
+/// its energy doesn't drift.
+///
+/// # Source
+///
+/// \[RDAE\], sections 1.4 and 2.2; see [`conventions`](crate::conventions).
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` isn't a Lagrangian, so a scene with it isn't conservative",
+    label = "not a Lagrangian",
+    note = "a force does work: the energy isn't kept, and a step back doesn't undo a step"
+)]
+pub trait DiscreteLagrangian: Effect {
+    /// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` for all values of the parameters.
+    ///
+    /// Then a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
+    /// compositions raise it; otherwise it is 1 in general. The macro finds it out, by its normal forms or by the
+    /// values at random points of a finite field, and says in [`DERIVATION`](Effect::DERIVATION) how, and whether it
+    /// would hold if vectors were declared as points; who implements the trait by hand states it.
+    const SELF_ADJOINT: bool;
+
+    /// The declared `l_d(F, w)`, in J s.
+    fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
+
+    /// `(R_F)* δl_d/δF`: components `d/ds l_d(exp(s E_k) F, w)` at `s = 0`.
+    fn right_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
+
+    /// `(L_F)* δl_d/δF`: components `d/ds l_d(F exp(s E_k), w)` at `s = 0`.
+    fn left_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
+
+    /// `δl_d/δw ⋄ w`: components `−d/ds l_d(F, exp(s E_k) · w)` at `s = 0`, \[RDAE, (2.1)\].
+    fn diamond(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;
+
+    /// The momentum component of `𝔽l_d⁻`: `μ = (R_F)* δl_d/δF − δl_d/δw ⋄ w`, \[RDAE, (2.7)\].
+    fn legendre_minus(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.right_momentum(f, w, h) - self.diamond(f, w, h)
+    }
+
+    /// The momentum component of `𝔽l_d⁺`: `μ = (L_F)* δl_d/δF`, \[RDAE, (2.6)\].
+    fn legendre_plus(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.left_momentum(f, w, h)
+    }
+
+    /// The discrete energy `−∂l_d/∂h`, in J.
+    fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
+}
+
+/// A scene on SO(3) that can be stepped: a body with a fixed point, or one whose motion about its centre is looked at.
+pub trait RigidScene: DiscreteLagrangian + Regular + Effect<Group = SO3<<Self as Effect>::Scalar>> {}
+
+impl<S> RigidScene for S where S: DiscreteLagrangian + Regular + Effect<Group = SO3<<S as Effect>::Scalar>> {}
+
+/// A scene that can be stepped, and that a chooser among methods may keep and copy.
+pub trait Scene: DiscreteLagrangian<Advected: 'static> + Regular + Clone + 'static {}
+
+impl<S> Scene for S where S: DiscreteLagrangian<Advected: 'static> + Regular + Clone + 'static {}

@@ -1,0 +1,25 @@
+//! Mechanics: what a scene is made of, as the macro declares it or a user writes it by hand.
+//!
+//! An [`Effect`] is one term with all that a step needs of it; a [`DiscreteLagrangian`] is one with `l_d(F, w)`
+//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again. Nothing here solves an equation.
+
+mod description;
+mod effect;
+mod force;
+mod inertia;
+mod kinetic_part;
+mod lagrangian;
+mod operations;
+mod sum;
+mod symmetry;
+
+pub use description::SceneVisitor;
+pub use effect::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
+pub(crate) use effect::{energy, momentum_of_velocity, velocity_of_momentum};
+pub use force::Force;
+pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
+pub use kinetic_part::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
+pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
+pub use operations::Operations;
+pub use sum::{SharedBy, Sum};
+pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};

@@ -1,0 +1,293 @@
+//! Scenes: sums of effects.
+
+use core::ops::Add;
+
+use crate::error::SetupError;
+use crate::groups::LieGroup;
+use crate::mechanics::description::SceneVisitor;
+use crate::mechanics::effect::{Effect, Matrix, Parts, Square, Vector};
+use crate::mechanics::kinetic_part::KineticPart;
+use crate::mechanics::lagrangian::DiscreteLagrangian;
+use crate::mechanics::operations::Operations;
+use crate::numbers::{Coordinates as _, real};
+
+/// The sum of two effects of one group; what `+` makes of them.
+///
+/// Lagrangians add, and with them momentum maps, diamonds, momentum equations, Jacobians and energies. A part that a
+/// term doesn't have costs nothing: no memory, no branch, no addition of zero. With one term that has an
+/// [unknown part](Parts::unknown), like a body, the Newton system is that term's own, and all others are kicks.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::effects::{Gravity, RigidBody};
+/// use liestep::{NonstandardInertia, SO3, Stepper};
+/// use liestep::groups::LieGroup as _;
+/// use nalgebra::Vector3;
+///
+/// let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
+/// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.01)?;
+/// let state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 12.0))?;
+/// for state in stepper.steps(state).take(100) {
+///     let vertical: f64 = stepper.momentum_along_advected(&state?);
+///     assert!((vertical - 48.0).abs() < 1e-12);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sum<A, B> {
+    /// The left term.
+    pub first: A,
+    /// The right term.
+    pub second: B,
+}
+
+impl<A, B> Sum<A, B> {
+    /// `first + second`.
+    pub const fn new(first: A, second: B) -> Self {
+        Self { first, second }
+    }
+}
+
+/// The group `G` itself: what the effects `A` and `B` have to share to add. It is there for its message.
+#[diagnostic::on_unimplemented(
+    message = "`{B}` can't be added to `{A}`: the one moves on `{Self}`, the other on `{G}`",
+    label = "effects of different groups, or of different scalars",
+    note = "all effects of a scene share one group and one scalar"
+)]
+pub trait SharedBy<G, A, B> {}
+
+impl<G: LieGroup, A, B> SharedBy<G, A, B> for G {}
+
+impl<A, B, C> Add<C> for Sum<A, B>
+where
+    A: Effect,
+    C: Effect,
+    C::Group: SharedBy<A::Group, Self, C>,
+{
+    type Output = Sum<Self, C>;
+
+    fn add(self, other: C) -> Sum<Self, C> {
+        Sum::new(self, other)
+    }
+}
+
+impl<A, B> Effect for Sum<A, B>
+where
+    A: Effect,
+    B: Effect<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
+{
+    type Scalar = A::Scalar;
+    type Group = A::Group;
+    type Retraction = A::Retraction;
+    type Kinetic = <A::Kinetic as KineticPart>::Or<B::Kinetic>;
+    type Advected = (A::Advected, B::Advected);
+    type Constants = (A::Constants, B::Constants);
+    type StepTerms = (A::StepTerms, B::StepTerms);
+
+    const PARTS: Parts = A::PARTS.or(B::PARTS);
+    const DENOMINATORS: u32 = match (A::PARTS.unknown, B::PARTS.unknown) {
+        (true, true) if A::DENOMINATORS < B::DENOMINATORS => B::DENOMINATORS,
+        (true, _) => A::DENOMINATORS,
+        (false, _) => B::DENOMINATORS,
+    };
+    // The one unknown part's own kernel is run; two are added with their Jacobians.
+    const JACOBIAN_IS_EXPENSIVE: bool = match (A::PARTS.unknown, B::PARTS.unknown) {
+        (true, true) => false,
+        (true, false) => A::JACOBIAN_IS_EXPENSIVE,
+        (false, _) => B::JACOBIAN_IS_EXPENSIVE,
+    };
+    const OPERATIONS: Operations = Operations {
+        step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),
+        iteration: match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) => A::OPERATIONS.iteration.saturating_add(B::OPERATIONS.iteration),
+            (true, false) => A::OPERATIONS.iteration,
+            (false, _) => B::OPERATIONS.iteration,
+        },
+    };
+    const DERIVATION: &'static str = "the sum of two effects: their momentum maps, diamonds, unknown parts, kicks, \
+                                      Jacobians and energies, each added; see DERIVATION of either\n";
+
+    fn derivation() -> String {
+        // A blank line between terms; those of an inner sum have theirs.
+        format!("{}\n{}", A::derivation(), B::derivation())
+    }
+
+    fn validate(&self) -> Result<(), SetupError> {
+        self.first.validate()?;
+        self.second.validate()
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
+        self.first.describe(visitor);
+        self.second.describe(visitor);
+    }
+
+    fn advected(&self) -> Self::Advected {
+        (self.first.advected(), self.second.advected())
+    }
+
+    fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
+        self.first.momentum_jacobian(f, &w.0, h) + self.second.momentum_jacobian(f, &w.1, h)
+    }
+
+    fn inertia(&self) -> Square<Self> {
+        self.first.inertia() + self.second.inertia()
+    }
+
+    fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
+        self.first.momentum_bias(&w.0) + self.second.momentum_bias(&w.1)
+    }
+
+    fn potential(&self, w: &Self::Advected) -> Self::Scalar {
+        self.first.potential(&w.0) + self.second.potential(&w.1)
+    }
+
+    fn constants(&self, h: Self::Scalar) -> Self::Constants {
+        (self.first.constants(h), self.second.constants(h))
+    }
+
+    #[inline(always)]
+    fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
+        match (A::PARTS.kick_before, B::PARTS.kick_before) {
+            (true, true) => A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
+            (true, false) => A::kick_before(&constants.0, &w.0),
+            (false, _) => B::kick_before(&constants.1, &w.1),
+        }
+    }
+
+    #[inline(always)]
+    fn kick_derivative(
+        constants: &Self::Constants,
+        w: &Self::Advected,
+        velocity: &Vector<Self>,
+    ) -> Option<Vector<Self>> {
+        let first = || A::kick_derivative(&constants.0, &w.0, velocity);
+        let second = || B::kick_derivative(&constants.1, &w.1, velocity);
+        match (A::PARTS.kick_before, B::PARTS.kick_before) {
+            (true, true) => Some(first()? + second()?),
+            (true, false) => first(),
+            (false, _) => second(),
+        }
+    }
+
+    /// The right side `a` belongs to one unknown part, zero to the other.
+    #[inline(always)]
+    fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
+        let zero = Vector::<Self>::zero();
+        let (first, second) = if A::PARTS.unknown { (a, &zero) } else { (&zero, a) };
+        (A::step_terms(&constants.0, first, &w.0), B::step_terms(&constants.1, second, &w.1))
+    }
+
+    #[inline(always)]
+    fn newton_system(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) => {
+                let first = A::newton_system(&constants.0, &terms.0, half);
+                let second = B::newton_system(&constants.1, &terms.1, half);
+                let first = raised::<Self>(first, Self::DENOMINATORS - A::DENOMINATORS, half);
+                let second = raised::<Self>(second, Self::DENOMINATORS - B::DENOMINATORS, half);
+                (first.0 + second.0, first.1 + second.1)
+            }
+            (true, false) => A::newton_system(&constants.0, &terms.0, half),
+            (false, _) => B::newton_system(&constants.1, &terms.1, half),
+        }
+    }
+
+    #[inline(always)]
+    fn newton_residual(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Option<Vector<Self>>) {
+        match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) => (Self::newton_system(constants, terms, half).0, None),
+            (true, false) => A::newton_residual(&constants.0, &terms.0, half),
+            (false, _) => B::newton_residual(&constants.1, &terms.1, half),
+        }
+    }
+
+    #[inline(always)]
+    fn kick_beside(
+        constants: &Self::Constants,
+        increment: &Matrix<Self>,
+        next: &Self::Advected,
+    ) -> Option<Vector<Self>> {
+        let (beside, other) = if A::PARTS.unknown {
+            let other = || B::kick_after(&constants.1, increment, &next.1);
+            (A::kick_beside(&constants.0, increment, &next.0), B::PARTS.kick_after.then(other))
+        } else {
+            let other = || A::kick_after(&constants.0, increment, &next.0);
+            (B::kick_beside(&constants.1, increment, &next.1), A::PARTS.kick_after.then(other))
+        };
+        match (beside, other) {
+            (Some(beside), Some(other)) => Some(beside + other),
+            (beside, other) => beside.or(other),
+        }
+    }
+
+    #[inline(always)]
+    fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
+        match (A::PARTS.kick_after, B::PARTS.kick_after) {
+            (true, true) => {
+                A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1)
+            }
+            (true, false) => A::kick_after(&constants.0, increment, &next.0),
+            (false, _) => B::kick_after(&constants.1, increment, &next.1),
+        }
+    }
+}
+
+/// `Dᵏ r` and its derivative, for `D = 1 + |y|²` and a system `r` with its derivative.
+#[inline(always)]
+fn raised<E: Effect>(
+    (residual, jacobian): (Vector<E>, Square<E>),
+    power: u32,
+    half: &Vector<E>,
+) -> (Vector<E>, Square<E>) {
+    if power == 0 {
+        return (residual, jacobian);
+    }
+    let d = half.dot(half) + real(1.0);
+    // d(Dᵏ r) = Dᵏ dr + k Dᵏ⁻¹ r (2y)ᵀ dy.
+    let below = (1..power).fold(real::<E::Scalar>(1.0), |product, _| product * d);
+    let slope = Vector::<E>::outer(&residual, half) * (below * real(2.0 * f64::from(power)));
+    (residual * (below * d), jacobian * (below * d) + slope)
+}
+
+impl<A, B> DiscreteLagrangian for Sum<A, B>
+where
+    A: DiscreteLagrangian,
+    B: DiscreteLagrangian<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
+{
+    const SELF_ADJOINT: bool = A::SELF_ADJOINT && B::SELF_ADJOINT;
+
+    fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
+        self.first.l_d(f, &w.0, h) + self.second.l_d(f, &w.1, h)
+    }
+
+    fn right_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.first.right_momentum(f, &w.0, h) + self.second.right_momentum(f, &w.1, h)
+    }
+
+    fn left_momentum(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.first.left_momentum(f, &w.0, h) + self.second.left_momentum(f, &w.1, h)
+    }
+
+    fn diamond(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.first.diamond(f, &w.0, h) + self.second.diamond(f, &w.1, h)
+    }
+
+    fn legendre_minus(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.first.legendre_minus(f, &w.0, h) + self.second.legendre_minus(f, &w.1, h)
+    }
+
+    fn discrete_energy(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar {
+        self.first.discrete_energy(f, &w.0, h) + self.second.discrete_energy(f, &w.1, h)
+    }
+}

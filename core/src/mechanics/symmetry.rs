@@ -1,0 +1,83 @@
+//! The symmetries that a scene's momentum is conserved by, as types: what a scene hasn't, can't be asked of it.
+
+use nalgebra::SVector;
+
+use crate::groups::SO3;
+use crate::mechanics::lagrangian::DiscreteLagrangian;
+use crate::mechanics::sum::Sum;
+use crate::numbers::Real;
+
+/// A Lagrangian that advects nothing: it is the same for all attitudes, and the spatial momentum is conserved exactly.
+///
+/// A sum is left-invariant if both terms are. The attribute implements it; so does a hand-written Lagrangian without
+/// advected parameters, with an empty body.
+#[diagnostic::on_unimplemented(
+    message = "the spatial momentum isn't conserved in a scene with `{Self}`",
+    label = "`{Self}` singles out a direction in space, or is a force",
+    note = "`State::spatial_momentum` is its value in any scene; with one advected vector, \
+            `Stepper::momentum_along_advected` is conserved"
+)]
+pub trait LeftInvariant: DiscreteLagrangian {}
+
+impl<A, B> LeftInvariant for Sum<A, B>
+where
+    A: LeftInvariant,
+    B: LeftInvariant<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
+{
+}
+
+/// Advected parameters that are one vector of space, and no other parameter: rotations about it are a symmetry.
+#[diagnostic::on_unimplemented(
+    message = "no momentum along a direction is conserved, as this scene doesn't advect exactly one vector",
+    label = "advects none or several",
+    note = "with two or more, rotations about either change the other; with none, all of the spatial momentum is \
+            conserved: `Stepper::spatial_momentum`"
+)]
+pub trait OneVector {
+    /// The scalar of its components.
+    type Scalar: Real;
+
+    /// The vector, as the body sees it.
+    fn vector(&self) -> SVector<Self::Scalar, 3>;
+}
+
+impl<T: Real> OneVector for SVector<T, 3> {
+    type Scalar = T;
+
+    fn vector(&self) -> SVector<T, 3> {
+        *self
+    }
+}
+
+impl<A: OneVector> OneVector for (A, ()) {
+    type Scalar = A::Scalar;
+
+    fn vector(&self) -> SVector<A::Scalar, 3> {
+        self.0.vector()
+    }
+}
+
+impl<B: OneVector> OneVector for ((), B) {
+    type Scalar = B::Scalar;
+
+    fn vector(&self) -> SVector<B::Scalar, 3> {
+        self.1.vector()
+    }
+}
+
+/// A Lagrangian on SO(3) that advects one vector: it is the same for attitudes that differ by a rotation about it, and
+/// the momentum along it is conserved exactly, (3.20).
+pub trait AxiallyInvariant: DiscreteLagrangian {
+    /// The vector in these advected parameters.
+    fn axis(w: &Self::Advected) -> SVector<Self::Scalar, 3>;
+}
+
+impl<T: Real, L> AxiallyInvariant for L
+where
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+    L::Advected: OneVector<Scalar = T>,
+{
+    fn axis(w: &Self::Advected) -> SVector<T, 3> {
+        w.vector()
+    }
+}

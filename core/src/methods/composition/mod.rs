@@ -1,0 +1,227 @@
+//! Symmetric compositions: a step of higher order from several of the declared Lagrangian's.
+
+mod scheme;
+
+pub use scheme::CompositionScheme;
+
+use crate::error::{SetupError, StepError};
+use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, Vector};
+use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepped, Stepper, Summation, half_coordinates};
+use crate::numbers::{Coordinates, Mask, Real, real, reported};
+use crate::solving::{Guess, six_digits};
+use nalgebra::SimdBool as _;
+
+/// The plan of [`Stepper::composed`](crate::Stepper::composed): a step is `Φ_{γ_s h} ∘ … ∘ Φ_{γ_1 h}`, where `Φ_h` is the step of a self-adjoint Lagrangian.
+///
+/// With the coefficients of a [`CompositionScheme`] it has that one's order and keeps what `Φ_h` keeps: the Poisson
+/// structure, the momentum maps and the Casimirs exactly, the energy nearly. A step of `−h` undoes one of `h`.
+///
+/// # Contract
+///
+/// As [`Stepper`](crate::Stepper)'s, for the step as a whole. Each substep has constants of its own, folded at construction, so that a
+/// step costs its stages and nothing else. Substeps are longer than the step where `|γ_i| > 1`, and some are negative;
+/// all of them must be solvable, so the limit on `h` is nearly that of the own step over
+/// [the largest `|γ_i|`](CompositionScheme::largest).
+///
+/// A Lagrangian that isn't self-adjoint is refused when the user's crate is built:
+///
+/// ```compile_fail,E0080
+/// use liestep::methods::CompositionScheme;
+/// use liestep::{SO3, Stepper, lagrangian};
+/// use nalgebra::Vector3;
+///
+/// #[lagrangian(
+///     group = SO3,
+///     advected(w = up),
+///     l_d = ((F - I) * (F - I).transpose()).trace() / (2.0 * h) - h * weight * w.dot(&rho),
+/// )]
+/// #[derive(Clone)]
+/// struct OneSided {
+///     weight: f64,
+///     rho: Vector3<f64>,
+///     up: Vector3<f64>,
+/// }
+///
+/// let top = OneSided { weight: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let _ = Stepper::composed(top, 0.01, CompositionScheme::KAHAN_LI_8);
+/// ```
+///
+/// # Examples
+///
+/// ```
+/// use liestep::methods::CompositionScheme;
+/// use liestep::{SO3, Stepper, lagrangian};
+/// use liestep::mechanics::DiagonalNonstandardInertia;
+/// use nalgebra::Vector3;
+///
+/// /// A free rigid body.
+/// #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
+/// #[derive(Clone)]
+/// struct Body {
+///     J_d: DiagonalNonstandardInertia,
+/// }
+///
+/// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 3.0))?;
+/// let composed = Stepper::composed(Body { J_d }, 0.1, CompositionScheme::KAHAN_LI_8)?;
+/// let mut state = composed.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
+/// for _ in 0..100 {
+///     composed.step(&mut state)?;
+/// }
+/// # use liestep::groups::LieGroup;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Source
+///
+/// \[Su90\], \[KL97\], \[SS05\]; see [`conventions`](crate::conventions).
+#[derive(Clone, Debug)]
+pub struct Composed<S: Effect> {
+    scheme: CompositionScheme,
+    h: Scalar<S>,
+    /// One for each of the distinct substeps, that of the first stage first.
+    substeps: Vec<Declared<S>>,
+    stages: Vec<Stage<Scalar<S>>>,
+}
+
+/// A stage, and how the guess for the next one is made of its coordinates and of those of the stage before.
+#[derive(Clone, Copy, Debug)]
+struct Stage<T> {
+    substep: usize,
+    /// Of the coordinates of this stage, when only these are to be trusted.
+    scale: T,
+    /// Of the coordinates of this stage.
+    last: T,
+    /// Of the coordinates of the stage before.
+    earlier: T,
+}
+
+impl<S: Effect> Stepper<S> {
+    /// A symmetric composition of the scene's own step; see [`Composed`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::new`], for a substep.
+    pub fn composed(scene: S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Stepper<S, Composed<S>>, SetupError>
+    where
+        S: DiscreteLagrangian + Regular,
+    {
+        const {
+            assert!(S::SELF_ADJOINT, "a composition needs a Lagrangian with l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
+        }
+        let plan = Composed::new(&scene, h, scheme)?;
+        Ok(Stepper { scene, plan })
+    }
+}
+
+impl<S: Effect> Composed<S> {
+    fn new(scene: &S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Self, SetupError> {
+        let (distinct, places) = scheme.distinct();
+        let substeps = distinct.iter().map(|&gamma| Declared::folded(scene, h * real(gamma)));
+        let substeps = substeps.collect::<Result<_, _>>()?;
+        let around = |stage: usize| distinct[places[stage % places.len()]];
+        let stages = (0..places.len()).map(|stage| {
+            let before = around(stage + places.len() - 1);
+            Stage::between(places[stage], before, around(stage), around(stage + 1))
+        });
+        let stages = stages.collect();
+        Ok(Self { scheme, h, substeps, stages })
+    }
+
+    /// The coefficients.
+    #[must_use]
+    pub fn scheme(&self) -> &CompositionScheme {
+        &self.scheme
+    }
+}
+
+impl<S: Effect> Plan<S> for Composed<S> {
+    type Kept = Guess<Vector<S>>;
+
+    fn step_size(&self) -> Scalar<S> {
+        self.h
+    }
+
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        Self::new(scene, h, self.scheme)
+    }
+
+    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+        Guess::of(half_coordinates(scene, motion, self.substeps[0].step_size()))
+    }
+
+    /// The iterations of the report are those of all stages.
+    #[inline(always)]
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        let (mut next, mut guess) = (*motion, *kept);
+        let mut iterations = 0;
+        for stage in &self.stages {
+            let (now, declared) = (next.now(), &self.substeps[stage.substep]);
+            let stepped = if M::CARRIES {
+                declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next)?
+            } else {
+                declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next)?
+            };
+            next.proceed(&stepped.proceeded());
+            let Stepped { step, half, far, .. } = stepped;
+            guess = Guess { half, next: stage.half_guess(half, far, guess.half) };
+            iterations += step.iterations;
+        }
+        next.finish(|| scene.advected());
+        (*motion, *kept) = (next, guess);
+        Ok(StepReport::of(iterations))
+    }
+
+    /// [`StepError::BeyondSolvable`] speaks of the whole step.
+    const EXPLAINS: bool = true;
+
+    #[cold]
+    fn explained(
+        &self,
+        error: StepError,
+        scene: &S,
+        motion: &Motion<Group<S>, S::Advected>,
+        kept: &Self::Kept,
+    ) -> StepError {
+        let StepError::BeyondSolvable { .. } = error else { return error };
+        let largest = six_digits(reported(self.max_step(scene, motion, kept)));
+        StepError::BeyondSolvable { step: reported(self.h), largest }
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
+        visitor.term(self.scheme.name());
+        self.scheme.stages().for_each(|gamma| visitor.parameter("gamma", real(gamma)));
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::of_stages(S::OPERATIONS, u32::try_from(self.stages.len()).unwrap_or(u32::MAX))
+    }
+}
+
+/// Beyond this the extrapolation would magnify what it is to foresee.
+const FARTHEST_EXTRAPOLATION: f64 = 3.0;
+
+impl<T: Real> Stage<T> {
+    /// The stage of `γ = this` between those of `before` and `next`.
+    ///
+    /// The coordinates of a stage over its `γ` are the mean velocity over it, to second order that in its middle. Two
+    /// of them give that of the next stage by a straight line, whose middle lies `(this + next)/2` away from this
+    /// one's, where that of the stage before lies `(before + this)/2` back.
+    fn between(substep: usize, before: f64, this: f64, next: f64) -> Self {
+        let ratio = (this + next) / (before + this);
+        let ratio = if ratio.abs() <= FARTHEST_EXTRAPOLATION { ratio } else { 0.0 };
+        let scale = next / this;
+        Self { substep, scale: real(scale), last: real(scale * (1.0 + ratio)), earlier: real(-ratio * next / before) }
+    }
+
+    #[inline(always)]
+    fn half_guess<V: Coordinates<T>>(&self, last: V, far: Mask<T>, earlier: V) -> V {
+        let guess = last * self.last + earlier * self.earlier;
+        // Near the fold coordinates change too fast for a straight line.
+        if far.any() { (last * self.scale).select(far, guess) } else { guess }
+    }
+}

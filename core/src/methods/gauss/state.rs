@@ -1,0 +1,68 @@
+//! What collocation keeps: quaternion and momentum, of which attitude and body momentum are functions.
+
+use nalgebra::Vector3;
+
+use super::lift::{Lifted, length_squared, lifted, rotation, times, twice_momentum};
+use super::stages::Stages;
+use crate::groups::SO3;
+use crate::motion::{Kept, count, counted};
+
+/// The motion as [`Gauss`](super::Gauss) integrates it: the unit quaternion and its momentum, what rounding has left
+/// behind of their sums, and the stages of the last step, from which the next ones are guessed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collocated<const PAIRS: usize> {
+    pub(super) lifted: Lifted,
+    pub(super) carry: Lifted,
+    pub(super) stages: Option<Stages<PAIRS>>,
+}
+
+impl<const PAIRS: usize> Collocated<PAIRS> {
+    pub(super) fn of(attitude: SO3, momentum: &Vector3<f64>) -> Self {
+        let q = attitude.to_quaternion();
+        Self { lifted: lifted(&[q.w, q.i, q.j, q.k], momentum), carry: [0.0; 8], stages: None }
+    }
+
+    /// The rotation of `q/|q|`.
+    #[inline(always)]
+    pub(super) fn attitude(&self) -> SO3 {
+        let [a, b, c, d, ..] = self.lifted;
+        SO3::from_matrix_unchecked(rotation(&[a, b, c, d], 2.0 / length_squared(&self.lifted)))
+    }
+
+    /// `Π`, body frame.
+    #[inline(always)]
+    pub(super) fn momentum(&self) -> Vector3<f64> {
+        twice_momentum(&self.lifted) * 0.5
+    }
+
+    /// Adds to `Π`.
+    pub(super) fn push(&mut self, impulse: &Vector3<f64>) {
+        let [q @ .., _, _, _, _] = self.lifted;
+        let change = times(&q, &(impulse * 2.0));
+        self.lifted[4..].iter_mut().zip(change).for_each(|(component, change)| *component += change);
+    }
+}
+
+impl<const PAIRS: usize> Kept<f64> for Collocated<PAIRS> {
+    fn each(&self, visit: &mut dyn FnMut(f64)) {
+        self.lifted.iter().chain(&self.carry).for_each(|&number| visit(number));
+        visit(count(usize::from(self.stages.is_some())));
+        let stages = self.stages.map_or([[[0.0; PAIRS]; 2]; 8], |stages| stages.0);
+        stages.as_flattened().as_flattened().iter().for_each(|&number| visit(number));
+    }
+
+    fn from_numbers(next: &mut dyn FnMut() -> f64) -> Option<Self> {
+        let lifted = core::array::from_fn(|_| next());
+        let carry = core::array::from_fn(|_| next());
+        let has_stages = match counted(next())? {
+            0 => false,
+            1 => true,
+            _ => return None,
+        };
+        let mut stages = [[[0.0; PAIRS]; 2]; 8];
+        stages.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|number| *number = next());
+        // A unit quaternion, to some roundings.
+        let is_unit = (length_squared(&lifted) - 1.0).abs() < f64::EPSILON.sqrt();
+        is_unit.then_some(Self { lifted, carry, stages: has_stages.then_some(Stages(stages)) })
+    }
+}

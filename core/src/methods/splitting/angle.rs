@@ -1,0 +1,120 @@
+//! Rotations by large and small angles without a library function.
+
+use nalgebra::SimdBool as _;
+
+use crate::numbers::{Real, real};
+
+/// Up to here the polynomials are exact to a rounding.
+const SMALL: f64 = 0.5;
+
+/// Enough for any angle of a double that has a digit of its direction left.
+const MOST_DOUBLINGS: u32 = 30;
+
+/// `sin θ/θ` and `(1 − cos θ)/θ²` as functions of `q = θ²`.
+///
+/// Up to `q = 0.5` these are Taylor polynomials. A larger angle is halved until it is that small; doubling it again is
+/// two products and doesn't cancel: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each doubles
+/// the absolute error, as the angle's own rounding does.
+#[inline(always)]
+pub(super) fn rotation_coefficients<T: Real>(q: T) -> (T, T) {
+    if q.simd_le(real(SMALL)).all() { small(q) } else { large(q) }
+}
+
+#[inline(always)]
+fn small<T: Real>(q: T) -> (T, T) {
+    const SINC: [f64; 8] = coefficients(1);
+    const VERSINE: [f64; 8] = coefficients(2);
+    let (q2, q4) = (q * q, q * q * (q * q));
+    (polynomial(&SINC, q, q2, q4), polynomial(&VERSINE, q, q2, q4))
+}
+
+fn large<T: Real>(q: T) -> (T, T) {
+    let quarter = real::<T>(0.25);
+    let mut reduced = q;
+    let mut doublings = 0;
+    // Lanes that are small already wait. A NaN never becomes small.
+    while doublings < MOST_DOUBLINGS && reduced.simd_gt(real(SMALL)).any() {
+        reduced = (reduced * quarter).select(reduced.simd_gt(real(SMALL)), reduced);
+        doublings += 1;
+    }
+    let (mut sinc, mut versine) = small(reduced);
+    for _ in 0..doublings {
+        let behind = reduced.simd_lt(q);
+        let next = (sinc * (T::one() - reduced * versine), sinc * sinc * real(0.5));
+        sinc = next.0.select(behind, sinc);
+        versine = next.1.select(behind, versine);
+        reduced = (reduced * real(4.0)).select(behind, reduced);
+    }
+    (sinc, versine)
+}
+
+/// `Σ a_k q^k` in pairs, which don't wait for each other; the small ones first, or what is less than half of
+/// a rounding would be lost each time.
+#[inline(always)]
+fn polynomial<T: Real>(a: &[f64; 8], q: T, q2: T, q4: T) -> T {
+    let pair = |k: usize| real::<T>(a[k]) + q * real(a[k + 1]);
+    pair(0) + (q2 * pair(2) + q4 * (pair(4) + q2 * pair(6)))
+}
+
+/// `(−1)^k/(2k + first)!`.
+#[allow(clippy::cast_precision_loss)] // a handful
+const fn coefficients(first: usize) -> [f64; 8] {
+    let (mut coefficients, mut k) = ([0.0; 8], 0);
+    let mut coefficient = if first == 1 { 1.0 } else { 0.5 };
+    while k < 8 {
+        coefficients[k] = coefficient;
+        coefficient = -coefficient / (((2 * k + first + 1) * (2 * k + first + 2)) as f64);
+        k += 1;
+    }
+    coefficients
+}
+
+/// `a²` rounded and what the rounding left behind, by Dekker's product.
+#[inline(always)]
+pub(super) fn square<T: Real>(a: T) -> (T, T) {
+    // Half of the digits: of 53 or of 24.
+    let single = T::simd_default_epsilon().simd_gt(real(1e-10)).any();
+    let split = a * real(if single { 4_097.0 } else { 134_217_729.0 });
+    let high = split - (split - a);
+    let low = a - high;
+    let product = a * a;
+    (product, ((high * high - product) + (high * low + high * low)) + low * low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{rotation_coefficients, small, square};
+
+    /// Both sides of each place where the number of doublings changes, and some angles beyond a turn.
+    #[test]
+    fn they_are_sine_and_cosine() {
+        for q in [1e-20, 0.3, 0.5, 0.500_001, 1.999_999, 2.000_001, 8.0, 9.8, 30.0, 200.0] {
+            let angle: f64 = f64::sqrt(q);
+            let (sinc, versine) = rotation_coefficients(q);
+            let half = (0.5 * angle).sin() / angle;
+            assert!((sinc - angle.sin() / angle).abs() < 4e-16, "{q}: {sinc}");
+            assert!((versine - 2.0 * half * half).abs() < 4e-16, "{q}: {versine}");
+        }
+        assert_eq!(rotation_coefficients(0.0), (1.0, 0.5));
+    }
+
+    #[test]
+    fn a_square_is_exact_in_two_numbers() {
+        // (1 + 2⁻³⁰)² = 1 + 2⁻²⁹ + 2⁻⁶⁰.
+        let (product, rest) = square(1.0 + 2.0_f64.powi(-30));
+        assert_eq!((product, rest), (1.0 + 2.0_f64.powi(-29), 2.0_f64.powi(-60)));
+    }
+
+    #[test]
+    fn neither_a_nan_nor_an_infinity_is_waited_for() {
+        assert!(rotation_coefficients(f64::NAN).0.is_nan());
+        assert!(!rotation_coefficients(f64::INFINITY).0.is_finite());
+    }
+
+    #[test]
+    fn the_polynomials_are_long_enough() {
+        let (sinc, versine) = small(0.5);
+        assert!((sinc - 0.5_f64.sqrt().sin() / 0.5_f64.sqrt()).abs() < 2e-16);
+        assert!((versine - (1.0 - 0.5_f64.sqrt().cos()) / 0.5).abs() < 4e-16);
+    }
+}

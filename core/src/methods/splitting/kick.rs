@@ -1,0 +1,88 @@
+//! The kicks of a declared Lagrangian's potential, and the check that it has one.
+
+use nalgebra::{Matrix3, SimdBool as _, Vector3};
+
+use crate::error::SetupError;
+use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction as _, SO3};
+use crate::mechanics::{DiscreteLagrangian, Effect};
+use crate::numbers::{Coordinates, Real, real, reported};
+
+/// The constants with which [`DiscreteLagrangian::kick_before`] is the torque `τ(w)` itself: those of a step of two
+/// seconds, whose half kick it is.
+///
+/// # Errors
+///
+/// [`SetupError::NotSeparable`] where the Lagrangian isn't `K(F) − (h/2) (V(w) + V(F⁻¹·w))`.
+pub(crate) fn torque<T, L>(lagrangian: &L) -> Result<L::Constants, SetupError>
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+{
+    let constants = lagrangian.constants(real(2.0));
+    let half = lagrangian.constants(real(1.0));
+    let kick = |w: &L::Advected| -> Vector3<T> { L::kick_before(&constants, w) };
+    let mut defect = T::zero();
+    let [some, other] = [Vector3::new(0.7, -0.4, 1.1), Vector3::new(-0.3, 0.9, 0.5)]
+        .map(|xi| lagrangian.advected().seen_from(&CayleyRetraction::retract(&xi.map(real::<T>))));
+    for xi in [Vector3::new(0.2, -0.1, 0.3), Vector3::new(-0.5, 0.4, 0.1)] {
+        let element: SO3<T> = CayleyRetraction::retract(&xi.map(real::<T>));
+        let (f, increment) = (element.matrix(), element.increment());
+        // What is left of the momenta without the half kicks is the kinetic part's, and knows nothing of `w`.
+        let parts = |w: &L::Advected| -> [Vector3<T>; 3] {
+            let next = w.advect(&increment);
+            let h = real(1.0);
+            let before = lagrangian.legendre_minus(&f, w, h) + kick(w) * real::<T>(0.5);
+            let after = lagrangian.legendre_plus(&f, w, h) - kick(&next) * real::<T>(0.5);
+            [before, after, L::kick_before(&half, w) - kick(w) * real::<T>(0.5)]
+        };
+        let (of_some, of_other) = (parts(&some), parts(&other));
+        let size = of_some[0].norm_squared() + kick(&some).norm_squared() + kick(&other).norm_squared();
+        for (a, b) in of_some.into_iter().zip(of_other) {
+            defect = defect.simd_max((a - b).norm_squared() / size);
+        }
+    }
+    let defect = defect.simd_sqrt();
+    if defect.simd_le(T::simd_default_epsilon() * real(1e4)).all() && Coordinates::is_finite(&kick(&some)) {
+        Ok(constants)
+    } else {
+        Err(SetupError::NotSeparable { defect: reported(defect) })
+    }
+}
+
+/// The torque of the potential's commutator with the kinetic energy, `U = −½ τ·J⁻¹τ`, or for a multiple of `J⁻¹` as
+/// many times that; `None` where the derivative of the torque isn't known.
+///
+/// With the velocity `v = J⁻¹τ`, held fixed, and a turn `η` of the body,
+///
+/// ```text
+/// −dU·η = v·∂_η τ = η·∂_v τ + τ·(η × v) = η·(∂_v τ + v × τ)
+/// ```
+///
+/// since the second derivatives `η·∂_v τ` of the potential along left-invariant fields commute but for their bracket;
+/// the commutator itself is that of \[Ch97\]. Body frame; kg m²/s⁴, so that `h³` makes it a momentum.
+#[inline(always)]
+pub(super) fn force_gradient<L>(
+    torque: &L::Constants,
+    inverse_inertia: &Matrix3<L::Scalar>,
+    w: &L::Advected,
+) -> Option<Vector3<L::Scalar>>
+where
+    L: DiscreteLagrangian<Group = SO3<<L as Effect>::Scalar>>,
+{
+    let tau: Vector3<L::Scalar> = L::kick_before(torque, w);
+    let velocity = inverse_inertia * tau;
+    let change = L::kick_derivative(torque, w, &velocity)?;
+    // A multiple of the torque makes no difference, and without it a body that is symmetric about its third axis gets
+    // exactly nothing there.
+    let across = velocity - tau * inverse_inertia.m11;
+    Some(change + across.cross(&tau))
+}
+
+/// Whether the derivative of the torque is known.
+pub(crate) fn has_force_gradient<T, L>(lagrangian: &L) -> bool
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+{
+    L::kick_derivative(&lagrangian.constants(T::one()), &lagrangian.advected(), &Vector3::zeros()).is_some()
+}

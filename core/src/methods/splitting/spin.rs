@@ -1,0 +1,75 @@
+//! The rotation of a symmetric body about its own axis, once a step.
+//!
+//! Under a potential that is symmetric about that axis too, `p_3` is constant and so is the angle. The sine and cosine
+//! of one and the same angle are rounded in the same way at each step, and what they miss of `s² + c² = 1` would
+//! lengthen or shorten `w`, `p` and the attitude in proportion to the number of steps. So that, too, is made good.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::angle::{rotation_coefficients, square};
+use crate::groups::{Advected, CayleyRetraction, LieGroup, Retraction as _, SO3};
+use crate::mechanics::DiscreteLagrangian;
+use crate::motion::Summation;
+use crate::numbers::{Real, real};
+
+/// Attitudes without anything special about them.
+const SAMPLES: [[f64; 3]; 4] = [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5], [1.3, 0.8, -0.2], [-0.6, -1.2, 0.9]];
+
+/// Whether something is so from wherever the scene is seen.
+pub(super) fn all_samples<T, L>(lagrangian: &L, is_so: impl Fn(&L::Advected) -> bool) -> bool
+where
+    T: Real,
+    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
+{
+    SAMPLES.iter().all(|xi| {
+        let attitude = CayleyRetraction::retract(&Vector3::from(*xi).map(real::<T>));
+        is_so(&lagrangian.advected().seen_from(&attitude))
+    })
+}
+
+/// Turns the body by `−θ` about its third axis.
+#[inline(always)]
+pub(super) fn turn<T: Real, A: Advected<SO3<T>>>(angle: T, motion: &mut impl Summation<SO3<T>, A>) {
+    let (s, v) = sine_and_versine(angle);
+    move_by(&diagonal_block(v, s), motion);
+}
+
+/// `sin θ` and `cos θ − 1`, without cancellation.
+#[inline(always)]
+fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
+    let (sinc, versine) = rotation_coefficients(angle * angle);
+    (angle * sinc, -(angle * angle * versine))
+}
+
+/// Makes good what so many turns by one angle have added to lengths across the axis, or taken from them.
+#[cold]
+#[inline(never)]
+pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, motion: &mut impl Summation<SO3<T>, A>) {
+    let (s, v) = sine_and_versine(angle);
+    let ((ss, ss_rest), (vv, vv_rest)) = (square(s), square(v));
+    // s² + (1 + v)² − 1, of which the large parts cancel.
+    let (twice, lost) = two_sum(ss, v + v);
+    let (small, lost_again) = two_sum(twice, vv);
+    let excess = small + ((lost + lost_again) + (ss_rest + vv_rest));
+    move_by(&diagonal_block(-excess * real(0.5 * f64::from(turns)), T::zero()), motion);
+}
+
+#[inline(always)]
+fn move_by<T: Real, A: Advected<SO3<T>>>(increment: &Matrix3<T>, motion: &mut impl Summation<SO3<T>, A>) {
+    motion.turn(increment);
+    let change = SO3::adjoint_transpose_increment(increment, &motion.now().momentum);
+    // The third component isn't even added to.
+    motion.push(&Vector3::new(change.x, change.y, T::zero()));
+}
+
+/// `a + b` rounded and what the rounding left behind, by Knuth's sum.
+fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+fn diagonal_block<T: Real>(diagonal: T, s: T) -> Matrix3<T> {
+    let zero = T::zero();
+    Matrix3::new(diagonal, s, zero, -s, diagonal, zero, zero, zero, zero)
+}

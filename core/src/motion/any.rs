@@ -1,0 +1,241 @@
+//! A stepper whose scene and method aren't in its type.
+
+use core::any::Any;
+use core::fmt::{self, Debug};
+
+use crate::error::{SetupError, StepError};
+use crate::groups::LieGroup;
+use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::motion::plan::{Cost, Plan};
+use crate::motion::report::StepReport;
+use crate::motion::state::State;
+use crate::motion::stepper::{StateOf, Stepper};
+use crate::motion::summation::Motion;
+use crate::numbers::real;
+
+/// A [`Stepper`] of any scene and any method on the group `G`, by [`Stepper::into_any`]: for programs that find out when
+/// they run what they step.
+///
+/// A step costs an indirect call more.
+pub struct AnyStepper<G: LieGroup, A>(Box<dyn Erased<G, A>>);
+
+/// The state of an [`AnyStepper`].
+pub type AnyState<G, A> = State<G, A, AnyKept>;
+
+/// What a method keeps, whichever it is.
+pub struct AnyKept(Box<dyn ErasedKept>);
+
+trait ErasedKept: Any + Debug {
+    fn copied(&self) -> Box<dyn ErasedKept>;
+    fn as_any(&self) -> &dyn Any;
+    fn as_any_mut(&mut self) -> &mut dyn Any;
+    fn equals(&self, other: &dyn ErasedKept) -> bool;
+}
+
+impl<K: Any + Copy + Debug + PartialEq> ErasedKept for K {
+    fn copied(&self) -> Box<dyn ErasedKept> {
+        Box::new(*self)
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn equals(&self, other: &dyn ErasedKept) -> bool {
+        other.as_any().downcast_ref::<K>() == Some(self)
+    }
+}
+
+impl Clone for AnyKept {
+    fn clone(&self) -> Self {
+        // Through the box: that is such a memory, too.
+        Self(self.0.as_ref().copied())
+    }
+}
+
+impl PartialEq for AnyKept {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.as_ref().equals(other.0.as_ref())
+    }
+}
+
+impl Debug for AnyKept {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.as_ref().fmt(f)
+    }
+}
+
+trait Erased<G: LieGroup, A> {
+    fn start(&self, attitude: G, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError>;
+    fn step(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept) -> Result<StepReport, StepError>;
+    fn run(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, steps: u64) -> Result<u64, StepError>;
+    fn run_unexplained(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, steps: u64) -> Result<u64, StepError>;
+    fn step_size(&self) -> G::Scalar;
+    fn velocity(&self, motion: &Motion<G, A>) -> G::Vector;
+    fn energy(&self, motion: &Motion<G, A>) -> G::Scalar;
+    fn cost(&self) -> Cost;
+}
+
+/// The state that a stepper of its own type needs: what another has kept is of no use, and it begins anew.
+fn own<S, P>(stepper: &Stepper<S, P>, motion: &Motion<Group<S>, S::Advected>, kept: &AnyKept) -> StateOf<S, P>
+where
+    S: Effect,
+    P: Plan<S, Kept: 'static>,
+{
+    let kept = kept.0.as_ref().as_any().downcast_ref::<P::Kept>().copied();
+    State { motion: *motion, kept: kept.unwrap_or_else(|| stepper.plan.keep(&stepper.scene, motion)) }
+}
+
+/// Writes a state back.
+fn back<G: LieGroup, A, K: Any + Copy + Debug + PartialEq>(
+    state: State<G, A, K>,
+    motion: &mut Motion<G, A>,
+    kept: &mut AnyKept,
+) {
+    *motion = state.motion;
+    match kept.0.as_mut().as_any_mut().downcast_mut::<K>() {
+        Some(place) => *place = state.kept,
+        None => *kept = AnyKept(Box::new(state.kept)),
+    }
+}
+
+impl<S, P> Erased<Group<S>, S::Advected> for Stepper<S, P>
+where
+    S: Effect,
+    P: Plan<S, Kept: 'static>,
+{
+    fn start(&self, attitude: Group<S>, velocity: Vector<S>) -> Result<AnyState<Group<S>, S::Advected>, SetupError> {
+        let State { motion, kept } = self.start(attitude, velocity)?;
+        Ok(State { motion, kept: AnyKept(Box::new(kept)) })
+    }
+
+    fn step(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
+        let mut state = own(self, motion, kept);
+        let report = self.step(&mut state)?;
+        back(state, motion, kept);
+        Ok(report)
+    }
+
+    fn run(
+        &self,
+        motion: &mut Motion<Group<S>, S::Advected>,
+        kept: &mut AnyKept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        let mut state = own(self, motion, kept);
+        let iterations = self.run(&mut state, steps)?;
+        back(state, motion, kept);
+        Ok(iterations)
+    }
+
+    fn run_unexplained(
+        &self,
+        motion: &mut Motion<Group<S>, S::Advected>,
+        kept: &mut AnyKept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        let mut state = own(self, motion, kept);
+        let iterations = self.run_unexplained(&mut state, steps)?;
+        back(state, motion, kept);
+        Ok(iterations)
+    }
+
+    fn step_size(&self) -> Scalar<S> {
+        self.step_size()
+    }
+
+    fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        self.velocity(motion)
+    }
+
+    fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        self.energy(motion)
+    }
+
+    fn cost(&self) -> Cost {
+        self.plan.cost()
+    }
+}
+
+impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
+    /// This stepper without its scene and method in the type.
+    #[must_use]
+    pub fn into_any(self) -> AnyStepper<Group<S>, S::Advected> {
+        AnyStepper(Box::new(self))
+    }
+}
+
+impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
+    /// As [`Stepper::start`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::start`].
+    pub fn start(&self, attitude: impl Into<G>, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError> {
+        self.0.start(attitude.into(), velocity)
+    }
+
+    /// As [`Stepper::step`]. A state of another stepper on this group goes on from its attitude and momentum.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::step`].
+    pub fn step(&self, state: &mut AnyState<G, A>) -> Result<StepReport, StepError> {
+        self.0.step(&mut state.motion, &mut state.kept)
+    }
+
+    /// As [`Stepper::run`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::run`].
+    pub fn run(&self, state: &mut AnyState<G, A>, steps: u64) -> Result<u64, StepError> {
+        self.0.run(&mut state.motion, &mut state.kept, steps)
+    }
+
+    /// As [`Stepper::run_unexplained`].
+    pub(crate) fn run_unexplained(&self, state: &mut AnyState<G, A>, steps: u64) -> Result<u64, StepError> {
+        self.0.run_unexplained(&mut state.motion, &mut state.kept, steps)
+    }
+
+    /// The step `h`, s.
+    #[must_use]
+    pub fn step_size(&self) -> G::Scalar {
+        self.0.step_size()
+    }
+
+    /// The time since the start, `n h`, s; never accumulated.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // as `Stepper::time`
+    pub fn time(&self, motion: &Motion<G, A>) -> G::Scalar {
+        self.step_size() * real(motion.steps as f64)
+    }
+
+    /// As [`Stepper::velocity`].
+    #[must_use]
+    pub fn velocity(&self, motion: &Motion<G, A>) -> G::Vector {
+        self.0.velocity(motion)
+    }
+
+    /// As [`Stepper::energy`].
+    #[must_use]
+    pub fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
+        self.0.energy(motion)
+    }
+
+    /// As [`Plan::cost`].
+    #[must_use]
+    pub fn cost(&self) -> Cost {
+        self.0.cost()
+    }
+}
+
+impl<G: LieGroup, A> Debug for AnyStepper<G, A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AnyStepper").finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,112 @@
+//! Why a step has no solution, what is proved about that before it is solved, and which step would have one.
+
+use super::{Declared, kicked};
+use crate::error::StepError;
+use crate::groups::Advected as _;
+use crate::groups::{LieGroup, Retraction as _};
+use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::numbers::{Coordinates as _, real, reported};
+use crate::solving::{Problem, Root, Solvability, TurningLimits, largest_fraction, six_digits};
+use nalgebra::SimdComplexField as _;
+
+impl<S: Effect> Declared<S> {
+    /// The solve with all its fallbacks, from the beginning.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn solve_carefully(
+        &self,
+        scene: &S,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+        half_guess: &Vector<S>,
+    ) -> Result<Root<S>, StepError> {
+        let is_finite = momentum.is_finite() && advected.is_finite();
+        if is_finite && self.solvability(scene, momentum, advected) == Solvability::Impossible {
+            let largest = reported(self.largest_solvable(scene, momentum, advected));
+            return Err(StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(largest) });
+        }
+        self.problem(scene, momentum, advected)
+            .solve(half_guess)
+            .map_err(|error| self.explain(error, scene, momentum, advected))
+    }
+
+    /// Finds out whether a smaller step would do, which turns a failed solve into the error that says so.
+    fn explain(&self, error: StepError, scene: &S, momentum: &Vector<S>, advected: &S::Advected) -> StepError {
+        if !momentum.is_finite() {
+            return StepError::NonFinite { what: "momentum" };
+        }
+        if !advected.is_finite() {
+            return StepError::NonFinite { what: "advected parameter" };
+        }
+        let largest = self.largest_solvable(scene, momentum, advected);
+        if largest == real(0.0) {
+            return error;
+        }
+        StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(reported(largest)) }
+    }
+
+    /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
+    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, below `h|a| = J_min` and above `J_max`.
+    ///
+    /// A step asks only when its solve hasn't succeeded at once, so that the steps that do cost nothing more.
+    pub(in crate::motion) fn solvability(
+        &self,
+        scene: &S,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+    ) -> Solvability {
+        let decide = |limits: TurningLimits| limits.decide(Self::size(self.h, &self.constants, momentum, advected));
+        self.turning_limits(scene, advected).map_or(Solvability::Open, decide)
+    }
+
+    /// `|h a|`.
+    fn size(h: Scalar<S>, constants: &S::Constants, momentum: &Vector<S>, advected: &S::Advected) -> f64 {
+        let turn = kicked::<S>(constants, momentum, advected) * h;
+        reported(turn.dot(&turn).simd_sqrt())
+    }
+
+    /// The bounds for this `w`, at this step and at half of it: a kinetic part that depends on `h` in another way isn't
+    /// the one that they are proved for.
+    fn turning_limits(&self, scene: &S, advected: &S::Advected) -> Option<TurningLimits> {
+        let at = |h: Scalar<S>| {
+            let constants = scene.constants(h);
+            let terms = S::step_terms(&constants, &Vector::<S>::zero(), advected);
+            let unknown = |f: &Group<S>| {
+                let xi = S::Retraction::local_coordinates(f)?;
+                let half = xi * real(0.5);
+                let factor = (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::DENOMINATORS.cast_signed());
+                Some(S::newton_system(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
+            };
+            Group::<S>::turning_limits(&unknown, &scene.inertia())
+        };
+        at(self.h * real(0.5)).and(at(self.h))
+    }
+
+    /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
+    ///
+    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds
+    /// of [`solvability`](Self::solvability) decide.
+    pub(in crate::motion) fn largest_solvable(
+        &self,
+        scene: &S,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+    ) -> Scalar<S> {
+        let limits = self.turning_limits(scene, advected);
+        let solvable = |fraction: f64| {
+            let h = self.h * real(fraction);
+            let constants = scene.constants(h);
+            match limits.map(|limits| limits.decide(Self::size(h, &constants, momentum, advected))) {
+                Some(Solvability::Certain) => return true,
+                Some(Solvability::Impossible) => return false,
+                Some(Solvability::Open) | None => {}
+            }
+            let a = kicked::<S>(&constants, momentum, advected);
+            let problem =
+                Problem { scene, constants: &constants, a, w: advected, h, trusted: self.trusted, safe: self.safe };
+            let terms = S::step_terms(&constants, &a, advected);
+            problem.attempt(&terms, &Vector::<S>::zero()).is_ok()
+        };
+        largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))
+    }
+}

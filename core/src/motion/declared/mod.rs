@@ -1,0 +1,324 @@
+//! The step of a declared Lagrangian, or of a sum: its own momentum equation (2.7), solved.
+
+mod diagnosis;
+
+use crate::error::{SetupError, StepError};
+use crate::groups::{Advected as _, LieGroup};
+use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, velocity_of_momentum};
+use crate::motion::flows::{Increment, Stepped};
+use crate::motion::plan::{Cost, Plan};
+use crate::motion::report::StepReport;
+use crate::motion::summation::{Motion, Summation, is_due};
+use crate::numbers::{Coordinates as _, is_finite, real, reported};
+use crate::solving::{Continued, Kick, Problem, Root, Warm, safe, trusted_radius};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
+
+/// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
+#[derive(Clone, Debug)]
+pub struct Declared<S: Effect> {
+    h: Scalar<S>,
+    constants: S::Constants,
+    /// The square of a right side far beyond those of steps that have a solution.
+    largest_target: Scalar<S>,
+    trusted: Scalar<S>,
+    /// What the Jacobian's determinant has to exceed for a solve to do without a second one.
+    safe: Scalar<S>,
+}
+
+impl<S: Effect> Declared<S> {
+    /// Checks the parameters and folds the constants for the step `h`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::new`](crate::Stepper::new).
+    pub(crate) fn new(scene: &S, h: Scalar<S>) -> Result<Self, SetupError>
+    where
+        S: Regular,
+    {
+        Self::folded(scene, h)
+    }
+
+    /// As [`new`](Self::new), of a scene that is known to have a kinetic part.
+    pub(crate) fn folded(scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        scene.validate()?;
+        // 1/h and the constants made with it must be finite, unless there is no step at all.
+        if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
+            return Err(SetupError::InvalidStep { step: reported(h) });
+        }
+        let (unit, determinant) = Vector::<S>::solve(&scene.inertia(), &Vector::<S>::zero());
+        if !unit.is_finite() || !determinant.simd_gt(real(0.0)).all() {
+            return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
+        }
+        let constants = scene.constants(h);
+        let (at_rest, trace) = jacobian_at_rest(scene, &constants);
+        let safe = safe(at_rest);
+        // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
+        let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
+        let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
+        if h != real(0.0) && !is_in_range {
+            return Err(SetupError::InvalidStep { step: reported(h) });
+        }
+        // Without a step there is nothing to solve, which the careful solve sees to.
+        let largest = trace / h * real(2.0 * RATIO) / Scalar::<S>::simd_default_epsilon();
+        let largest_target = if h == real(0.0) { h } else { largest * largest };
+        let is_expensive = S::JACOBIAN_IS_EXPENSIVE && h != real(0.0);
+        let trusted = if is_expensive { trusted_radius(scene, &constants) } else { real(0.0) };
+        Ok(Self { h, constants, largest_target, trusted, safe })
+    }
+
+    /// `F` that solves the momentum equation (2.7), from the coordinates `guess` and no other start.
+    pub(super) fn invert(
+        &self,
+        scene: &S,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+        guess: &Vector<S>,
+    ) -> Result<Group<S>, StepError> {
+        if self.h == real(0.0) {
+            return Ok(Group::<S>::identity());
+        }
+        let problem = self.problem(scene, momentum, advected);
+        let terms = S::step_terms(&self.constants, &problem.a, advected);
+        problem.attempt(&terms, &(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
+    }
+
+    /// One step from `(μ, w)` and a guess of half the coordinates of `F`; `CARRIES` if its change will be carried.
+    #[inline(always)]
+    pub(crate) fn step_from<const CARRIES: bool>(
+        &self,
+        scene: &S,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+        half_guess: &Vector<S>,
+    ) -> Result<Stepped<S>, StepError> {
+        match self.step_directly::<CARRIES>(scene, momentum, advected, half_guess) {
+            Some(stepped) => Ok(stepped),
+            None => self.step_carefully::<CARRIES>(scene, momentum, advected, half_guess),
+        }
+    }
+
+    /// The step, if nothing about it is doubtful.
+    #[inline(always)]
+    pub(crate) fn step_directly<const CARRIES: bool>(
+        &self,
+        scene: &S,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+        half_guess: &Vector<S>,
+    ) -> Option<Stepped<S>> {
+        let problem = self.problem(scene, momentum, advected);
+        let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
+        let stepped = self.moved::<CARRIES>(momentum, advected, &problem.a, &root);
+        // A finite sum has finite terms. Where it isn't, it may have overflowed.
+        is_finite(stepped.total()).then_some(stepped)
+    }
+
+    /// The step, or why there is none.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn step_carefully<const CARRIES: bool>(
+        &self,
+        scene: &S,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+        half_guess: &Vector<S>,
+    ) -> Result<Stepped<S>, StepError> {
+        if self.h == real(0.0) {
+            return Ok(Self::stand_still(momentum, advected));
+        }
+        let root = self.solve_carefully(scene, momentum, advected, half_guess)?;
+        let stepped =
+            self.moved::<CARRIES>(momentum, advected, &kicked::<S>(&self.constants, momentum, advected), &root);
+        if stepped.step.momentum.is_finite() && stepped.step.advected.is_finite() {
+            Ok(stepped)
+        } else {
+            Err(StepError::NonFinite { what: "momentum after the step" })
+        }
+    }
+
+    /// By `F` from `(μ, w)`, with `a = μ + kick_before(w)`.
+    #[inline(always)]
+    fn moved<const CARRIES: bool>(
+        &self,
+        momentum: &Vector<S>,
+        advected: &S::Advected,
+        a: &Vector<S>,
+        root: &Root<S>,
+    ) -> Stepped<S> {
+        let Root { half, increment, iterations, far, ref kick } = *root;
+        let next = advected.advect(&increment);
+        let mut change = Group::<S>::adjoint_transpose_increment(&increment, a);
+        if S::PARTS.kick_before {
+            // In `a` the kick is rounded to the digits of the momentum, which is what a carry is to make good.
+            let kick = if CARRIES { S::kick_before(&self.constants, advected) } else { *a - *momentum };
+            change = change + kick;
+        }
+        if S::PARTS.kick_after {
+            change = change + self.kick_after(&increment, &next, kick);
+        }
+        let momentum = *momentum + change;
+        let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
+        Stepped { step, change, half, far }
+    }
+
+    /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
+    #[inline(always)]
+    fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<S>) -> Vector<S> {
+        let direct = || S::kick_after(&self.constants, increment, next);
+        if !S::JACOBIAN_IS_EXPENSIVE || !kick.found.any() {
+            return direct();
+        }
+        let mut found = kick.value + Group::<S>::adjoint_transpose_increment(increment, &kick.value);
+        if let Some(beside) = S::kick_beside(&self.constants, increment, next) {
+            found = found + beside;
+        }
+        if kick.found.all() { found } else { found.select(kick.found, direct()) }
+    }
+
+    #[inline(always)]
+    fn problem<'a>(&'a self, scene: &'a S, momentum: &Vector<S>, w: &'a S::Advected) -> Problem<'a, S> {
+        Problem {
+            scene,
+            constants: &self.constants,
+            a: kicked::<S>(&self.constants, momentum, w),
+            w,
+            h: self.h,
+            trusted: self.trusted,
+            safe: self.safe,
+        }
+    }
+
+    #[cold]
+    fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Stepped<S> {
+        let Root { half, increment, iterations, far, .. } = Root::<S>::at(&Vector::<S>::zero(), 0);
+        let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
+        Stepped { step, change: half, half, far }
+    }
+}
+
+impl<S: Effect> Plan<S> for Declared<S> {
+    type Kept = Warm<Vector<S>>;
+
+    fn step_size(&self) -> Scalar<S> {
+        self.h
+    }
+
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        Self::folded(scene, h)
+    }
+
+    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+        Warm::of(half_coordinates(scene, motion, self.h))
+    }
+
+    #[inline(always)]
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
+        let stepped = if M::CARRIES {
+            self.step_directly::<true>(scene, &now.momentum, &now.advected, &guess)
+        } else {
+            self.step_directly::<false>(scene, &now.momentum, &now.advected, &guess)
+        };
+        match stepped {
+            Some(stepped) => Ok(taken(scene, motion, kept, &stepped)),
+            None => self.to_its_end(scene, motion, kept),
+        }
+    }
+
+    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, _: &Self::Kept) -> Scalar<S> {
+        self.largest_solvable(scene, &motion.momentum, &motion.advected)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
+        visitor.term("its own step");
+    }
+
+    fn cost(&self) -> Cost {
+        Cost::of_stages(S::OPERATIONS, 1)
+    }
+}
+
+impl<S: Effect> Declared<S> {
+    /// What is rare, to its end: if it came back to the common way, that would have to keep in memory what it has in
+    /// registers.
+    #[cold]
+    #[inline(never)]
+    fn to_its_end<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Warm<Vector<S>>,
+    ) -> Result<StepReport, StepError> {
+        let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
+        let stepped = if M::CARRIES {
+            self.step_carefully::<true>(scene, &now.momentum, &now.advected, &guess)?
+        } else {
+            self.step_carefully::<false>(scene, &now.momentum, &now.advected, &guess)?
+        };
+        Ok(taken(scene, motion, kept, &stepped))
+    }
+}
+
+#[inline(always)]
+fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
+    scene: &S,
+    motion: &mut M,
+    kept: &mut Warm<Vector<S>>,
+    stepped: &Stepped<S>,
+) -> StepReport {
+    motion.proceed(&stepped.proceeded());
+    let continued = Continued::for_jacobian(S::JACOBIAN_IS_EXPENSIVE);
+    kept.follow(stepped.half, stepped.far, continued);
+    if is_due(motion.now().steps) {
+        look(scene, motion, kept, continued);
+    }
+    motion.count();
+    StepReport::of(stepped.step.iterations)
+}
+
+/// What is done after the first step, and after many more.
+#[cold]
+#[inline(never)]
+fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(
+    scene: &S,
+    motion: &mut M,
+    kept: &mut Warm<Vector<S>>,
+    continued: Continued,
+) {
+    if motion.now().steps == 0 {
+        kept.forget_the_estimate(continued);
+    }
+    motion.restore(&scene.advected());
+}
+
+/// Half the coordinates of the first increment, about: every retraction has the identity as its derivative at zero.
+pub(crate) fn half_coordinates<S: Effect>(
+    scene: &S,
+    motion: &Motion<Group<S>, S::Advected>,
+    h: Scalar<S>,
+) -> Vector<S> {
+    velocity_of_momentum(scene, &motion.momentum, &motion.advected) * (h * real(0.5))
+}
+
+/// `a = μ + kick_before(w)`.
+#[inline(always)]
+fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
+    if S::PARTS.kick_before { *momentum + S::kick_before(constants, w) } else { *momentum }
+}
+
+/// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times
+/// the former, `10¹²` times in `f64`, the rounding of the latter doesn't reach it.
+const RATIO: f64 = 1.0 / 4096.0;
+
+/// Determinant and trace of the Newton system for a body at rest.
+fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S>, Scalar<S>) {
+    let zero = Vector::<S>::zero();
+    let terms = S::step_terms(constants, &zero, &scene.advected());
+    let (_, jacobian) = S::newton_system(constants, &terms, &zero);
+    (Vector::<S>::solve(&jacobian, &zero).1, Vector::<S>::trace(&jacobian))
+}

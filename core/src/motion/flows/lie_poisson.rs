@@ -1,0 +1,112 @@
+//! The flow on momenta, (2.8).
+
+use crate::error::{SetupError, StepError};
+use crate::mechanics::{Effect, Group, Regular, Scalar, Vector};
+use crate::motion::declared::Declared;
+use crate::motion::flows::{Increment, Stepped};
+use crate::motion::plan::Plan as _;
+use crate::numbers::real;
+use crate::solving::Solvability;
+
+/// The discrete advected Lie–Poisson flow `(μ_i, w_i) ↦ (μ_{i+1}, w_{i+1})`, \[RDAE, (2.8), (2.9)\].
+///
+/// It is `𝔽l_d⁺ ∘ (𝔽l_d⁻)⁻¹`: Newton's iteration inverts the momentum equation (2.7). A [`Stepper`](crate::Stepper)
+/// makes it a motion, with the attitude and with guesses.
+#[derive(Clone, Debug)]
+pub struct DiscreteLiePoisson<L: Effect> {
+    scene: L,
+    declared: Declared<L>,
+}
+
+impl<L: Effect> DiscreteLiePoisson<L> {
+    /// Checks the parameters and folds the constants for the step `h`, in seconds.
+    ///
+    /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part.
+    pub fn new(scene: L, h: Scalar<L>) -> Result<Self, SetupError>
+    where
+        L: Regular,
+    {
+        let declared = Declared::new(&scene, h)?;
+        Ok(Self { scene, declared })
+    }
+
+    pub(in crate::motion) fn of(scene: L, declared: Declared<L>) -> Self {
+        Self { scene, declared }
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &L {
+        &self.scene
+    }
+
+    /// The step `h`, s.
+    #[must_use]
+    pub fn step_size(&self) -> Scalar<L> {
+        self.declared.step_size()
+    }
+
+    /// Solves the momentum equation (2.7) for `F`, starting at the coordinates `guess`, without falling back on
+    /// another start: where the iteration settles on another branch, that is the error.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where there is no solution from this guess on the branch of the identity.
+    pub fn invert_legendre_minus(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        guess: &Vector<L>,
+    ) -> Result<Group<L>, StepError> {
+        self.declared.invert(&self.scene, momentum, advected, guess)
+    }
+
+    /// One step from `(μ, w)`; `guess` are coordinates near those of `F`, zero if nothing is known.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where the momentum equation has no solution on the branch of the identity, or a value isn't
+    /// finite.
+    #[inline(always)]
+    pub fn step(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        guess: &Vector<L>,
+    ) -> Result<Increment<L>, StepError> {
+        self.step_from(momentum, advected, &(*guess * real(0.5))).map(|stepped| stepped.step)
+    }
+
+    /// As [`step`](Self::step), from half the guess.
+    #[inline(always)]
+    pub(crate) fn step_from(
+        &self,
+        momentum: &Vector<L>,
+        advected: &L::Advected,
+        half_guess: &Vector<L>,
+    ) -> Result<Stepped<L>, StepError> {
+        self.declared.step_from::<false>(&self.scene, momentum, advected, half_guess)
+    }
+
+    /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
+    /// part of (3.13) and potentials of the positions, with `a = μ + (h/2) τ`, below `h|a| = J_min` and above `J_max`.
+    ///
+    /// A step asks only when its solve hasn't succeeded at once, so that the steps that do cost nothing more.
+    #[must_use]
+    pub fn solvability(&self, momentum: &Vector<L>, advected: &L::Advected) -> Solvability {
+        self.declared.solvability(&self.scene, momentum, advected)
+    }
+
+    /// The largest fraction of this step, in seconds, whose momentum equation has a solution, to six digits.
+    ///
+    /// It is found by bisection between zero and `h`, so it costs up to some dozens of solves, fewer where the bounds
+    /// of [`solvability`](Self::solvability) decide.
+    #[must_use]
+    pub fn max_step(&self, momentum: &Vector<L>, advected: &L::Advected) -> Scalar<L> {
+        self.declared.largest_solvable(&self.scene, momentum, advected)
+    }
+}

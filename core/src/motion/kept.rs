@@ -1,0 +1,63 @@
+//! What a method remembers from step to step, number by number.
+
+use core::fmt::Debug;
+
+use crate::numbers::{Coordinates, Real, real, reported};
+use crate::solving::{DIFFERENCES, Guess, History, Warm};
+
+/// What a [`Plan`](crate::motion::Plan) keeps from step to step, as numbers that a checkpoint stores.
+pub trait Kept<T: Real>: Copy + Debug + PartialEq {
+    /// Visits all of it, in a fixed order and number.
+    fn each(&self, visit: &mut dyn FnMut(T));
+
+    /// Made of the next numbers of a stream, in the order in which [`each`](Self::each) visits them; `None` if they can't
+    /// be those of such a memory.
+    fn from_numbers(next: &mut dyn FnMut() -> T) -> Option<Self>;
+}
+
+impl<T: Real> Kept<T> for () {
+    fn each(&self, _: &mut dyn FnMut(T)) {}
+
+    fn from_numbers(_: &mut dyn FnMut() -> T) -> Option<Self> {
+        Some(())
+    }
+}
+
+impl<T: Real, V: Coordinates<T>> Kept<T> for Guess<V> {
+    fn each(&self, mut visit: &mut dyn FnMut(T)) {
+        self.half.each(&mut visit);
+        self.next.each(&mut visit);
+    }
+
+    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
+        Some(Self { half: V::from_entries(&mut next), next: V::from_entries(&mut next) })
+    }
+}
+
+impl<T: Real, V: Coordinates<T>> Kept<T> for Warm<V> {
+    fn each(&self, mut visit: &mut dyn FnMut(T)) {
+        Kept::each(&self.guess, visit);
+        visit(count(self.history.increments));
+        self.history.differences.iter().for_each(|difference| difference.each(&mut visit));
+    }
+
+    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
+        let guess = Guess::from_numbers(next)?;
+        let increments = counted(next()).filter(|&increments| increments <= DIFFERENCES + 1)?;
+        let differences = core::array::from_fn(|_| V::from_entries(&mut next));
+        Some(Self { guess, history: History { differences, increments } })
+    }
+}
+
+/// A small whole number as a scalar.
+#[allow(clippy::cast_precision_loss)] // far fewer than a float counts
+pub(crate) fn count<T: Real>(number: usize) -> T {
+    real(number as f64)
+}
+
+/// The whole number that a scalar is, if it is one.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
+pub(crate) fn counted<T: Real>(number: T) -> Option<usize> {
+    let number = reported(number);
+    (number >= 0.0 && number < 1e6 && number.fract() == 0.0).then_some(number as usize)
+}

@@ -1,0 +1,33 @@
+//! Motion: the state of a body, the stepper that carries it along, and the flows of the thesis, (2.5) and (2.8).
+//!
+//! A [`Stepper`] is a scene and a [`Plan`], the method with its constants folded; a [`State`] is a [`Motion`] and what
+//! the plan keeps from step to step. [`Declared`] is the plan of the scene's own step; the others are in
+//! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with).
+
+mod any;
+mod declared;
+mod flows;
+mod kept;
+mod plan;
+mod report;
+mod state;
+mod stepper;
+mod summation;
+
+pub use any::{AnyKept, AnyState, AnyStepper};
+pub use declared::Declared;
+pub(crate) use declared::half_coordinates;
+pub(crate) use flows::Stepped;
+pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use kept::Kept;
+pub(crate) use kept::{count, counted};
+pub use plan::{Cost, Plan};
+pub use report::{Remedy, StepReport};
+pub use state::State;
+#[cfg(feature = "serde")]
+pub(crate) use stepper::StateOf;
+pub use stepper::Stepper;
+pub use summation::{Motion, Proceeded, Summation};
+pub(crate) use summation::{STEPS_BETWEEN_CHECKS, is_due, restored};
+
+pub use crate::solving::{Guess, Solvability, Warm};

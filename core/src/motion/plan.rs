@@ -1,0 +1,164 @@
+//! A method whose constants are folded for a scene and a step.
+
+use crate::error::{SetupError, StepError};
+use crate::mechanics::{Effect, Group, Operations, Scalar, SceneVisitor, Vector};
+use crate::motion::kept::Kept;
+use crate::motion::report::StepReport;
+use crate::motion::summation::{Motion, Summation};
+use crate::numbers::real;
+use crate::solving::largest_fraction;
+use nalgebra::SimdValue;
+
+/// A method with its constants folded for a scene and a step: what a [`Stepper`](crate::Stepper) steps by.
+///
+/// All that is put around a step (`start`, `run`, `step_forced`, `adopt`, `max_step`, `inverse`, compensation, remedies,
+/// checkpoints) works with any plan. `examples/how-to-add-a-method.rs` has one of a user's own.
+///
+/// # Contract
+///
+/// - [`step`](Self::step) makes one step of `h` and counts it, or returns an error and leaves motion and memory as they
+///   were.
+/// - It changes the motion by [`Summation`]'s functions only, and depends on nothing but its arguments: the same
+///   arguments give the same bits.
+pub trait Plan<S: Effect> {
+    /// What one step leaves for the next: guesses, stages. `()` where there is nothing.
+    type Kept: Kept<Scalar<S>>;
+
+    /// Whether a step takes the vector instructions that the machine is found to have. A body alone gains nothing by
+    /// them, several in [lanes](crate::numbers::Real#lanes) do.
+    const DISPATCHED: bool = <Scalar<S> as SimdValue>::LANES > 1;
+
+    /// The step `h`, s.
+    fn step_size(&self) -> Scalar<S>;
+
+    /// The same method for another step.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where the scene can't be stepped by it.
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError>
+    where
+        Self: Sized;
+
+    /// What is kept at the beginning of a motion.
+    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept;
+
+    /// One step; marked `#[inline(always)]`, as the instructions of the machine are those of what is inlined.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where there is no such step, or a value isn't finite.
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError>;
+
+    /// So many steps, of which the states between aren't asked for; returns all iterations. After an error motion and
+    /// memory may be anywhere.
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step).
+    #[inline(always)]
+    fn run<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        let mut iterations = 0;
+        for _ in 0..steps {
+            iterations += u64::from(self.step(scene, motion, kept)?.iterations);
+        }
+        Ok(iterations)
+    }
+
+    /// Adds an impulse to the momentum between two steps, and to what is kept of it.
+    #[inline(always)]
+    fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, impulse: &Vector<S>) {
+        Summation::push(motion, impulse);
+    }
+
+    /// Whether the errors of [`step`](Self::step) are those of a stage, and [`explained`](Self::explained) only when they
+    /// are shown.
+    const EXPLAINS: bool = false;
+
+    /// The error of a step as it is shown: where a stage has none, the largest step that would do is that of the whole.
+    #[cold]
+    fn explained(
+        &self,
+        error: StepError,
+        _scene: &S,
+        _motion: &Motion<Group<S>, S::Advected>,
+        _kept: &Self::Kept,
+    ) -> StepError {
+        error
+    }
+
+    /// The largest fraction of the step, in seconds to six digits, that can be made from here.
+    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, _kept: &Self::Kept) -> Scalar<S>
+    where
+        Self: Sized,
+    {
+        let solvable = |fraction: f64| {
+            self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
+                let (mut motion, mut kept) = (*motion, part.keep(scene, motion));
+                part.step(scene, &mut motion, &mut kept).is_ok()
+            })
+        };
+        largest_fraction(solvable).map_or(real(0.0), |fraction| self.step_size() * real(fraction))
+    }
+
+    /// Shows the method's name and every constant but the scene's and the step: two plans that show the same make the
+    /// same steps.
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>);
+
+    /// How much arithmetic a step is, about.
+    fn cost(&self) -> Cost;
+}
+
+/// How many operations a step makes, about: what methods are ranked by, the same on every machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Besides the iterations.
+    pub step: f64,
+    /// One iteration, as [`StepReport`] counts them.
+    pub iteration: f64,
+    /// The fewest iterations that a step can take, but where nothing changes from step to step.
+    pub fewest: u32,
+}
+
+/// Besides what an effect counts, a solve and its reconstruction make so many operations on SO(3).
+const OF_A_STAGE: f64 = 150.0;
+/// Besides the Newton system, an iteration solves it and looks whether it has settled. These wait for each other, as
+/// the products of matrices don't.
+const OF_AN_ITERATION: f64 = 90.0;
+
+impl Cost {
+    /// Of a step with so many stages, each a solve or a flow with these operations.
+    #[must_use]
+    pub fn of_stages(operations: Operations, stages: u32) -> Self {
+        Self {
+            step: f64::from(stages) * (OF_A_STAGE + f64::from(operations.step)),
+            iteration: OF_AN_ITERATION + f64::from(operations.iteration),
+            // With one iteration none is known to have settled.
+            fewest: if operations.iteration > 0 { 2 * stages } else { 0 },
+        }
+    }
+
+    /// What a step makes at least.
+    #[must_use]
+    pub fn least(&self) -> f64 {
+        self.step + f64::from(self.fewest) * self.iteration
+    }
+
+    /// Of so many steps with so many iterations in all.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // an estimate
+    pub fn of_run(&self, steps: u64, iterations: u64) -> f64 {
+        steps as f64 * self.step + iterations as f64 * self.iteration
+    }
+}

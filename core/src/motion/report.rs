@@ -1,0 +1,35 @@
+//! What a step tells of itself.
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepReport {
+    /// A measure of the work: Newton iterations, of several lanes those of the slowest, and of several stages those of
+    /// all of them.
+    ///
+    /// Where the [Jacobian is expensive](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE) residuals count, too: up to
+    /// eight, and the iterations with the Jacobian where these weren't enough. A solve whose first guess had to be
+    /// given up counts more than 20.
+    pub iterations: u32,
+    /// What was done in the place of this step; only with [`or_substeps`](crate::Stepper::or_substeps) or
+    /// [`or_fallback`](crate::Stepper::or_fallback).
+    pub remedy: Option<Remedy>,
+}
+
+impl StepReport {
+    /// Of a step that was made as it was asked for.
+    #[inline(always)]
+    #[must_use]
+    pub const fn of(iterations: u32) -> Self {
+        Self { iterations, remedy: None }
+    }
+}
+
+/// What was done in the place of a step that has no solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// So many steps of an equal part of `h`.
+    Substeps(u32),
+    /// A step of another scene.
+    Fallback,
+}

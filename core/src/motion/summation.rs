@@ -1,0 +1,188 @@
+//! Where a body is, and how the changes of a step are added to that.
+
+use nalgebra::Vector3;
+
+use crate::groups::{Advected, LieGroup, SO3};
+use crate::numbers::Real;
+
+/// How many steps go by between two looks at what roundings have done to the attitude.
+///
+/// The worst of them, the same in every step, make no more in a thousand steps than
+/// [`restored`](LieGroup::restored) tolerates.
+pub(crate) const STEPS_BETWEEN_CHECKS: u32 = 1024;
+
+/// Attitude, momentum and advected parameters at one time, and the number of steps up to it.
+///
+/// A [`State`](crate::State) is this and what its method remembers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion<G: LieGroup, A> {
+    pub(crate) attitude: G,
+    pub(crate) momentum: G::Vector,
+    pub(crate) advected: A,
+    pub(crate) steps: u64,
+}
+
+impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
+    /// The attitude `g_i`, body to space.
+    #[must_use]
+    pub fn attitude(&self) -> G {
+        self.attitude
+    }
+
+    /// The momentum `μ_i`, body frame; on SO(3) the physical angular momentum, kg m²/s.
+    #[must_use]
+    pub fn momentum(&self) -> G::Vector {
+        self.momentum
+    }
+
+    /// The advected parameters `w_i = g_i⁻¹ · a_0`.
+    #[must_use]
+    pub fn advected(&self) -> A {
+        self.advected
+    }
+
+    /// The number of steps made.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// The momentum in space, `Ad*_{g⁻¹} μ` (`R Π` on SO(3)); constant where nothing is advected.
+    #[must_use]
+    pub fn spatial_momentum(&self) -> G::Vector {
+        self.attitude.inverse().adjoint_transpose(&self.momentum)
+    }
+
+    /// How far the attitude has left the group, `‖RᵀR − I‖` on SO(3).
+    #[must_use]
+    pub fn orthogonality_defect(&self) -> G::Scalar {
+        self.attitude.defect()
+    }
+}
+
+impl<T: Real, A: Advected<SO3<T>>> Motion<SO3<T>, A> {
+    /// The spatial momentum's component along a direction given in space, `e₃ · R Π` for the vertical, (3.20).
+    #[must_use]
+    pub fn momentum_along(&self, direction: &Vector3<T>) -> T {
+        self.spatial_momentum().dot(direction)
+    }
+}
+
+/// How the changes of a step are added to a motion: rounded, as by [`Motion`] itself, or with what rounding leaves behind
+/// carried to the next step.
+///
+/// A [`Plan`](crate::motion::Plan) makes all its changes by these functions, and so works with any summation.
+pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
+    /// Whether what rounding leaves behind is kept.
+    const CARRIES: bool;
+
+    /// The motion, rounded.
+    fn now(&self) -> &Motion<G, A>;
+
+    /// Turns the body by `F = I + D`: the attitude to `g F`, \[RDAE, (2.10)\], and what is advected to `F⁻¹·w`. The
+    /// momentum stays.
+    fn turn(&mut self, increment: &G::Matrix);
+
+    /// Adds to the momentum.
+    fn push(&mut self, change: &G::Vector);
+
+    /// Both, where the rounded sums are there already.
+    fn proceed(&mut self, step: &Proceeded<G, A>);
+
+    /// Counts a step.
+    #[inline(always)]
+    fn count(&mut self) {
+        self.recount(self.now().steps + 1);
+    }
+
+    /// Counts anew from here.
+    fn recount(&mut self, steps: u64);
+
+    /// Puts the attitude back into the group, and what is advected to what it sees, where roundings have taken it far;
+    /// `spatial` is the value `a_0` of what is advected.
+    fn restore(&mut self, spatial: &A);
+
+    /// Another motion in the place of this one; nothing is carried over.
+    fn replace(&mut self, motion: Motion<G, A>);
+
+    /// Counts a step, and now and then [restores](Self::restore).
+    #[inline(always)]
+    fn finish(&mut self, spatial: impl FnOnce() -> A) {
+        self.count();
+        if is_due(self.now().steps) {
+            self.restore(&spatial());
+        }
+    }
+}
+
+/// Whether it is time to look how far roundings have gone.
+#[inline(always)]
+pub(crate) fn is_due(steps: u64) -> bool {
+    steps.is_multiple_of(u64::from(STEPS_BETWEEN_CHECKS))
+}
+
+/// The end of a step and the changes that lead to it.
+#[derive(Clone, Copy, Debug)]
+pub struct Proceeded<G: LieGroup, A> {
+    /// `F − I`.
+    pub increment: G::Matrix,
+    /// `μ⁺ − μ`.
+    pub change: G::Vector,
+    /// `μ⁺`.
+    pub momentum: G::Vector,
+    /// `w⁺ = F⁻¹·w`.
+    pub advected: A,
+}
+
+impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
+    const CARRIES: bool = false;
+
+    #[inline(always)]
+    fn now(&self) -> &Motion<G, A> {
+        self
+    }
+
+    #[inline(always)]
+    fn turn(&mut self, increment: &G::Matrix) {
+        self.attitude = self.attitude.advance(increment);
+        self.advected = self.advected.advect(increment);
+    }
+
+    #[inline(always)]
+    fn push(&mut self, change: &G::Vector) {
+        self.momentum = self.momentum + *change;
+    }
+
+    #[inline(always)]
+    fn proceed(&mut self, step: &Proceeded<G, A>) {
+        self.attitude = self.attitude.advance(&step.increment);
+        self.momentum = step.momentum;
+        self.advected = step.advected;
+    }
+
+    #[inline(always)]
+    fn recount(&mut self, steps: u64) {
+        self.steps = steps;
+    }
+
+    #[cold]
+    fn restore(&mut self, spatial: &A) {
+        let _ = restored(self, spatial);
+    }
+
+    fn replace(&mut self, motion: Motion<G, A>) {
+        *self = motion;
+    }
+}
+
+/// Restores the motion; returns the lanes in which that was necessary, if there is one.
+pub(crate) fn restored<G: LieGroup, A: Advected<G>>(
+    motion: &mut Motion<G, A>,
+    spatial: &A,
+) -> Option<crate::numbers::Mask<G::Scalar>> {
+    use nalgebra::SimdValue as _;
+    let (attitude, far) = motion.attitude.restored()?;
+    motion.attitude = attitude;
+    motion.advected = spatial.seen_from(&attitude).zip(&motion.advected, &mut |seen, w| seen.select(far, w));
+    Some(far)
+}

@@ -1,0 +1,236 @@
+//! Component vectors of a Lie algebra and its dual, and the small linear systems of a Newton step.
+
+use core::fmt::Debug;
+use core::ops::{Add, Mul, Neg, Sub};
+
+use nalgebra::{SMatrix, SVector, SimdBool as _};
+
+use crate::numbers::entries::Entries;
+use crate::numbers::scalar::{Mask, Real};
+
+/// Components with respect to the declared basis `E_k` of a Lie algebra, or, for a covector, `μ_k = ⟨μ, E_k⟩`.
+pub trait Coordinates<T: Real>:
+    Entries<T> + Debug + PartialEq + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<T, Output = Self>
+{
+    /// A linear map from components to components.
+    type Square: Copy
+        + Debug
+        + PartialEq
+        + Add<Output = Self::Square>
+        + Mul<T, Output = Self::Square>
+        + Mul<Self, Output = Self>;
+
+    /// All components zero.
+    fn zero() -> Self;
+
+    /// Component `k` one, the others zero.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no component `k`.
+    fn axis(k: usize) -> Self;
+
+    /// The pairing `Σ a_k b_k`.
+    fn dot(&self, other: &Self) -> T;
+
+    /// `a bᵀ`: the map `x ↦ a (b·x)`.
+    fn outer(&self, other: &Self) -> Self::Square;
+
+    /// Whether all components are finite.
+    fn is_finite(&self) -> bool;
+
+    /// In each lane `self` where the mask is set, and `other` where it isn't.
+    #[must_use]
+    fn select(self, mask: Mask<T>, other: Self) -> Self;
+
+    /// What [`solve_again`](Self::solve_again) solves `A z = b` from, and `det A`.
+    ///
+    /// There is no pivoting and no branch, so that SIMD lanes stay together, and so that another unit of length, which
+    /// scales rows and columns, changes no digit. Where `A` is singular, `z` isn't finite and `det A` is zero or not
+    /// finite.
+    ///
+    /// Up to three dimensions this is Cramer's rule, and the adjugate is returned. Beyond, it is elimination in the
+    /// order of the basis, and both triangles are returned: as accurate as any for a matrix whose symmetric part is
+    /// positive definite, like the Jacobian of a kinetic energy near the identity, and not finite where a leading minor
+    /// is zero.
+    fn factorise(matrix: &Self::Square) -> (Self::Square, T);
+
+    /// The solution `z` of `A z = b` from what [`factorise`](Self::factorise) has made of `A`.
+    fn solve_again(factors: &Self::Square, det: T, right_side: &Self) -> Self;
+
+    /// The solution `z` of `A z = b`, and `det A`.
+    #[must_use]
+    #[inline(always)]
+    fn solve(matrix: &Self::Square, right_side: &Self) -> (Self, T) {
+        let (factors, det) = Self::factorise(matrix);
+        (Self::solve_again(&factors, det, right_side), det)
+    }
+
+    /// The trace of a square matrix.
+    fn trace(matrix: &Self::Square) -> T;
+}
+
+impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
+    type Square = SMatrix<T, D, D>;
+
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::zeros()
+    }
+
+    fn axis(k: usize) -> Self {
+        let mut axis = Self::zeros();
+        axis[k] = T::one();
+        axis
+    }
+
+    #[inline(always)]
+    fn dot(&self, other: &Self) -> T {
+        sum::<T, D>(|k| self[k] * other[k])
+    }
+
+    #[inline(always)]
+    fn outer(&self, other: &Self) -> SMatrix<T, D, D> {
+        SMatrix::from_fn(|row, column| self[row] * other[column])
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
+        sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
+    }
+
+    #[inline(always)]
+    fn select(self, mask: Mask<T>, other: Self) -> Self {
+        self.zip_map(&other, |a, b| a.select(mask, b))
+    }
+
+    #[inline(always)]
+    fn factorise(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+        // `D` is a constant, so that one of these is left.
+        match D {
+            1 => (SMatrix::from_element(T::one()), matrix[(0, 0)]),
+            2 => adjugate_2(matrix),
+            3 => adjugate_3(matrix),
+            _ => eliminate(*matrix),
+        }
+    }
+
+    #[inline(always)]
+    fn solve_again(factors: &SMatrix<T, D, D>, det: T, b: &Self) -> Self {
+        match D {
+            1 => b / det,
+            2 | 3 => {
+                let inverse = T::one() / det;
+                entries::<T, D>(|i| sum::<T, D>(|k| factors[(i, k)] * b[k]) * inverse)
+            }
+            _ => substitute(factors, *b),
+        }
+    }
+
+    #[inline(always)]
+    fn trace(matrix: &SMatrix<T, D, D>) -> T {
+        sum::<T, D>(|k| matrix[(k, k)])
+    }
+}
+
+// The compiler doesn't always inline `fold` and `from_fn` for lanes, and what isn't inlined has no vector instructions
+// of the machine. With loops, on the other hand, steps of single bodies are up to a sixth slower.
+
+/// `term(0) + term(1) + …`, in that order.
+#[inline(always)]
+fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
+    if D == 0 {
+        return T::zero();
+    }
+    if T::LANES == 1 {
+        return (1..D).fold(term(0), |sum, k| sum + term(k));
+    }
+    let mut sum = term(0);
+    for k in 1..D {
+        sum += term(k);
+    }
+    sum
+}
+
+/// `entry(0), entry(1), …`.
+#[inline(always)]
+fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D> {
+    if T::LANES == 1 {
+        return SVector::from_fn(|i, _| entry(i));
+    }
+    let mut entries = SVector::<T, D>::zeros();
+    for i in 0..D {
+        entries[i] = entry(i);
+    }
+    entries
+}
+
+#[inline(always)]
+fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+    let det = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
+    let mut adjugate = SMatrix::zeros();
+    adjugate[(0, 0)] = m[(1, 1)];
+    adjugate[(0, 1)] = -m[(0, 1)];
+    adjugate[(1, 0)] = -m[(1, 0)];
+    adjugate[(1, 1)] = m[(0, 0)];
+    (adjugate, det)
+}
+
+/// Its rows are cross products of columns.
+#[inline(always)]
+fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+    let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
+    let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
+    let c21 = m(2, 3) * m(3, 1) - m(2, 1) * m(3, 3);
+    let c31 = m(2, 1) * m(3, 2) - m(2, 2) * m(3, 1);
+    let c12 = m(1, 3) * m(3, 2) - m(1, 2) * m(3, 3);
+    let c22 = m(1, 1) * m(3, 3) - m(1, 3) * m(3, 1);
+    let c32 = m(1, 2) * m(3, 1) - m(1, 1) * m(3, 2);
+    let c13 = m(1, 2) * m(2, 3) - m(1, 3) * m(2, 2);
+    let c23 = m(1, 3) * m(2, 1) - m(1, 1) * m(2, 3);
+    let c33 = m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1);
+    // By the first column: that is the shorter code.
+    let det = m(1, 1) * c11 + m(2, 1) * c12 + m(3, 1) * c13;
+    let rows = [[c11, c12, c13], [c21, c22, c23], [c31, c32, c33]];
+    (SMatrix::from_fn(|i, j| rows[i][j]), det)
+}
+
+/// Gaussian elimination in the given order: the upper triangle that is left, and below it the factors of the rows.
+///
+/// A zero pivot divides its own component, which then can't be finite; nothing has to be tested.
+#[inline]
+fn eliminate<T: Real, const D: usize>(mut a: SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+    let mut det = T::one();
+    for k in 0..D {
+        det *= a[(k, k)];
+        for i in k + 1..D {
+            let factor = a[(i, k)] / a[(k, k)];
+            a[(i, k)] = factor;
+            for j in k + 1..D {
+                let product = factor * a[(k, j)];
+                a[(i, j)] -= product;
+            }
+        }
+    }
+    (a, det)
+}
+
+/// Through both triangles of [`eliminate`].
+#[inline]
+fn substitute<T: Real, const D: usize>(a: &SMatrix<T, D, D>, mut z: SVector<T, D>) -> SVector<T, D> {
+    for k in 0..D {
+        for i in k + 1..D {
+            let product = a[(i, k)] * z[k];
+            z[i] -= product;
+        }
+    }
+    for k in (0..D).rev() {
+        for j in k + 1..D {
+            let product = a[(k, j)] * z[j];
+            z[k] -= product;
+        }
+        z[k] /= a[(k, k)];
+    }
+    z
+}

@@ -1,0 +1,97 @@
+//! What states are made of, scalar by scalar: what a sum with a carry, a checkpoint and the laws' samples need.
+
+use nalgebra::SMatrix;
+
+use crate::numbers::scalar::Real;
+
+/// A fixed number of scalars in a fixed order.
+pub trait Entries<T>: Copy {
+    /// Made of the next scalars of a stream, in the order in which [`each`](Self::each) visits them.
+    fn from_entries(next: &mut impl FnMut() -> T) -> Self;
+
+    /// Visits the scalars.
+    fn each(&self, visit: &mut impl FnMut(T));
+
+    /// Combines the scalars at the same places.
+    #[must_use]
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self;
+}
+
+/// Row by row.
+impl<T: Real, const R: usize, const C: usize> Entries<T> for SMatrix<T, R, C> {
+    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+        // nalgebra goes by columns.
+        SMatrix::<T, C, R>::from_fn(|_, _| next()).transpose()
+    }
+
+    #[inline(always)]
+    fn each(&self, visit: &mut impl FnMut(T)) {
+        for row in 0..R {
+            for column in 0..C {
+                visit(self[(row, column)]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+        if T::LANES == 1 {
+            return self.zip_map(other, combine);
+        }
+        // The compiler doesn't inline `zip_map` for lanes, and what isn't inlined has no vector instructions of the
+        // machine.
+        let mut combined = *self;
+        for column in 0..C {
+            for row in 0..R {
+                combined[(row, column)] = combine(self[(row, column)], other[(row, column)]);
+            }
+        }
+        combined
+    }
+}
+
+impl<T> Entries<T> for () {
+    fn from_entries(_: &mut impl FnMut() -> T) -> Self {}
+
+    #[inline(always)]
+    fn each(&self, _: &mut impl FnMut(T)) {}
+
+    fn zip(&self, (): &Self, _: &mut impl FnMut(T, T) -> T) -> Self {}
+}
+
+macro_rules! tuple {
+    ($($name:ident $index:tt),+) => {
+        impl<S, $($name: Entries<S>),+> Entries<S> for ($($name,)+) {
+            fn from_entries(next: &mut impl FnMut() -> S) -> Self {
+                ($($name::from_entries(next),)+)
+            }
+
+            #[inline(always)]
+            fn each(&self, visit: &mut impl FnMut(S)) {
+                $(self.$index.each(visit);)+
+            }
+
+            #[inline(always)]
+            fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
+                ($(self.$index.zip(&other.$index, combine),)+)
+            }
+        }
+    };
+}
+
+tuple!(A 0, B 1);
+tuple!(A 0, B 1, C 2);
+tuple!(A 0, B 1, C 2, D 3);
+tuple!(A 0, B 1, C 2, D 3, E 4);
+tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+
+/// `a + b`, place by place.
+#[inline(always)]
+pub(crate) fn sum<T: Real, E: Entries<T>>(a: &E, b: &E) -> E {
+    a.zip(b, &mut |a, b| a + b)
+}
+
+/// All scalars zero.
+pub(crate) fn zero<T: Real, E: Entries<T>>() -> E {
+    E::from_entries(&mut T::zero)
+}

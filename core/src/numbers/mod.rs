@@ -1,0 +1,17 @@
+//! Numbers: the scalars that a motion is computed with, several of them in SIMD lanes, vectors and lists of them.
+//!
+//! Nothing here knows of groups or of mechanics.
+
+mod coordinates;
+mod entries;
+mod scalar;
+mod simd;
+
+pub use coordinates::Coordinates;
+pub use entries::Entries;
+pub(crate) use entries::{sum, zero};
+pub use scalar::real;
+pub use scalar::{Mask, Real};
+pub(crate) use scalar::{gathered, is_finite, nowhere, reported};
+
+pub(crate) use simd::{Kernel, dispatch};

@@ -1,0 +1,73 @@
+//! The scalars that the steppers run on.
+
+use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
+
+/// A real scalar: `f64`, `f32`, a dual number, or several of them in SIMD lanes.
+///
+/// Everything that nalgebra accepts as a (lane-wise) real field is a `Real`; there is nothing to implement.
+///
+/// # Dual numbers
+///
+/// A dual number carries derivatives with respect to parameters or initial values through every step, so that the
+/// sensitivity of a whole trajectory is there at its end. Newton's iteration stops by the values; as each iteration
+/// multiplies the error of the derivatives by that of the values before it, they are then solved to rounding too.
+///
+/// # Lanes
+///
+/// With a scalar of several lanes, such as `AutoF64x8` of the crate simba, one stepper moves as many bodies at once.
+/// Values of all lanes are made from arrays of the lanes' values, inertias and attitudes too, and read by
+/// [`SimdValue::extract`]:
+///
+/// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled.
+///   Logarithms and exponentials in a Lagrangian are the exception, which round by the lane that is farthest from the
+///   identity, and sines and cosines, which differ by roundings where the lanes compute them in their own way.
+/// - Every lane's step is solved, or the whole step is an error and the state of all lanes is what it was. An error's
+///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is.
+/// - The group is [`SO3`](crate::groups::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::groups::MatrixGroup) inverts matrices by
+///   pivots and asks for `RealField`, of which lanes aren't one.
+///
+/// [`Stepper::step`](crate::motion::Stepper::step) finds out which vector instructions the machine has and takes them, and so
+/// do composed and compensated steps: a program needn't be compiled for one machine. That is for lanes which are
+/// arrays, such as `AutoF64x8`: the `Wide` types of simba take those instructions that the program is compiled for, two
+/// `f64` a register on x86-64 unless the compiler is told more, as by `-C target-cpu=native`. `cargo bench --bench
+/// ensemble` measures both.
+pub trait Real: SimdRealField + Copy {}
+
+impl<T: SimdRealField + Copy> Real for T {}
+
+/// One truth value for each lane of a scalar; `bool` for a scalar of one lane.
+pub type Mask<T> = <T as SimdValue>::SimdBool;
+
+/// The mask that no lane is in.
+#[inline(always)]
+pub(crate) fn nowhere<T: Real>() -> Mask<T> {
+    T::zero().simd_ne(T::zero())
+}
+
+/// The scalar nearest to `value`.
+#[inline(always)]
+#[must_use]
+pub fn real<T: Real>(value: f64) -> T {
+    nalgebra::convert(value)
+}
+
+/// The matrix whose lanes are the matrices given.
+pub(crate) fn gathered<T, const LANES: usize, const R: usize, const C: usize>(
+    lanes: &[SMatrix<T::Element, R, C>; LANES],
+) -> SMatrix<T, R, C>
+where
+    T: Real<Element: Real> + From<[T::Element; LANES]>,
+{
+    SMatrix::from_fn(|i, j| T::from(core::array::from_fn(|lane| lanes[lane][(i, j)])))
+}
+
+/// Whether every lane is finite: zero times an infinity or a NaN is NaN.
+#[inline(always)]
+pub(crate) fn is_finite<T: Real>(value: T) -> bool {
+    (value * T::zero()).simd_eq(T::zero()).all()
+}
+
+/// The value as `f64` for a message; NaN where the lanes differ.
+pub(crate) fn reported<T: Real>(value: T) -> f64 {
+    nalgebra::try_convert(value).unwrap_or(f64::NAN)
+}

@@ -1,0 +1,12 @@
+//! What most programs need: `use liestep::prelude::*;`
+//!
+//! The traits are here without their names, so that their methods are found and nothing is in the way of yours.
+
+pub use crate::effects::{Gravity, PrincipalBody, RigidBody};
+pub use crate::error::{SetupError, StepError};
+pub use crate::groups::{LieGroup as _, SE2, SE3, SO2, SO3};
+pub use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
+pub use crate::mechanics::{DiscreteLagrangian as _, Effect as _};
+pub use crate::motion::{State, Stepper};
+pub use liestep_macros::{force, lagrangian};
+pub use nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -1,0 +1,58 @@
+//! A solve of SIMD lanes that all take the same way.
+//!
+//! They nearly always do: bodies of one kind at one step need as many iterations. Then no lane has to be kept from what
+//! the others do, and nothing is selected. That matters most for lanes which are arrays: a mask of theirs is a truth
+//! value for each lane, and selecting by it takes vectors apart and puts them together again.
+//!
+//! Where the lanes part, they go on by masks from where they are.
+
+use core::hint::black_box;
+
+use super::problem::{Lanes, MAX_ITERATIONS, Problem, Root, settled};
+use super::reused_jacobian::{is_enough, is_near, is_plain};
+use crate::mechanics::{Effect, Scalar, Vector};
+use crate::numbers::Coordinates as _;
+use nalgebra::{SimdBool as _, SimdPartialOrd as _};
+
+impl<L: Effect> Problem<'_, L> {
+    /// [`solve_directly`](Self::solve_directly) for several lanes: the same digits.
+    #[inline(always)]
+    pub(super) fn solve_together<const AGAIN: bool>(
+        &self,
+        terms: &L::StepTerms,
+        guess: &Vector<L>,
+        largest: Scalar<L>,
+    ) -> Option<Root<L>> {
+        let made = self.newton(terms, guess);
+        let half = *guess - made.update;
+        let first = made.update.dot(&made.update);
+        let settled = settled::<L>(&made.update, &half);
+        if settled.all() {
+            return self.usual(&half, made.det, 1, largest);
+        }
+        // As in `again`: with one function for both, lanes were a quarter slower.
+        if AGAIN && is_plain::<Scalar<L>>() {
+            let is_near = is_near(first, half.dot(&half)) & made.det.simd_gt(self.safe) & !settled;
+            if is_near.all() {
+                let second = self.simplified(terms, &half, &made);
+                let half = half - second;
+                if is_enough(first, second.dot(&second), half.dot(&half)).all() {
+                    return self.usual(&half, made.det, 2, largest);
+                }
+            }
+        }
+        // Through memory: what is made of lanes by masks would otherwise be mixed with the code above, which takes half
+        // as long again.
+        let made = black_box(made);
+        let mut lanes = Lanes::starting_at(guess);
+        lanes.advance(&made.update, made.det, &made.update);
+        let mut again = self.again::<AGAIN>(terms, &made, &mut lanes);
+        for iteration in 1..=MAX_ITERATIONS {
+            if lanes.settled.all() {
+                return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
+            }
+            again = self.refine::<AGAIN>(terms, &mut lanes);
+        }
+        None
+    }
+}

@@ -1,0 +1,21 @@
+//! Solving the momentum equation (2.7) for the increment `F`, and what is known of its solutions.
+//!
+//! [`problem`] is Newton's iteration, [`reused_jacobian`], [`secants`] and [`lanes`] its cheaper and its wider forms,
+//! [`branch`] the check that the solution is the one that continues `F = I`. Nothing here knows of states or of time.
+
+mod branch;
+mod guess;
+mod lanes;
+mod largest_step;
+mod problem;
+mod reused_jacobian;
+mod secants;
+pub(crate) mod solvability;
+
+pub(crate) use branch::trusted_radius;
+pub(crate) use guess::{Continued, DIFFERENCES, History};
+pub use guess::{Guess, Warm};
+pub(crate) use largest_step::{largest_fraction, six_digits};
+pub(crate) use problem::{Kick, Problem, Root};
+pub(crate) use reused_jacobian::safe;
+pub use solvability::{Solvability, TurningLimits};

@@ -1,0 +1,152 @@
+//! A last iteration without a Jacobian of its own.
+//!
+//! Most solves take two of Newton's iterations: one from the guess, and one that brings the rest to rounding. The
+//! second needs no better Jacobian than the first had. With that it takes the residual alone and no inverse, and what
+//! is left to wait for is shorter. It converges at a rate, not quadratically, so whether it was enough has to be seen.
+//!
+//! # What is missing
+//!
+//! Let `C` bound how fast the Jacobian changes, relative to itself: `|A⁻¹(A(y + e) − A)| ≤ 2C|e|`. After an update `u₁`
+//! by Newton's iteration `C|u₁|²` are missing; the next, `u₂`, finds what they are; and after it, with the same
+//! Jacobian, `2C|u₁||u₂|`. The two updates tell `C` along the first as `|u₂|/|u₁|²`. In other directions it may be
+//! larger: in Cayley coordinates it is of the order of one, times the ratio of the largest to the least inertia, by
+//! which roundings of the residual are magnified too. So it is taken as one where the updates tell less.
+//!
+//! # The branch
+//!
+//! The determinant is that at the iterate before both updates, and they are short: to have changed its sign on the way
+//! it would have to change by all of itself within a ten-thousandth of `|y|`. Where it is a sixteenth or less of what
+//! it is at rest, as very near a fold, that isn't relied on, and every iteration has its own Jacobian.
+
+use core::any::TypeId;
+
+use super::problem::{Lanes, Problem};
+use crate::mechanics::{Effect, Scalar, Square, Vector};
+use crate::numbers::{Coordinates as _, Mask, Real, real};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
+
+/// What may be missing at the end, in roundings of `y`: below the rounding of the residual that the last update was
+/// made of.
+const MISSING: f64 = 1.0 / 16.0;
+/// Of the determinant at rest.
+const SAFE: f64 = 1.0 / 16.0;
+/// The `C` that a first update is judged by, which is that of the heavy tops of the thesis at common steps: a top whose
+/// own is larger wastes a residual in a narrow range of updates.
+const COMMON: f64 = 1.0 / 16.0;
+
+/// The determinant that [`Problem::safe`] is, from that of the Jacobian at rest.
+pub(crate) fn safe<T: Real>(at_rest: T) -> T {
+    at_rest * real(SAFE)
+}
+
+/// Whether iterations that converge at a rate will do: only with plain floating-point numbers. The derivatives that a
+/// dual number carries converge with the quadratic iteration as its values do, but lag behind them in others.
+#[inline(always)]
+pub(super) fn is_plain<T: Real>() -> bool {
+    let element = TypeId::of::<<T as SimdValue>::Element>();
+    element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
+}
+
+/// What an iteration has made of a Jacobian.
+pub(super) struct Made<L: Effect> {
+    pub(super) update: Vector<L>,
+    factors: Square<L>,
+    pub(super) det: Scalar<L>,
+}
+
+impl<L: Effect> Problem<'_, L> {
+    /// An iteration of the lanes that haven't settled, and in those that it has brought near enough one more with the
+    /// same Jacobian, if it may be used `AGAIN`: where steps are so long that it seldom can, asking costs more. Whether
+    /// a lane has settled by that.
+    #[inline(always)]
+    pub(super) fn refine<const AGAIN: bool>(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
+        let made = self.newton(terms, &lanes.half);
+        lanes.advance(&made.update, made.det, &made.update);
+        self.again::<AGAIN>(terms, &made, lanes)
+    }
+
+    /// An iteration from there.
+    #[inline(always)]
+    pub(super) fn newton(&self, terms: &L::StepTerms, half: &Vector<L>) -> Made<L> {
+        let (residual, jacobian) = L::newton_system(self.constants, terms, half);
+        let (factors, det) = Vector::<L>::factorise(&jacobian);
+        Made { update: Vector::<L>::solve_again(&factors, det, &residual), factors, det }
+    }
+
+    /// The update from there by the Jacobian that another was made with.
+    #[inline(always)]
+    pub(super) fn simplified(&self, terms: &L::StepTerms, half: &Vector<L>, made: &Made<L>) -> Vector<L> {
+        let (residual, _) = L::newton_residual(self.constants, terms, half);
+        Vector::<L>::solve_again(&made.factors, made.det, &residual)
+    }
+
+    /// The second part of [`refine`](Self::refine).
+    #[inline(always)]
+    pub(super) fn again<const AGAIN: bool>(&self, terms: &L::StepTerms, made: &Made<L>, lanes: &mut Lanes<L>) -> bool {
+        if !AGAIN || !is_plain::<Scalar<L>>() || lanes.settled.all() {
+            return false;
+        }
+        let before = made.update.dot(&made.update);
+        let is_near = is_near(before, lanes.half.dot(&lanes.half)) & made.det.simd_gt(self.safe) & !lanes.settled;
+        if !is_near.any() {
+            return false;
+        }
+        let second = self.simplified(terms, &lanes.half, made);
+        let next = lanes.half - second;
+        lanes.half = next.select(is_near, lanes.half);
+        let settled = is_near & is_enough(before, second.dot(&second), next.dot(&next));
+        lanes.settled = lanes.settled | settled;
+        settled.any()
+    }
+}
+
+/// Whether an update will be enough after one with the square `first` that has led to one with the square `size`:
+/// `2C|u₁|³ ≤ MISSING ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
+#[inline(always)]
+pub(super) fn is_near<T: Real>(first: T, size: T) -> Mask<T> {
+    let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING / COMMON);
+    (first * first * first).simd_le(size * (tolerance * tolerance))
+}
+
+/// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ MISSING ε|y|`. All are squares.
+#[inline(always)]
+pub(super) fn is_enough<T: Real>(first: T, second: T, size: T) -> Mask<T> {
+    let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING);
+    (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_enough, is_near};
+
+    const EPSILON: f64 = f64::EPSILON;
+
+    /// With `C = 1/16`, at the length of the first update after which a second is just enough: `|u₁|³ = ε|y|/2`.
+    #[test]
+    fn what_is_expected_is_what_is_asked_for() {
+        for size in [1e-80_f64, 1e-8, 0.06, 1.0] {
+            let limit = (0.5 * EPSILON * size).cbrt();
+            for (first, enough) in [(limit * 0.999, true), (limit * 1.001, false)] {
+                let second = first * first / 16.0;
+                let [first, second, size] = [first, second, size].map(|length| length * length);
+                assert_eq!(is_near(first, size), enough);
+                assert_eq!(is_enough(first, second, size), enough);
+            }
+        }
+    }
+
+    /// A larger `C` than one is taken from the updates; with a smaller one it is one.
+    #[test]
+    fn a_curvature_that_the_updates_tell_counts() {
+        let (first, size) = (1e-6_f64, 0.06_f64);
+        let enough = |curvature: f64, size: f64| {
+            let second = curvature * first * first;
+            is_enough(first * first, second * second, size * size)
+        };
+        let limit = |curvature: f64| 32.0 * curvature * curvature.max(1.0) * first.powi(3) / EPSILON;
+        for curvature in [1e-3, 0.1, 10.0, 1e3] {
+            assert!(enough(curvature, limit(curvature) * 1.001) && !enough(curvature, limit(curvature) * 0.999));
+        }
+        assert!(!enough(1.0, f64::NAN) && !is_enough(0.0, f64::NAN, size));
+    }
+}

@@ -1,0 +1,96 @@
+//! What is proved about the solvability of a step before it is solved.
+//!
+//! With the kinetic part of (3.13) and a physical body the momentum equation is `(F J_d − J_d Fᵀ)^∨ = h a`, where
+//! `a = μ + kick_before(w)`. With the unit quaternion `q` of `F` and the moments `J_k` its left side has the length
+//!
+//! ```text
+//! 2 √(Σ J_k² q_k² − (Σ J_k q_k²)²)       twice the standard deviation of {0, J_1, J_2, J_3} under the weights q²
+//! ```
+//!
+//! so it never exceeds `J_max`: where `h|a| > J_max` there is no solution. At 90° it is at least `J_min`, and within
+//! 90° the Jacobian's determinant is positive: the ball of angles below 90° covers that of radius `J_min` just once, so
+//! where `h|a| < J_min` there is exactly one solution below 90°. In between it depends on the direction, and the solver
+//! decides.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::groups::SO3;
+use crate::numbers::Real;
+
+/// What is known of a step before it is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solvability {
+    /// There is exactly one solution that turns the body by less than 90°.
+    Certain,
+    /// There is no solution.
+    Impossible,
+    /// The bounds don't decide, or none are known for this Lagrangian.
+    Open,
+}
+
+/// Between which sizes of `h a` the solvability of `U(F) = a` depends on the direction, on SO(3) in kg m².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurningLimits {
+    /// Below, there is exactly one solution under 90°.
+    pub certain: f64,
+    /// Above, there is none.
+    pub impossible: f64,
+}
+
+impl TurningLimits {
+    /// What they say about `|h a|`.
+    #[must_use]
+    pub fn decide(&self, size: f64) -> Solvability {
+        // What the roundings of `a` and of the moments could move it by.
+        let margin = 1e-12;
+        if size < self.certain * (1.0 - margin) {
+            Solvability::Certain
+        } else if size > self.impossible * (1.0 + margin) {
+            Solvability::Impossible
+        } else {
+            Solvability::Open
+        }
+    }
+}
+
+/// Rotations at which an unknown part is compared with that of (3.13): quaternions without symmetry, up to 157°.
+const PROBES: [[f64; 4]; 4] =
+    [[9.0, 1.0, -2.0, 3.0], [5.0, 4.0, 1.0, -3.0], [2.0, -3.0, 7.0, 1.0], [2.0, 5.0, 3.0, 8.0]];
+
+/// The limits of the theorem, if `h U` is `(F J_d − J_d Fᵀ)^∨` to rounding and the body is a physical one.
+///
+/// The unknown part is given by its values only, so it is recognised by them, whoever derived it.
+pub(crate) fn of_rotations<T: Real>(
+    unknown: &dyn Fn(&SO3<T>) -> Option<Vector3<T>>,
+    inertia: &Matrix3<T>,
+) -> Option<TurningLimits> {
+    let inertia = in_f64(inertia)?;
+    let nonstandard = Matrix3::from_diagonal_element(0.5 * inertia.trace()) - inertia;
+    let scale = inertia.norm();
+    let tolerance = nalgebra::try_convert::<T, f64>(T::simd_default_epsilon())? * 64.0 * scale;
+    for [w, x, y, z] in PROBES {
+        let quaternion = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
+        let f = quaternion.to_rotation_matrix().into_inner();
+        let product = f * nonstandard;
+        let twice_vee = product - product.transpose();
+        let expected = Vector3::new(twice_vee.m32, twice_vee.m13, twice_vee.m21);
+        let value = in_f64(&unknown(&SO3::from_matrix_unchecked(f.map(crate::numbers::real)))?)?;
+        let is_same = (value - expected).norm() <= tolerance;
+        if !is_same {
+            return None;
+        }
+    }
+    let moments = inertia.symmetric_eigenvalues();
+    let (smallest, largest) = (moments.min(), moments.max());
+    // The largest moment exceeds the sum of the others where `J_d` has a negative eigenvalue.
+    let is_body = smallest > 0.0 && 2.0 * largest <= moments.sum() + tolerance;
+    is_body.then_some(TurningLimits { certain: smallest, impossible: largest })
+}
+
+/// None where lanes differ.
+fn in_f64<T: Real, const R: usize, const C: usize>(
+    matrix: &nalgebra::SMatrix<T, R, C>,
+) -> Option<nalgebra::SMatrix<f64, R, C>> {
+    let converted = matrix.map(|entry| nalgebra::try_convert::<T, f64>(entry).unwrap_or(f64::NAN));
+    converted.iter().all(|entry| entry.is_finite()).then_some(converted)
+}

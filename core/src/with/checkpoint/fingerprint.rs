@@ -1,0 +1,119 @@
+//! What a checkpoint is compared by.
+
+use core::fmt;
+
+use serde::de::{Error as _, Unexpected};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::Stored;
+use crate::mechanics::{Effect, SceneVisitor};
+use crate::motion::Plan;
+
+/// A hash by FNV-1a, 64 bits, of Fowler, Noll and Vo: it tells what has changed by accident, not what was forged.
+///
+/// In files it is text, as not every format has numbers of 64 bits.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) struct Fingerprint(u64);
+
+impl Default for Fingerprint {
+    /// The offset basis.
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Fingerprint {
+    pub(super) fn value(self) -> u64 {
+        self.0
+    }
+
+    pub(super) fn number(&mut self, number: u64) {
+        self.bytes(&number.to_le_bytes());
+    }
+
+    /// The length goes first, so that two texts don't run into each other.
+    pub(super) fn text(&mut self, text: &str) {
+        self.number(text.len() as u64);
+        self.bytes(text.as_bytes());
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+impl fmt::Debug for Fingerprint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
+    }
+}
+
+impl Serialize for Fingerprint {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{self:?}"))
+    }
+}
+
+impl<'de> Deserialize<'de> for Fingerprint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let value = u64::from_str_radix(&text, 16).ok().map(Self);
+        value
+            .filter(|value| format!("{value:?}") == text)
+            .ok_or_else(|| D::Error::invalid_value(Unexpected::Str(&text), &"sixteen hexadecimal digits in lower case"))
+    }
+}
+
+/// A scene or a method by its terms and its parameters.
+pub(super) struct Parameters<T> {
+    /// Of the terms and the names of the parameters.
+    pub(super) fingerprint: Fingerprint,
+    pub(super) values: Vec<(&'static str, T)>,
+    names: Vec<&'static str>,
+}
+
+impl<T: Stored> Parameters<T> {
+    fn nothing() -> Self {
+        Self { fingerprint: Fingerprint::default(), values: Vec::new(), names: Vec::new() }
+    }
+
+    pub(super) fn of_scene<S: Effect<Scalar = T>>(scene: &S) -> Self {
+        let mut parameters = Self::nothing();
+        parameters.fingerprint.number(size_of::<T>() as u64);
+        scene.describe(&mut parameters);
+        parameters
+    }
+
+    pub(super) fn of_plan<S: Effect<Scalar = T>, P: Plan<S>>(plan: &P) -> Self {
+        let mut parameters = Self::nothing();
+        plan.describe(&mut parameters);
+        parameters
+    }
+
+    /// The terms that are names; that of a declared kinetic flow is its derivation.
+    pub(super) fn name(&self) -> String {
+        let names: Vec<_> = self.names.iter().copied().filter(|name| !name.contains('\n')).collect();
+        names.join(", ")
+    }
+
+    /// Of the values, too.
+    pub(super) fn of_all(&self) -> Fingerprint {
+        let mut fingerprint = self.fingerprint;
+        self.values.iter().for_each(|(_, value)| fingerprint.number(value.bits()));
+        fingerprint
+    }
+}
+
+impl<T> SceneVisitor<T> for Parameters<T> {
+    fn term(&mut self, derivation: &'static str) {
+        self.fingerprint.text(derivation);
+        self.names.push(derivation);
+    }
+
+    fn parameter(&mut self, field: &'static str, value: T) {
+        self.fingerprint.text(field);
+        self.values.push((field, value));
+    }
+}

@@ -1,0 +1,235 @@
+//! Checkpoints: a state as it is written to a file, with what is needed to go on with the same bits.
+//!
+//! Only with the feature `serde`. A [`Checkpoint`] holds numbers and nothing of this crate's types, so that any format
+//! of serde takes it that keeps the bits of a float. [`State`] itself can't be read from a file: what is read counts as
+//! a state once the stepper that is to go on has looked at it.
+
+mod error;
+mod fingerprint;
+
+use nalgebra::{SimdComplexField as _, SimdRealField as _};
+use serde::{Deserialize, Serialize};
+
+pub use error::CheckpointError;
+
+use crate::groups::{Advected as _, LieGroup};
+use crate::mechanics::{Effect, Group, Scalar};
+use crate::motion::{Kept, Motion, Plan, State, StateOf, Stepper};
+use crate::numbers::{Entries, Real, real, reported};
+use fingerprint::{Fingerprint, Parameters};
+
+/// What the numbers below mean; another layout has another number.
+const FORMAT: u32 = 3;
+
+/// A scalar that is stored by its bits: `f64` or `f32`.
+pub trait Stored: Real + PartialOrd + Serialize + for<'de> Deserialize<'de> {
+    /// The bits, of `f32` in the lower half.
+    fn bits(self) -> u64;
+}
+
+impl Stored for f64 {
+    fn bits(self) -> u64 {
+        self.to_bits()
+    }
+}
+
+impl Stored for f32 {
+    fn bits(self) -> u64 {
+        u64::from(self.to_bits())
+    }
+}
+
+/// A state in a file, by [`Stepper::checkpoint`]; [`Stepper::resume`] makes a state of it.
+///
+/// # Format
+///
+/// A map of names to numbers and lists of numbers, matrices row by row; units are those of the [`State`]. The lists
+/// have the length that the scene and the method call for. A text format must read floats to the last bit, as
+/// `serde_json` does with its feature `float_roundtrip`; one that doesn't is found out by the digest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Checkpoint<T> {
+    format: u32,
+    /// Of the terms' derivations and the scalar.
+    scene: Fingerprint,
+    parameters: Vec<T>,
+    /// The method's name, and all its constants.
+    method: String,
+    coefficients: Fingerprint,
+    step_size: T,
+    steps: u64,
+    attitude: Vec<T>,
+    momentum: Vec<T>,
+    advected: Vec<T>,
+    /// What the method keeps from step to step.
+    kept: Vec<T>,
+    /// Of everything above.
+    digest: Fingerprint,
+}
+
+impl<T: Stored> Checkpoint<T> {
+    /// The number of steps made.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    fn digested(&self) -> Fingerprint {
+        let mut digest = Fingerprint::default();
+        digest.number(u64::from(self.format));
+        digest.number(self.scene.value());
+        digest.text(&self.method);
+        digest.number(self.coefficients.value());
+        digest.number(self.step_size.bits());
+        digest.number(self.steps);
+        for (_, numbers) in self.lists() {
+            digest.number(numbers.len() as u64);
+            for number in numbers {
+                digest.number(number.bits());
+            }
+        }
+        digest
+    }
+
+    fn lists(&self) -> [(&'static str, &Vec<T>); 5] {
+        [
+            ("parameters", &self.parameters),
+            ("attitude", &self.attitude),
+            ("momentum", &self.momentum),
+            ("advected", &self.advected),
+            ("kept", &self.kept),
+        ]
+    }
+}
+
+impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
+    /// The state for a file, with all that its method keeps.
+    #[must_use]
+    pub fn checkpoint(&self, state: &StateOf<S, P>) -> Checkpoint<Scalar<S>> {
+        let State { motion, kept } = state;
+        let (own, method) = (Parameters::of_scene(&self.scene), Parameters::of_plan(&self.plan));
+        let mut numbers = Vec::new();
+        kept.each(&mut |number| numbers.push(number));
+        let mut checkpoint = Checkpoint {
+            format: FORMAT,
+            scene: own.fingerprint,
+            parameters: own.values.iter().map(|(_, value)| *value).collect(),
+            method: method.name(),
+            coefficients: method.of_all(),
+            step_size: self.step_size(),
+            steps: motion.steps,
+            attitude: list(&motion.attitude.matrix()),
+            momentum: list(&motion.momentum),
+            advected: list(&motion.advected),
+            kept: numbers,
+            digest: Fingerprint::default(),
+        };
+        checkpoint.digest = checkpoint.digested();
+        checkpoint
+    }
+
+    /// The state of a checkpoint, which goes on with the same bits as the one that was written.
+    ///
+    /// # Errors
+    ///
+    /// [`CheckpointError`] where the checkpoint is of another scene or method, has other parameters or another step;
+    /// where it isn't a state of this scene; and where a digit of it has changed.
+    pub fn resume(&self, checkpoint: &Checkpoint<Scalar<S>>) -> Result<StateOf<S, P>, CheckpointError> {
+        self.belongs(checkpoint)?;
+        let attitude = Group::<S>::from_matrix_unchecked(unlisted("attitude", &checkpoint.attitude)?);
+        let motion = Motion {
+            attitude,
+            momentum: unlisted("momentum", &checkpoint.momentum)?,
+            advected: unlisted::<_, S::Advected>("advected", &checkpoint.advected)?,
+            steps: checkpoint.steps,
+        };
+        let kept = remembered::<Scalar<S>, P::Kept>(&checkpoint.kept)?;
+        // Far more than rounding makes in any number of steps, far less than what isn't an attitude.
+        let allowed = Scalar::<S>::simd_default_epsilon().simd_sqrt();
+        let defect = attitude.defect();
+        let is_in_group = defect < allowed;
+        if !is_in_group {
+            return Err(CheckpointError::NotInGroup { defect: reported(defect) });
+        }
+        let expected = self.scene.advected().seen_from(&attitude);
+        let (mut squared, mut size) = (real::<Scalar<S>>(0.0), real::<Scalar<S>>(0.0));
+        for (stored, expected) in list(&motion.advected).into_iter().zip(list(&expected)) {
+            squared += (stored - expected) * (stored - expected);
+            size += expected * expected;
+        }
+        let is_seen = squared <= size * allowed * allowed;
+        if !is_seen {
+            return Err(CheckpointError::NotAdvected { distance: reported(squared.simd_sqrt()) });
+        }
+        // Last, as every other error says more.
+        if checkpoint.digest != checkpoint.digested() {
+            return Err(CheckpointError::Altered);
+        }
+        Ok(State { motion, kept: kept.ok_or(CheckpointError::NotKept)? })
+    }
+
+    /// The checkpoint is of this scene, with these parameters, this method and this step.
+    fn belongs(&self, checkpoint: &Checkpoint<Scalar<S>>) -> Result<(), CheckpointError> {
+        if checkpoint.format != FORMAT {
+            return Err(CheckpointError::AnotherFormat { found: checkpoint.format, known: FORMAT });
+        }
+        let own = Parameters::of_scene(&self.scene);
+        if checkpoint.scene != own.fingerprint || checkpoint.parameters.len() != own.values.len() {
+            return Err(CheckpointError::AnotherScene);
+        }
+        for (&stored, &(field, value)) in checkpoint.parameters.iter().zip(&own.values) {
+            if stored.bits() != value.bits() {
+                let (stored, own) = (reported(stored), reported(value));
+                return Err(CheckpointError::AnotherParameter { field, stored, own });
+            }
+        }
+        let method = Parameters::of_plan(&self.plan);
+        if checkpoint.method != method.name() || checkpoint.coefficients != method.of_all() {
+            return Err(CheckpointError::AnotherMethod { stored: checkpoint.method.clone(), own: method.name() });
+        }
+        if checkpoint.step_size.bits() != self.step_size().bits() {
+            let (stored, own) = (reported(checkpoint.step_size), reported(self.step_size()));
+            return Err(CheckpointError::AnotherStep { stored, own });
+        }
+        Ok(())
+    }
+}
+
+/// What a method keeps, if these numbers can be that.
+fn remembered<T: Stored, K: Kept<T>>(list: &[T]) -> Result<Option<K>, CheckpointError> {
+    let mut expected = 0;
+    let _ = K::from_numbers(&mut || {
+        expected += 1;
+        T::zero()
+    });
+    readable("kept", list, expected)?;
+    let mut numbers = list.iter();
+    Ok(K::from_numbers(&mut || numbers.next().copied().unwrap_or_else(T::zero)))
+}
+
+fn list<T: Real>(entries: &impl Entries<T>) -> Vec<T> {
+    let mut list = Vec::new();
+    entries.each(&mut |entry| list.push(entry));
+    list
+}
+
+fn unlisted<T: Stored, E: Entries<T>>(what: &'static str, list: &[T]) -> Result<E, CheckpointError> {
+    let mut expected = 0;
+    E::from_entries(&mut || {
+        expected += 1;
+        T::zero()
+    });
+    readable(what, list, expected)?;
+    let mut numbers = list.iter();
+    Ok(E::from_entries(&mut || numbers.next().copied().unwrap_or_else(T::zero)))
+}
+
+fn readable<T: Stored>(what: &'static str, list: &[T], expected: usize) -> Result<(), CheckpointError> {
+    if list.len() != expected {
+        return Err(CheckpointError::WrongSize { what, found: list.len(), expected });
+    }
+    if !list.iter().all(|&number| crate::numbers::is_finite(number)) {
+        return Err(CheckpointError::NonFinite { what });
+    }
+    Ok(())
+}

@@ -1,0 +1,13 @@
+//! What is put around a method: compensated sums, remedies for steps without a solution, checkpoints.
+//!
+//! Each goes with every method for which it makes sense, and with each other.
+
+#[cfg(feature = "serde")]
+mod checkpoint;
+mod compensated;
+mod remedies;
+
+#[cfg(feature = "serde")]
+pub use checkpoint::{Checkpoint, CheckpointError, Stored};
+pub use compensated::{Carried, Compensable, Compensated};
+pub use remedies::{OrFallback, OrSubsteps};

@@ -1,0 +1,114 @@
+//! The free functions of the declared syntax: `vee`, `log`, `exp` and `inverse`.
+
+use std::rc::Rc;
+
+use syn::spanned::Spanned as _;
+use syn::{Expr, ExprCall};
+
+use super::Checker;
+use super::methods::{METHODS, SQUARE, VECTOR};
+use crate::declared::{Kind, Name, Shape, Tree};
+use crate::mathematics::symbolic::{Function, Rational};
+
+impl Checker<'_> {
+    pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
+        let function = match &*call.func {
+            Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
+            _ => String::new(),
+        };
+        if !["vee", "log", "exp", "inverse"].contains(&function.as_str()) {
+            let advice = if is_identity(&call.func) {
+                "write `I` for the identity".to_owned()
+            } else if METHODS.contains(&function.as_str()) {
+                format!("write `{function}` as a method, `x.{function}(…)`")
+            } else {
+                "there are `vee(A)`, `log(F)`, `exp(v)` and `inverse(J)`".to_owned()
+            };
+            let noun = self.declaration.role.noun();
+            self.errors.push_over(&call.func, format!("this function isn't known in {noun}: {advice}"));
+            self.arguments(&call.args);
+            return None;
+        }
+        let (span, at) = (call.span(), call.func.span());
+        let mut arguments = call.args.iter();
+        let (Some(argument), None) = (arguments.next(), arguments.next()) else {
+            let wanted = if function == "exp" { "vector" } else { "matrix" };
+            self.errors.push(at, format!("`{function}` takes one {wanted}"));
+            return None;
+        };
+        let argument = self.expression(argument)?;
+        match (function.as_str(), argument.shape) {
+            ("vee", SQUARE) => Some(Tree::new(span, VECTOR, Kind::Vee(argument))),
+            ("vee", shape) => self.mismatch("vee", "a 3 × 3 matrix", shape, at),
+            ("log", SQUARE) if self.declaration.group.is_so3 => Some(logarithm(span, argument)),
+            ("log", SQUARE) => {
+                self.errors.push(at, "`log` is that of a rotation, and this group isn't SO3");
+                None
+            }
+            ("log", shape) => self.mismatch("log", "a rotation matrix such as `F`", shape, at),
+            ("exp", VECTOR) => Some(exponential(span, &argument)),
+            ("exp", Shape::Scalar) => {
+                self.errors.push(at, "`exp` of a scalar is a method: write `x.exp()`");
+                None
+            }
+            ("exp", shape) => self.mismatch("exp", "a vector of 3", shape, at),
+            (_, shape) => self.inverse(span, argument, shape, at),
+        }
+    }
+
+    fn inverse(
+        &mut self,
+        span: proc_macro2::Span,
+        argument: Rc<Tree>,
+        shape: Shape,
+        at: proc_macro2::Span,
+    ) -> Option<Rc<Tree>> {
+        match (&argument.kind, shape) {
+            // The group knows the inverses of its elements.
+            (Kind::Name(Name::Increment), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
+            (_, Shape::Matrix(rows, columns)) if rows != columns || rows > 3 => {
+                self.mismatch("inverse", "a matrix of up to 3 × 3", shape, at)
+            }
+            (_, Shape::Scalar) => {
+                self.errors.push(at, "`inverse` is that of a matrix: write `1.0 / x` for a scalar");
+                None
+            }
+            (Kind::Name(Name::Field(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
+            _ => {
+                self.errors.push(at, "`inverse` takes `F` or a field of the struct: make this matrix a field");
+                None
+            }
+        }
+    }
+}
+
+/// `Matrix3::identity` and its like.
+fn is_identity(function: &Expr) -> bool {
+    matches!(function, Expr::Path(path) if path.path.segments.last().is_some_and(|last| last.ident == "identity"))
+}
+
+/// `G(n) vee(A)` with `n = (3 − tr A)/4`.
+fn logarithm(span: proc_macro2::Span, rotation: Rc<Tree>) -> Rc<Tree> {
+    let scalar = |kind| Tree::new(span, Shape::Scalar, kind);
+    let three = scalar(Kind::Number(Rational::integer(3)));
+    let quarter = scalar(Kind::Number(Rational::new(1, 4)));
+    let trace = scalar(Kind::Trace(rotation.clone()));
+    let difference = scalar(Kind::Subtract(three, trace));
+    let n = scalar(Kind::Multiply(quarter, difference));
+    let ratio = scalar(Kind::Apply(Function::LogRatio(0), n));
+    let vee = Tree::new(span, VECTOR, Kind::Vee(rotation));
+    Tree::new(span, VECTOR, Kind::Multiply(ratio, vee))
+}
+
+/// `I + c₁(q) v̂ + c₂(q) v̂²` with `q = |v|²`.
+fn exponential(span: proc_macro2::Span, v: &Rc<Tree>) -> Rc<Tree> {
+    let matrix = |kind| Tree::new(span, SQUARE, kind);
+    let q = Tree::new(span, Shape::Scalar, Kind::Dot(v.clone(), v.clone()));
+    let coefficient = |k| Tree::new(span, Shape::Scalar, Kind::Apply(Function::Stumpff(k), q.clone()));
+    let hat = matrix(Kind::CrossMatrix(v.clone()));
+    let square = matrix(Kind::Multiply(hat.clone(), hat.clone()));
+    let first = matrix(Kind::Multiply(coefficient(1), hat));
+    let second = matrix(Kind::Multiply(coefficient(2), square));
+    let sum = matrix(Kind::Add(matrix(Kind::Identity), first));
+    matrix(Kind::Add(sum, second))
+}

@@ -1,0 +1,325 @@
+//! From Rust syntax to a tree with shapes. Nothing is derived before all shapes fit.
+
+mod functions;
+mod methods;
+mod operators;
+mod usage;
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use proc_macro2::Span;
+use syn::ext::IdentExt as _;
+use syn::spanned::Spanned as _;
+use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
+
+use crate::declared::errors::{Errors, suggestion};
+use crate::declared::{AdvectedParameter, Declaration, Field, Kind, Name, Role, Shape, Tree};
+use crate::mathematics::symbolic::Rational;
+
+/// Deeper expressions than a person writes would overflow the stack of the compiler.
+const DEEPEST: usize = 250;
+
+/// The declared expression as a tree; `None` after a mistake, be it one in the attribute or in the struct.
+pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
+    let expression = declaration.expression.as_ref()?;
+    let mut checker =
+        Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0, is_too_deep: false };
+    let tree = checker.expression(expression);
+    let used = checker.used;
+    let tree = tree?;
+    if tree.shape != Shape::Scalar {
+        let shape = tree.shape.describe();
+        let advice = match declaration.role {
+            Role::Lagrangian => "take a `.trace()` or a `.dot(…)`",
+            Role::Force => "take its `.dot(…)` with a displacement",
+        };
+        let noun = declaration.role.noun();
+        errors.push_over(value(expression), format!("{noun} is a scalar, but this is {shape}: {advice}"));
+        return None;
+    }
+    // After a mistake, names may be missing from `used`.
+    if errors.is_empty() {
+        usage::check(declaration, &used, errors);
+    }
+    errors.is_empty().then_some(tree)
+}
+
+/// What a block ends with, or the expression itself.
+pub(crate) fn value(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Group(inner) => value(&inner.expr),
+        Expr::Block(block) => match block.block.stmts.last() {
+            Some(Stmt::Expr(last, None)) => value(last),
+            _ => expression,
+        },
+        _ => expression,
+    }
+}
+
+/// A `let`: its tree, or nothing if that had a mistake, and whether it has been used.
+struct Binding {
+    tree: Option<Rc<Tree>>,
+    span: Span,
+    used: bool,
+}
+
+struct Checker<'a> {
+    declaration: &'a Declaration,
+    errors: &'a mut Errors,
+    scopes: Vec<BTreeMap<String, Binding>>,
+    used: Vec<Name>,
+    depth: usize,
+    /// Both operands of an operation may be too deep, and one message says it.
+    is_too_deep: bool,
+}
+
+impl Checker<'_> {
+    /// `None` where a mistake has been reported.
+    fn expression(&mut self, expression: &Expr) -> Option<Rc<Tree>> {
+        if self.depth > DEEPEST {
+            if !self.is_too_deep {
+                self.errors.push(expression.span(), format!("nested more than {DEEPEST} deep: bind parts with `let`"));
+            }
+            self.is_too_deep = true;
+            return None;
+        }
+        self.depth += 1;
+        let tree = self.expression_inside(expression);
+        self.depth -= 1;
+        if tree.as_ref().is_some_and(|tree| tree.depth > DEEPEST) {
+            self.errors
+                .push(expression.span(), format!("nested more than {DEEPEST} deep: the expression is too large"));
+            return None;
+        }
+        tree
+    }
+
+    fn expression_inside(&mut self, expression: &Expr) -> Option<Rc<Tree>> {
+        let span = expression.span();
+        match expression {
+            Expr::Paren(inner) => self.expression(&inner.expr),
+            Expr::Group(inner) => self.expression(&inner.expr),
+            Expr::Reference(inner) if inner.mutability.is_none() => self.expression(&inner.expr),
+            Expr::Block(block) if block.label.is_none() => self.block(&block.block),
+            Expr::Lit(literal) => self.literal(&literal.lit),
+            Expr::Path(path) => match path.path.get_ident() {
+                Some(name) if path.qself.is_none() => self.name(name),
+                _ => {
+                    self.errors.push(
+                        span,
+                        "a path has no meaning here: use the struct's fields, `F`, `I`, `h` and the advected names",
+                    );
+                    None
+                }
+            },
+            Expr::Unary(unary) => match unary.op {
+                UnOp::Neg(_) => {
+                    let operand = self.expression(&unary.expr)?;
+                    Some(Tree::new(span, operand.shape, Kind::Negate(operand)))
+                }
+                _ => self.unknown(span),
+            },
+            Expr::Binary(binary) => self.binary(binary),
+            Expr::MethodCall(call) => self.method(call),
+            Expr::Call(call) => self.call(call),
+            Expr::Index(index) => self.index(index),
+            Expr::Field(field) => self.component(field),
+            _ => self.unknown(span),
+        }
+    }
+
+    fn unknown(&mut self, span: Span) -> Option<Rc<Tree>> {
+        let noun = self.declaration.role.noun();
+        self.errors.push(
+            span,
+            format!(
+                "this has no meaning in {noun}: use + - * /, `let`, indexing, `vee(…)` and the methods of vectors and \
+                 matrices"
+            ),
+        );
+        None
+    }
+
+    fn block(&mut self, block: &Block) -> Option<Rc<Tree>> {
+        self.scopes.push(BTreeMap::new());
+        let result = self.statements(&block.stmts, block.brace_token.span.join());
+        // What couldn't be read may use any name.
+        let is_read = self.errors.is_empty();
+        for binding in self.scopes.pop().into_iter().flat_map(BTreeMap::into_values) {
+            if is_read && !binding.used {
+                self.errors.push(binding.span, "this `let` isn't used: remove it");
+            }
+        }
+        result
+    }
+
+    fn statements(&mut self, statements: &[Stmt], span: Span) -> Option<Rc<Tree>> {
+        let the = self.declaration.role.definite();
+        let Some((last, before)) = statements.split_last() else {
+            self.errors.push(span, format!("the block is empty: end it with {the}"));
+            return None;
+        };
+        for statement in before {
+            match statement {
+                Stmt::Local(local) => self.binding(local),
+                other => self.errors.push(other.span(), format!("only `let name = …;` may stand before {the}")),
+            }
+        }
+        match last {
+            Stmt::Expr(expression, None) => self.expression(expression),
+            Stmt::Expr(_, Some(semicolon)) => {
+                self.errors.push(semicolon.span(), format!("the block must end with {the}: remove the semicolon"));
+                None
+            }
+            other => {
+                self.errors.push(other.span(), format!("the block must end with {the}, without a semicolon"));
+                None
+            }
+        }
+    }
+
+    fn binding(&mut self, local: &syn::Local) {
+        let (pattern, ty) = match &local.pat {
+            Pat::Type(typed) => (&*typed.pat, Some(&typed.ty)),
+            pattern => (pattern, None),
+        };
+        let name = match pattern {
+            Pat::Ident(name) if name.by_ref.is_none() && name.mutability.is_none() && name.subpat.is_none() => {
+                &name.ident
+            }
+            other => {
+                self.errors.push_over(other, "bind one plain name: `let name = …;`");
+                self.bind_nothing(other);
+                return;
+            }
+        };
+        if let Some(ty) = ty {
+            self.errors.push(ty.span(), "leave the type away: it follows from the expression");
+        }
+        let Some(init) = local.init.as_ref().filter(|init| init.diverge.is_none()) else {
+            self.errors.push(local.span(), "a binding needs a value: `let name = …;`");
+            self.bind_nothing(pattern);
+            return;
+        };
+        let tree = self.expression(&init.expr).map(|tree| {
+            let (span, shape, kind) = (tree.span, tree.shape, Kind::Bound(name.unraw().to_string(), tree));
+            Tree::new(span, shape, kind)
+        });
+        let binding = Binding { tree, span: name.span(), used: false };
+        if let Some(scope) = self.scopes.last_mut() {
+            scope.insert(name.unraw().to_string(), binding);
+        }
+    }
+
+    /// The names of a `let` with a mistake are known, and have no tree.
+    fn bind_nothing(&mut self, pattern: &Pat) {
+        match pattern {
+            Pat::Ident(name) => {
+                let binding = Binding { tree: None, span: name.span(), used: true };
+                if let Some(scope) = self.scopes.last_mut() {
+                    scope.insert(name.ident.unraw().to_string(), binding);
+                }
+            }
+            Pat::Tuple(tuple) => tuple.elems.iter().for_each(|part| self.bind_nothing(part)),
+            _ => {}
+        }
+    }
+
+    fn literal(&mut self, literal: &Lit) -> Option<Rc<Tree>> {
+        let (digits, suffix, is_integer) = match literal {
+            Lit::Float(float) => (float.base10_digits().to_owned(), float.suffix().to_owned(), false),
+            Lit::Int(integer) => (integer.base10_digits().to_owned(), integer.suffix().to_owned(), true),
+            other => return self.unknown(other.span()),
+        };
+        if is_integer {
+            self.errors.push(literal.span(), format!("write `{digits}.0`: scalars are real numbers"));
+            return None;
+        }
+        if !suffix.is_empty() {
+            self.errors.push(literal.span(), format!("leave the suffix away: write `{digits}`"));
+            return None;
+        }
+        let value = Rational::from_decimal(&digits);
+        if value.is_overflow() {
+            self.errors.push(literal.span(), "too many digits for exact arithmetic: make it a field of the struct");
+            return None;
+        }
+        Some(Tree::new(literal.span(), Shape::Scalar, Kind::Number(value)))
+    }
+
+    fn name(&mut self, ident: &syn::Ident) -> Option<Rc<Tree>> {
+        let (name, span) = (ident.unraw().to_string(), ident.span());
+        for scope in self.scopes.iter_mut().rev() {
+            if let Some(binding) = scope.get_mut(&name) {
+                binding.used = true;
+                return binding.tree.clone();
+            }
+        }
+        let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.plain_name() == name);
+        let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.plain_name() == name);
+        let size = self.declaration.group.size;
+        let square = Shape::Matrix(size, size);
+        let (shape, found) = match name.as_str() {
+            "I" => return Some(Tree::new(span, square, Kind::Identity)),
+            "F" => (square, Name::Increment),
+            "h" => (Shape::Scalar, Name::Step),
+            "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
+            "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
+            _ => {
+                if let Some(index) = advected(self.declaration) {
+                    (self.declaration.advected_kind(index).shape(), Name::Advected(index))
+                } else if let Some(index) = field(self.declaration) {
+                    if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
+                        let w = w.plain_name();
+                        self.errors.push(
+                            span,
+                            format!("`{name}` is the spatial value of `{w}`: write `{w}`, which is what the body sees"),
+                        );
+                        return None;
+                    }
+                    (self.declaration.fields[index].kind.shape(), Name::Field(index))
+                } else {
+                    if !self.declaration.unreadable.contains(&name) {
+                        self.unknown_name(&name, span);
+                    }
+                    return None;
+                }
+            }
+        };
+        self.used.push(found);
+        Some(Tree::new(span, shape, Kind::Name(found)))
+    }
+
+    fn is_force(&self) -> bool {
+        self.declaration.role == Role::Force
+    }
+
+    fn displacement(&self) -> Shape {
+        Shape::Matrix(self.declaration.group.dimension(), 1)
+    }
+
+    fn unknown_name(&mut self, name: &str, span: Span) {
+        let fields = self.declaration.fields.iter().map(Field::plain_name);
+        let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
+        let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
+        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
+        let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
+        let known: Vec<String> = builtin.chain(advected).chain(fields).chain(bound).collect();
+        let near = suggestion(name, known.iter().map(String::as_str));
+        let noun = self.declaration.role.noun();
+        let advice = match name {
+            _ if !near.is_empty() => near,
+            "w" => "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned(),
+            "t" | "time" => format!(
+                "; {noun} has no time: force a step with `step_forced`, or go on with other parameters by `adopt`"
+            ),
+            "omega" | "Omega" | "xi" | "velocity" => {
+                let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
+                format!("; the velocity of a step is in `F`: write {velocity}")
+            }
+            _ => format!("\nknown: {}", known.join(", ")),
+        };
+        self.errors.push(span, format!("`{name}` isn't known here{advice}"));
+    }
+}

@@ -1,0 +1,52 @@
+//! Every declared name must be used: a forgotten name is a forgotten force.
+
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, Name, Role};
+
+pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
+    if declaration.role == Role::Force {
+        if !declaration.group.is_so3 {
+            errors.push_over(&declaration.group_path, "forces are only known on `SO3`");
+        }
+        let displacements = [Name::DisplacementBefore, Name::DisplacementAfter];
+        if !used.iter().any(|name| displacements.contains(name)) {
+            errors.push_over(
+                declaration.expression.as_ref().map(super::value),
+                "virtual work needs a displacement: `eta` at the beginning of the step, `eta_next` at its end",
+            );
+        }
+        check_names(declaration, used, errors);
+        return;
+    }
+    // A potential at the beginning of a step alone has no `F`, and still pushes.
+    if !used.iter().any(|name| matches!(name, Name::Increment | Name::Advected(_))) {
+        errors.push_over(
+            declaration.expression.as_ref().map(super::value),
+            "the Lagrangian doesn't depend on `F`, the increment of a step: nothing would move",
+        );
+    }
+    check_names(declaration, used, errors);
+}
+
+fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
+    let the = declaration.role.definite();
+    for (index, w) in declaration.advected.iter().enumerate() {
+        if !used.contains(&Name::Advected(index)) {
+            let name = w.plain_name();
+            errors.push(w.name.span(), format!("`{name}` isn't used in {the}: remove it from `advected(…)`"));
+        }
+    }
+    for (index, field) in declaration.fields.iter().enumerate() {
+        let carried = declaration.advected.iter().any(|w| w.field == Some(index));
+        if field.kind.is_wrapped() && !carried {
+            let name = field.plain_name();
+            errors.push(
+                field.name.span(),
+                format!("the type of `{name}` is for what the group carries: declare it with `advected(w = {name})`"),
+            );
+        } else if !carried && !used.contains(&Name::Field(index)) {
+            let name = field.plain_name();
+            errors.push(field.name.span(), format!("`{name}` isn't used in {the}: remove the field, or use it"));
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! A declaration after parsing: the struct, the attribute's arguments, and what the fields' types promise.
+
+use syn::ext::IdentExt as _;
+use syn::{Expr, Ident, ItemStruct, Path};
+
+use super::Shape;
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::Variance;
+
+/// What an attribute declares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// `#[lagrangian(… l_d = …)]`.
+    Lagrangian,
+    /// `#[force(… work = …)]`.
+    Force,
+}
+
+impl Role {
+    /// The argument that holds the expression.
+    pub(crate) fn key(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "l_d",
+            Self::Force => "work",
+        }
+    }
+
+    /// What the expression is, in a sentence.
+    pub(crate) fn noun(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "a Lagrangian",
+            Self::Force => "virtual work",
+        }
+    }
+
+    /// The expression of one declaration, in a sentence.
+    pub(crate) fn definite(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "the Lagrangian",
+            Self::Force => "the virtual work",
+        }
+    }
+
+    /// The name of the attribute.
+    pub(crate) fn attribute(self) -> &'static str {
+        match self {
+            Self::Lagrangian => "lagrangian",
+            Self::Force => "force",
+        }
+    }
+}
+
+/// `#[lagrangian(group = …, advected(…), l_d = …, crate = …)]` on a struct.
+pub(crate) struct Declaration {
+    pub(crate) role: Role,
+    pub(crate) item: ItemStruct,
+    /// Where liestep is found, if not at `::liestep`.
+    pub(crate) root: Option<Path>,
+    /// The group's name as written; `None` after a mistake.
+    pub(crate) group_path: Option<Path>,
+    pub(crate) group: Group,
+    pub(crate) advected: Vec<AdvectedParameter>,
+    /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.
+    pub(crate) expression: Option<Expr>,
+    pub(crate) fields: Vec<Field>,
+    /// The fields whose type has no meaning.
+    pub(crate) unreadable: Vec<String>,
+    pub(crate) scalar: Scalar,
+}
+
+/// `w = up`: `w` in the expression is the field `up`, carried by the group.
+pub(crate) struct AdvectedParameter {
+    pub(crate) name: Ident,
+    /// The index of the field; `None` where there is no such field of a known type.
+    pub(crate) field: Option<usize>,
+}
+
+impl AdvectedParameter {
+    /// The name without `r#`.
+    pub(crate) fn plain_name(&self) -> String {
+        self.name.unraw().to_string()
+    }
+}
+
+impl Declaration {
+    /// What an advected parameter's field promises; a plain vector after a mistake.
+    pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
+        let size = self.group.size;
+        let field = self.advected.get(index).and_then(|w| self.fields.get(w.field?));
+        let kind = field.map(|field| field.kind).filter(|kind| kind.is_carried_by(size));
+        kind.unwrap_or(FieldKind::Vector(size))
+    }
+}
+
+/// A field of the struct.
+pub(crate) struct Field {
+    pub(crate) name: Ident,
+    pub(crate) kind: FieldKind,
+}
+
+impl Field {
+    /// The name without `r#`.
+    pub(crate) fn plain_name(&self) -> String {
+        self.name.unraw().to_string()
+    }
+}
+
+/// What a field's type promises.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FieldKind {
+    Scalar,
+    /// Rows.
+    Vector(usize),
+    /// Rows of the homogeneous coordinates, the last of which is one.
+    Point(usize),
+    /// Rows, as many columns.
+    Matrix(usize),
+    /// An advected parameter with its kind in its type.
+    Advected(Variance, usize),
+    /// `NonstandardInertia`, `Inertia`.
+    SymmetricInertia,
+    /// `DiagonalNonstandardInertia`.
+    DiagonalInertia,
+}
+
+impl FieldKind {
+    /// How the group moves it: a plain vector is a covector.
+    pub(crate) fn variance(self) -> Variance {
+        match self {
+            Self::Advected(variance, _) => variance,
+            Self::Point(_) => Variance::Vector,
+            _ => Variance::Covector,
+        }
+    }
+
+    /// Whether a group of matrices of this size can move it.
+    pub(crate) fn is_carried_by(self, size: usize) -> bool {
+        matches!(self, Self::Vector(rows) | Self::Point(rows) | Self::Advected(_, rows) if rows == size)
+    }
+
+    /// Whether its value is wrapped in a type that says how the group moves it.
+    pub(crate) fn is_wrapped(self) -> bool {
+        matches!(self, Self::Advected(..))
+    }
+
+    pub(crate) fn shape(self) -> Shape {
+        match self {
+            Self::Scalar => Shape::Scalar,
+            Self::Vector(rows) | Self::Point(rows) => Shape::Matrix(rows, 1),
+            Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
+            Self::Matrix(rows) => Shape::Matrix(rows, rows),
+            Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
+        }
+    }
+}
+
+/// The scalar that all fields share.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Scalar {
+    /// `f64` or `f32`.
+    Primitive(Ident),
+    /// A type parameter of the struct.
+    Parameter(Ident),
+}

@@ -1,0 +1,360 @@
+//! From the tree to a symbolic expression.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
+use crate::mathematics::derive::{Declared, Displacements, Let};
+use crate::mathematics::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
+
+/// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
+const MOST_TERMS: usize = 2_000;
+/// The factors of all terms, and of one product of matrices; both multiply when they are differentiated twice.
+const MOST_FACTORS: usize = 800;
+const LONGEST_PRODUCT: usize = 24;
+/// As for the factors: closed `let`s, those of sums included.
+const MOST_LETS: usize = 150;
+/// The eighth power of a smaller number is in range.
+const MANY_DIGITS: u128 = 10_000;
+
+/// The declared Lagrangian in symbols; the names say which symbol stands for what.
+pub(crate) struct Lowered {
+    pub(crate) declared: Declared,
+    pub(crate) names: BTreeMap<Name, SymbolId>,
+}
+
+/// The two readings of the tree, multiplied out and with its `let`s closed; `None` where both are too large, which has
+/// been reported.
+pub(crate) fn readings(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Vec<Lowered>> {
+    readings_without(declaration, tree, &|_, structure| structure, errors)
+}
+
+/// The same with less known of some symbols.
+pub(crate) fn readings_without(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    weaker: &dyn Fn(Name, Structure) -> Structure,
+    errors: &mut Errors,
+) -> Option<Vec<Lowered>> {
+    let mut symbols = Symbols::default();
+    let mut names = BTreeMap::new();
+    let size = declaration.group.size;
+    let structure = if declaration.group.orthogonal { Structure::Rotation } else { Structure::General };
+    let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
+    let structure = weaker(Name::Increment, structure);
+    let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
+    names.insert(Name::Step, step);
+    names.insert(Name::Increment, increment);
+    for (index, field) in declaration.fields.iter().enumerate() {
+        let (shape, structure) = match field.kind {
+            FieldKind::Scalar => ((1, 1), Structure::General),
+            FieldKind::Vector(_) | FieldKind::Advected(..) => (ambient(field.kind.shape()), Structure::General),
+            FieldKind::Point(rows) => ((rows, 1), Structure::Point),
+            FieldKind::Matrix(rows) => ((rows, rows), Structure::General),
+            FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
+            FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
+        };
+        let structure = weaker(Name::Field(index), structure);
+        let name = field.plain_name();
+        names.insert(Name::Field(index), symbols.add(name, shape, structure, Stage::Construction));
+    }
+    let mut advected = Vec::new();
+    for (index, w) in declaration.advected.iter().enumerate() {
+        let kind = declaration.advected_kind(index);
+        let shape = ambient(kind.shape());
+        let structure = if matches!(kind, FieldKind::Point(_)) { Structure::Point } else { Structure::General };
+        let structure = weaker(Name::Advected(index), structure);
+        let id = symbols.add(w.plain_name(), shape, structure, Stage::Step);
+        names.insert(Name::Advected(index), id);
+        advected.push((id, kind.variance()));
+    }
+    let displacements = (declaration.role == Role::Force).then(|| {
+        let mut displacement = |name: &str, place| {
+            let id = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
+            names.insert(place, id);
+            id
+        };
+        let before = displacement("η", Name::DisplacementBefore);
+        Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
+    });
+    let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
+    let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
+        let (group, advected, names) = (declaration.group.clone(), advected.clone(), names.clone());
+        let declared = Declared { group, symbols, lets, expression, increment, step, advected, displacements };
+        Lowered { declared, names }
+    };
+    let multiplied_out = attempt(None);
+    // The work of a force is always multiplied out: it is linear in the displacements, and short.
+    let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
+    let closed = if may_close { Some(attempt(Some(Vec::new()))) } else { None };
+    let all = [Some(multiplied_out), closed].into_iter().flatten();
+    let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
+    if found.is_empty() {
+        failures.into_iter().filter_map(Result::err).take(1).for_each(|failure| report(failure, tree, errors));
+        return None;
+    }
+    Some(found.into_iter().flatten().map(lowered).collect())
+}
+
+/// Whether a `let` names anything but a name.
+fn has_let(tree: &Rc<Tree>) -> bool {
+    // A shared part is visited once.
+    let mut seen = std::collections::BTreeSet::new();
+    let mut open = vec![tree];
+    while let Some(tree) = open.pop() {
+        if !seen.insert(Rc::as_ptr(tree)) {
+            continue;
+        }
+        match &tree.kind {
+            Kind::Bound(_, inner) if !matches!(inner.kind, Kind::Name(_) | Kind::Number(_)) => return true,
+            kind => open.extend(kind.operands().into_iter().flatten()),
+        }
+    }
+    false
+}
+
+/// Why an expression can't be lowered.
+#[derive(Clone, Copy, Debug)]
+enum Failure {
+    TooLarge(proc_macro2::Span),
+    Overflow,
+}
+
+fn report(failure: Failure, tree: &Tree, errors: &mut Errors) {
+    match failure {
+        Failure::TooLarge(span) => errors.push(
+            span,
+            format!(
+                "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than {LONGEST_PRODUCT} \
+                 matrices: the expression is too large"
+            ),
+        ),
+        Failure::Overflow => errors
+            .push(tree.span, "the coefficients leave the range of exact arithmetic: make the large numbers fields"),
+    }
+}
+
+struct Lowering<'a> {
+    symbols: Symbols,
+    names: &'a BTreeMap<Name, SymbolId>,
+    /// What a `let` has bound is lowered once, however often it is used.
+    known: BTreeMap<*const Tree, Expression>,
+    /// The `let`s so far, where they stay closed.
+    lets: Option<Vec<Let>>,
+}
+
+impl Lowering<'_> {
+    fn whole(mut self, tree: &Rc<Tree>) -> Result<(Symbols, Expression, Vec<Let>), Failure> {
+        let expression = self.expression(tree)?;
+        let lets = self.lets.unwrap_or_default();
+        if lets.iter().map(|one| &one.value).chain([&expression]).any(Expression::has_overflow) {
+            return Err(Failure::Overflow);
+        }
+        if lets.len() > MOST_LETS || lets.iter().map(|one| one.value.size()).sum::<usize>() > MOST_FACTORS {
+            return Err(Failure::TooLarge(tree.span));
+        }
+        Ok((self.symbols, expression, lets))
+    }
+
+    /// The expression of a `let`, or the symbol that stands for it.
+    fn bound(&mut self, name: &str, value: Expression) -> Expression {
+        let is_small = value.len() <= 1 && value.size() <= 2;
+        let Some(lets) = self.lets.as_mut().filter(|_| !is_small) else { return value };
+        // One symbol for equal values and for opposite ones, so that they share a multiplier too.
+        let opposite = value.clone().scaled(-Rational::ONE);
+        if let Some(known) = lets.iter().find(|one| one.value == value || one.value == opposite) {
+            let sign = if known.value == value { Rational::ONE } else { -Rational::ONE };
+            return Expression::symbol(known.symbol, &self.symbols).scaled(sign);
+        }
+        let structure = match value.shape() {
+            (rows, columns) if rows == columns && rows > 1 && value.transpose(&self.symbols) == value => {
+                Structure::Symmetric
+            }
+            _ => Structure::General,
+        };
+        let stage = stage_of(&value, &self.symbols);
+        let symbol = self.symbols.add(name, value.shape(), structure, stage);
+        lets.push(Let { symbol, value });
+        Expression::symbol(symbol, &self.symbols)
+    }
+
+    /// A number. One with many digits stays closed: its powers would leave the range of exact arithmetic.
+    fn number(&mut self, value: Rational) -> Expression {
+        let expression = Expression::rational(value);
+        let (numerator, denominator) = value.parts();
+        if numerator.unsigned_abs().max(denominator.unsigned_abs()) < MANY_DIGITS {
+            return expression;
+        }
+        let Some(lets) = self.lets.as_mut() else { return expression };
+        if let Some(same) = lets.iter().find(|one| one.value == expression) {
+            return Expression::symbol(same.symbol, &self.symbols);
+        }
+        let name = value.to_f64().to_string();
+        let symbol = self.symbols.add(name, (1, 1), Structure::General, Stage::Construction);
+        lets.push(Let { symbol, value: expression });
+        Expression::symbol(symbol, &self.symbols)
+    }
+
+    /// Two factors of a product. The action of a sum of matrices on a vector is cheaper term by term.
+    fn factors(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<(Expression, Expression), Failure> {
+        let left = if acts(a, b) { self.expression(a)? } else { self.factor(a)? };
+        Ok((left, self.factor(b)?))
+    }
+
+    /// A sum that is about to be multiplied: where `let`s stay closed, a product of sums isn't multiplied out either.
+    fn factor(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
+        let value = self.expression(tree)?;
+        Ok(if value.len() < 2 { value } else { self.closed(tree, value) })
+    }
+
+    /// A value that a derivative goes through as one.
+    fn closed(&mut self, tree: &Rc<Tree>, value: Expression) -> Expression {
+        let closed = self.unnamed(value);
+        self.known.insert(Rc::as_ptr(tree), closed.clone());
+        closed
+    }
+
+    /// The symbol of a `let` without a name, where `let`s stay closed.
+    fn unnamed(&mut self, value: Expression) -> Expression {
+        let number = self.lets.as_ref().map_or(0, |lets| lets.len() + 1);
+        self.bound(&format!("t{number}"), value)
+    }
+
+    /// A sum of matrices, such as `exp(v)`, applied to a vector: factor by factor, and each image stays closed.
+    ///
+    /// Multiplied out first, a product of two matrices would give two products in the derivative for each of its terms.
+    fn image(&mut self, matrix: &Rc<Tree>, vector: &Expression) -> Result<Expression, Failure> {
+        Ok(match &matrix.kind {
+            Kind::Identity => vector.clone(),
+            Kind::Add(a, b) => self.image(a, vector)?.plus(self.image(b, vector)?),
+            Kind::Subtract(a, b) => self.image(a, vector)?.minus(self.image(b, vector)?),
+            Kind::Multiply(a, b) if a.shape == Shape::Scalar => {
+                let factor = self.factor(a)?;
+                let image = self.image(b, vector)?;
+                self.product(matrix, &factor, &image)?
+            }
+            Kind::Multiply(a, b) => {
+                let inner = self.image(b, vector)?;
+                self.image(a, &inner)?
+            }
+            _ => {
+                let factor = self.expression(matrix)?;
+                let image = self.product(matrix, &factor, vector)?;
+                self.unnamed(image)
+            }
+        })
+    }
+
+    fn expression(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
+        if let Some(known) = self.known.get(&Rc::as_ptr(tree)) {
+            return Ok(known.clone());
+        }
+        let result = self.operation(tree)?;
+        if result.len() > MOST_TERMS || result.size() > MOST_FACTORS || result.longest_word() > LONGEST_PRODUCT {
+            return Err(Failure::TooLarge(tree.span));
+        }
+        if Rc::strong_count(tree) > 1 {
+            self.known.insert(Rc::as_ptr(tree), result.clone());
+        }
+        Ok(result)
+    }
+
+    fn operation(&mut self, tree: &Rc<Tree>) -> Result<Expression, Failure> {
+        let result = match &tree.kind {
+            Kind::Number(value) => self.number(*value),
+            Kind::Identity => Expression::identity(ambient(tree.shape).0),
+            Kind::Name(name) => match self.names.get(name) {
+                Some(&id) => Expression::symbol(id, &self.symbols),
+                None => Expression::zero(ambient(tree.shape)),
+            },
+            Kind::Bound(name, a) => {
+                let value = self.expression(a)?;
+                self.bound(name, value)
+            }
+            Kind::Negate(a) => self.expression(a)?.scaled(-Rational::ONE),
+            Kind::Add(a, b) => self.expression(a)?.plus(self.expression(b)?),
+            Kind::Subtract(a, b) => self.expression(a)?.minus(self.expression(b)?),
+            Kind::Multiply(a, b) if self.lets.is_some() && acts(a, b) && matches!(a.kind, Kind::Add(..)) => {
+                let vector = self.factor(b)?;
+                self.image(a, &vector)?
+            }
+            Kind::Multiply(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left, &right)?
+            }
+            Kind::Divide(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left, &right.power(-1, &self.symbols))?
+            }
+            Kind::Transpose(a) => self.expression(a)?.transpose(&self.symbols),
+            Kind::Trace(a) => self.expression(a)?.trace(&self.symbols),
+            Kind::Dot(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.transpose(&self.symbols), &right)?
+            }
+            Kind::Cross(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.hat(&self.symbols), &right)?
+            }
+            Kind::CrossMatrix(a) => self.expression(a)?.hat(&self.symbols),
+            Kind::ComponentMultiply(a, b) => {
+                let (left, right) = self.factors(a, b)?;
+                self.product(tree, &left.diagonal(&self.symbols), &right)?
+            }
+            Kind::Power(a, exponent) => {
+                let base = self.factor(a)?;
+                if base.len().checked_pow(exponent.unsigned_abs().min(4)).is_none_or(|terms| terms > MOST_TERMS) {
+                    return Err(Failure::TooLarge(tree.span));
+                }
+                base.power(*exponent, &self.symbols)
+            }
+            Kind::Apply(function, a) => {
+                // Alone, however small, as the derivative is a function of it too.
+                let argument = self.expression(a)?;
+                let argument = self.closed(a, argument);
+                let value = Expression::function(*function, argument);
+                self.closed(tree, value)
+            }
+            Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
+            Kind::Inverse(a) => match &a.kind {
+                Kind::Name(name) => match self.names.get(name) {
+                    Some(&id) => Expression::inverse(id, &self.symbols),
+                    None => Expression::zero(ambient(tree.shape)),
+                },
+                _ => Expression::zero(ambient(tree.shape)),
+            },
+            Kind::Entry(a, row, column) => {
+                let operand = self.expression(a)?;
+                let (rows, columns) = operand.shape();
+                let left = self.unit(*row, rows, true).times(&operand, &self.symbols);
+                if columns == 1 { left } else { left.times(&self.unit(*column, columns, false), &self.symbols) }
+            }
+        };
+        Ok(result)
+    }
+
+    fn unit(&self, index: usize, size: usize, transposed: bool) -> Expression {
+        let shape = if transposed { (1, size) } else { (size, 1) };
+        Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, &self.symbols)
+    }
+
+    fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, Failure> {
+        if left.len().saturating_mul(right.len()) > MOST_TERMS {
+            return Err(Failure::TooLarge(tree.span));
+        }
+        Ok(left.times(right, &self.symbols))
+    }
+}
+
+/// Whether a product is that of a matrix and a vector.
+fn acts(a: &Tree, b: &Tree) -> bool {
+    matches!((a.shape, b.shape), (Shape::Matrix(_, 2..), Shape::Matrix(_, 1)))
+}
+
+fn ambient(shape: Shape) -> (usize, usize) {
+    match shape {
+        Shape::Scalar => (1, 1),
+        Shape::Matrix(rows, columns) => (rows, columns),
+    }
+}

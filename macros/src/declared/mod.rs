@@ -1,0 +1,18 @@
+//! What was written: syntax, spans, and the tree of the declared expression.
+//!
+//! Tokens come in at `parse`, shapes are settled in `check`, and spans end at `lower`, which hands an expression without
+//! any to the mathematics. Every mistake that a user can make in a declaration is found here, at the token that it is
+//! about, and gathered in [`errors::Errors`].
+//!
+//! Deliberately not here: anything that is derived, and any code that is written. The room knows `mathematics`, and
+//! nothing above itself.
+
+pub(crate) mod check;
+mod declaration;
+pub(crate) mod errors;
+pub(crate) mod lower;
+pub(crate) mod parse;
+mod tree;
+
+pub(crate) use declaration::{AdvectedParameter, Declaration, Field, FieldKind, Role, Scalar};
+pub(crate) use tree::{Kind, Name, Shape, Tree};

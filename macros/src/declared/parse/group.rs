@@ -1,0 +1,94 @@
+//! The group of a declaration: a built-in one by its name, or one that the user gives by its generators.
+
+use proc_macro2::Span;
+use syn::spanned::Spanned as _;
+use syn::{Expr, ExprArray, Path};
+
+use crate::declared::errors::{Errors, suggestion};
+use crate::mathematics::group::{Group, NAMES, built_in};
+use crate::mathematics::symbolic::Rational;
+
+/// The path as written, and what is known of the group; after a mistake none, and SO(3), so that the rest can be
+/// checked.
+pub(super) fn group(
+    path: Option<Path>,
+    matrices: Option<&ExprArray>,
+    is_readable: bool,
+    errors: &mut Errors,
+) -> (Option<Path>, Group) {
+    let stand_in = || (None, built_in("SO3").unwrap_or_else(|| Group::declared(3, Vec::new())));
+    let Some(path) = path else {
+        // What seems to be missing may stand in an argument that couldn't be read.
+        if is_readable {
+            errors.push(Span::call_site(), "the group is missing: write `group = SO3`");
+        }
+        return stand_in();
+    };
+    let name = path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
+    let found = match matrices {
+        Some(matrices) => generators(matrices).map(|(size, generators)| Group::declared(size, generators)),
+        None => built_in(&name).ok_or_else(|| {
+            let (near, known) = (suggestion(&name, NAMES), NAMES.join(", "));
+            let own = format!(
+                "of a group that `matrix_group!` declares write `group = {name}!`, of another give the generators too: \
+                 `generators = [[[0.0, -1.0], [1.0, 0.0]]]`"
+            );
+            syn::Error::new_spanned(&path, format!("the group `{name}` isn't known{near}\nknown: {known}; {own}"))
+        }),
+    };
+    match found {
+        Ok(group) => (Some(path), group),
+        Err(error) => {
+            errors.extend(error);
+            stand_in()
+        }
+    }
+}
+
+/// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows.
+pub(super) fn generators(array: &ExprArray) -> syn::Result<(usize, Vec<Vec<Rational>>)> {
+    let rows = |expression: &Expr| match expression {
+        Expr::Array(array) => Ok(array.elems.clone()),
+        other => Err(syn::Error::new(other.span(), "write a matrix as an array of rows: `[[0.0, -1.0], [1.0, 0.0]]`")),
+    };
+    let mut generators = Vec::new();
+    let mut size = None;
+    for matrix in &array.elems {
+        let mut entries = Vec::new();
+        let matrix_rows = rows(matrix)?;
+        let expected = *size.get_or_insert(matrix_rows.len());
+        for row in &matrix_rows {
+            let row_entries = rows(row)?;
+            if row_entries.len() != expected || matrix_rows.len() != expected {
+                return Err(syn::Error::new(row.span(), "all generators are square matrices of one size"));
+            }
+            for entry in &row_entries {
+                entries.push(decimal(entry)?);
+            }
+        }
+        generators.push(entries);
+    }
+    match size {
+        Some(size) if (1..=MOST_ROWS).contains(&size) => Ok((size, generators)),
+        _ => Err(syn::Error::new(
+            array.span(),
+            format!("a group has at least one generator, of at most {MOST_ROWS} rows"),
+        )),
+    }
+}
+
+/// Larger matrices would make the derived code grow without bound.
+const MOST_ROWS: usize = 4;
+
+fn decimal(expression: &Expr) -> syn::Result<Rational> {
+    let message = "write the entry of a generator as a decimal number: `-1.0`";
+    let value = match expression {
+        Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
+        Expr::Lit(literal) => match &literal.lit {
+            syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),
+            _ => return Err(syn::Error::new(expression.span(), message)),
+        },
+        _ => return Err(syn::Error::new(expression.span(), message)),
+    };
+    if value.is_overflow() { Err(syn::Error::new(expression.span(), message)) } else { Ok(value) }
+}

@@ -1,0 +1,86 @@
+//! A group of one's own: its declaration by `matrix_group!`, and `group = Name!`, which asks it for its generators.
+
+use proc_macro2::{TokenStream, TokenTree};
+use syn::parse::{Parse, ParseStream, Parser as _};
+use syn::{Attribute, ExprArray, Ident, ImplItem, Path, Token, Visibility};
+
+use super::group::generators;
+use crate::declared::errors::Errors;
+
+/// What `matrix_group!` declares.
+pub(crate) struct OwnGroup {
+    /// Where liestep is found, if not at `::liestep`.
+    pub(crate) root: Option<Path>,
+    pub(crate) attributes: Vec<Attribute>,
+    pub(crate) visibility: Visibility,
+    pub(crate) name: Ident,
+    /// As written, matrix by matrix and row by row.
+    pub(crate) generators: ExprArray,
+    /// Rows of the matrices.
+    pub(crate) size: usize,
+    /// The functions of `Generators`.
+    pub(crate) functions: Vec<ImplItem>,
+}
+
+impl Parse for OwnGroup {
+    fn parse(input: ParseStream) -> syn::Result<Self> {
+        let mut root = None;
+        if input.peek(Token![crate]) {
+            input.parse::<Token![crate]>()?;
+            input.parse::<Token![=]>()?;
+            root = Some(input.parse()?);
+            input.parse::<Token![;]>()?;
+        }
+        let attributes = input.call(Attribute::parse_outer)?;
+        let visibility = input.parse()?;
+        input.parse::<Token![type]>()?;
+        let name: Ident = input.parse()?;
+        input.parse::<Token![=]>()?;
+        let array: ExprArray = input.parse()?;
+        input.parse::<Token![;]>()?;
+        let (size, _) = generators(&array)?;
+        let mut functions = Vec::new();
+        while !input.is_empty() {
+            functions.push(input.parse()?);
+        }
+        Ok(Self { root, attributes, visibility, name, generators: array, size, functions })
+    }
+}
+
+/// The group that `matrix_group!` declares.
+pub(crate) fn own_group(tokens: TokenStream, errors: &mut Errors) -> Option<OwnGroup> {
+    syn::parse2(tokens).map_err(|error| errors.extend(error)).ok()
+}
+
+/// `group = Name!`: the arguments without the mark, and what stands behind some keys.
+pub(crate) struct Asked {
+    pub(crate) group: TokenStream,
+    pub(crate) root: Option<Path>,
+    pub(crate) arguments: TokenStream,
+}
+
+/// The group that is to be asked for its generators, if there is one.
+pub(crate) fn asked(arguments: &TokenStream) -> Option<Asked> {
+    let tokens: Vec<TokenTree> = arguments.clone().into_iter().collect();
+    let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(found) if found.as_char() == mark);
+    let (mut group, mut root, mut rest) = (None, None, TokenStream::new());
+    for argument in tokens.split_inclusive(|token| is(token, ',')) {
+        let [TokenTree::Ident(key), equals, value @ ..] = argument else {
+            rest.extend(argument.iter().cloned());
+            continue;
+        };
+        let value = value.split(|token| is(token, ',')).next().unwrap_or_default();
+        match value {
+            [name @ .., mark] if key == "group" && is(equals, '=') && is(mark, '!') => {
+                group = Some(name.iter().cloned().collect());
+                let kept = argument.iter().filter(|token| !is(token, '!'));
+                rest.extend(kept.cloned());
+                continue;
+            }
+            _ if key == "crate" => root = Path::parse_mod_style.parse2(value.iter().cloned().collect()).ok(),
+            _ => {}
+        }
+        rest.extend(argument.iter().cloned());
+    }
+    group.map(|group| Asked { group, root, arguments: rest })
+}

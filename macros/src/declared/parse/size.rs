@@ -1,0 +1,87 @@
+//! Bounds on what is parsed.
+
+use proc_macro2::{TokenStream, TokenTree};
+
+use crate::declared::Role;
+use crate::declared::errors::Errors;
+
+/// More tokens than this, or deeper nesting, are no Lagrangian that a person wrote, and parsing them recursively could
+/// overflow a stack of 2 MB without optimisation.
+const MOST_TOKENS: usize = 2_000;
+const DEEPEST: usize = 32;
+
+/// Words after which a part of an expression or of a type follows that may begin with such a word again.
+const NESTING_WORDS: [&str; 20] = [
+    "as", "async", "await", "break", "const", "dyn", "else", "fn", "for", "if", "impl", "loop", "match", "move", "mut",
+    "raw", "return", "unsafe", "while", "yield",
+];
+
+/// A stream of tokens within brackets, half read.
+struct Open {
+    tokens: proc_macro2::token_stream::IntoIter,
+    /// How many brackets are around it.
+    depth: usize,
+    /// How many operators in a row were last.
+    operators: usize,
+    /// How many tokens since the last `;` or `,` may each nest what follows.
+    nesting: usize,
+}
+
+impl Open {
+    fn new(tokens: TokenStream, depth: usize) -> Self {
+        Self { tokens: tokens.into_iter(), depth, operators: 0, nesting: 0 }
+    }
+
+    fn count(&mut self, token: &TokenTree) {
+        match token {
+            TokenTree::Punct(operator) if [';', ','].contains(&operator.as_char()) => {
+                (self.operators, self.nesting) = (0, 0);
+            }
+            TokenTree::Punct(operator) => {
+                self.operators += 1;
+                self.nesting += usize::from(['=', '|', '<', '@', '#', '\''].contains(&operator.as_char()));
+            }
+            TokenTree::Ident(word) => {
+                self.operators = 0;
+                self.nesting += usize::from(NESTING_WORDS.iter().any(|nesting| word == nesting));
+            }
+            TokenTree::Group(_) | TokenTree::Literal(_) => self.operators = 0,
+        }
+    }
+
+    fn is_too_deep(&self) -> bool {
+        self.depth.max(self.operators).max(self.nesting) > DEEPEST
+    }
+}
+
+/// `None` where the arguments are too large to be parsed, which has been reported.
+pub(super) fn check(role: Role, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
+    let mut open = vec![Open::new(arguments.clone(), 0)];
+    let mut count = 0;
+    while let Some(mut innermost) = open.pop() {
+        let Some(token) = innermost.tokens.next() else { continue };
+        count += 1;
+        if count > MOST_TOKENS {
+            let the = role.definite();
+            let message = format!("{the} has more than {MOST_TOKENS} tokens: the expression is too large");
+            errors.push(token.span(), message);
+            return None;
+        }
+        innermost.count(&token);
+        if innermost.is_too_deep() {
+            let span = match &token {
+                TokenTree::Group(group) => group.span_open(),
+                other => other.span(),
+            };
+            errors.push(span, format!("nested more than {DEEPEST} deep: bind parts with `let`"));
+            return None;
+        }
+        let inside = match token {
+            TokenTree::Group(group) => Some(Open::new(group.stream(), innermost.depth + 1)),
+            _ => None,
+        };
+        open.push(innermost);
+        open.extend(inside);
+    }
+    Some(())
+}

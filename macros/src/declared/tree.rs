@@ -1,0 +1,113 @@
+//! The declared expression as a tree with shapes, read as mathematics.
+
+use std::rc::Rc;
+
+use proc_macro2::Span;
+
+use crate::mathematics::symbolic::{Function, Rational};
+
+/// The shape of an expression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    Scalar,
+    /// Rows and columns; a vector has one column.
+    Matrix(usize, usize),
+}
+
+impl Shape {
+    /// In a message: `a scalar`, `a vector of 3`, `a 3 × 3 matrix`.
+    pub(crate) fn describe(self) -> String {
+        match self {
+            Self::Scalar => "a scalar".to_owned(),
+            Self::Matrix(rows, 1) => format!("a vector of {rows}"),
+            Self::Matrix(1, columns) => format!("a row of {columns}"),
+            Self::Matrix(rows, columns) => format!("a {rows} × {columns} matrix"),
+        }
+    }
+}
+
+/// An expression with its shape, read as mathematics.
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
+    pub(crate) span: Span,
+    pub(crate) shape: Shape,
+    pub(crate) kind: Kind,
+    /// How deep the operations are nested, through `let`s too.
+    pub(crate) depth: usize,
+}
+
+impl Tree {
+    pub(crate) fn new(span: Span, shape: Shape, kind: Kind) -> Rc<Self> {
+        let depth = kind.operands().into_iter().flatten().map(|operand| operand.depth).max().unwrap_or(0) + 1;
+        Rc::new(Self { span, shape, kind, depth })
+    }
+}
+
+/// A name in scope.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Name {
+    /// `F`.
+    Increment,
+    /// `h`.
+    Step,
+    /// `eta`, the displacement at the beginning of the step.
+    DisplacementBefore,
+    /// `eta_next`, the one at its end.
+    DisplacementAfter,
+    /// An advected parameter, by its place in `advected(…)`.
+    Advected(usize),
+    /// A field, by its place in the struct.
+    Field(usize),
+}
+
+/// The operations of the declared syntax.
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    Number(Rational),
+    Identity,
+    Name(Name),
+    Negate(Rc<Tree>),
+    Add(Rc<Tree>, Rc<Tree>),
+    Subtract(Rc<Tree>, Rc<Tree>),
+    Multiply(Rc<Tree>, Rc<Tree>),
+    Divide(Rc<Tree>, Rc<Tree>),
+    Transpose(Rc<Tree>),
+    Trace(Rc<Tree>),
+    Dot(Rc<Tree>, Rc<Tree>),
+    Cross(Rc<Tree>, Rc<Tree>),
+    CrossMatrix(Rc<Tree>),
+    ComponentMultiply(Rc<Tree>, Rc<Tree>),
+    Power(Rc<Tree>, i32),
+    Apply(Function, Rc<Tree>),
+    Vee(Rc<Tree>),
+    /// Of a parameter or of `F`.
+    Inverse(Rc<Tree>),
+    Entry(Rc<Tree>, usize, usize),
+    /// What a `let` has named.
+    Bound(String, Rc<Tree>),
+}
+
+impl Kind {
+    pub(crate) fn operands(&self) -> [Option<&Rc<Tree>>; 2] {
+        match self {
+            Self::Number(_) | Self::Identity | Self::Name(_) => [None, None],
+            Self::Negate(a)
+            | Self::Transpose(a)
+            | Self::Trace(a)
+            | Self::CrossMatrix(a)
+            | Self::Power(a, _)
+            | Self::Apply(_, a)
+            | Self::Vee(a)
+            | Self::Inverse(a)
+            | Self::Entry(a, ..)
+            | Self::Bound(_, a) => [Some(a), None],
+            Self::Add(a, b)
+            | Self::Subtract(a, b)
+            | Self::Multiply(a, b)
+            | Self::Divide(a, b)
+            | Self::Dot(a, b)
+            | Self::Cross(a, b)
+            | Self::ComponentMultiply(a, b) => [Some(a), Some(b)],
+        }
+    }
+}

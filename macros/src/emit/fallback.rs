@@ -1,0 +1,120 @@
+//! What stands in for the implementation after a mistake, so that one mistake gives one error.
+
+use proc_macro2::{Span, TokenStream, TokenTree};
+use quote::{quote, quote_spanned};
+use syn::{Item, ItemStruct};
+
+use super::Header;
+use crate::declared::Role;
+use crate::declared::errors::Errors;
+use crate::declared::parse;
+
+/// The item with all mistakes, and with a stand-in.
+pub(crate) fn mistakes(role: Role, arguments: TokenStream, item: &TokenStream, errors: &Errors) -> TokenStream {
+    let mistakes: TokenStream = errors.iter().map(syn::Error::to_compile_error).collect();
+    let stand_in = stand_in(role, arguments, item);
+    quote!(#item #mistakes #stand_in)
+}
+
+/// An implementation that type-checks wherever the real one would be used.
+fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
+    let Some(item) = as_struct(item) else { return TokenStream::new() };
+    let span = Span::mixed_site();
+    let mut silent = Errors::default();
+    let header = Header::new(&parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent));
+    let private = &header.private;
+    let none = quote_spanned!(span=> ());
+    let types = header.types(true, &none, &none);
+    let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
+    let effect = header.implementation("Effect");
+    let addition = header.addition();
+    let core = quote_spanned!(span=> #private::core);
+    let of_increment = [
+        ("right_momentum", &vector),
+        ("left_momentum", &vector),
+        ("diamond", &vector),
+        ("discrete_energy", scalar),
+        ("l_d", scalar),
+    ];
+    let of_increment = of_increment.map(|(name, result)| {
+        let name = syn::Ident::new(name, span);
+        quote_spanned!(span=> fn #name(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #result { loop {} })
+    });
+    let of_role = match role {
+        Role::Lagrangian => {
+            let (lagrangian, invariance) =
+                (header.implementation("DiscreteLagrangian"), header.implementation("LeftInvariant"));
+            quote_spanned! {span=>
+                #lagrangian {
+                    const SELF_ADJOINT: #core::primitive::bool = false;
+                    #(#of_increment)*
+                }
+
+                #[automatically_derived]
+                #invariance {}
+            }
+        }
+        Role::Force => {
+            let force = header.implementation("Force");
+            quote_spanned! {span=>
+                #force {
+                    fn virtual_work(
+                        &self, _: &#matrix, _: &Self::Advected, _: #scalar, _: &#vector, _: &#vector,
+                    ) -> #scalar {
+                        loop {}
+                    }
+                }
+            }
+        }
+    };
+    quote_spanned! {span=>
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #of_role
+
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #effect {
+            #types
+            const DERIVATION: &'static #core::primitive::str = "";
+            fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
+            fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
+            fn advected(&self) -> Self::Advected { loop {} }
+            fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
+            fn inertia(&self) -> #square { loop {} }
+            fn momentum_bias(&self, _: &Self::Advected) -> #vector { loop {} }
+            fn potential(&self, _: &Self::Advected) -> #scalar { loop {} }
+            fn constants(&self, _: #scalar) -> Self::Constants {}
+            fn kick_before(_: &Self::Constants, _: &Self::Advected) -> #vector { loop {} }
+            fn step_terms(_: &Self::Constants, _: &#vector, _: &Self::Advected) -> Self::StepTerms {}
+            fn newton_system(_: &Self::Constants, _: &Self::StepTerms, _: &#vector) -> (#vector, #square) { loop {} }
+            fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
+        }
+
+        #addition
+    }
+}
+
+/// The struct, or one of the same name in the place of an enum.
+fn as_struct(item: &TokenStream) -> Option<ItemStruct> {
+    match syn::parse2(item.clone()).ok()? {
+        Item::Struct(item) => Some(item),
+        Item::Enum(item) => {
+            let name = &item.ident;
+            Some(ItemStruct { generics: item.generics, ..syn::parse_quote!(struct #name;) })
+        }
+        _ => None,
+    }
+}
+
+/// The other arguments: the Lagrangian may be too large to be parsed.
+fn without_lagrangian(role: Role, arguments: TokenStream) -> TokenStream {
+    let mut is_lagrangian = false;
+    let other = arguments.into_iter().filter(|token| {
+        is_lagrangian |= matches!(token, TokenTree::Ident(key) if key == role.key());
+        let is_other = !is_lagrangian;
+        is_lagrangian &= !matches!(token, TokenTree::Punct(comma) if comma.as_char() == ',');
+        is_other
+    });
+    other.collect()
+}

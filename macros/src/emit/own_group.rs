@@ -1,0 +1,68 @@
+//! A group of one's own: its type, its generators, and a `macro_rules!` macro of its name that hands them on.
+//!
+//! What one attribute has read another can't know, whatever is written to a file or kept in memory between them: the
+//! compiler may run them in any order, or not at all. A macro of the group's name is found by the rules of names, and
+//! says the same each time.
+
+use proc_macro2::{Literal, Span, TokenStream};
+use quote::{format_ident, quote, quote_spanned};
+use syn::{Path, Visibility};
+
+use crate::declared::Role;
+use crate::declared::errors::Errors;
+use crate::declared::parse::{Asked, OwnGroup};
+
+fn private(root: Option<&Path>) -> TokenStream {
+    root.map_or_else(|| quote!(::liestep::__private), |root| quote!(#root::__private))
+}
+
+/// The items of `matrix_group!`, or its mistakes.
+pub(crate) fn own_group(group: Option<&OwnGroup>, errors: &Errors) -> TokenStream {
+    let mistakes: TokenStream = errors.iter().map(syn::Error::to_compile_error).collect();
+    let Some(group) = group else { return mistakes };
+    let OwnGroup { root, attributes, visibility, name, generators, size, functions } = group;
+    let (span, private) = (Span::mixed_site(), private(root.as_ref()));
+    let core = quote_spanned!(span=> #private::core);
+    let (marker, asked) = (format_ident!("{name}Generators"), format_ident!("__liestep_{name}"));
+    let [size, dimension] = [*size, generators.elems.len()].map(Literal::usize_unsuffixed);
+    let about = format!("What declares [`{name}`].");
+    // Such a macro can't leave its crate by another path than the root's.
+    let reach = match visibility {
+        Visibility::Public(_) => quote!(pub(crate)),
+        other => quote!(#other),
+    };
+    quote_spanned! {span=>
+        #(#attributes)*
+        #visibility type #name<T = #core::primitive::f64> = #private::MatrixGroup<#marker, T, #size, #dimension>;
+
+        #[doc = #about]
+        #[derive(
+            #core::clone::Clone, #core::marker::Copy, #core::fmt::Debug, #core::cmp::PartialEq,
+        )]
+        #visibility struct #marker;
+
+        impl #private::Generators<#size, #dimension> for #marker {
+            const GENERATORS: [[[#core::primitive::f64; #size]; #size]; #dimension] = #generators;
+
+            #(#functions)*
+        }
+
+        #[allow(unused_macros)]
+        macro_rules! #asked {
+            ({ $($attribute:tt)* } { $($arguments:tt)* } $($item:tt)*) => {
+                #[$($attribute)* (generators = #generators, $($arguments)*)]
+                $($item)*
+            };
+        }
+
+        #[allow(unused_imports)]
+        #reach use #asked as #name;
+    }
+}
+
+/// The declaration again, by way of the group's macro, which adds the generators.
+pub(crate) fn ask(role: Role, asked: &Asked, item: &TokenStream) -> TokenStream {
+    let Asked { group, root, arguments } = asked;
+    let (private, attribute) = (private(root.as_ref()), format_ident!("{}", role.attribute()));
+    quote!(#group! { { #private::#attribute } { #arguments } #item })
+}

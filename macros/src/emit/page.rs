@@ -1,0 +1,103 @@
+//! What is added to the user's struct: documentation of what is derived, where an editor shows it.
+
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
+use quote::quote_spanned;
+
+use super::docs::{Equation, costs, lets};
+use crate::declared::{Declaration, Role};
+use crate::judged::{Chosen, Findings};
+use crate::mathematics::derive::SelfAdjointness;
+
+/// The item as it stands, with a page of documentation behind its own, and the letters of the field allowed.
+pub(super) fn documented(item: &TokenStream, page: &str) -> TokenStream {
+    let mut tokens = item.clone().into_iter().peekable();
+    // An item that came through a `macro_rules!` fragment may stand in an invisible group.
+    if let Some(TokenTree::Group(group)) = tokens.peek()
+        && group.delimiter() == Delimiter::None
+    {
+        let mut inner = Group::new(Delimiter::None, documented(&group.stream(), page));
+        inner.set_span(group.span());
+        return std::iter::once(TokenTree::Group(inner)).chain(tokens.skip(1)).collect();
+    }
+    let mut attributes = TokenStream::new();
+    while matches!(tokens.peek(), Some(TokenTree::Punct(mark)) if mark.as_char() == '#') {
+        attributes.extend(tokens.by_ref().take(2));
+    }
+    let rest: TokenStream = tokens.collect();
+    // As `///` writes it: in lines that begin with a space.
+    let page = page.lines().fold(String::new(), |page, line| page + if line.is_empty() { "\n" } else { "\n " } + line);
+    quote_spanned! {Span::mixed_site()=>
+        #attributes
+        #[doc = #page]
+        #[allow(non_snake_case)]
+        #rest
+    }
+}
+
+/// A longer equation is read where the methods are documented.
+const LONGEST: usize = 1_200;
+
+/// The momentum equation, the order, what limits a step, and what a step costs.
+pub(super) fn page(declaration: &Declaration, chosen: &Chosen, equations: &[Equation], findings: &Findings) -> String {
+    let (derived, is_lagrangian) = (&chosen.derived, declaration.role == Role::Lagrangian);
+    let has_kinetic = derived.limit.has_kinetic;
+    let heading = match declaration.role {
+        Role::Lagrangian if has_kinetic => {
+            "# Derived integrator\n\nThe momentum equation, solved for `F` in each step:"
+        }
+        Role::Lagrangian => "# Derived terms\n\nThe share in the momentum equation of a body that this is added to:",
+        Role::Force => "# Derived terms\n\nThe share in the momentum equation of a body that this force acts on:",
+    };
+    let shown = if is_lagrangian {
+        ["legendre_minus", "kick_before", "kick_after"]
+    } else {
+        ["momentum", "kick_before", "kick_after"]
+    };
+    let lines = shown.iter().filter_map(|method| equations.iter().find(|one| one.method == *method));
+    let text = lets(derived) + &lines.map(|equation| equation.line() + "\n").collect::<String>();
+    let text = if text.len() <= LONGEST {
+        format!("```text\n{text}```")
+    } else {
+        "it is long, and stands in the documentation of the methods.".to_owned()
+    };
+    let mut points = Vec::new();
+    if is_lagrangian {
+        points.push(format!("Order: {}", order(findings.self_adjointness)));
+    }
+    if has_kinetic {
+        points.push(format!("Limit of a step: {}", limit(chosen)));
+    }
+    points.push(format!("Cost:\n  * {}", costs(&chosen.kernel).replace("\n    ", "\n  * ")));
+    let points = points.into_iter().fold(String::new(), |points, point| points + "* " + &point + "\n");
+    format!(
+        "\n{heading}\n\n{text}\n\n{points}\nAll equations are in `DERIVATION` and in the documentation of the methods."
+    )
+}
+
+/// What self-adjointness says of the order.
+fn order(found: SelfAdjointness) -> &'static str {
+    match found {
+        SelfAdjointness::Symbolic | SelfAdjointness::Exact | SelfAdjointness::Numeric => {
+            "even, as `l_d` is self-adjoint: a step of −h undoes a step of h."
+        }
+        SelfAdjointness::ForPoints => {
+            "even for points, whose last coordinate is 1, as `l_d` is self-adjoint then: a step of −h undoes a step of h."
+        }
+        SelfAdjointness::No => "1 in general, as `l_d` isn't self-adjoint: a step of −h doesn't undo a step of h.",
+        SelfAdjointness::Unknown => "not known, as `l_d` has no value at the points where self-adjointness was tried.",
+    }
+}
+
+/// What stands between a large step and its solution.
+fn limit(chosen: &Chosen) -> &'static str {
+    if chosen.derived.cleared.is_some() {
+        "the part of `μ` with `F` is a polynomial in `F`, so it is bounded. Where the body turns too fast for the step, \
+         there is no solution, and the error names the largest step that has one."
+    } else if chosen.derived.group.is_so3 {
+        "no bound is known beforehand. Where no solution continues the identity, the error names the largest step that has \
+         one."
+    } else {
+        "the equation is solved near the identity. Where no solution continues it, the error names the largest step that \
+         has one."
+    }
+}

@@ -1,0 +1,68 @@
+//! Multiplied out or with closed `let`s: whichever costs less to run.
+//!
+//! Multiplied out, what cancels is found; with closed `let`s, nothing is written twice. Both are derived where there
+//! are `let`s, and counted.
+
+use std::rc::Rc;
+
+use super::explain;
+use crate::declared::errors::Errors;
+use crate::declared::lower::Lowered;
+use crate::declared::{Declaration, Tree};
+use crate::mathematics::derive::{Declared, Derived, Refusal};
+use crate::program::{self, Kernel};
+
+/// What is emitted.
+pub(crate) struct Chosen {
+    pub(crate) lowered: Lowered,
+    pub(crate) derived: Derived,
+    pub(crate) kernel: Kernel,
+}
+
+/// What derives a reading.
+type Derive = fn(&Declared) -> Result<Derived, Refusal>;
+
+/// The reading with the least operations a step; the first, which is simpler to read, if it is nearly as cheap.
+///
+/// `None` where nothing can be derived, which has been explained.
+pub(crate) fn cheapest(
+    readings: Vec<Lowered>,
+    derive: Derive,
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    errors: &mut Errors,
+) -> Option<Chosen> {
+    let least = readings.iter().map(size).min().unwrap_or(0);
+    // A reading of twice the length is never the cheaper one, and takes long to derive: it is kept for when all else fails.
+    let (short, long): (Vec<Lowered>, Vec<Lowered>) =
+        readings.into_iter().partition(|reading| size(reading) <= 2 * least);
+    let chosen = cheapest_of(short, derive).or_else(|refusal| {
+        // The first refusal is of the reading that is the simpler one.
+        cheapest_of(long, derive).map_err(|other| refusal.or(other))
+    });
+    chosen.map_err(|refusal| explain::refusal(refusal.unwrap_or(Refusal::Overflow), declaration, tree, errors)).ok()
+}
+
+/// The error is the first refusal, if anything has been refused.
+fn cheapest_of(readings: Vec<Lowered>, derive: Derive) -> Result<Chosen, Option<Refusal>> {
+    let mut chosen: Option<(usize, Chosen)> = None;
+    let mut first = None;
+    for lowered in readings {
+        match derive(&lowered.declared) {
+            Ok(derived) => {
+                let kernel = program::kernel(&derived);
+                let cost = kernel.cost();
+                if chosen.as_ref().is_none_or(|(least, _)| cost < least - least / 8) {
+                    chosen = Some((cost, Chosen { lowered, derived, kernel }));
+                }
+            }
+            Err(refusal) => first = first.or(Some(refusal)),
+        }
+    }
+    chosen.map(|(_, chosen)| chosen).ok_or(first)
+}
+
+fn size(lowered: &Lowered) -> usize {
+    let lets = lowered.declared.lets.iter().map(|one| one.value.size());
+    lowered.declared.expression.size() + lets.sum::<usize>()
+}

@@ -1,0 +1,135 @@
+//! Why nothing could be derived, at the tokens of the declaration.
+
+use std::collections::BTreeSet;
+use std::rc::Rc;
+
+use proc_macro2::Span;
+
+use super::verify::KineticPart;
+use crate::declared::check;
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, Kind, Name, Tree};
+use crate::mathematics::derive::{ForceError, LimitError, Refusal};
+
+/// Reports why nothing could be derived.
+pub(super) fn refusal(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
+    let error = match refusal {
+        Refusal::Limit(error) => error,
+        Refusal::Force(error) => return explain_force(error, declaration, errors),
+        Refusal::Overflow => {
+            let message = "the coefficients leave the range of exact arithmetic: make the large numbers fields";
+            return errors.push(tree.span, message);
+        }
+    };
+    let message = match error {
+        LimitError::StepInsideFunction => {
+            let span = Search::default().enclosed_step(tree, false).unwrap_or(tree.span);
+            errors.push(
+                span,
+                "`h` stands under a function or in a sum that is divided by, where its limit h → 0 isn't found: take it out",
+            );
+            return;
+        }
+        LimitError::TooSingular(power) => {
+            format!("a term with `F` goes like h^{power}: the kinetic part of a discrete Lagrangian goes like 1/h")
+        }
+        LimitError::TooLarge => "the limit h → 0 has too many terms: the expression is too large".to_owned(),
+        LimitError::NotALagrangian => {
+            "as h → 0 this doesn't become h times a Lagrangian that is quadratic in the velocity".to_owned()
+        }
+    };
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+}
+
+/// Reports virtual work that isn't the work of a force.
+fn explain_force(error: ForceError, declaration: &Declaration, errors: &mut Errors) {
+    let message = match error {
+        ForceError::NotLinear => {
+            "virtual work is linear in the displacements: a force times `eta`, and a force times `eta_next`"
+        }
+    };
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+}
+
+/// Reports a kinetic part that no values of the parameters make regular at the identity.
+pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, errors: &mut Errors) -> Option<()> {
+    let message = match found {
+        KineticPart::Regular => return Some(()),
+        KineticPart::NotStationary(asymmetric) => not_stationary(asymmetric, declaration),
+        KineticPart::NotSmooth => {
+            "the kinetic part has no second derivative at `F = I`, where a step is small: write it \
+                                   as a square of `F - I`, without a root"
+                .to_owned()
+        }
+        KineticPart::Singular(idle) => {
+            let which = if idle.is_empty() {
+                String::new()
+            } else {
+                let names: Vec<String> = idle.iter().map(|k| format!("E_{}", k + 1)).collect();
+                format!(": there is no kinetic energy along {}", names.join(", "))
+            };
+            format!(
+                "the kinetic part is singular at `F = I` whatever the parameters, so a momentum doesn't determine a \
+                 velocity{which}"
+            )
+        }
+    };
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+    None
+}
+
+/// Reports a derived term that the self-check doesn't confirm.
+pub(super) fn disagreement(term: &str, tree: &Tree, errors: &mut Errors) {
+    errors
+        .push(tree.span, format!("the derived {term} disagrees with what is declared: please report this declaration"));
+}
+
+fn not_stationary(asymmetric: &[usize], declaration: &Declaration) -> String {
+    let beginning = "the kinetic part isn't stationary at `F = I`, so at rest the momentum would grow like 1/h";
+    let fields = asymmetric.iter().filter_map(|&index| declaration.fields.get(index));
+    let names: Vec<String> = fields.map(|field| format!("`{}`", field.plain_name())).collect();
+    if names.is_empty() {
+        return format!("{beginning}: write it as a square of `F - I`");
+    }
+    let (names, first) = (names.join(" and "), names.first().map_or("", |name| name.trim_matches('`')));
+    let inertias =
+        if declaration.group.size == 3 { ", or give it the type `NonstandardInertia` or `Inertia`" } else { "" };
+    format!(
+        "{beginning}: it would be for a symmetric {names}, which the type of a plain matrix doesn't promise: write \
+         `0.5 * ({first} + {first}.transpose())`{inertias}"
+    )
+}
+
+/// Looks for an `h` that the limit can't follow.
+#[derive(Default)]
+struct Search {
+    /// What a `let` has bound is searched once, however often it is used.
+    known: BTreeSet<(*const Tree, bool)>,
+}
+
+impl Search {
+    fn enclosed_step(&mut self, tree: &Rc<Tree>, is_enclosed: bool) -> Option<Span> {
+        if !self.known.insert((Rc::as_ptr(tree), is_enclosed)) {
+            return None;
+        }
+        match &tree.kind {
+            Kind::Name(Name::Step) => is_enclosed.then_some(tree.span),
+            Kind::Apply(_, a) => self.enclosed_step(a, true),
+            Kind::Divide(a, b) => {
+                self.enclosed_step(a, is_enclosed).or_else(|| self.enclosed_step(b, is_enclosed || is_sum(b)))
+            }
+            Kind::Power(a, exponent) => self.enclosed_step(a, is_enclosed || (*exponent < 0 && is_sum(a))),
+            kind => kind.operands().into_iter().flatten().find_map(|operand| self.enclosed_step(operand, is_enclosed)),
+        }
+    }
+}
+
+/// Whether a sum is left, once factors are taken apart.
+fn is_sum(tree: &Tree) -> bool {
+    match &tree.kind {
+        Kind::Add(..) | Kind::Subtract(..) => true,
+        Kind::Multiply(a, b) | Kind::Divide(a, b) => is_sum(a) || is_sum(b),
+        Kind::Negate(a) | Kind::Power(a, _) | Kind::Bound(_, a) => is_sum(a),
+        _ => false,
+    }
+}

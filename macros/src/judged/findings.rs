@@ -1,0 +1,47 @@
+//! What has been found out about a derivation, after it has been checked.
+
+use std::rc::Rc;
+
+use super::choose::Chosen;
+use super::{explain, hypotheses, verify};
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, Role, Tree};
+use crate::mathematics::derive::SelfAdjointness;
+
+/// What its documentation says beside the equations.
+pub(crate) struct Findings {
+    pub(crate) self_adjointness: SelfAdjointness,
+    pub(crate) hypotheses: Vec<String>,
+}
+
+/// Checks all that was derived; `None` where something is wrong with the Lagrangian, or with the derivation, which has
+/// been reported.
+pub(crate) fn findings(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    chosen: &Chosen,
+    errors: &mut Errors,
+) -> Option<Findings> {
+    let Chosen { lowered, derived, kernel } = chosen;
+    // What has no kinetic part at all is a term of a scene.
+    if derived.limit.has_kinetic {
+        explain::kinetic_part(&verify::kinetic_part(declaration, lowered, derived), declaration, errors)?;
+    }
+    let verified = match declaration.role {
+        Role::Lagrangian => verify::verify(declaration, tree, lowered, derived, kernel),
+        Role::Force => verify::force(declaration, tree, chosen).map(|()| SelfAdjointness::No),
+    };
+    match verified {
+        Ok(self_adjointness) => {
+            let hypotheses = match declaration.role {
+                Role::Lagrangian => hypotheses::hypotheses(declaration, tree, lowered),
+                Role::Force => Vec::new(),
+            };
+            Some(Findings { self_adjointness, hypotheses })
+        }
+        Err(term) => {
+            explain::disagreement(term, tree, errors);
+            None
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Which hypotheses the derived equations rest on.
+//!
+//! A relation of the group or a promise of a field's type counts as used if dropping it changes an equation, or the
+//! operations of one: that is found out by deriving without it.
+
+use std::rc::Rc;
+
+use crate::declared::errors::Errors;
+use crate::declared::lower::{Lowered, readings_without};
+use crate::declared::{Declaration, FieldKind, Name, Tree};
+use crate::mathematics::derive::principal_equations;
+use crate::mathematics::symbolic::{Stage, Structure};
+use crate::program::{Given, Graph, Scalariser, count, with_values};
+
+/// The hypotheses that are used, as a paper would write them.
+pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &Lowered) -> Vec<String> {
+    let without = |name: Name, weaker: Structure| {
+        let weaker = |other: Name, structure: Structure| if other == name { weaker } else { structure };
+        let candidates = readings_without(declaration, tree, &weaker, &mut Errors::default())?;
+        candidates.into_iter().find(|other| other.declared.lets.is_empty() == lowered.declared.lets.is_empty())
+    };
+    let equations = principal_equations(&lowered.declared);
+    let changes_equations = |name: Name, weaker: Structure| {
+        let weakened = without(name, weaker);
+        weakened.is_none_or(|weakened| principal_equations(&weakened.declared) != equations)
+    };
+    let operations = operations(lowered);
+    let mut used = Vec::new();
+    if declaration.group.orthogonal {
+        if changes_equations(Name::Increment, Structure::General) {
+            used.push("FᵀF = I".to_owned());
+        }
+        if changes_equations(Name::Increment, Structure::Orthogonal) {
+            used.push("det F = 1".to_owned());
+        }
+    }
+    for (index, field) in declaration.fields.iter().enumerate() {
+        let (name, field_name) = (Name::Field(index), field.plain_name());
+        let is_symmetric = matches!(field.kind, FieldKind::SymmetricInertia | FieldKind::DiagonalInertia);
+        if is_symmetric && changes_equations(name, Structure::General) {
+            used.push(format!("{field_name}ᵀ = {field_name}"));
+        }
+        if let FieldKind::Point(rows) = field.kind {
+            let carried = declaration.advected.iter().position(|w| w.field == Some(index));
+            let (name, shown) = match carried {
+                Some(place) => (Name::Advected(place), declaration.advected[place].plain_name()),
+                None => (name, field_name.clone()),
+            };
+            if without(name, Structure::General).is_none_or(|any| self::operations(&any) != operations) {
+                used.push(format!("{shown}{} = 1", subscript(rows)));
+            }
+        }
+        if field.kind == FieldKind::DiagonalInertia
+            && without(name, Structure::Symmetric).is_none_or(|full| self::operations(&full) != operations)
+        {
+            used.push(format!("{field_name} diagonal"));
+        }
+    }
+    used
+}
+
+/// How many operations one value of `l_d` takes.
+fn operations(lowered: &Lowered) -> usize {
+    let (mut graph, declared) = (Graph::default(), &lowered.declared);
+    let mut symbols = declared.symbols.clone();
+    let shape = symbols.get(declared.increment).shape;
+    let inverse = symbols.add("F⁻¹", shape, Structure::General, Stage::Iteration);
+    symbols.set_inverse(declared.increment, inverse);
+    let given =
+        with_values(&mut graph, &symbols, declared.lets.iter().map(|one| (one.symbol, &one.value)), Given::new());
+    let mut scalariser = Scalariser { graph: &mut graph, symbols: &symbols, given };
+    let output = scalariser.scalar(&declared.expression);
+    count(&graph, &[output], None).arithmetic
+}
+
+/// A number of one digit as an index.
+fn subscript(index: usize) -> char {
+    ['₀', '₁', '₂', '₃', '₄'].get(index).copied().unwrap_or('…')
+}

@@ -1,0 +1,17 @@
+//! Which of the derivations is taken, and whether it is right.
+//!
+//! `choose` counts operations, `verify` evaluates the declared tree on numbers and compares, `hypotheses` finds what the
+//! equations rest on, `findings` has what comes of both, and `explain` says at the tokens of the declaration why nothing
+//! could be derived.
+//!
+//! Deliberately not here: any derivation, which is mathematics, and any text of the generated documentation, which is
+//! emitted. The room knows `declared`, `program` and `mathematics`.
+
+mod choose;
+mod explain;
+mod findings;
+mod hypotheses;
+mod verify;
+
+pub(crate) use choose::{Chosen, cheapest};
+pub(crate) use findings::{Findings, findings};

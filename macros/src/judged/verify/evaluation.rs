@@ -1,0 +1,82 @@
+//! The declared tree on numbers, without the symbolic form.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::number::Number;
+use super::value::Value;
+use crate::declared::{Kind, Name, Shape, Tree};
+use crate::mathematics::symbolic::Rational;
+
+/// The values of names, and of what a `let` has bound.
+pub(super) struct Evaluation<'a, T = f64> {
+    values: &'a BTreeMap<Name, Value<T>>,
+    known: BTreeMap<*const Tree, Value<T>>,
+}
+
+impl<'a, T: Number> Evaluation<'a, T> {
+    pub(super) fn new(values: &'a BTreeMap<Name, Value<T>>) -> Self {
+        Self { values, known: BTreeMap::new() }
+    }
+
+    pub(super) fn of(&mut self, tree: &Rc<Tree>) -> Value<T> {
+        if let Some(known) = self.known.get(&Rc::as_ptr(tree)) {
+            return known.clone();
+        }
+        let value = self.operation(tree);
+        if Rc::strong_count(tree) > 1 {
+            self.known.insert(Rc::as_ptr(tree), value.clone());
+        }
+        value
+    }
+
+    fn operation(&mut self, tree: &Rc<Tree>) -> Value<T> {
+        match &tree.kind {
+            Kind::Number(value) => Value::scalar(T::of(*value)),
+            Kind::Identity => Value::identity(match tree.shape {
+                Shape::Matrix(rows, _) => rows,
+                Shape::Scalar => 1,
+            }),
+            Kind::Name(name) => self.values.get(name).cloned().unwrap_or_else(|| Value::scalar(T::UNDEFINED)),
+            Kind::Negate(a) => self.of(a).map(|x| -x),
+            Kind::Add(a, b) => self.of(a).zip(&self.of(b), |x, y| x + y),
+            Kind::Subtract(a, b) => self.of(a).zip(&self.of(b), |x, y| x - y),
+            Kind::Multiply(a, b) => match (a.shape, b.shape) {
+                (Shape::Scalar, _) => {
+                    let factor = self.of(a).first();
+                    self.of(b).map(|x| x * factor)
+                }
+                (_, Shape::Scalar) => {
+                    let factor = self.of(b).first();
+                    self.of(a).map(|x| x * factor)
+                }
+                _ => self.of(a).times(&self.of(b)),
+            },
+            Kind::Divide(a, b) => {
+                let divisor = self.of(b).first();
+                self.of(a).map(|x| x / divisor)
+            }
+            Kind::Transpose(a) => self.of(a).transpose(),
+            Kind::Trace(a) => {
+                let a = self.of(a);
+                Value::scalar((0..a.rows).map(|i| a.at(i, i)).fold(T::ZERO, |sum, entry| sum + entry))
+            }
+            Kind::Dot(a, b) => self.of(a).transpose().times(&self.of(b)),
+            Kind::Cross(a, b) => Value::hat(&self.of(a)).times(&self.of(b)),
+            Kind::CrossMatrix(a) => Value::hat(&self.of(a)),
+            Kind::ComponentMultiply(a, b) => self.of(a).zip(&self.of(b), |x, y| x * y),
+            Kind::Power(a, exponent) => Value::scalar(self.of(a).first().power(*exponent)),
+            Kind::Apply(function, a) => Value::scalar(self.of(a).first().apply(*function)),
+            Kind::Vee(a) => {
+                let (a, half) = (self.of(a), T::of(Rational::new(1, 2)));
+                Value::new(3, 1, |row, _| {
+                    let (i, j) = ((row + 2) % 3, (row + 1) % 3);
+                    half * (a.at(i, j) - a.at(j, i))
+                })
+            }
+            Kind::Inverse(a) => self.of(a).inverse(),
+            Kind::Bound(_, a) => self.of(a),
+            Kind::Entry(a, row, column) => Value::scalar(self.of(a).at(*row, *column)),
+        }
+    }
+}

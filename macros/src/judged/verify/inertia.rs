@@ -1,0 +1,91 @@
+//! The kinetic part at the identity, at sample values of the parameters: stationary, smooth, and not singular.
+
+use std::collections::BTreeMap;
+
+use super::{Sample, Value, evaluated, linear};
+use crate::declared::lower::Lowered;
+use crate::declared::{Declaration, FieldKind, Name};
+use crate::mathematics::derive::Derived;
+use crate::program::{Graph, NodeId, components, square};
+
+/// What rounding leaves of a zero, relative to the entries of `J`.
+const ZERO: f64 = 1e-12;
+
+/// What sample values of the parameters show of `K(F)` in `l_d = K(F)/h + …`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum KineticPart {
+    /// Its first derivative vanishes, and the second, `J`, is invertible for some.
+    Regular,
+    /// Its first derivative doesn't vanish; it would if these fields were symmetric.
+    NotStationary(Vec<usize>),
+    /// `J` is singular for all; the generators along which there is no kinetic energy at all.
+    Singular(Vec<usize>),
+    /// `J` isn't a number for any: the kinetic part has no second derivative.
+    NotSmooth,
+}
+
+/// Looks at the first and the second derivative at several values of the parameters.
+pub(crate) fn kinetic_part(declaration: &Declaration, lowered: &Lowered, derived: &Derived) -> KineticPart {
+    let samples: Vec<Sample> = (1..=3).map(|seed| Sample::new(declaration, lowered, derived, seed)).collect();
+    let (mut graph, none) = (Graph::default(), BTreeMap::new());
+    let slope = components(&mut graph, derived, &none, &derived.limit.slope);
+    let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
+    let is_stationary = |samples: &[Sample]| {
+        samples.iter().all(|sample| {
+            let size = largest(&at_identity(sample, &graph, &inertia));
+            at_identity(sample, &graph, &slope).iter().all(|slope| slope.abs() <= ZERO * size || !slope.is_finite())
+        })
+    };
+    if !is_stationary(&samples) {
+        let fields = (0..declaration.fields.len()).filter(|&at| is_square(declaration, at)).collect::<Vec<_>>();
+        let with_symmetric = |fields: &[usize]| {
+            let symmetric = samples.iter().map(|sample| sample.with_symmetric(fields));
+            is_stationary(&symmetric.collect::<Vec<_>>())
+        };
+        let without = |at: usize| fields.iter().copied().filter(|&other| other != at).collect::<Vec<_>>();
+        let needed = fields.iter().copied().filter(|&at| with_symmetric(&fields) && !with_symmetric(&without(at)));
+        return KineticPart::NotStationary(needed.collect());
+    }
+    let dimension = derived.group.dimension();
+    let inertias = samples.iter().map(|sample| at_identity(sample, &graph, &inertia));
+    let finite = inertias.filter(|inertia| inertia.iter().all(|entry| entry.is_finite()));
+    let inertias: Vec<Value> = finite.map(|entries| Value { rows: dimension, columns: dimension, entries }).collect();
+    let identity = Value::identity(dimension);
+    if inertias.is_empty() {
+        KineticPart::NotSmooth
+    } else if inertias.iter().any(|inertia| linear::solve(inertia, &identity).is_some()) {
+        KineticPart::Regular
+    } else {
+        let is_idle = |k: usize, inertia: &Value| {
+            let zero = ZERO * largest(&inertia.entries);
+            (0..dimension).all(|j| inertia.at(k, j).abs() <= zero && inertia.at(j, k).abs() <= zero)
+        };
+        KineticPart::Singular((0..dimension).filter(|&k| inertias.iter().all(|inertia| is_idle(k, inertia))).collect())
+    }
+}
+
+fn largest(entries: &[f64]) -> f64 {
+    entries.iter().fold(0.0, |largest, entry| entry.abs().max(largest))
+}
+
+fn at_identity(sample: &Sample, graph: &Graph, outputs: &[NodeId]) -> Vec<f64> {
+    evaluated(graph, outputs, &sample.inputs(&Value::identity(sample.increment.rows)))
+}
+
+/// Whether a field is a matrix of which nothing is known.
+fn is_square(declaration: &Declaration, field: usize) -> bool {
+    matches!(declaration.fields.get(field), Some(field) if matches!(field.kind, FieldKind::Matrix(_)))
+}
+
+impl Sample<'_> {
+    /// The same with some fields replaced by their symmetric parts.
+    fn with_symmetric(&self, fields: &[usize]) -> Self {
+        let mut sample = self.clone();
+        for &field in fields {
+            if let Some(value) = sample.values.get_mut(&Name::Field(field)) {
+                *value = value.zip(&value.transpose(), |x, y| 0.5 * (x + y));
+            }
+        }
+        sample
+    }
+}

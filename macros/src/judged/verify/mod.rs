@@ -1,0 +1,226 @@
+//! The self-check: derived terms and the emitted step against the declared expression, before anything is emitted.
+//!
+//! The declared tree is evaluated on numbers by itself, without the symbolic form, so a wrong rewrite can't agree with
+//! itself. First derivatives are compared with its central differences; what is built from them, with them.
+
+mod degree;
+mod evaluation;
+mod exact;
+mod force;
+mod inertia;
+mod linear;
+mod number;
+mod residue;
+mod reversal;
+mod step;
+mod terms;
+#[cfg(test)]
+mod tests;
+mod value;
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use crate::declared::lower::Lowered;
+use crate::declared::{Declaration, FieldKind, Name, Shape, Tree};
+use crate::mathematics::derive::{Derived, SelfAdjointness};
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
+use crate::program::{Graph, Input, Kernel, NodeId};
+
+use evaluation::Evaluation;
+pub(super) use force::force;
+pub(super) use inertia::{KineticPart, kinetic_part};
+use number::Number;
+use step::Step;
+use terms::Terms;
+use value::Value;
+
+/// Central differences at this spacing are right to about eight digits.
+const SPACING: f64 = 1e-5;
+/// What they leave, relative to the size of the terms.
+const TOLERANCE: f64 = 1e-5;
+
+/// Checks all that was derived. The error is the first term that disagrees.
+pub(super) fn verify(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    lowered: &Lowered,
+    derived: &Derived,
+    kernel: &Kernel,
+) -> Result<SelfAdjointness, &'static str> {
+    let (terms, step) = (Terms::new(derived), Step { derived, kernel });
+    let samples: Vec<Sample> = (1..=3).map(|seed| Sample::new(declaration, lowered, derived, seed)).collect();
+    for sample in &samples {
+        let found = terms.disagreement(sample, tree).or_else(|| step.disagreement(sample, &terms));
+        if let Some(term) = found {
+            return Err(term);
+        }
+    }
+    let exact = || exact::is_self_adjoint(declaration, tree, lowered, derived);
+    reversal::self_adjointness(&samples, tree, &derived.adjoint_defect, exact)
+}
+
+/// The slope of a function at zero.
+fn slope(function: &dyn Fn(f64) -> f64) -> f64 {
+    (function(SPACING) - function(-SPACING)) / (2.0 * SPACING)
+}
+
+fn evaluated(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value>) -> Vec<f64> {
+    graph.evaluate(outputs, &|input: Input| {
+        inputs.get(&input.symbol).map_or(f64::NAN, |value| value.at(input.row, input.column))
+    })
+}
+
+/// `exp(s E_k)`, by its series: `s` is small.
+fn turn(group: &Group, k: usize, s: f64) -> Value {
+    let size = group.size;
+    let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
+    let step = Value::square(size, entries).map(|entry: f64| s * entry);
+    let (mut sum, mut power) = (Value::identity(size), Value::identity(size));
+    for order in 1..20 {
+        power = power.times(&step).map(|x| x / f64::from(order));
+        if power.entries.iter().all(|entry| entry.abs() < f64::EPSILON * f64::EPSILON) {
+            break;
+        }
+        sum = sum.zip(&power, |x, y| x + y);
+    }
+    sum
+}
+
+/// Numbers for all names.
+#[derive(Clone)]
+struct Sample<'a, T = f64> {
+    derived: &'a Derived,
+    increment: Value<T>,
+    inverse: Value<T>,
+    values: BTreeMap<Name, Value<T>>,
+    symbols: BTreeMap<SymbolId, Name>,
+    advected: Vec<(Name, Variance)>,
+}
+
+impl<'a> Sample<'a> {
+    fn new(declaration: &Declaration, lowered: &Lowered, derived: &'a Derived, seed: u64) -> Self {
+        let mut state = seed;
+        // A linear congruence (Knuth's MMIX constants) is random enough for sample points.
+        #[allow(clippy::cast_precision_loss)] // 53 bits are left
+        let mut number = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let group = &declaration.group;
+        let (mut increment, mut inverse) = (Value::identity(group.size), Value::identity(group.size));
+        for k in 0..group.dimension() {
+            let angle = 0.6 * number() - 0.3;
+            increment = increment.times(&turn(group, k, angle));
+            inverse = turn(group, k, -angle).times(&inverse);
+        }
+        Self::with_numbers(declaration, lowered, derived, (increment, inverse), number)
+    }
+
+    /// `F` turned by `exp(s E_k)` from the left.
+    fn turned(&self, k: usize, s: f64) -> Value {
+        turn(&self.derived.group, k, s).times(&self.increment)
+    }
+
+    /// The values of all symbols at an increment: of the names, and of what the derivation adds.
+    fn inputs(&self, f: &Value) -> BTreeMap<SymbolId, Value> {
+        let mut inputs: BTreeMap<SymbolId, Value> = BTreeMap::new();
+        for (symbol, name) in &self.symbols {
+            inputs.extend(self.values.get(name).map(|value| (*symbol, value.clone())));
+        }
+        let identity = Value::identity(f.rows);
+        let (inverse, directions) = (f.inverse(), &self.derived.directions);
+        inputs.insert(self.derived.increment(), f.clone());
+        inputs.insert(directions.small, f.zip(&identity, |x, y| x - y));
+        inputs.insert(directions.small_inverse, inverse.zip(&identity, |x, y| x - y));
+        inputs.insert(directions.inverse, inverse);
+        inputs
+    }
+
+    /// `l_d` at another step.
+    fn at_step(&self, tree: &Rc<Tree>, h: f64) -> f64 {
+        let mut values = self.values.clone();
+        values.insert(Name::Step, Value::scalar(h));
+        Evaluation::new(&values).of(tree).first()
+    }
+
+    /// `l_d` at another `F`, with all advected parameters moved by a group element, given with its inverse.
+    fn moved(&self, tree: &Rc<Tree>, f: &Value, element: (&Value, &Value)) -> f64 {
+        let values = self.moved_values(f, element);
+        Evaluation::new(&values).of(tree).first()
+    }
+}
+
+impl<'a, T: Number> Sample<'a, T> {
+    /// At a group element, given with its inverse, with numbers that are taken to lie between zero and one.
+    fn with_numbers(
+        declaration: &Declaration,
+        lowered: &Lowered,
+        derived: &'a Derived,
+        (increment, inverse): (Value<T>, Value<T>),
+        mut number: impl FnMut() -> T,
+    ) -> Self {
+        let mut values = BTreeMap::from([(Name::Increment, increment.clone())]);
+        let tenth = T::of(Rational::new(1, 10));
+        values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
+        for (index, field) in declaration.fields.iter().enumerate() {
+            values.insert(Name::Field(index), parameter(field.kind, &mut number));
+        }
+        let mut advected = Vec::new();
+        for index in 0..declaration.advected.len() {
+            let kind = declaration.advected_kind(index);
+            values.insert(Name::Advected(index), parameter(kind, &mut number));
+            advected.push((Name::Advected(index), kind.variance()));
+        }
+        let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
+        Self { derived, increment, inverse, values, symbols, advected }
+    }
+
+    /// `l_d` at this point.
+    fn declared(&self, tree: &Rc<Tree>) -> T {
+        Evaluation::new(&self.values).of(tree).first()
+    }
+
+    /// `−l_d` turned back: at `F⁻¹`, `F⁻¹·w` and `−h`.
+    fn reversed(&self, tree: &Rc<Tree>) -> T {
+        let mut values = self.moved_values(&self.inverse, (&self.inverse, &self.increment));
+        if let Some(h) = self.values.get(&Name::Step) {
+            values.insert(Name::Step, h.map(|h| -h));
+        }
+        -Evaluation::new(&values).of(tree).first()
+    }
+
+    fn moved_values(&self, f: &Value<T>, (g, inverse): (&Value<T>, &Value<T>)) -> BTreeMap<Name, Value<T>> {
+        let mut values = self.values.clone();
+        values.insert(Name::Increment, f.clone());
+        for (name, variance) in &self.advected {
+            let Some(w) = self.values.get(name) else { continue };
+            let moved = match variance {
+                Variance::Vector => g.times(w),
+                Variance::Covector => inverse.transpose().times(w),
+                Variance::Contravariant => g.times(w).times(&g.transpose()),
+                Variance::Covariant => inverse.transpose().times(w).times(inverse),
+                Variance::Mixed => g.times(w).times(inverse),
+            };
+            values.insert(*name, moved);
+        }
+        values
+    }
+}
+
+/// A value that has what a field's type promises.
+fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Value<T> {
+    let Shape::Matrix(rows, columns) = kind.shape() else {
+        return Value::scalar(T::of(Rational::new(1, 2)) + number());
+    };
+    let two = T::ONE + T::ONE;
+    let entries: Vec<T> = (0..rows * columns).map(|_| two * number() - T::ONE).collect();
+    let any = Value { rows, columns, entries };
+    match kind {
+        FieldKind::Point(_) => Value::new(rows, 1, |row, _| if row + 1 < rows { any.at(row, 0) } else { T::ONE }),
+        FieldKind::SymmetricInertia => any.times(&any.transpose()),
+        FieldKind::DiagonalInertia => Value::diagonal(rows, |row| T::ONE + any.at(row, row)),
+        _ => any,
+    }
+}

@@ -1,0 +1,190 @@
+//! Whole numbers modulo the prime `2⁶¹ − 1`: arithmetic without rounding, in which rational functions that differ have
+//! different values at nearly all points.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::number::Number;
+use crate::mathematics::symbolic::{Function, Rational};
+
+const PRIME: u64 = (1 << 61) - 1;
+
+/// An element of the field; nothing where there is no value, as after a division by zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Residue(Option<u64>);
+
+impl Residue {
+    /// Any whole number.
+    fn reduced(value: i128) -> Self {
+        Self(u64::try_from(value.rem_euclid(PRIME.into())).ok())
+    }
+
+    /// A stream of numbers that no rational function knows.
+    pub(super) fn stream(seed: u64) -> impl FnMut() -> Self {
+        let mut state = mixed(seed);
+        move || {
+            state = mixed(state);
+            Self(Some(state % PRIME))
+        }
+    }
+
+    pub(super) fn is_defined(self) -> bool {
+        self.0.is_some()
+    }
+
+    fn with(self, other: Self, operation: impl Fn(i128, i128) -> i128) -> Self {
+        match (self.0, other.0) {
+            (Some(a), Some(b)) => Self::reduced(operation(a.into(), b.into())),
+            _ => Self(None),
+        }
+    }
+
+    /// By Fermat, `a^(p − 2)`.
+    fn reciprocal(self) -> Self {
+        if self == Self::ZERO { Self::UNDEFINED } else { self.raised(PRIME - 2) }
+    }
+
+    fn raised(self, exponent: u64) -> Self {
+        let (mut power, mut square) = (Self::ONE, self);
+        for bit in 0..u64::BITS {
+            if exponent >> bit & 1 == 1 {
+                power = power * square;
+            }
+            square = square * square;
+        }
+        power
+    }
+}
+
+impl Add for Residue {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        self.with(other, |a, b| a + b)
+    }
+}
+
+impl Sub for Residue {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self.with(other, |a, b| a - b)
+    }
+}
+
+impl Mul for Residue {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        self.with(other, |a, b| a * b)
+    }
+}
+
+impl Div for Residue {
+    type Output = Self;
+
+    #[allow(clippy::suspicious_arithmetic_impl)] // a quotient is a product with a reciprocal
+    fn div(self, other: Self) -> Self {
+        self * other.reciprocal()
+    }
+}
+
+impl Neg for Residue {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::ZERO - self
+    }
+}
+
+impl Number for Residue {
+    const ZERO: Self = Self(Some(0));
+    const ONE: Self = Self(Some(1));
+    const UNDEFINED: Self = Self(None);
+
+    fn of(value: Rational) -> Self {
+        let (numerator, denominator) = value.parts();
+        Self::reduced(numerator) / Self::reduced(denominator)
+    }
+
+    fn power(self, exponent: i32) -> Self {
+        let power = self.raised(exponent.unsigned_abs().into());
+        if exponent < 0 { power.reciprocal() } else { power }
+    }
+
+    /// The field has no sines or logarithms. A pseudorandom function of the same symmetry, even or odd, stands in for
+    /// them. If two expressions agree with the stand-in, they agree whatever the function is.
+    fn apply(self, function: Function) -> Self {
+        let partner = match function {
+            Function::Sin | Function::Cos | Function::Exp => -self,
+            Function::Ln => self.reciprocal(),
+            Function::Sqrt | Function::Stumpff(_) | Function::LogRatio(_) => self,
+        };
+        let (Some(argument), Some(other)) = (self.0, partner.0) else { return Self::UNDEFINED };
+        if argument == 0
+            && let Some(value) = function.at_zero()
+        {
+            return Self::of(value);
+        }
+        let name = function.name();
+        let value = name.bytes().fold(mixed(argument.min(other)), |state, byte| mixed(state ^ u64::from(byte)));
+        let value = Self(Some(value % PRIME));
+        match function {
+            Function::Ln if argument == other => Self::ZERO,
+            _ if argument <= other => value,
+            Function::Sin | Function::Ln => -value,
+            Function::Exp => value.reciprocal(),
+            _ => value,
+        }
+    }
+}
+
+/// A step of `SplitMix64` (Steele, Lea and Flood 2014).
+fn mixed(state: u64) -> u64 {
+    let z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Number as _, Residue};
+    use crate::mathematics::symbolic::{Function, Rational};
+
+    #[test]
+    fn it_is_a_field() {
+        let mut next = Residue::stream(1);
+        for _ in 0..20 {
+            let (a, b, c) = (next(), next(), next());
+            assert_eq!((a + b) * c - a * c, b * c);
+            assert_eq!(a / b * b, a);
+            assert_eq!(a.power(-3) * a * a * a, Residue::ONE);
+        }
+        assert!(!(Residue::ONE / Residue::ZERO).is_defined());
+        assert!(!(Residue::ONE / Residue::ZERO * Residue::ZERO).is_defined());
+    }
+
+    #[test]
+    fn rational_numbers_keep_their_relations() {
+        let of = |numerator, denominator| Residue::of(Rational::new(numerator, denominator));
+        assert_eq!(of(1, 3) + of(-5, 7), of(-8, 21));
+        assert_eq!(of(2, 9) * of(9, 2), Residue::ONE);
+    }
+
+    #[test]
+    fn functions_keep_their_symmetry_and_nothing_else() {
+        let mut next = Residue::stream(2);
+        for _ in 0..20 {
+            let x = next();
+            assert_eq!((-x).apply(Function::Sin), -x.apply(Function::Sin));
+            assert_eq!((-x).apply(Function::Cos), x.apply(Function::Cos));
+            assert_eq!((-x).apply(Function::Exp) * x.apply(Function::Exp), Residue::ONE);
+            assert_eq!((Residue::ONE / x).apply(Function::Ln), -x.apply(Function::Ln));
+            assert_ne!((-x).apply(Function::Sqrt), x.apply(Function::Sqrt));
+            assert_ne!(x.apply(Function::Stumpff(1)), x.apply(Function::Stumpff(2)));
+        }
+        assert_eq!(Residue::ZERO.apply(Function::Cos), Residue::ONE);
+        assert_eq!(Residue::ONE.apply(Function::Ln), Residue::ZERO);
+        assert!(!Residue::ZERO.apply(Function::Ln).is_defined());
+    }
+}

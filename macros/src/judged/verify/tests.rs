@@ -1,0 +1,313 @@
+//! Each check fails on a broken term.
+
+use std::rc::Rc;
+
+use super::{KineticPart, degree, kinetic_part, verify};
+use crate::declared::errors::Errors;
+use crate::declared::lower::{Lowered, readings};
+use crate::declared::{Declaration, Role, Tree, check, parse};
+use crate::expand::tests::{HEAVY_TOP, top};
+use crate::judged::{Chosen, cheapest};
+use crate::mathematics::derive::{Derived, SelfAdjointness, derive};
+use crate::mathematics::symbolic::{Expression, Rational};
+use crate::program::{Kernel, kernel};
+
+/// A declaration after all phases before the check.
+struct Declared {
+    declaration: Declaration,
+    tree: Rc<Tree>,
+    lowered: Lowered,
+    derived: Derived,
+}
+
+fn checked(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
+    let mut errors = Errors::default();
+    let [arguments, item] = [arguments, item].map(|text| text.parse().expect("tokens"));
+    let declaration = parse::declaration(Role::Lagrangian, &arguments, &item, &mut errors).expect("a declaration");
+    let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
+    (declaration, tree)
+}
+
+impl Declared {
+    fn new(arguments: &str, item: &str) -> Self {
+        let (declaration, tree) = checked(arguments, item);
+        let mut errors = Errors::default();
+        let readings = readings(&declaration, &tree, &mut errors).expect("small");
+        let chosen = cheapest(readings, derive, &declaration, &tree, &mut errors);
+        let Chosen { lowered, derived, .. } = chosen.expect("something to derive");
+        Self { declaration, tree, lowered, derived }
+    }
+
+    fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<SelfAdjointness, &'static str> {
+        verify(&self.declaration, &self.tree, &self.lowered, derived, kernel)
+    }
+
+    fn verified(&self) -> Result<SelfAdjointness, &'static str> {
+        self.found(&self.derived, &kernel(&self.derived))
+    }
+
+    /// What is found after a change of the derived terms.
+    fn after(&self, change: impl Fn(&mut Derived)) -> Result<SelfAdjointness, &'static str> {
+        let mut derived = self.derived.clone();
+        change(&mut derived);
+        self.found(&derived, &kernel(&derived))
+    }
+
+    /// What is found after a change of the staged step.
+    fn after_in_kernel(&self, change: impl Fn(&mut Kernel)) -> Result<SelfAdjointness, &'static str> {
+        let mut kernel = kernel(&self.derived);
+        change(&mut kernel);
+        self.found(&self.derived, &kernel)
+    }
+
+    fn kinetic_part(&self) -> KineticPart {
+        kinetic_part(&self.declaration, &self.lowered, &self.derived)
+    }
+}
+
+fn negate(expression: &mut Expression) {
+    *expression = expression.clone().scaled(-Rational::ONE);
+}
+
+/// A top on SO(3), whose step is in Cayley coordinates, and a planar body on SE(2), whose step is in `F`.
+fn both() -> [Declared; 2] {
+    let top = Declared::new(HEAVY_TOP, &top("NonstandardInertia"));
+    let planar = Declared::new(
+        "group = SE2, advected(w = up),
+        l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * g * w.dot(&(r + F * r))",
+        "struct Planar { J: Matrix3<f64>, g: f64, r: Vector3<f64>, up: Vector3<f64> }",
+    );
+    [top, planar]
+}
+
+#[test]
+fn a_wrong_term_is_named() {
+    for declared in both() {
+        assert!(declared.verified().is_ok());
+        assert_eq!(declared.after(|d| negate(&mut d.right_momentum)), Err("right momentum map"));
+        assert_eq!(declared.after(|d| negate(&mut d.left_momentum)), Err("left momentum map"));
+        assert_eq!(declared.after(|d| negate(&mut d.diamond)), Err("diamond term"));
+        assert_eq!(declared.after(|d| negate(&mut d.momentum)), Err("momentum equation"));
+        assert_eq!(declared.after(|d| negate(&mut d.energy)), Err("discrete energy"));
+        let jacobian = "Newton Jacobian";
+        assert_eq!(declared.after(|d| negate(&mut d.jacobian)), Err(jacobian));
+        // One wrong sign among several.
+        assert_eq!(declared.after(|d| d.energy = with_one_sign_changed(&d.energy)), Err("discrete energy"));
+    }
+}
+
+fn with_one_sign_changed(expression: &Expression) -> Expression {
+    let (first, coefficient) = expression.terms().last().expect("a term");
+    let mut twice = Expression::zero(expression.shape());
+    twice.add_term(first.clone(), coefficient + coefficient);
+    expression.clone().minus(twice)
+}
+
+#[test]
+fn a_wrong_step_is_named() {
+    for declared in both() {
+        assert_eq!(declared.after(|d| negate(&mut d.kick_after)), Err("transported momentum"));
+        assert_eq!(declared.after(|d| negate(&mut d.kick_before)), Err("Newton residual at the solution"));
+        let change = |d: &mut Derived| {
+            d.kick_derivative.as_mut().is_some_and(|change| {
+                negate(change);
+                !change.is_zero()
+            })
+        };
+        if change(&mut declared.derived.clone()) {
+            assert_eq!(declared.after(|d| _ = change(d)), Err("derivative of the kick"));
+        }
+        let flipped = |at: usize, jacobian: bool| {
+            declared.after_in_kernel(|kernel| {
+                let outputs = if jacobian { &mut kernel.jacobian } else { &mut kernel.residual };
+                let negative = kernel.graph.negate(outputs[at]);
+                outputs[at] = negative;
+            })
+        };
+        for at in 0..3 {
+            assert_eq!(flipped(at, false), Err("Newton residual"));
+            assert_eq!(flipped(at, true), Err("Newton Jacobian of the step"));
+        }
+        // Off SO(3) there is none.
+        for at in 0..kernel(&declared.derived).moved.len() {
+            let moved = declared.after_in_kernel(|kernel| {
+                let negative = kernel.graph.negate(kernel.moved[at]);
+                kernel.moved[at] = negative;
+            });
+            assert_eq!(moved, Err("transported momentum"));
+        }
+        // A negative multiple of the system has the same solution, but not the same branch.
+        let negative = declared.after_in_kernel(|kernel| {
+            for output in kernel.residual.iter_mut().chain(&mut kernel.jacobian) {
+                *output = kernel.graph.negate(*output);
+            }
+        });
+        assert_eq!(negative, Err("Newton residual"));
+    }
+}
+
+#[test]
+fn adjoints() {
+    let rho = "struct Top { I1: f64, k: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+    let log_trace = |kick: &str| {
+        let l_d = format!("-(2.0 * I1 / h) * ((1.0 + F.trace()) / 4.0).ln() - h * k * w.dot(&({kick}))");
+        Declared::new(&format!("group = SO3, advected(w = up), l_d = {l_d}"), rho).verified()
+    };
+    assert_eq!(log_trace("0.5 * (rho + F * rho)"), Ok(SelfAdjointness::Symbolic));
+    assert_eq!(log_trace("rho"), Ok(SelfAdjointness::No));
+    assert_eq!(log_trace("F * rho"), Ok(SelfAdjointness::No));
+    let [top, planar] = both();
+    assert_eq!(top.verified(), Ok(SelfAdjointness::Symbolic));
+    // Isometries leave |F − I|² alone, which a normal form without FᵀF = I can't see.
+    assert_eq!(planar.verified(), Ok(SelfAdjointness::Exact));
+    // A symbolic form that claims too much is an error.
+    let declared = Declared::new(
+        "group = SO3, l_d = (J_d.trace() - (F * J_d).trace()) / h + h * F[(0, 1)]",
+        "struct Body { J_d: NonstandardInertia }",
+    );
+    assert_eq!(declared.verified(), Ok(SelfAdjointness::No));
+    assert_eq!(declared.after(|d| d.adjoint_defect = Expression::zero((1, 1))), Err("adjoint"));
+}
+
+/// Isometries keep the distance of points, not of vectors with different last coordinates.
+#[test]
+fn tethers_between_points() {
+    let plate = |tether: &str, [point, anchor]: [&str; 2]| {
+        let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * {tether}");
+        let arguments = format!("group = SE2, advected(a = anchor), l_d = {l_d}");
+        let item = format!("struct Plate {{ J: Matrix3<f64>, p: {point}, anchor: {anchor} }}");
+        Declared::new(&arguments, &item).verified()
+    };
+    let both = "((a - p).norm_squared() + (a - F * p).norm_squared())";
+    let [points, vectors] = [["Point2<f64>"; 2], ["Vector3<f64>", "ContravariantVector<f64, 3>"]];
+    assert_eq!(plate(both, points), Ok(SelfAdjointness::Exact));
+    assert_eq!(plate(both, vectors), Ok(SelfAdjointness::ForPoints));
+    for types in [points, vectors, [points[0], vectors[1]]] {
+        assert_eq!(plate("(a - p).norm_squared()", types), Ok(SelfAdjointness::No));
+    }
+    // Both have to be points.
+    assert_eq!(plate(both, [points[0], vectors[1]]), Ok(SelfAdjointness::ForPoints));
+}
+
+#[test]
+fn added_mass_has_to_be_symmetrised() {
+    let body = |translation: &str| {
+        let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + {translation} / (2.0 * h)");
+        Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, a: f64, b: f64 }")
+            .verified()
+    };
+    let inertial = "(a * F[(0, 3)].powi(2) + b * F[(1, 3)].powi(2))";
+    let column = |k: usize| format!("(F[(0, {k})] * F[(0, 3)] + F[(1, {k})] * F[(1, 3)] + F[(2, {k})] * F[(2, 3)])");
+    let turned = format!("(a * {}.powi(2) + b * {}.powi(2))", column(0), column(1));
+    assert_eq!(body(inertial), Ok(SelfAdjointness::No));
+    assert_eq!(body(&turned), Ok(SelfAdjointness::No));
+    assert_eq!(body(&format!("0.5 * ({inertial} + {turned})")), Ok(SelfAdjointness::Exact));
+}
+
+/// On all groups an inverse is one, and a word with it is varied, reversed and taken to the limit.
+#[test]
+fn inverses() {
+    let body = |group: &str, size: usize, other: &str| {
+        let square = |d: &str| format!("(({d}) * J * ({d}).transpose()).trace()");
+        let l_d = format!("({} + {}) / h", square("F - I"), square(other));
+        Declared::new(&format!("group = {group}, l_d = {l_d}"), &format!("struct Body {{ J: Matrix{size}<f64> }}"))
+    };
+    for (group, size) in [("SE2", 3), ("SL2", 2), ("Heisenberg", 3), ("SO3", 3), ("R1", 2)] {
+        let both = body(group, size, "I - inverse(F)");
+        assert_eq!(both.verified(), Ok(SelfAdjointness::Symbolic), "{group}");
+        assert_eq!(both.kinetic_part(), KineticPart::Regular, "{group}");
+        let skewed = body(group, size, "J - J * inverse(F)").verified();
+        // On the line both squares are of the same number.
+        let expected = if group == "R1" { SelfAdjointness::Exact } else { SelfAdjointness::No };
+        assert_eq!(skewed, Ok(expected), "{group}");
+    }
+}
+
+/// What rounding hides, the finite field sees.
+#[test]
+fn small_terms_count() {
+    let body = |more: &str| {
+        let l_d = format!("((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + 1e-14 * h * k * {more}");
+        Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }").verified()
+    };
+    assert_eq!(body("F.trace()"), Ok(SelfAdjointness::Exact));
+    assert_eq!(body("F[(0, 3)]"), Ok(SelfAdjointness::No));
+}
+
+/// By hand: a field counts as 2, `F` on a group of dimension one as 2/2.
+#[test]
+fn degrees() {
+    let of = |l_d: &str| {
+        let (declaration, tree) = checked(&format!("group = R1, l_d = {l_d}"), "struct Body { k: f64 }");
+        degree::coincidences(&tree, declaration.group.dimension())
+    };
+    // k F²/h is (2 + 4)/(4 + 2).
+    assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 12);
+    // Over a common denominator: (2 + 2)/2, and (4 + 4)/(4 + 4).
+    assert_eq!(of("k + F[(0, 1)]"), 6);
+    assert_eq!(of("k * F[(0, 1)] / h + F[(0, 1)].powi(2)"), 8 + 8);
+    // One function, whose argument has four values on the two sides with their negatives.
+    assert_eq!(of("(k + F[(0, 1)]).sin()"), 2 + 16 * 6);
+    // A tower of powers is too high for three points to decide.
+    let tower = (1..12).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<Vec<_>>().concat();
+    assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x11 }}")) > 1 << 40);
+}
+
+/// Where the field doesn't say, rounded values do.
+#[test]
+fn adjoints_to_rounding() {
+    let squeezes = "group = Mine, generators = [[[1.0, 0.0], [0.0, -2.0]]]";
+    let squeezed = |l_d: &str| Declared::new(&format!("{squeezes}, l_d = {l_d}"), "struct Body { k: f64 }").verified();
+    // The one-parameter group of diag(1, −2) isn't that of a Cayley transform.
+    assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(0, 0)]) / h"), Ok(SelfAdjointness::Numeric));
+    assert_eq!(squeezed("k * (F[(0, 0)] + 1.0 / F[(1, 1)]) / h"), Ok(SelfAdjointness::No));
+    // ln x² = 2 ln x isn't a relation of just any function.
+    let l_d =
+        "((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + h * F[(0, 3)] * (k.powi(2).ln() - 2.0 * k.ln())";
+    let declared = Declared::new(&format!("group = SE3, l_d = {l_d}"), "struct Body { J: Matrix4<f64>, k: f64 }");
+    assert_eq!(declared.verified(), Ok(SelfAdjointness::Numeric));
+}
+
+/// A struct with those of the fields that a Lagrangian uses.
+fn used(fields: &[&str], l_d: &str) -> String {
+    let is_used = |field: &&&str| {
+        let (name, _) = field.split_once(':').expect("a type");
+        l_d.split(|c: char| !c.is_alphanumeric()).any(|word| word == name)
+    };
+    let fields: Vec<&str> = fields.iter().filter(is_used).copied().collect();
+    format!("struct Body {{ {} }}", fields.join(", "))
+}
+
+#[test]
+fn singular_kinetic_parts() {
+    for declared in both() {
+        assert_eq!(declared.kinetic_part(), KineticPart::Regular);
+    }
+    let kinetic_part = |group: &str, l_d: &str| {
+        let arguments = format!("group = {group}, l_d = {l_d}");
+        Declared::new(&arguments, &used(&["k: f64", "J: Matrix4<f64>", "v: Vector3<f64>"], l_d)).kinetic_part()
+    };
+    let rotation = "k * (4.0 - F.trace()) / h + 0.0 * h * (F * J).trace()";
+    assert_eq!(kinetic_part("SE3", rotation), KineticPart::Singular(vec![3, 4, 5]));
+    let axis = "k * v.dot(&vee(F - F.transpose())).powi(2) / h";
+    assert_eq!(kinetic_part("SO3", axis), KineticPart::Singular(Vec::new()));
+    assert_eq!(kinetic_part("SO3", "k * (F - I).norm() / h"), KineticPart::NotSmooth);
+    assert_eq!(kinetic_part("SO3", "k * (F - I).norm_squared() / h"), KineticPart::Regular);
+}
+
+#[test]
+fn kinetic_parts_that_are_not_stationary() {
+    let kinetic_part = |group: &str, l_d: &str| {
+        let arguments = format!("group = {group}, l_d = {l_d}");
+        Declared::new(&arguments, &used(&["k: f64", "A: Matrix3<f64>", "B: Matrix3<f64>"], l_d)).kinetic_part()
+    };
+    assert_eq!(kinetic_part("SO3", "k * (F * A).trace() / h"), KineticPart::NotStationary(vec![1]));
+    assert_eq!(kinetic_part("SO3", "(F * (k * A + B)).trace() / h"), KineticPart::NotStationary(vec![1, 2]));
+    assert_eq!(kinetic_part("SO3", "(F * (A + A.transpose())).trace() / h"), KineticPart::Regular);
+    let squared = "((F - I) * B * (F - I).transpose()).trace() / h";
+    assert_eq!(kinetic_part("SO3", &format!("(F * A).trace() / h + {squared}")), KineticPart::NotStationary(vec![0]));
+    assert_eq!(kinetic_part("SO3", "k * F[(0, 1)] / h"), KineticPart::NotStationary(Vec::new()));
+    // The normal form knows neither that generators have no trace, nor that columns of I are orthogonal.
+    assert_eq!(kinetic_part("SL2", "k * (F.trace() - 2.0) / h"), KineticPart::Regular);
+    assert_eq!(kinetic_part("R1", "k * F[(0, 1)].powi(2) / h"), KineticPart::Regular);
+}

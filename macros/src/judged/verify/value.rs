@@ -1,0 +1,94 @@
+//! Small matrices of numbers.
+
+use super::number::Number;
+use crate::mathematics::symbolic::Rational;
+
+/// A matrix, row by row.
+#[derive(Clone, Debug)]
+pub(super) struct Value<T = f64> {
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    pub(super) entries: Vec<T>,
+}
+
+impl<T: Number> Value<T> {
+    pub(super) fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> T) -> Self {
+        let entries = (0..rows * columns).map(|at| entry(at / columns, at % columns)).collect();
+        Self { rows, columns, entries }
+    }
+
+    pub(super) fn scalar(value: T) -> Self {
+        Self { rows: 1, columns: 1, entries: vec![value] }
+    }
+
+    /// A matrix of rational entries.
+    pub(super) fn square(size: usize, entries: &[Rational]) -> Self {
+        Self { rows: size, columns: size, entries: entries.iter().map(|&entry| T::of(entry)).collect() }
+    }
+
+    pub(super) fn at(&self, row: usize, column: usize) -> T {
+        self.entries.get(row * self.columns + column).copied().unwrap_or(T::UNDEFINED)
+    }
+
+    pub(super) fn first(&self) -> T {
+        self.at(0, 0)
+    }
+
+    pub(super) fn map(&self, f: impl Fn(T) -> T) -> Self {
+        Self { entries: self.entries.iter().map(|&x| f(x)).collect(), ..*self }
+    }
+
+    pub(super) fn zip(&self, other: &Self, f: impl Fn(T, T) -> T) -> Self {
+        Self { entries: self.entries.iter().zip(&other.entries).map(|(&x, &y)| f(x, y)).collect(), ..*self }
+    }
+
+    pub(super) fn transpose(&self) -> Self {
+        Self::new(self.columns, self.rows, |row, column| self.at(column, row))
+    }
+
+    pub(super) fn times(&self, other: &Self) -> Self {
+        Self::new(self.rows, other.columns, |row, column| {
+            (0..self.columns).map(|k| self.at(row, k) * other.at(k, column)).fold(T::ZERO, |sum, term| sum + term)
+        })
+    }
+
+    /// By Cramer's rule.
+    pub(super) fn inverse(&self) -> Self {
+        let determinant = self.determinant();
+        Self::new(self.rows, self.rows, |row, column| {
+            alternating(row + column, self.without(column, row).determinant()) / determinant
+        })
+    }
+
+    fn determinant(&self) -> T {
+        if self.rows == 0 {
+            return T::ONE;
+        }
+        let terms = (0..self.rows).map(|row| alternating(row, self.at(row, 0) * self.without(row, 0).determinant()));
+        terms.fold(T::ZERO, |sum, term| sum + term)
+    }
+
+    fn without(&self, row: usize, column: usize) -> Self {
+        let size = self.rows - 1;
+        Self::new(size, size, |i, j| self.at(i + usize::from(i >= row), j + usize::from(j >= column)))
+    }
+
+    pub(super) fn hat(v: &Self) -> Self {
+        let [x, y, z] = [v.at(0, 0), v.at(1, 0), v.at(2, 0)];
+        let entries = vec![T::ZERO, -z, y, z, T::ZERO, -x, -y, x, T::ZERO];
+        Self { rows: 3, columns: 3, entries }
+    }
+
+    pub(super) fn identity(size: usize) -> Self {
+        Self::diagonal(size, |_| T::ONE)
+    }
+
+    pub(super) fn diagonal(size: usize, entry: impl Fn(usize) -> T) -> Self {
+        Self::new(size, size, |row, column| if row == column { entry(row) } else { T::ZERO })
+    }
+}
+
+/// With the sign `(−1)ⁿ`.
+fn alternating<T: Number>(n: usize, value: T) -> T {
+    if n.is_multiple_of(2) { value } else { -value }
+}

@@ -1,0 +1,106 @@
+//! Derivatives through `let`s that are kept closed, by Lagrange multipliers.
+//!
+//! A Lagrangian that is too large when multiplied out is `l_d(v, F, w)` with `v_i = d_i(v_1 … v_{i−1}, F, w)` for its
+//! `let`s. With a multiplier for each,
+//!
+//! ```text
+//! L = l_d + Σ ⟨λ_i, d_i⟩,      ⟨λ_i, δv_i⟩ = δL along δv_i,      from the last to the first
+//! ```
+//!
+//! the first variation of `l_d` is that of `L` with `v` and `λ` held fixed, so that all momentum maps come from the
+//! rules that they come from elsewhere. This is differentiation in the reverse mode: a gradient costs a few
+//! evaluations. The second variation goes through `v` and `λ` as well, forwards.
+
+use super::Context;
+use crate::mathematics::symbolic::{Expression, Structure, SymbolId, Symbols, Variations, stage_of, variation};
+
+/// A `let` that isn't multiplied out.
+#[derive(Clone, Debug)]
+pub(crate) struct Let {
+    /// `v`.
+    pub(crate) symbol: SymbolId,
+    /// `d`.
+    pub(crate) value: Expression,
+}
+
+/// A closed `let` with its derivatives.
+#[derive(Clone, Debug)]
+pub(crate) struct Closed {
+    pub(crate) symbol: SymbolId,
+    pub(crate) value: Expression,
+    /// `δv`.
+    pub(crate) direction: SymbolId,
+    /// `λ`, and `⟨λ, δv⟩`.
+    pub(crate) multiplier: SymbolId,
+    pub(crate) pairing: Expression,
+    /// `v` and `⟨λ, δv⟩` varied along `F ↦ exp(t E_j) F`.
+    pub(crate) tangent: (SymbolId, Expression),
+    pub(crate) multiplier_tangent: (SymbolId, Expression),
+}
+
+/// The symbols that each `let` adds, and `L`.
+pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<Closed>, Expression) {
+    let mut closed = Vec::new();
+    for Let { symbol, value } in lets {
+        let (name, shape, stage) = {
+            let symbol = symbols.get(*symbol);
+            (symbol.name.clone(), symbol.shape, symbol.stage)
+        };
+        let mut add = |prefix: &str| symbols.add(format!("{prefix}{name}"), shape, Structure::General, stage);
+        let (direction, multiplier) = (add("δ"), add("λ_"));
+        let (tangent, multiplier_tangent) = (add("∂"), add("∂λ_"));
+        let zero = || Expression::zero((1, 1));
+        closed.push(Closed {
+            symbol: *symbol,
+            value: value.clone(),
+            direction,
+            multiplier,
+            pairing: zero(),
+            tangent: (tangent, Expression::zero(shape)),
+            multiplier_tangent: (multiplier_tangent, zero()),
+        });
+    }
+    let mut lagrangian = l_d.clone();
+    for one in closed.iter_mut().rev() {
+        let along = Variations::from([(one.symbol, Expression::symbol(one.direction, symbols))]);
+        one.pairing = variation(&lagrangian, &along, symbols);
+        symbols.set_stage(one.multiplier, stage_of(&one.pairing, symbols));
+        let multiplier = Expression::symbol(one.multiplier, symbols).transpose(symbols);
+        lagrangian = lagrangian.plus(multiplier.times(&one.value, symbols).trace(symbols));
+    }
+    (closed, lagrangian)
+}
+
+/// Fills in what varies along `E_j F`.
+pub(super) fn tangents(context: &Context, closed: &mut [Closed]) {
+    let mut varied = forwards(context, &[]);
+    for one in closed.iter_mut() {
+        one.tangent.1 = variation(&one.value, &varied, context.symbols);
+        if !one.tangent.1.is_zero() {
+            varied.insert(one.symbol, context.symbol(one.tangent.0));
+        }
+    }
+    for one in closed.iter_mut().rev() {
+        one.multiplier_tangent.1 = variation(&one.pairing, &varied, context.symbols);
+        if !one.multiplier_tangent.1.is_zero() {
+            varied.insert(one.multiplier, context.symbol(one.multiplier_tangent.0));
+        }
+    }
+}
+
+/// `δF = E_j F` with what follows for the `let`s and the multipliers.
+pub(super) fn forwards(context: &Context, closed: &[Closed]) -> Variations {
+    let f = context.symbol(context.declared.increment);
+    let delta_f = context.product(&context.symbol(context.directions.second), &f);
+    let mut variations = Variations::from([(context.declared.increment, delta_f)]);
+    for one in closed {
+        let (tangent, multiplier_tangent) = (&one.tangent, &one.multiplier_tangent);
+        if !tangent.1.is_zero() {
+            variations.insert(one.symbol, context.symbol(tangent.0));
+        }
+        if !multiplier_tangent.1.is_zero() {
+            variations.insert(one.multiplier, context.symbol(multiplier_tangent.0));
+        }
+    }
+    variations
+}

@@ -1,0 +1,81 @@
+//! Forces, by the discrete Lagrange–d'Alembert principle.
+//!
+//! A force is declared by its virtual work in a step, `δW = f⁻(F, w)·η + f⁺(F, w)·η⁺`, with the displacements of the
+//! body at the beginning and at the end of the step, in its own axes there. It changes the momentum equation (2.7) to
+//! `μ = U − k_0 − f⁻` and (2.6) to `μ⁺ = (L_F)* δl_d/δF + f⁺`. With the parts of `f⁻` without and with `F` that is
+//!
+//! ```text
+//! a = μ + f⁻_0(w)      U(F, w) − f⁻_1(F, w) = a      μ⁺ = Ad*_F a + Ad*_F f⁻_1(F, w) + f⁺(F, w),    w = F·w⁺
+//! ```
+//!
+//! so it has the stages of any effect, and a share in the Newton Jacobian.
+
+use std::collections::BTreeMap;
+
+use super::{Context, Declared, Derived, Limit, cayley, directions, momentum_equation, transport};
+use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
+
+/// Why the virtual work defines no force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ForceError {
+    /// It isn't linear in the displacements.
+    NotLinear,
+}
+
+/// The displacements `η` and `η⁺`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Displacements {
+    pub(crate) before: SymbolId,
+    pub(crate) after: SymbolId,
+}
+
+/// All that follows from the virtual work; what only a Lagrangian has is zero.
+pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result<Derived, ForceError> {
+    let mut symbols = declared.symbols.clone();
+    let directions = directions(declared, &mut symbols);
+    let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
+    let direction = context.symbol(directions.first).vee(&symbols);
+    let work = |before: i128, after: i128| {
+        let along = |factor| direction.clone().scaled(Rational::integer(factor));
+        let map = BTreeMap::from([(displacements.before, along(before)), (displacements.after, along(after))]);
+        context.substituted(&declared.expression, &map)
+    };
+    let (before, after) = (work(1, 0), work(0, 1));
+    // With three values along a line, and none at zero, no power but the first and no product of the two is left.
+    let is_linear = |factor: i128| {
+        let both = before.clone().plus(after.clone()).scaled(Rational::integer(factor));
+        work(factor, factor).minus(both).is_zero()
+    };
+    if ![0, 1, 2, 3].into_iter().all(is_linear) {
+        return Err(ForceError::NotLinear);
+    }
+    let momentum = before.clone().scaled(-Rational::ONE);
+    let jacobian = momentum_equation::jacobian(&context, &momentum, &[]);
+    let parts = transport::parts(&context, &momentum, &before);
+    let cleared = cayley::cleared(&context, &parts.unknown);
+    let after = context.substituted(&after, &transport::previous(&context).into_iter().collect());
+    let none = || Expression::zero((1, 1));
+    Ok(Derived {
+        group: declared.group.clone(),
+        increment: declared.increment,
+        right_momentum: none(),
+        left_momentum: none(),
+        diamond: before,
+        momentum,
+        jacobian,
+        energy: none(),
+        adjoint_defect: none(),
+        closed: Vec::new(),
+        previous: transport::previous(&context),
+        limit: Limit { has_kinetic: false, slope: none(), inertia: none(), bias: none(), potential: none() },
+        kick_before: parts.kick_before,
+        kick_derivative: None,
+        unknown: transport::in_small_increment(&context, &parts.unknown),
+        moved: None,
+        kick_after: parts.kick_after.plus(after),
+        half_step: context.half_step(),
+        cleared,
+        directions,
+        symbols,
+    })
+}

@@ -1,0 +1,112 @@
+//! The continuous Lagrangian that `l_d` discretises, `l_d(exp hξ, w) = h (½ ξ·Jξ + s·ξ − V) + O(h²)`.
+//!
+//! By powers of `h` with `F` held fixed: `l_d = h⁻¹ K(F) + S(F, w) + h U(F, w) + …`. Then `J` is the second derivative
+//! of `K` at `F = I`, `s` the momentum of `S` there, and `V = −U(I, w)`. A first derivative of `K` at the identity
+//! would let momenta grow without bound as `h → 0`.
+
+use std::collections::BTreeMap;
+
+use super::series::Expansion;
+use super::{Context, momentum_equation};
+use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Variations, degree, variation};
+
+/// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
+#[derive(Clone, Debug)]
+pub(crate) struct Limit {
+    /// Whether there is a term in `1/h` that depends on `F`; a potential has none, and can't move by itself.
+    pub(crate) has_kinetic: bool,
+    /// The first derivative of `K` at the identity (linear in `E_k`): zero for all values of the parameters if there is
+    /// a limit.
+    pub(crate) slope: Expression,
+    pub(crate) inertia: Expression,
+    pub(crate) bias: Expression,
+    pub(crate) potential: Expression,
+}
+
+/// Why there is no continuous Lagrangian behind `l_d`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LimitError {
+    /// `h` stands under a function or in a sum that is divided by.
+    StepInsideFunction,
+    /// A power of `h` below −1.
+    TooSingular(i32),
+    /// The limit isn't `½ ξ·Jξ + s·ξ − V`.
+    NotALagrangian,
+    /// The limit has too many terms.
+    TooLarge,
+}
+
+pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {
+    if !context.declared.lets.is_empty() {
+        return through_lets(context);
+    }
+    let (l_d, h) = (&context.declared.expression, context.declared.step);
+    if l_d.contains_closed(h) {
+        return Err(LimitError::StepInsideFunction);
+    }
+    let lowest =
+        l_d.terms().filter(|(m, _)| crate::mathematics::symbolic::monomial_contains(m, context.declared.increment));
+    if let Some(power) = lowest.map(|(monomial, _)| monomial.exponent(h)).min().filter(|&power| power < -1) {
+        return Err(LimitError::TooSingular(power));
+    }
+    let kinetic = of_order(momentum, h, -1);
+    let step = context.symbol(h);
+    let second = momentum_equation::jacobian(context, &kinetic, &[]);
+    let inertia = context.product(&at_identity(context, &second), &step);
+    let bias = at_identity(context, &of_order(momentum, h, 0));
+    let inverse_step = step.power(-1, context.symbols);
+    let potential = context.product(&at_identity(context, &of_order(l_d, h, 1)), &inverse_step);
+    let slope = at_identity(context, &kinetic);
+    let potential = potential.scaled(-Rational::ONE);
+    Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential })
+}
+
+/// As a series in `h` along `F = exp(hξ̂)`, where `let`s hide the powers of `h`.
+fn through_lets(context: &Context) -> Result<Limit, LimitError> {
+    let velocity = context.directions.velocity;
+    let series = Expansion::new(context, velocity, context.directions.scratch)?.of(&context.declared.expression)?;
+    if series.end() < 2 {
+        return Err(LimitError::NotALagrangian);
+    }
+    let advected = |value: &Expression| context.declared.advected.iter().any(|&(w, _)| value.contains(w));
+    if let Some((order, _)) = series.terms().find(|(order, value)| *order < 0 && value.contains(velocity)) {
+        return Err(LimitError::TooSingular(order));
+    }
+    if series.terms().any(|(order, value)| order < 1 && advected(value)) {
+        return Err(LimitError::NotALagrangian);
+    }
+    // By powers of the velocity: there must be nothing but none, one or two of them.
+    let by_degree = |order: i32| {
+        let zero = Expression::zero((1, 1));
+        let coefficient = series.terms().find(|&(at, _)| at == order).map_or(zero, |(_, value)| value.clone());
+        let parts = [0, 1, 2].map(|n| coefficient.filtered(|monomial| degree(monomial, velocity) == n));
+        let all = parts.iter().cloned().fold(Expression::zero((1, 1)), Expression::plus);
+        if coefficient.contains_closed(velocity) || all != coefficient {
+            return Err(LimitError::NotALagrangian);
+        }
+        Ok(parts)
+    };
+    let [_, slope, curvature] = by_degree(0)?;
+    let [rest, linear, kinetic] = by_degree(1)?;
+    if !curvature.is_zero() {
+        return Err(LimitError::NotALagrangian);
+    }
+    let along = |expression: &Expression, direction| {
+        let variations = Variations::from([(velocity, context.symbol(direction))]);
+        variation(expression, &variations, context.symbols)
+    };
+    let (first, second) = (context.directions.first, context.directions.second);
+    let inertia = along(&along(&kinetic, first), second);
+    let (slope, bias) = (along(&slope, first), along(&linear, first));
+    Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential: rest.scaled(-Rational::ONE) })
+}
+
+fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {
+    expression.filtered(|monomial| monomial.exponent(h) == order)
+}
+
+fn at_identity(context: &Context, expression: &Expression) -> Expression {
+    let identity = Expression::identity(context.declared.group.size);
+    let map = BTreeMap::from([(context.declared.increment, identity.clone()), (context.directions.inverse, identity)]);
+    context.substituted(expression, &map)
+}

@@ -1,0 +1,294 @@
+//! From `l_d` to all that an integrator needs, in the order of the thesis. Knows no token.
+
+mod action;
+mod cayley;
+mod closed;
+mod diamond;
+mod energy;
+mod force;
+mod kick_derivative;
+mod limit;
+mod momentum_equation;
+mod momentum_maps;
+mod self_adjoint;
+mod series;
+mod transport;
+
+use std::collections::BTreeMap;
+
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance};
+
+pub(crate) use cayley::Cleared;
+pub(crate) use closed::{Closed, Let};
+pub(crate) use force::{Displacements, ForceError};
+pub(crate) use limit::{Limit, LimitError};
+pub(crate) use self_adjoint::SelfAdjointness;
+
+/// A declared Lagrangian with the symbols that it is written in.
+#[derive(Clone, Debug)]
+pub(crate) struct Declared {
+    pub(crate) group: Group,
+    pub(crate) symbols: Symbols,
+    /// The `let`s that aren't multiplied out, in their order; none where the expression is small enough.
+    pub(crate) lets: Vec<Let>,
+    /// The Lagrangian `l_d`, or the virtual work of a force.
+    pub(crate) expression: Expression,
+    /// The increment `F`.
+    pub(crate) increment: SymbolId,
+    /// The step `h`.
+    pub(crate) step: SymbolId,
+    /// The advected parameters `w`.
+    pub(crate) advected: Vec<(SymbolId, Variance)>,
+    /// Those of a force's virtual work; a Lagrangian has none.
+    pub(crate) displacements: Option<Displacements>,
+}
+
+/// Why nothing can be derived.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Refusal {
+    Limit(LimitError),
+    Force(ForceError),
+    /// A coefficient left the range of exact arithmetic.
+    Overflow,
+}
+
+/// The symbols that the derivation adds.
+#[derive(Clone, Debug)]
+pub(crate) struct Directions {
+    /// The component `E_k` of a covector.
+    pub(crate) first: SymbolId,
+    /// The direction `E_j` of a Jacobian's column.
+    pub(crate) second: SymbolId,
+    /// The covector `a` that the unknown part of the momentum equation has to equal; in a Newton system `(h/2) a`.
+    pub(crate) target: SymbolId,
+    /// `D = F − I`.
+    pub(crate) small: SymbolId,
+    /// `F⁻¹`.
+    pub(crate) inverse: SymbolId,
+    /// `D⁻ = F⁻¹ − I`.
+    pub(crate) small_inverse: SymbolId,
+    /// The Cayley vector `y` of `F = cay(2y)`.
+    pub(crate) coordinates: SymbolId,
+    /// `1 + |y|²`, the denominator of the Cayley map.
+    pub(crate) denominator: SymbolId,
+    /// A variation `δy`.
+    pub(crate) coordinate_direction: SymbolId,
+    /// The new advected parameters `w⁺ = F⁻¹·w`.
+    pub(crate) next: Vec<SymbolId>,
+    /// `ξ̂` in the limit `F = exp(hξ̂)`.
+    velocity: SymbolId,
+    /// The body velocity `v` that a kick is differentiated along.
+    pub(crate) along: SymbolId,
+    /// A scalar to differentiate functions by.
+    scratch: SymbolId,
+}
+
+/// All that follows from `l_d`. Covectors are linear in the direction `E_k`, Jacobians in `E_k` and `E_j`.
+#[derive(Clone, Debug)]
+pub(crate) struct Derived {
+    pub(crate) symbols: Symbols,
+    pub(crate) group: Group,
+    increment: SymbolId,
+    pub(crate) directions: Directions,
+    /// The closed `let`s with their derivatives.
+    pub(crate) closed: Vec<Closed>,
+    /// `w = F·w⁺`.
+    pub(crate) previous: Vec<(SymbolId, Expression)>,
+    /// `(R_F)* δl_d/δF`.
+    pub(crate) right_momentum: Expression,
+    /// `(L_F)* δl_d/δF`.
+    pub(crate) left_momentum: Expression,
+    /// `δl_d/δw ⋄ w`.
+    pub(crate) diamond: Expression,
+    /// `μ` of (2.7).
+    pub(crate) momentum: Expression,
+    /// `∂μ_k` along `F ↦ exp(t E_j) F`.
+    pub(crate) jacobian: Expression,
+    /// `−∂l_d/∂h`.
+    pub(crate) energy: Expression,
+    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero where the Lagrangian is seen to be self-adjoint.
+    pub(crate) adjoint_defect: Expression,
+    /// The Lagrangian's limit as `h → 0`.
+    pub(crate) limit: Limit,
+    /// The part of the diamond without `F`.
+    pub(crate) kick_before: Expression,
+    /// Its derivative along `w ↦ exp(−t E_j)·w`, where kinetic-potential splittings may ask for it: on SO(3), of a
+    /// Lagrangian without closed `let`s.
+    pub(crate) kick_derivative: Option<Expression>,
+    /// The part of `μ` with `F`, written in `D = F − I`: its constants cancel exactly, so that a small step keeps its
+    /// digits.
+    pub(crate) unknown: Expression,
+    /// The rest of the diamond, in `F` and `w`; of a force, which has more after the step, nothing.
+    pub(crate) moved: Option<Expression>,
+    /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`.
+    pub(crate) kick_after: Expression,
+    /// `h/2`, by which the Newton system is multiplied: it has no `1/h` then.
+    pub(crate) half_step: Expression,
+    /// The momentum equation in Cayley coordinates without denominators, where it is polynomial in `F`.
+    pub(crate) cleared: Option<Cleared>,
+}
+
+impl Derived {
+    /// The increment `F`.
+    pub(crate) fn increment(&self) -> SymbolId {
+        self.increment
+    }
+
+    /// Whether all coefficients stayed in the range of exact arithmetic.
+    fn is_exact(&self) -> bool {
+        let limit = &self.limit;
+        let all = [
+            &self.right_momentum,
+            &self.left_momentum,
+            &self.diamond,
+            &self.momentum,
+            &self.jacobian,
+            &self.energy,
+            &self.adjoint_defect,
+            &limit.slope,
+            &limit.inertia,
+            &limit.bias,
+            &limit.potential,
+            &self.kick_before,
+            &self.unknown,
+            &self.kick_after,
+        ];
+        let all = all.into_iter().chain(&self.kick_derivative);
+        let cleared = self.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
+        let closed =
+            self.closed.iter().flat_map(|one| [&one.value, &one.pairing, &one.tangent.1, &one.multiplier_tangent.1]);
+        !all.chain(cleared).chain(closed).any(Expression::has_overflow)
+    }
+}
+
+/// Derives everything, of a Lagrangian or of a force.
+pub(crate) fn derive(declared: &Declared) -> Result<Derived, Refusal> {
+    let derived = match declared.displacements {
+        None => lagrangian(declared).map_err(Refusal::Limit)?,
+        Some(displacements) => force::force(declared, displacements).map_err(Refusal::Force)?,
+    };
+    if derived.is_exact() { Ok(derived) } else { Err(Refusal::Overflow) }
+}
+
+fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
+    let mut symbols = declared.symbols.clone();
+    let directions = directions(declared, &mut symbols);
+    let (mut closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
+    let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
+    closed::tangents(&context, &mut closed);
+    let right_momentum = momentum_maps::right(&context);
+    let left_momentum = momentum_maps::left(&context);
+    let diamond = diamond::diamond(&context);
+    let momentum = momentum_equation::momentum(&right_momentum, &diamond);
+    let jacobian = momentum_equation::jacobian(&context, &momentum, &closed);
+    let energy = energy::discrete(&context);
+    let adjoint_defect = self_adjoint::defect(&context);
+    let limit = limit::limit(&context, &momentum)?;
+    let parts = transport::parts(&context, &momentum, &diamond);
+    let kick_derivative = (closed.is_empty() && declared.group.is_so3)
+        .then(|| kick_derivative::kick_derivative(&context, &parts.kick_before));
+    let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
+    let unknown =
+        if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
+    Ok(Derived {
+        group: declared.group.clone(),
+        increment: declared.increment,
+        right_momentum,
+        left_momentum,
+        diamond,
+        momentum,
+        jacobian,
+        energy,
+        adjoint_defect,
+        limit,
+        kick_before: parts.kick_before,
+        kick_derivative,
+        unknown,
+        moved: Some(parts.moved),
+        kick_after: parts.kick_after,
+        previous: transport::previous(&context),
+        half_step: context.half_step(),
+        cleared,
+        closed,
+        directions,
+        symbols,
+    })
+}
+
+/// What is derived by one variation, the kicks of the transport form, and the limit.
+pub(crate) fn principal_equations(declared: &Declared) -> Vec<Expression> {
+    let mut symbols = declared.symbols.clone();
+    let directions = directions(declared, &mut symbols);
+    let (closed, lagrangian) = closed::multipliers(&declared.lets, &declared.expression, &mut symbols);
+    let context = Context { declared, lagrangian: &lagrangian, symbols: &symbols, directions: &directions };
+    let (right, left) = (momentum_maps::right(&context), momentum_maps::left(&context));
+    let diamond = diamond::diamond(&context);
+    let momentum = momentum_equation::momentum(&right, &diamond);
+    let parts = transport::parts(&context, &momentum, &diamond);
+    let limit =
+        limit::limit(&context, &momentum).map(|limit| [limit.slope, limit.inertia, limit.bias, limit.potential]);
+    let all = [declared.expression.clone(), right, left, diamond, momentum, parts.kick_before, parts.kick_after];
+    let lets = closed.into_iter().flat_map(|one| [one.value, one.pairing]);
+    all.into_iter().chain(limit.into_iter().flatten()).chain(lets).collect()
+}
+
+/// What every rule needs.
+struct Context<'a> {
+    declared: &'a Declared,
+    /// What is varied: `l_d`, with its `let`s by multipliers.
+    lagrangian: &'a Expression,
+    symbols: &'a Symbols,
+    directions: &'a Directions,
+}
+
+impl Context<'_> {
+    fn symbol(&self, id: SymbolId) -> Expression {
+        Expression::symbol(id, self.symbols)
+    }
+
+    fn half_step(&self) -> Expression {
+        self.symbol(self.declared.step).scaled(Rational::new(1, 2))
+    }
+
+    fn product(&self, left: &Expression, right: &Expression) -> Expression {
+        left.times(right, self.symbols)
+    }
+
+    fn substituted(&self, expression: &Expression, map: &BTreeMap<SymbolId, Expression>) -> Expression {
+        crate::mathematics::symbolic::substitute(expression, map, self.symbols)
+    }
+}
+
+fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
+    let (size, dimension) = (declared.group.size, declared.group.dimension());
+    let structure = if declared.group.orthogonal { Structure::Skew } else { Structure::General };
+    let column =
+        |symbols: &mut Symbols, name: &str, rows, stage| symbols.add(name, (rows, 1), Structure::General, stage);
+    let algebra = |symbols: &mut Symbols, name: &str| symbols.add(name, (size, size), structure, Stage::Construction);
+    let inverse = symbols.add("F⁻¹", (size, size), Structure::General, Stage::Iteration);
+    symbols.set_inverse(declared.increment, inverse);
+    Directions {
+        inverse,
+        first: algebra(symbols, "E_k"),
+        second: algebra(symbols, "E_j"),
+        target: column(symbols, "a", dimension, Stage::Step),
+        small: symbols.add("D", (size, size), Structure::General, Stage::Iteration),
+        small_inverse: symbols.add("D⁻", (size, size), Structure::General, Stage::Iteration),
+        coordinates: column(symbols, "y", dimension, Stage::Iteration),
+        denominator: symbols.add("(1 + |y|²)", (1, 1), Structure::General, Stage::Iteration),
+        coordinate_direction: column(symbols, "δy", dimension, Stage::Construction),
+        velocity: algebra(symbols, "ξ̂"),
+        along: column(symbols, "v", dimension, Stage::Step),
+        scratch: symbols.add("x", (1, 1), Structure::General, Stage::Construction),
+        next: declared
+            .advected
+            .iter()
+            .map(|&(w, variance)| {
+                let name = format!("{}⁺", symbols.get(w).name);
+                let columns = if variance.is_tensor() { size } else { 1 };
+                symbols.add(name, (size, columns), symbols.get(w).structure, Stage::Step)
+            })
+            .collect(),
+    }
+}

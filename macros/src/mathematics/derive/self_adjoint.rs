@@ -1,0 +1,51 @@
+//! Whether a Lagrangian is its own adjoint, `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`: then a step of `−h` undoes a step of
+//! `h`, and the order is even \[RDAE, section 1.4; Hairer, Lubich and Wanner, V.1\].
+
+use std::collections::BTreeMap;
+
+use super::{Context, action};
+use crate::mathematics::symbolic::{Expression, Rational};
+
+/// What has been found out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SelfAdjointness {
+    /// The normal forms are equal.
+    Symbolic,
+    /// The values are equal at random points of a finite field, where nothing is rounded.
+    Exact,
+    /// The values are equal at all sample points, to rounding, and the field doesn't say.
+    Numeric,
+    /// The values differ, but not where all vectors have one for their last coordinate, which the types of points
+    /// promise and theirs don't.
+    ForPoints,
+    /// The values differ.
+    No,
+    /// There is no sample point at which the Lagrangian has a value.
+    Unknown,
+}
+
+impl SelfAdjointness {
+    pub(crate) fn is_found(self) -> bool {
+        matches!(self, Self::Symbolic | Self::Exact | Self::Numeric)
+    }
+}
+
+/// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`; what rests on relations that the normal form doesn't know stays.
+pub(super) fn defect(context: &Context) -> Expression {
+    let declared = context.declared;
+    // Closed `let`s aren't looked into.
+    if !declared.lets.is_empty() {
+        return declared.expression.clone();
+    }
+    let f = context.symbol(declared.increment);
+    let inverse = Expression::inverse(declared.increment, context.symbols);
+    let mut map = BTreeMap::from([
+        (declared.increment, inverse.clone()),
+        (context.directions.inverse, f.clone()),
+        (declared.step, context.symbol(declared.step).scaled(-Rational::ONE)),
+    ]);
+    for &(w, variance) in &declared.advected {
+        map.insert(w, action::moved_back(context, variance, (&inverse, &f), &context.symbol(w)));
+    }
+    declared.expression.clone().plus(context.substituted(&declared.expression, &map))
+}

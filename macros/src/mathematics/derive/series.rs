@@ -1,0 +1,256 @@
+//! Power series in `h` along `F = exp(h ξ̂)`, truncated: how the limit `h → 0` is found through `let`s.
+
+use std::collections::BTreeMap;
+
+use super::{Context, LimitError};
+use crate::mathematics::symbolic::{
+    Atom, Expression, Factor, Function, Rational, SymbolId, Variations, substitute, variation,
+};
+
+/// Terms of this order and above are dropped. The limit needs `l_d` to the first order, and `l_d` may divide by `h`.
+const CUTOFF: i32 = 3;
+/// A limit that a person would write down has a tenth of it.
+const MOST_FACTORS: usize = 4_000;
+
+/// `Σ c_i hⁱ + O(hᵉ)`.
+#[derive(Clone, Debug)]
+pub(super) struct Series {
+    shape: (usize, usize),
+    coefficients: BTreeMap<i32, Expression>,
+    /// The order `e` from which on nothing is known.
+    end: i32,
+}
+
+impl Series {
+    fn constant(value: Expression) -> Self {
+        let shape = value.shape();
+        let coefficients = if value.is_zero() { BTreeMap::new() } else { BTreeMap::from([(0, value)]) };
+        Self { shape, coefficients, end: CUTOFF }
+    }
+
+    fn one() -> Self {
+        Self::constant(Expression::identity(1))
+    }
+
+    pub(super) fn end(&self) -> i32 {
+        self.end
+    }
+
+    pub(super) fn terms(&self) -> impl Iterator<Item = (i32, &Expression)> {
+        self.coefficients.iter().map(|(order, coefficient)| (*order, coefficient))
+    }
+
+    /// The lowest order with a coefficient; the end where there is none.
+    fn lowest(&self) -> i32 {
+        self.coefficients.keys().next().copied().unwrap_or(self.end)
+    }
+
+    fn cut(mut self, end: i32) -> Self {
+        self.end = self.end.min(end).min(CUTOFF);
+        let end = self.end;
+        self.coefficients.retain(|&order, coefficient| order < end && !coefficient.is_zero());
+        self
+    }
+
+    fn plus(mut self, other: Self) -> Self {
+        let end = self.end.min(other.end);
+        for (order, coefficient) in other.coefficients {
+            let sum = match self.coefficients.remove(&order) {
+                Some(present) => present.plus(coefficient),
+                None => coefficient,
+            };
+            self.coefficients.insert(order, sum);
+        }
+        self.cut(end)
+    }
+
+    fn mapped(self, operation: impl Fn(&Expression) -> Expression, shape: (usize, usize)) -> Self {
+        let coefficients = self.coefficients.iter().map(|(&order, value)| (order, operation(value))).collect();
+        Self { shape, coefficients, end: self.end }.cut(CUTOFF)
+    }
+
+    /// Times `hⁿ`.
+    fn shifted(self, n: i32) -> Self {
+        let coefficients = self.coefficients.into_iter().map(|(order, value)| (order + n, value)).collect();
+        Self { shape: self.shape, coefficients, end: self.end + n }.cut(CUTOFF)
+    }
+}
+
+/// Evaluates expressions to series.
+pub(super) struct Expansion<'a> {
+    context: &'a Context<'a>,
+    /// `ξ̂`, with `F = exp(h ξ̂)`.
+    velocity: SymbolId,
+    /// A scalar to differentiate functions by.
+    scratch: SymbolId,
+    known: BTreeMap<SymbolId, Series>,
+}
+
+impl<'a> Expansion<'a> {
+    pub(super) fn new(context: &'a Context, velocity: SymbolId, scratch: SymbolId) -> Result<Self, LimitError> {
+        let mut expansion = Self { context, velocity, scratch, known: BTreeMap::new() };
+        let [increment, inverse] = [Rational::ONE, -Rational::ONE].map(|sign| expansion.exponential(sign));
+        expansion.known.insert(context.declared.increment, increment);
+        expansion.known.insert(context.directions.inverse, inverse);
+        let h = Series::constant(Expression::identity(1)).shifted(1);
+        expansion.known.insert(context.declared.step, h);
+        for one in &context.declared.lets {
+            let value = expansion.of(&one.value)?;
+            expansion.known.insert(one.symbol, value);
+        }
+        Ok(expansion)
+    }
+
+    /// `I ± h ξ̂ + h² ξ̂²/2 ± …`.
+    fn exponential(&self, sign: Rational) -> Series {
+        let xi = self.context.symbol(self.velocity).scaled(sign);
+        let identity = Expression::identity(self.context.declared.group.size);
+        let mut series = Series::constant(identity.clone());
+        let mut power = identity;
+        for order in 1..CUTOFF {
+            power = self.context.product(&power, &xi).scaled(Rational::new(1, order.into()));
+            series.coefficients.insert(order, power.clone());
+        }
+        series.cut(CUTOFF)
+    }
+
+    pub(super) fn of(&self, expression: &Expression) -> Result<Series, LimitError> {
+        let mut sum = Series::constant(Expression::zero(expression.shape()));
+        for (monomial, coefficient) in expression.terms() {
+            let mut product = Series::constant(Expression::rational(coefficient));
+            for (atom, exponent) in &monomial.scalars {
+                product = self.times(&product, &self.power(self.atom(atom)?, *exponent)?)?;
+            }
+            let word = match self.word(&monomial.word)? {
+                Some(word) => word,
+                None => Series::constant(Expression::identity(expression.shape().0)),
+            };
+            sum = sum.plus(self.times(&product, &word)?);
+        }
+        Ok(sum)
+    }
+
+    fn atom(&self, atom: &Atom) -> Result<Series, LimitError> {
+        let symbols = self.context.symbols;
+        match atom {
+            Atom::Symbol(id) => Ok(self.symbol(*id)),
+            Atom::Trace(word) => {
+                let product = self.word(word)?.unwrap_or_else(Series::one);
+                Ok(product.mapped(|value| value.trace(symbols), (1, 1)))
+            }
+            Atom::Function(function, inner) => self.function(*function, self.of(inner)?),
+            Atom::Sum(inner) => self.of(inner),
+        }
+    }
+
+    fn symbol(&self, id: SymbolId) -> Series {
+        self.known.get(&id).cloned().unwrap_or_else(|| Series::constant(self.context.symbol(id)))
+    }
+
+    fn word(&self, word: &[Factor]) -> Result<Option<Series>, LimitError> {
+        let mut product: Option<Series> = None;
+        for factor in word {
+            let factor = self.factor(factor)?;
+            product = Some(match product {
+                Some(product) => self.times(&product, &factor)?,
+                None => factor,
+            });
+        }
+        Ok(product)
+    }
+
+    fn factor(&self, factor: &Factor) -> Result<Series, LimitError> {
+        let symbols = self.context.symbols;
+        let turned = |series: Series, transposed: bool| {
+            let (rows, columns) = series.shape;
+            if transposed { series.mapped(|value| value.transpose(symbols), (columns, rows)) } else { series }
+        };
+        let inner = |word: &[Factor]| Ok(self.word(word)?.unwrap_or_else(Series::one));
+        Ok(match factor {
+            Factor::Symbol { id, transposed } => turned(self.symbol(*id), *transposed),
+            Factor::Inverse { id, transposed } if symbols.inverse_of(*id).is_some() => {
+                let inverse = symbols.inverse_of(*id).unwrap_or(*id);
+                turned(self.symbol(inverse), *transposed)
+            }
+            Factor::Inverse { .. } | Factor::Unit { .. } => {
+                let mut value = Expression::zero(factor.shape(symbols));
+                value.add_term(
+                    crate::mathematics::symbolic::Monomial { word: vec![factor.clone()], ..Default::default() },
+                    Rational::ONE,
+                );
+                Series::constant(value)
+            }
+            Factor::Hat(word) => inner(word)?.mapped(|value| value.hat(symbols), (3, 3)),
+            Factor::Diagonal(word) => inner(word)?.mapped(|value| value.diagonal(symbols), factor.shape(symbols)),
+            Factor::Vee { word, transposed } => {
+                turned(inner(word)?.mapped(|value| value.vee(symbols), (3, 1)), *transposed)
+            }
+        })
+    }
+
+    fn times(&self, a: &Series, b: &Series) -> Result<Series, LimitError> {
+        let shape = match (a.shape, b.shape) {
+            ((1, 1), shape) | (shape, (1, 1)) => shape,
+            ((rows, _), (_, columns)) => (rows, columns),
+        };
+        let end = (a.end + b.lowest()).min(b.end + a.lowest());
+        let mut coefficients: BTreeMap<i32, Expression> = BTreeMap::new();
+        for (i, x) in a.terms() {
+            for (j, y) in b.terms().filter(|(j, _)| i + j < end.min(CUTOFF)) {
+                if x.size().saturating_mul(y.size()) > MOST_FACTORS {
+                    return Err(LimitError::TooLarge);
+                }
+                let product = self.context.product(x, y);
+                let sum = match coefficients.remove(&(i + j)) {
+                    Some(present) => present.plus(product),
+                    None => product,
+                };
+                coefficients.insert(i + j, sum);
+            }
+        }
+        Ok(Series { shape, coefficients, end }.cut(CUTOFF))
+    }
+
+    fn power(&self, base: Series, exponent: i32) -> Result<Series, LimitError> {
+        let factor = if exponent < 0 { self.reciprocal(&base)? } else { base };
+        (0..exponent.unsigned_abs()).try_fold(Series::one(), |product, _| self.times(&product, &factor))
+    }
+
+    /// `1/(c hˡ (1 + ε)) = c⁻¹ h⁻ˡ Σ (−ε)ᵐ`.
+    fn reciprocal(&self, series: &Series) -> Result<Series, LimitError> {
+        let (order, leading) = series.terms().next().ok_or(LimitError::NotALagrangian)?;
+        let inverse = Series::constant(leading.clone().power(-1, self.context.symbols)).shifted(-order);
+        let mut epsilon = self.times(series, &inverse)?;
+        epsilon.coefficients.remove(&0);
+        let minus = epsilon.mapped(|value| value.clone().scaled(-Rational::ONE), (1, 1));
+        let (mut sum, mut power) = (Series::one(), Series::one());
+        for _ in 0..=CUTOFF {
+            power = self.times(&power, &minus)?;
+            sum = sum.plus(power.clone());
+        }
+        self.times(&inverse, &sum)
+    }
+
+    /// Taylor's series about the value at `h = 0`.
+    fn function(&self, function: Function, argument: Series) -> Result<Series, LimitError> {
+        if argument.lowest() < 0 {
+            return Err(LimitError::StepInsideFunction);
+        }
+        let symbols = self.context.symbols;
+        let mut change = argument;
+        let at = change.coefficients.remove(&0).unwrap_or_else(|| Expression::zero((1, 1)));
+        let along = Variations::from([(self.scratch, Expression::identity(1))]);
+        let map = BTreeMap::from([(self.scratch, at)]);
+        let mut derivative = Expression::function(function, self.context.symbol(self.scratch));
+        let (mut sum, mut power) = (Series::constant(Expression::zero((1, 1))), Series::one());
+        for order in 1..=CUTOFF {
+            let value = Series::constant(substitute(&derivative, &map, symbols));
+            sum = sum.plus(self.times(&value, &power)?);
+            derivative = variation(&derivative, &along, symbols);
+            power = self
+                .times(&power, &change)?
+                .mapped(|value| value.clone().scaled(Rational::new(1, order.into())), (1, 1));
+        }
+        Ok(sum)
+    }
+}

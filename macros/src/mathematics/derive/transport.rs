@@ -1,0 +1,68 @@
+//! The step in the transport form `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`, which keeps the Casimirs at any Newton tolerance.
+//!
+//! What doesn't depend on `F` is moved to where it is cheap: with `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with
+//! all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
+//!
+//! ```text
+//! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
+//! ```
+//!
+//! The second part is written in `w⁺`. Of a potential of the new position it then has no `F`: `FᵀF = I` cancels it.
+
+use std::collections::BTreeMap;
+
+use super::{Context, action};
+use crate::mathematics::symbolic::{Expression, Stage, SymbolId, degree, stage_of_monomial};
+
+pub(super) struct Parts {
+    pub(super) kick_before: Expression,
+    pub(super) unknown: Expression,
+    /// The part of the diamond with `F`.
+    pub(super) moved: Expression,
+    pub(super) kick_after: Expression,
+}
+
+pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expression) -> Parts {
+    let increment = context.declared.increment;
+    let unknown = momentum.filtered(|monomial| stage_of_monomial(monomial, context.symbols) == Stage::Iteration);
+    let kick_before = unknown.clone().minus(momentum.clone());
+    let moved = diamond.clone().minus(kick_before.clone());
+    let f = context.symbol(increment);
+    let direction = context.symbol(context.directions.first);
+    let inverse = Expression::inverse(increment, context.symbols);
+    let turned = context.product(&context.product(&f, &direction), &inverse);
+    let mut map = BTreeMap::from([(context.directions.first, turned)]);
+    map.extend(previous(context));
+    let kick_after = context.substituted(&moved, &map);
+    Parts { kick_before, unknown, moved, kick_after }
+}
+
+/// `w = F·w⁺`.
+pub(super) fn previous(context: &Context) -> Vec<(SymbolId, Expression)> {
+    let f = context.symbol(context.declared.increment);
+    let inverse = Expression::inverse(context.declared.increment, context.symbols);
+    let pairs = context.declared.advected.iter().zip(&context.directions.next);
+    let moved = pairs.map(|(&(w, variance), &next)| {
+        (w, action::moved_back(context, variance, (&f, &inverse), &context.symbol(next)))
+    });
+    moved.collect()
+}
+
+/// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.
+pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
+    let increment = context.declared.increment;
+    // Each F becomes two terms.
+    let factors = |monomial| u32::try_from(degree(monomial, increment)).unwrap_or(u32::MAX);
+    let terms = unknown.terms().map(|(monomial, _)| 2_usize.saturating_pow(factors(monomial)));
+    if terms.fold(0, usize::saturating_add) > 4 * unknown.len() + 16 {
+        return unknown.clone();
+    }
+    let identity = Expression::identity(context.declared.group.size);
+    let near_identity = |small| identity.clone().plus(context.symbol(small));
+    let directions = context.directions;
+    let map = BTreeMap::from([
+        (increment, near_identity(directions.small)),
+        (directions.inverse, near_identity(directions.small_inverse)),
+    ]);
+    context.substituted(unknown, &map)
+}

@@ -1,0 +1,361 @@
+//! Sums of words with scalar coefficients, in normal form.
+
+use std::collections::BTreeMap;
+
+use super::functions::Function;
+use super::rational::Rational;
+use super::symbols::{Stage, SymbolId, Symbols};
+use super::word::{self, Factor};
+
+/// Larger ones are on their way to where exponents saturate.
+const LARGEST_EXPONENT: u32 = 1 << 16;
+
+/// A scalar that isn't taken apart.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Atom {
+    /// A named scalar.
+    Symbol(SymbolId),
+    /// The trace of a closed word, or a bilinear form `uᵀ W v`, in canonical form.
+    Trace(Vec<Factor>),
+    /// A smooth function of a scalar.
+    Function(Function, Box<Expression>),
+    /// A sum under a power that isn't expanded.
+    Sum(Box<Expression>),
+}
+
+/// What a coefficient multiplies: powers of scalars and a word (empty: the identity, or one for a scalar).
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Monomial {
+    pub(crate) scalars: BTreeMap<Atom, i32>,
+    pub(crate) word: Vec<Factor>,
+}
+
+impl Monomial {
+    fn times(&self, other: &Self) -> BTreeMap<Atom, i32> {
+        let mut scalars = self.scalars.clone();
+        for (atom, exponent) in &other.scalars {
+            let sum = scalars.get(atom).map_or(*exponent, |present| present.saturating_add(*exponent));
+            if sum == 0 {
+                scalars.remove(atom);
+            } else {
+                scalars.insert(atom.clone(), sum);
+            }
+        }
+        scalars
+    }
+
+    /// The exponent of a scalar symbol.
+    pub(crate) fn exponent(&self, symbol: SymbolId) -> i32 {
+        self.scalars.get(&Atom::Symbol(symbol)).copied().unwrap_or(0)
+    }
+}
+
+/// A scalar, vector or matrix expression.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Expression {
+    shape: (usize, usize),
+    terms: BTreeMap<Monomial, Rational>,
+}
+
+impl Expression {
+    pub(crate) fn zero(shape: (usize, usize)) -> Self {
+        Self { shape, terms: BTreeMap::new() }
+    }
+
+    pub(crate) fn rational(value: Rational) -> Self {
+        Self::identity(1).scaled(value)
+    }
+
+    /// The identity of `size` rows; one for size 1.
+    pub(crate) fn identity(size: usize) -> Self {
+        Self { shape: (size, size), terms: BTreeMap::from([(Monomial::default(), Rational::ONE)]) }
+    }
+
+    pub(crate) fn symbol(id: SymbolId, symbols: &Symbols) -> Self {
+        let shape = symbols.get(id).shape;
+        if shape == (1, 1) {
+            return Self::atom(Atom::Symbol(id), 1);
+        }
+        Self::from_word(vec![Factor::symbol(id)], shape, symbols)
+    }
+
+    /// The inverse of a group element.
+    pub(crate) fn inverse(id: SymbolId, symbols: &Symbols) -> Self {
+        let symbol = symbols.get(id);
+        let factor = if symbol.structure.is_orthogonal() {
+            Factor::Symbol { id, transposed: true }
+        } else {
+            Factor::Inverse { id, transposed: false }
+        };
+        Self::from_word(vec![factor], symbol.shape, symbols)
+    }
+
+    pub(crate) fn function(function: Function, argument: Self) -> Self {
+        if argument.is_zero()
+            && let Some(value) = function.at_zero()
+        {
+            return Self::rational(value);
+        }
+        Self::atom(Atom::Function(function, Box::new(argument)), 1)
+    }
+
+    pub(crate) fn atom(atom: Atom, exponent: i32) -> Self {
+        let scalars = BTreeMap::from([(atom, exponent)]);
+        Self { shape: (1, 1), terms: BTreeMap::from([(Monomial { scalars, word: Vec::new() }, Rational::ONE)]) }
+    }
+
+    /// A product of factors, cut into scalars wherever its inner dimension is one.
+    pub(crate) fn from_word(word: Vec<Factor>, shape: (usize, usize), symbols: &Symbols) -> Self {
+        let word = word::reduce(word, symbols);
+        let mut segments: Vec<Vec<Factor>> = vec![Vec::new()];
+        for factor in word {
+            let starts_new = factor.shape(symbols).0 == 1 && segments.last().is_some_and(|last| !last.is_empty());
+            if starts_new {
+                segments.push(Vec::new());
+            }
+            if let Some(last) = segments.last_mut() {
+                last.push(factor);
+            }
+        }
+        let (mut open, mut sign, mut scalars) = (Vec::new(), 1, BTreeMap::new());
+        for segment in segments {
+            let rows = segment.first().map_or(shape.0, |factor| factor.shape(symbols).0);
+            let columns = segment.last().map_or(shape.1, |factor| factor.shape(symbols).1);
+            if (rows, columns) != (1, 1) {
+                open.extend(segment);
+                continue;
+            }
+            if segment.is_empty() {
+                continue;
+            }
+            let (turn, form) = word::canonical_trace(segment, symbols);
+            sign *= turn;
+            *scalars.entry(Atom::Trace(form)).or_insert(0) += 1;
+        }
+        let mut expression = Self::zero(shape);
+        expression.add_term(Monomial { scalars, word: open }, Rational::integer(sign.into()));
+        expression
+    }
+
+    pub(crate) fn shape(&self) -> (usize, usize) {
+        self.shape
+    }
+
+    pub(crate) fn terms(&self) -> impl Iterator<Item = (&Monomial, Rational)> {
+        self.terms.iter().map(|(monomial, coefficient)| (monomial, *coefficient))
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.terms.len()
+    }
+
+    pub(crate) fn is_zero(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// How many scalars and factors are written down. Those inside a function count twice: the variation of `f(u)` is
+    /// `f'(u) δu`, which has `u` twice.
+    pub(crate) fn size(&self) -> usize {
+        let terms = self.terms.keys().map(|monomial| {
+            let scalars = monomial.scalars.keys().map(|atom| match atom {
+                Atom::Symbol(_) => 1,
+                Atom::Trace(word) => word::size(word),
+                Atom::Function(_, inner) | Atom::Sum(inner) => 1 + 2 * inner.size(),
+            });
+            1 + scalars.sum::<usize>() + word::size(&monomial.word)
+        });
+        terms.sum()
+    }
+
+    /// The factors of the longest word.
+    pub(crate) fn longest_word(&self) -> usize {
+        let words = self.terms.keys().map(|monomial| {
+            let scalars = monomial.scalars.keys().map(|atom| match atom {
+                Atom::Symbol(_) => 1,
+                Atom::Trace(word) => word::size(word),
+                Atom::Function(_, inner) | Atom::Sum(inner) => inner.longest_word(),
+            });
+            scalars.max().unwrap_or(0).max(word::size(&monomial.word))
+        });
+        words.max().unwrap_or(0)
+    }
+
+    /// Whether a coefficient or an exponent has left the range of exact arithmetic, inside functions too.
+    pub(crate) fn has_overflow(&self) -> bool {
+        self.terms.iter().any(|(monomial, coefficient)| {
+            if monomial.scalars.values().any(|exponent| exponent.unsigned_abs() > LARGEST_EXPONENT) {
+                return true;
+            }
+            let inside = monomial.scalars.keys().any(|atom| match atom {
+                Atom::Function(_, inner) | Atom::Sum(inner) => inner.has_overflow(),
+                Atom::Symbol(_) | Atom::Trace(_) => false,
+            });
+            inside || coefficient.is_overflow()
+        })
+    }
+
+    pub(crate) fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
+        if coefficient.is_zero() {
+            return;
+        }
+        let sum = self.terms.get(&monomial).map_or(coefficient, |present| *present + coefficient);
+        if sum.is_zero() {
+            self.terms.remove(&monomial);
+        } else {
+            self.terms.insert(monomial, sum);
+        }
+    }
+
+    /// The part whose monomials satisfy the condition.
+    pub(crate) fn filtered(&self, condition: impl Fn(&Monomial) -> bool) -> Self {
+        let terms = self.terms.iter().filter(|(monomial, _)| condition(monomial));
+        Self { shape: self.shape, terms: terms.map(|(monomial, value)| (monomial.clone(), *value)).collect() }
+    }
+
+    pub(crate) fn scaled(mut self, factor: Rational) -> Self {
+        for coefficient in self.terms.values_mut() {
+            *coefficient = *coefficient * factor;
+        }
+        self.terms.retain(|_, coefficient| !coefficient.is_zero());
+        self
+    }
+
+    pub(crate) fn plus(mut self, other: Self) -> Self {
+        for (monomial, coefficient) in other.terms {
+            self.add_term(monomial, coefficient);
+        }
+        self
+    }
+
+    pub(crate) fn minus(self, other: Self) -> Self {
+        self.plus(other.scaled(-Rational::ONE))
+    }
+
+    /// The matrix product; with a scalar on either side, the multiple.
+    pub(crate) fn times(&self, other: &Self, symbols: &Symbols) -> Self {
+        let shape = match (self.shape, other.shape) {
+            ((1, 1), shape) | (shape, (1, 1)) => shape,
+            ((rows, _), (_, columns)) => (rows, columns),
+        };
+        let mut product = Self::zero(shape);
+        for (left, a) in self.terms() {
+            for (right, b) in other.terms() {
+                let word = [left.word.as_slice(), right.word.as_slice()].concat();
+                let joined = Self::from_word(word, shape, symbols);
+                let scalars = Monomial { scalars: left.times(right), word: Vec::new() };
+                for (monomial, sign) in joined.terms() {
+                    let all = Monomial { scalars: scalars.times(monomial), word: monomial.word.clone() };
+                    product.add_term(all, a * b * sign);
+                }
+            }
+        }
+        product
+    }
+
+    /// An integer power of a scalar; a negative one of a sum stays closed.
+    pub(crate) fn power(self, exponent: i32, symbols: &Symbols) -> Self {
+        if let Some((monomial, coefficient)) = self.terms().next()
+            && self.len() == 1
+        {
+            let scalars = monomial.scalars.iter().map(|(atom, e)| (atom.clone(), e.saturating_mul(exponent)));
+            let monomial = Monomial { scalars: scalars.filter(|(_, e)| *e != 0).collect(), word: Vec::new() };
+            let mut power = Self::zero((1, 1));
+            power.add_term(monomial, coefficient.power(exponent));
+            return power;
+        }
+        if !(0..=4).contains(&exponent) {
+            return Self::atom(Atom::Sum(Box::new(self)), exponent);
+        }
+        (0..exponent).fold(Self::identity(1), |product, _| product.times(&self, symbols))
+    }
+
+    pub(crate) fn transpose(&self, symbols: &Symbols) -> Self {
+        let mut transposed = Self::zero((self.shape.1, self.shape.0));
+        for (monomial, coefficient) in self.terms() {
+            let (sign, word) = word::transpose(&monomial.word, symbols);
+            let monomial = Monomial { scalars: monomial.scalars.clone(), word };
+            transposed.add_term(monomial, coefficient * Rational::integer(sign.into()));
+        }
+        transposed
+    }
+
+    pub(crate) fn trace(&self, symbols: &Symbols) -> Self {
+        if self.shape == (1, 1) {
+            return self.clone();
+        }
+        self.by_word((1, 1), |word| {
+            if word.is_empty() {
+                return Self::rational(Rational::integer(i128::try_from(self.shape.0).unwrap_or(0)));
+            }
+            // An outer product u vᵀ has the trace vᵀ u.
+            if let Some(cut) = (1..word.len()).find(|&i| word.get(i).is_some_and(|f| f.shape(symbols).0 == 1)) {
+                let (column, row) = word.split_at(cut);
+                return Self::from_word([row, column].concat(), (1, 1), symbols);
+            }
+            let (sign, word) = word::canonical_trace(word.to_vec(), symbols);
+            if word.is_empty() {
+                return Self::rational(Rational::integer(i128::try_from(self.shape.0).unwrap_or(0)));
+            }
+            Self::atom(Atom::Trace(word), 1).scaled(Rational::integer(sign.into()))
+        })
+    }
+
+    /// Applies a linear operation to the word of each term.
+    pub(super) fn by_word(&self, shape: (usize, usize), operation: impl Fn(&[Factor]) -> Self) -> Self {
+        let mut image = Self::zero(shape);
+        for (monomial, coefficient) in self.terms() {
+            for (inner, factor) in operation(&monomial.word).terms() {
+                let all = Monomial { scalars: monomial.times(inner), word: inner.word.clone() };
+                image.add_term(all, coefficient * factor);
+            }
+        }
+        image
+    }
+
+    /// Whether the symbol occurs anywhere.
+    pub(crate) fn contains(&self, symbol: SymbolId) -> bool {
+        self.terms.keys().any(|monomial| monomial_contains(monomial, symbol))
+    }
+
+    /// Whether the symbol occurs under a function or an unexpanded power.
+    pub(crate) fn contains_closed(&self, symbol: SymbolId) -> bool {
+        self.terms.keys().flat_map(|monomial| monomial.scalars.keys()).any(|atom| match atom {
+            Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(symbol),
+            Atom::Symbol(_) | Atom::Trace(_) => false,
+        })
+    }
+}
+
+pub(crate) fn monomial_contains(monomial: &Monomial, symbol: SymbolId) -> bool {
+    monomial.word.iter().any(|factor| factor.contains(symbol))
+        || monomial.scalars.keys().any(|atom| match atom {
+            Atom::Symbol(id) => *id == symbol,
+            Atom::Trace(word) => word.iter().any(|factor| factor.contains(symbol)),
+            Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(symbol),
+        })
+}
+
+/// When the value of a monomial is known: with the last of its symbols.
+pub(crate) fn stage_of_monomial(monomial: &Monomial, symbols: &Symbols) -> Stage {
+    let present = symbols.ids().filter(|&id| monomial_contains(monomial, id));
+    present.map(|id| symbols.get(id).stage).max().unwrap_or(Stage::Construction)
+}
+
+/// When the value of an expression is known.
+pub(crate) fn stage_of(expression: &Expression, symbols: &Symbols) -> Stage {
+    expression.terms.keys().map(|monomial| stage_of_monomial(monomial, symbols)).max().unwrap_or(Stage::Construction)
+}
+
+/// How often the symbol is multiplied with itself in a monomial, at most.
+pub(crate) fn degree(monomial: &Monomial, symbol: SymbolId) -> usize {
+    let of_word = |word: &[Factor]| word.iter().map(|factor| factor.degree(symbol)).sum::<usize>();
+    let scalars = monomial.scalars.iter().map(|(atom, exponent)| {
+        let inside = match atom {
+            Atom::Symbol(id) => usize::from(*id == symbol),
+            Atom::Trace(word) => of_word(word),
+            Atom::Function(_, inner) | Atom::Sum(inner) => usize::from(inner.contains(symbol)),
+        };
+        inside.saturating_mul(usize::try_from(exponent.unsigned_abs()).unwrap_or(usize::MAX))
+    });
+    scalars.fold(of_word(&monomial.word), usize::saturating_add)
+}

@@ -1,0 +1,28 @@
+//! Mathematics on small matrix expressions; knows no token and no span.
+//!
+//! Every expression is a sum of terms `rational · scalars · word`, a word being a product of matrices. The constructors
+//! keep this normal form, so that equal expressions are equal values and what cancels is gone: neighbours cancel by
+//! `FᵀF = I`, traces are taken up to rotation and transposition, declared symmetry is used.
+
+mod cross;
+mod display;
+mod expression;
+mod functions;
+mod rational;
+mod substitution;
+mod symbols;
+#[cfg(test)]
+pub(crate) mod tests;
+mod variance;
+mod variation;
+mod word;
+
+pub(crate) use display::{covector_text, text};
+pub(crate) use expression::{Atom, Expression, Monomial, degree, monomial_contains, stage_of, stage_of_monomial};
+pub(crate) use functions::Function;
+pub(crate) use rational::Rational;
+pub(crate) use substitution::substitute;
+pub(crate) use symbols::{Stage, Structure, SymbolId, Symbols};
+pub(crate) use variance::Variance;
+pub(crate) use variation::{Variations, variation};
+pub(crate) use word::Factor;

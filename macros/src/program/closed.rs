@@ -1,0 +1,83 @@
+//! The entries of closed `let`s, of their multipliers and of how both vary.
+
+use std::collections::BTreeMap;
+
+use super::graph::Graph;
+use super::scalarise::{Entries, Scalariser};
+use crate::mathematics::derive::Derived;
+use crate::mathematics::symbolic::{Expression, Factor, SymbolId, Symbols};
+
+pub(crate) type Given = BTreeMap<SymbolId, Entries>;
+
+/// With the values of all `let`s where `F` and `w` are as given.
+pub(crate) fn with_values<'a>(
+    graph: &mut Graph,
+    symbols: &Symbols,
+    lets: impl Iterator<Item = (SymbolId, &'a Expression)>,
+    mut given: Given,
+) -> Given {
+    for (symbol, value) in lets {
+        let entries = entries(graph, symbols, &given, value);
+        given.insert(symbol, entries);
+    }
+    given
+}
+
+/// With the values of all `let`s and multipliers where `F` and `w` are as given.
+pub(crate) fn with_lets(graph: &mut Graph, derived: &Derived, given: Given) -> Given {
+    let lets = derived.closed.iter().map(|closed| (closed.symbol, &closed.value));
+    let mut given = with_values(graph, &derived.symbols, lets, given);
+    for closed in derived.closed.iter().rev() {
+        let shape = derived.symbols.get(closed.symbol).shape;
+        let entries = dual(graph, derived, &given, (&closed.pairing, closed.direction, shape));
+        given.insert(closed.multiplier, entries);
+    }
+    given
+}
+
+/// With their derivatives along the direction that is given.
+pub(crate) fn with_tangents(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+    let tangents = derived.closed.iter().map(|closed| (closed.tangent.0, &closed.tangent.1));
+    given = with_values(graph, &derived.symbols, tangents, given);
+    for closed in derived.closed.iter().rev() {
+        let shape = derived.symbols.get(closed.symbol).shape;
+        let (symbol, pairing) = &closed.multiplier_tangent;
+        let entries = dual(graph, derived, &given, (pairing, closed.direction, shape));
+        given.insert(*symbol, entries);
+    }
+    given
+}
+
+/// The entries of a scalar, vector or matrix expression.
+pub(super) fn entries(graph: &mut Graph, symbols: &Symbols, given: &Given, expression: &Expression) -> Entries {
+    let (rows, columns) = expression.shape();
+    let unit = |index: usize, size: usize, transposed: bool| {
+        let shape = if transposed { (1, size) } else { (size, 1) };
+        Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, symbols)
+    };
+    let mut scalariser = Scalariser { graph, symbols, given: given.clone() };
+    Entries::new(rows, columns, |row, column| {
+        if (rows, columns) == (1, 1) {
+            return scalariser.scalar(expression);
+        }
+        let of_row = unit(row, rows, true).times(expression, symbols);
+        let entry = if columns == 1 { of_row } else { of_row.times(&unit(column, columns, false), symbols) };
+        scalariser.scalar(&entry)
+    })
+}
+
+/// `λ` from `⟨λ, δv⟩`: the values at the unit matrices.
+fn dual(
+    graph: &mut Graph,
+    derived: &Derived,
+    given: &Given,
+    (pairing, direction, (rows, columns)): (&Expression, SymbolId, (usize, usize)),
+) -> Entries {
+    Entries::new(rows, columns, |row, column| {
+        let (zero, one) = (graph.zero(), graph.one());
+        let unit = Entries::new(rows, columns, |i, j| if (i, j) == (row, column) { one } else { zero });
+        let mut given = given.clone();
+        given.insert(direction, unit);
+        Scalariser { graph, symbols: &derived.symbols, given }.scalar(pairing)
+    })
+}

@@ -1,0 +1,367 @@
+//! The staged step: candidates for the Newton system, of which the cheapest is taken.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::closed::{Given, entries, with_lets, with_tangents};
+use super::count::{Operations, count};
+use super::expand::expanded;
+use super::graph::{Graph, Input, NodeId};
+use super::scalarise::{Entries, Scalariser};
+use crate::mathematics::derive::{Cleared, Derived};
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::{Expression, Rational, Stage};
+
+/// A way to write the Newton system, with its operations an iteration.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    pub(crate) name: &'static str,
+    pub(crate) operations: Operations,
+    /// The power of `1 + |y|²` that the system is multiplied by.
+    denominators: u32,
+}
+
+/// The outputs of the stages, in one graph.
+#[derive(Clone, Debug)]
+pub(crate) struct Kernel {
+    pub(crate) graph: Graph,
+    pub(crate) kick_before: Vec<NodeId>,
+    /// The derivative of `kick_before` along a body velocity, where it is derived.
+    pub(crate) kick_derivative: Option<Vec<NodeId>>,
+    pub(crate) residual: Vec<NodeId>,
+    pub(crate) jacobian: Vec<NodeId>,
+    pub(crate) kick_after: Vec<NodeId>,
+    /// The part of the diamond with `F`, where the system is that in `F` rebuilt from `y`; `kick_after` is `Ad*_F` of
+    /// it.
+    pub(crate) moved: Vec<NodeId>,
+    /// Whether the Newton system is written in `D = F − I`, its Jacobian right-trivialised: on SO(3) it is written in
+    /// Cayley coordinates.
+    pub(crate) in_increment: bool,
+    /// The power of `1 + |y|²` that the Newton system is multiplied by.
+    pub(crate) denominators: u32,
+    /// The first is the one that was taken.
+    pub(crate) candidates: Vec<Candidate>,
+}
+
+/// What the Jacobian of the free body costs beside a residual, [`Operations::cost`], with the solves for the updates.
+const FREE_BODY: usize = 1_000;
+
+impl Kernel {
+    /// Whether the Jacobian costs so much more than the residual that a solve does better with the free body's.
+    ///
+    /// At common steps it takes two to five residuals then, instead of two or three systems.
+    pub(crate) fn jacobian_is_expensive(&self) -> bool {
+        let Some(taken) = self.candidates.first() else { return false };
+        let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
+        let jacobian = taken.operations.cost().saturating_sub(residual);
+        !self.moved.is_empty() && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
+    }
+
+    /// Of a step without the solve and of an iteration, as `Effect::OPERATIONS` has them.
+    pub(crate) fn operations(&self) -> [u32; 2] {
+        let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
+        let mut step = count(&self.graph, &before, Some(Stage::Step));
+        let mut outputs = before;
+        if self.jacobian_is_expensive() {
+            outputs = self.gradient();
+        } else {
+            step = step
+                + count(&self.graph, &self.kick_after, Some(Stage::Step))
+                + count(&self.graph, &self.kick_after, Some(Stage::Iteration));
+        }
+        let iteration = count(&self.graph, &outputs, Some(Stage::Iteration));
+        [step, iteration].map(|operations| u32::try_from(operations.cost() / 2).unwrap_or(u32::MAX))
+    }
+
+    /// The residual and the moved part of the diamond.
+    pub(crate) fn gradient(&self) -> Vec<NodeId> {
+        [self.residual.as_slice(), &self.moved].concat()
+    }
+
+    /// What a step of two Newton iterations costs.
+    pub(crate) fn cost(&self) -> usize {
+        let iteration = self.candidates.first().map_or(0, |candidate| candidate.operations.cost());
+        2 * iteration + count(&self.graph, &self.kick_after, None).cost()
+    }
+}
+
+/// `tr(E_k W)` and the like for each generator: the components of a covector.
+pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, covector: &Expression) -> Vec<NodeId> {
+    (0..derived.group.dimension())
+        .map(|k| {
+            let mut given = given.clone();
+            given.insert(derived.directions.first, generator(graph, &derived.group, k));
+            Scalariser { graph, symbols: &derived.symbols, given }.scalar(covector)
+        })
+        .collect()
+}
+
+/// The constant matrix `E_k`.
+fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
+    let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
+    Entries::new(group.size, group.size, |row, column| {
+        let entry = entries.get(row * group.size + column).copied();
+        graph.constant(entry.unwrap_or(Rational::ZERO))
+    })
+}
+
+/// `Σ v_j E_j`.
+fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
+    let (group, symbol) = (&derived.group, derived.directions.along);
+    let components: Vec<NodeId> =
+        (0..group.dimension()).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Step)).collect();
+    let generators: Vec<Entries> = (0..group.dimension()).map(|j| generator(graph, group, j)).collect();
+    Entries::new(group.size, group.size, |row, column| {
+        let terms: Vec<NodeId> = generators
+            .iter()
+            .zip(&components)
+            .map(|(generator, &component)| graph.multiply(generator.at(row, column), component))
+            .collect();
+        graph.sum(&terms)
+    })
+}
+
+/// A Jacobian, linear in `E_k` and `E_j`, row by row.
+pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, bilinear: &Expression) -> Vec<NodeId> {
+    let dimension = derived.group.dimension();
+    let varies = derived
+        .closed
+        .iter()
+        .any(|one| bilinear.contains(one.tangent.0) || bilinear.contains(one.multiplier_tangent.0));
+    let columns: Vec<Vec<NodeId>> = (0..dimension)
+        .map(|j| {
+            let mut given = given.clone();
+            given.insert(derived.directions.second, generator(graph, &derived.group, j));
+            let given = if varies { with_tangents(graph, derived, given) } else { given };
+            components(graph, derived, &given, bilinear)
+        })
+        .collect();
+    by_rows(dimension, &columns)
+}
+
+fn by_rows(dimension: usize, columns: &[Vec<NodeId>]) -> Vec<NodeId> {
+    (0..dimension).flat_map(|k| columns.iter().filter_map(move |column| column.get(k).copied())).collect()
+}
+
+pub(crate) fn kernel(derived: &Derived) -> Kernel {
+    let mut graph = Graph::default();
+    let none = with_lets(&mut graph, derived, Given::new());
+    let kick_before = components(&mut graph, derived, &none, &derived.kick_before);
+    let kick_derivative = derived.kick_derivative.as_ref().map(|expression| {
+        let velocity = velocity(&mut graph, derived);
+        components(&mut graph, derived, &Given::from([(derived.directions.second, velocity)]), expression)
+    });
+    let increment = by_increment(&mut graph, derived, |graph, row, column| {
+        graph.input(Input { symbol: derived.directions.small, row, column }, Stage::Iteration)
+    });
+    let kick_after = {
+        let given = after(&mut graph, derived, increment.clone());
+        components(&mut graph, derived, &given, &derived.kick_after)
+    };
+    let mut found: Vec<(Candidate, Vec<NodeId>)> = Vec::new();
+    let mut add = |graph: &Graph, name, denominators, outputs: Vec<NodeId>| {
+        let operations = count(graph, &outputs, Some(Stage::Iteration));
+        found.push((Candidate { name, operations, denominators }, outputs));
+    };
+    let in_increment = !derived.group.is_so3;
+    let mut moved = Vec::new();
+    if in_increment {
+        let given = with_inverse(&mut graph, derived, increment);
+        let given = with_lets(&mut graph, derived, given);
+        let outputs = system(&mut graph, derived, &given);
+        add(&graph, "in F", 0, outputs);
+    } else {
+        let (retracted, diamond, opaque) = retracted(&mut graph, derived);
+        moved = diamond;
+        add(&graph, "F rebuilt from y", 0, retracted.clone());
+        if derived.closed.is_empty()
+            && let Some(outputs) = expanded(&mut graph, &retracted, &opaque)
+        {
+            add(&graph, "F rebuilt from y, multiplied out", 0, outputs);
+        }
+    }
+    if let Some(cleared) = &derived.cleared {
+        let (nested, denominator) = cleared_system(&mut graph, derived, cleared);
+        add(&graph, "Cayley, denominators cleared", cleared.power, nested.clone());
+        if let Some(outputs) = expanded(&mut graph, &nested, &BTreeSet::from([denominator])) {
+            add(&graph, "Cayley, denominators cleared, multiplied out", cleared.power, outputs);
+        }
+    }
+    found.sort_by_key(|(candidate, _)| candidate.operations.cost());
+    let outputs = found.first().map(|(_, outputs)| outputs.clone()).unwrap_or_default();
+    let (residual, jacobian) = outputs.split_at(derived.group.dimension().min(outputs.len()));
+    Kernel {
+        kick_before,
+        kick_derivative,
+        residual: residual.to_vec(),
+        jacobian: jacobian.to_vec(),
+        kick_after,
+        moved,
+        in_increment,
+        denominators: found.first().map_or(0, |(candidate, _)| candidate.denominators),
+        candidates: found.into_iter().map(|(candidate, _)| candidate).collect(),
+        graph,
+    }
+}
+
+/// With what closed `let`s are at `F` and `w = F·w⁺`.
+fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+    if derived.closed.is_empty() {
+        return given;
+    }
+    for (w, previous) in &derived.previous {
+        let entries = entries(graph, &derived.symbols, &given, previous);
+        given.insert(*w, entries);
+    }
+    with_lets(graph, derived, given)
+}
+
+/// `D` by its entries, and `F = I + D`.
+fn by_increment(
+    graph: &mut Graph,
+    derived: &Derived,
+    mut entry: impl FnMut(&mut Graph, usize, usize) -> NodeId,
+) -> Given {
+    let size = derived.group.size;
+    let small = Entries::new(size, size, |row, column| entry(graph, row, column));
+    let f = plus_identity(graph, &small);
+    BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
+}
+
+/// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
+fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+    let (size, directions) = (derived.group.size, &derived.directions);
+    let small = Entries::new(size, size, |row, column| {
+        graph.input(Input { symbol: directions.small_inverse, row, column }, Stage::Iteration)
+    });
+    let inverse = plus_identity(graph, &small);
+    given.extend([(directions.small_inverse, small), (directions.inverse, inverse)]);
+    given
+}
+
+fn plus_identity(graph: &mut Graph, small: &Entries) -> Entries {
+    let one = graph.one();
+    Entries::new(small.rows, small.columns, |row, column| {
+        let entry = small.at(row, column);
+        if row == column { graph.add(entry, one) } else { entry }
+    })
+}
+
+/// `(h/2) (U(F) − a)` and its derivatives along `E_j`, with `F`, `D` and the `let`s given.
+fn system(graph: &mut Graph, derived: &Derived, given: &Given) -> Vec<NodeId> {
+    let target = target(graph, derived);
+    let (mut outputs, jacobian) = if derived.closed.is_empty() {
+        let scaled = |expression: &Expression| derived.half_step.clone().times(expression, &derived.symbols);
+        let unknown = components(graph, derived, given, &scaled(&derived.unknown));
+        (unknown, square(graph, derived, given, &scaled(&derived.jacobian)))
+    } else {
+        // In closed `let`s the factor finds nothing to cancel.
+        let half_step = half_step(graph, derived);
+        let unknown = components(graph, derived, given, &derived.unknown);
+        let jacobian = square(graph, derived, given, &derived.jacobian);
+        let mut scaled = |nodes: Vec<NodeId>| -> Vec<NodeId> {
+            nodes.into_iter().map(|node| graph.multiply(half_step, node)).collect()
+        };
+        (scaled(unknown), scaled(jacobian))
+    };
+    for (row, value) in outputs.iter_mut().enumerate() {
+        *value = graph.subtract(*value, target.at(row, 0));
+    }
+    outputs.extend(jacobian);
+    outputs
+}
+
+fn half_step(graph: &mut Graph, derived: &Derived) -> NodeId {
+    Scalariser { graph, symbols: &derived.symbols, given: Given::new() }.scalar(&derived.half_step)
+}
+
+/// `(h/2) a`, once a step.
+fn target(graph: &mut Graph, derived: &Derived) -> Entries {
+    let half_step = half_step(graph, derived);
+    let symbol = derived.directions.target;
+    Entries::new(derived.group.dimension(), 1, |row, column| {
+        let a = graph.input(Input { symbol, row, column }, Stage::Step);
+        graph.multiply(half_step, a)
+    })
+}
+
+fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
+    let symbol = derived.directions.coordinates;
+    (0..3).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
+}
+
+/// `1 + |y|²`.
+fn denominator(graph: &mut Graph, y: &[NodeId]) -> NodeId {
+    let squares: Vec<NodeId> = y.iter().map(|&x| graph.multiply(x, x)).collect();
+    let sum = graph.sum(&squares);
+    let one = graph.one();
+    graph.add(one, sum)
+}
+
+/// Residual and Jacobian of the cleared equation, nine and three; the denominator's node.
+fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (Vec<NodeId>, NodeId) {
+    let directions = &derived.directions;
+    let y = coordinates(graph, derived);
+    let d = denominator(graph, &y);
+    let target = target(graph, derived);
+    let given = BTreeMap::from([(directions.denominator, Entries::new(1, 1, |_, _| d)), (directions.target, target)]);
+    let mut outputs = components(graph, derived, &given, &cleared.residual);
+    let mut columns = Vec::new();
+    for j in 0..3 {
+        let (zero, one) = (graph.zero(), graph.one());
+        let mut given = given.clone();
+        let unit = Entries::new(3, 1, |row, _| if row == j { one } else { zero });
+        given.insert(directions.coordinate_direction, unit);
+        columns.push(components(graph, derived, &given, &cleared.jacobian));
+    }
+    outputs.extend(by_rows(3, &columns));
+    (outputs, d)
+}
+
+/// `(h/2) (U(F) − a)` with `F = cay(2y)`, and its Jacobian `(h/2) ∂U/∂E_j · T_j`, with the tangent `T` in `y`.
+///
+/// With them the part of the diamond that depends on `F`, if it is asked for, and the nodes that are left as they are
+/// when the system is multiplied out.
+fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
+    let y = coordinates(graph, derived);
+    let d = denominator(graph, &y);
+    let two = graph.constant(Rational::integer(2));
+    let scale = graph.divide(two, d);
+    let hat = |graph: &mut Graph, row: usize, column: usize| match (3 + column - row) % 3 {
+        0 => graph.zero(),
+        1 => graph.negate(y[3 - row - column]),
+        _ => y[3 - row - column],
+    };
+    let tangent = Entries::new(3, 3, |row, column| {
+        let entry = hat(graph, row, column);
+        let scaled = graph.multiply(scale, entry);
+        if row == column { scale } else { scaled }
+    });
+    // D = (ŷ + ŷ²) · 2/(1 + |y|²), ŷ² = yyᵀ − |y|² I; on the diagonal the squares cancel before they are formed.
+    let given = by_increment(graph, derived, |graph, row, column| {
+        if row == column {
+            let others: Vec<NodeId> = (0..3).filter(|&k| k != row).map(|k| graph.multiply(y[k], y[k])).collect();
+            let sum = graph.sum(&others);
+            let shrink = graph.multiply(scale, sum);
+            return graph.negate(shrink);
+        }
+        let product = graph.multiply(y[row], y[column]);
+        let outer = graph.multiply(scale, product);
+        let skew = hat(graph, row, column);
+        let skew = graph.multiply(scale, skew);
+        graph.sum(&[outer, skew])
+    });
+    let opaque: BTreeSet<NodeId> =
+        given.values().chain([&tangent]).flat_map(|entries| entries.all().to_vec()).collect();
+    let given = with_lets(graph, derived, given);
+    let moved = derived.moved.as_ref().map(|moved| components(graph, derived, &given, moved)).unwrap_or_default();
+    let mut outputs = system(graph, derived, &given);
+    let jacobian = outputs.split_off(3);
+    for row in 0..3 {
+        for column in 0..3 {
+            let terms: Vec<NodeId> =
+                (0..3).map(|k| graph.multiply(jacobian[3 * row + k], tangent.at(k, column))).collect();
+            outputs.push(graph.sum(&terms));
+        }
+    }
+    (outputs, moved, opaque)
+}

@@ -1,0 +1,23 @@
+//! Programs: matrix expressions as straight-line scalar code, with stages, shared subexpressions and counts.
+//!
+//! `scalarise` takes matrices to their entries, `graph` keeps equal operations once, `expand` multiplies out, `closed`
+//! has the `let`s that stay closed, `kernel` the step, and `count` what it costs.
+//!
+//! Deliberately not here: tokens, the group of the user's declaration by any name, and the choice between two programs
+//! of different declarations. The room knows `mathematics`.
+
+mod closed;
+mod count;
+mod expand;
+mod graph;
+mod index;
+mod kernel;
+mod scalarise;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use closed::{Given, with_lets, with_values};
+pub(crate) use count::count;
+pub(crate) use graph::{Graph, Input, Node, NodeId};
+pub(crate) use kernel::{Candidate, Kernel, components, kernel, square};
+pub(crate) use scalarise::Scalariser;

@@ -1,0 +1,177 @@
+//! Scalarising, folding and multiplying out keep all values.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::mathematics::symbolic::tests::numeric::value_and_scale;
+use crate::mathematics::symbolic::tests::random::{Random, World, both};
+use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
+use crate::program::expand::expanded;
+use crate::program::{Graph, Input, Node, NodeId, Scalariser};
+
+#[test]
+fn scalarised_expressions_keep_their_value() {
+    for seed in 0..3_000 {
+        let mut random = Random::new(seed);
+        let world = World::new(&mut random);
+        let depth = 1 + random.below(4);
+        let expression = both(&mut random, &world, (1, 1), depth).expression;
+        let mut graph = Graph::default();
+        let output =
+            Scalariser { graph: &mut graph, symbols: &world.symbols, given: BTreeMap::new() }.scalar(&expression);
+        let input = |input: Input| world.values[&input.symbol].at(input.row, input.column);
+        let found = graph.evaluate(&[output], &input)[0];
+        let (expected, scale) = value_and_scale(&expression, &world.symbols, &world.values);
+        let expected = expected.at(0, 0);
+        assert!((found - expected).abs() <= 1e-10 * (1.0 + scale), "seed {seed}: {found} instead of {expected}");
+    }
+}
+
+fn variable(graph: &mut Graph, index: usize, stage: Stage) -> NodeId {
+    graph.input(Input { symbol: SymbolId(index), row: 0, column: 0 }, stage)
+}
+
+#[test]
+fn constructors_fold() {
+    let mut graph = Graph::default();
+    let g = &mut graph;
+    let (x, y) = (variable(g, 0, Stage::Construction), variable(g, 1, Stage::Construction));
+    let (zero, one, minus_x) = (g.zero(), g.one(), g.negate(x));
+    let minus_y = g.negate(y);
+    let half = g.constant(Rational::new(1, 2));
+    assert_eq!(g.negate(minus_x), x);
+    assert_eq!(g.add(x, zero), x);
+    assert_eq!(g.subtract(x, x), zero);
+    assert_eq!(g.add(x, minus_x), zero);
+    assert_eq!(g.subtract(zero, x), minus_x);
+    assert_eq!(g.multiply(x, one), x);
+    assert_eq!(g.multiply(zero, x), zero);
+    assert_eq!(g.add(half, half), one);
+    assert_eq!(g.divide(one, half), g.constant(Rational::integer(2)));
+    assert_eq!(g.divide(zero, x), zero);
+    assert_eq!(g.divide(x, one), x);
+    // Operands of commutative operations are in one order.
+    assert_eq!(g.add(x, y), g.add(y, x));
+    assert_eq!(g.multiply(x, y), g.multiply(y, x));
+    assert_ne!(g.subtract(x, y), g.subtract(y, x));
+    // Signs move outward.
+    let product = g.multiply(x, y);
+    assert_eq!(g.multiply(minus_x, minus_y), product);
+    assert_eq!(g.multiply(minus_x, y), g.negate(product));
+    let sum = g.add(x, y);
+    assert_eq!(g.subtract(minus_x, y), g.negate(sum));
+    let minus_half = g.constant(Rational::new(-1, 2));
+    let halved = g.multiply(half, x);
+    assert_eq!(g.multiply(minus_half, x), g.negate(halved));
+    let difference = g.subtract(x, y);
+    assert_eq!(g.negate(difference), g.subtract(y, x));
+    // Twice a half is the whole.
+    let double = g.add(x, x);
+    assert_eq!(g.multiply(half, double), x);
+    // Nothing is divided by a zero at compile time.
+    let quotient = g.divide(one, zero);
+    assert!(matches!(g.node(quotient), Node::Divide(..)));
+}
+
+#[test]
+fn powers_by_squaring() {
+    for exponent in -9..=9 {
+        let mut graph = Graph::default();
+        let x = variable(&mut graph, 0, Stage::Construction);
+        let power = graph.power(x, exponent);
+        let found = graph.evaluate(&[power], &|_| 1.7)[0];
+        assert!((found / 1.7_f64.powi(exponent) - 1.0).abs() < 1e-14);
+        assert!(super::super::count(&graph, &[power], None).arithmetic <= 5);
+    }
+}
+
+/// What is known earlier is combined first, so that an iteration makes one addition and one multiplication only.
+#[test]
+fn sums_and_products_go_by_stage() {
+    let mut graph = Graph::default();
+    let stages = [Stage::Iteration, Stage::Construction, Stage::Step, Stage::Construction, Stage::Step];
+    let nodes: Vec<NodeId> = stages.iter().enumerate().map(|(at, &stage)| variable(&mut graph, at, stage)).collect();
+    for output in [graph.sum(&nodes), graph.product(nodes.clone())] {
+        let count = |stage| super::super::count(&graph, &[output], Some(stage)).arithmetic;
+        assert_eq!([Stage::Construction, Stage::Step, Stage::Iteration].map(count), [1, 2, 1]);
+    }
+    // The order of the terms doesn't matter, and a sum of negatives is the negative of the sum.
+    let reversed: Vec<NodeId> = nodes.iter().rev().copied().collect();
+    assert_eq!(graph.sum(&nodes), graph.sum(&reversed));
+    let negatives: Vec<NodeId> = nodes.iter().map(|&node| graph.negate(node)).collect();
+    let (sum, of_negatives) = (graph.sum(&nodes), graph.sum(&negatives));
+    assert_eq!(of_negatives, graph.negate(sum));
+}
+
+/// A random polynomial in three unknowns with coefficients that are known earlier.
+fn polynomial(graph: &mut Graph, random: &mut Random, depth: usize) -> NodeId {
+    if depth == 0 {
+        return match random.below(6) {
+            0 => graph.constant(Rational::new(3, 2)),
+            1 => variable(graph, 3, Stage::Construction),
+            2 => variable(graph, 4, Stage::Step),
+            index => variable(graph, index - 3, Stage::Iteration),
+        };
+    }
+    let (a, b) = (polynomial(graph, random, depth - 1), polynomial(graph, random, depth - 1));
+    match random.below(6) {
+        0 | 1 => graph.add(a, b),
+        2 => graph.subtract(a, b),
+        3 => graph.negate(a),
+        4 => {
+            let sine = graph.apply(Function::Sin, a);
+            graph.multiply(sine, b)
+        }
+        _ => graph.multiply(a, b),
+    }
+}
+
+#[test]
+fn multiplied_out_polynomials_keep_their_value() {
+    let mut changed = 0;
+    for seed in 0..1_500 {
+        let mut random = Random::new(seed);
+        let mut graph = Graph::default();
+        let depth = 1 + random.below(5);
+        let outputs: Vec<NodeId> = (0..3).map(|_| polynomial(&mut graph, &mut random, depth)).collect();
+        let opaque = BTreeSet::from([variable(&mut graph, 2, Stage::Iteration)]);
+        let Some(found) = expanded(&mut graph, &outputs, &opaque) else { continue };
+        changed += usize::from(found != outputs);
+        let values = random.matrix(5, 1);
+        let input = |input: Input| values.at(input.symbol.0, 0);
+        let (found, expected) = (graph.evaluate(&found, &input), graph.evaluate(&outputs, &input));
+        for (found, expected) in found.iter().zip(&expected) {
+            // Values of size one in at most 2⁵ leaves with coefficients of at most 3/2.
+            assert!((found - expected).abs() <= 1e-11 * (1.0 + expected.abs()), "{found} instead of {expected}");
+        }
+    }
+    assert!(changed > 500, "{changed}");
+}
+
+#[test]
+fn too_large_polynomials_are_left_alone() {
+    let mut graph = Graph::default();
+    let unknowns: Vec<NodeId> = (0..40).map(|at| variable(&mut graph, at, Stage::Iteration)).collect();
+    let sum = graph.sum(&unknowns);
+    let power = graph.power(sum, 4);
+    assert!(expanded(&mut graph, &[power], &BTreeSet::new()).is_none());
+}
+
+#[test]
+fn entries_by_structure() {
+    let world = World::new(&mut Random::new(1));
+    let mut graph = Graph::default();
+    let mut entry = |id, row, column| {
+        let unit = |index: usize, transposed| {
+            let factor = crate::mathematics::symbolic::Factor::Unit { index, size: 3, transposed };
+            let shape = if transposed { (1, 3) } else { (3, 1) };
+            crate::mathematics::symbolic::Expression::from_word(vec![factor], shape, &world.symbols)
+        };
+        let matrix = world.expression(id);
+        let entry = unit(row, true).times(&matrix, &world.symbols).times(&unit(column, false), &world.symbols);
+        Scalariser { graph: &mut graph, symbols: &world.symbols, given: BTreeMap::new() }.scalar(&entry)
+    };
+    assert_eq!(entry(world.symmetric, 0, 2), entry(world.symmetric, 2, 0));
+    assert_ne!(entry(world.a, 0, 2), entry(world.a, 2, 0));
+    let (off, on) = (entry(world.diagonal, 0, 2), entry(world.diagonal, 1, 1));
+    assert!(graph.is_zero(off) && !graph.is_zero(on));
+}
