@@ -3,8 +3,7 @@
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
 use liestep::groups::LieGroup as _;
-use liestep::motion;
-use liestep::motion::Declared;
+use liestep::motion::{self, Declared};
 use liestep::with::Compensated;
 use liestep::{SO3, Stepper};
 use nalgebra::{SVector, Vector3};

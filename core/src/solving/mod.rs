@@ -18,4 +18,5 @@ pub use guess::{Guess, Warm};
 pub(crate) use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Kick, Problem, Root};
 pub(crate) use reused_jacobian::safe;
-pub use solvability::{Solvability, TurningLimits};
+pub use solvability::Solvability;
+pub(crate) use solvability::TurningLimits;

@@ -13,6 +13,7 @@
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::groups::{Advected, LieGroup as _};
 use liestep::mechanics::Regular;
+use liestep::motion;
 use liestep::{SO3, Stepper};
 use nalgebra::Vector3;
 
@@ -25,7 +26,7 @@ struct Digest(u64);
 impl Digest {
     const EMPTY: Self = Self(0xcbf2_9ce4_8422_2325);
 
-    fn add<A: Advected<SO3>>(&mut self, state: &liestep::motion::Motion<SO3, A>) {
+    fn add<A: Advected<SO3>>(&mut self, state: &motion::Motion<SO3, A>) {
         let mut number = |number: f64| {
             for byte in number.to_bits().to_le_bytes() {
                 self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
