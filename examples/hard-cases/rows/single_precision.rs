@@ -128,7 +128,7 @@ fn folds(mut row: Row, motion: &Motion) -> Result<Row, Failure> {
     row = row.near("S1 fold", fold, 0.0815, 5e-5);
     let (stepper, mut state) = started(motion, 0.1)?;
     let named = match stepper.step(&mut state) {
-        Err(StepError::BeyondSolvable { largest, .. }) => f64::from(largest),
+        Err(StepError::BeyondSolvable { largest, .. }) => largest,
         _ => f64::NAN,
     };
     row = row.near("S2 largest step named", named, 0.0815, 1e-4);

@@ -1,13 +1,13 @@
 //! A private struct in a module, and one inside a function, with private fields and without advected parameters.
 
-use liestep::{SO3, Stepper, lagrangian};
 use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
+use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 mod inner {
-    use liestep::{SO3, lagrangian};
     use liestep::mechanics::DiagonalNonstandardInertia;
+    use liestep::{SO3, lagrangian};
 
     #[lagrangian(group = SO3, l_d = ((F - I) * inertia * (F - I).transpose()).trace() / (2.0 * h))]
     struct Body {

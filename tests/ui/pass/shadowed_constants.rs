@@ -2,8 +2,8 @@
 
 #![allow(dead_code)]
 
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep::groups::LieGroup as _;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 struct F;
