@@ -2,7 +2,6 @@
 
 use declarations::SixthOrderBody;
 use liestep::effects::PrincipalBody;
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
 use liestep::methods::{CompositionScheme, PreprocessedOrder};
 use liestep::{SO3, Stepper};

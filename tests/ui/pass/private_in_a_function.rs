@@ -17,7 +17,7 @@ mod inner {
     pub fn steps() -> u64 {
         use liestep::Stepper;
         use liestep::groups::LieGroup as _;
-        let inertia = DiagonalNonstandardInertia::new(nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
+        let inertia = DiagonalNonstandardInertia::from_diagonal(nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
         let stepper = Stepper::new(Body { inertia }, 0.01).unwrap();
         let state = stepper.start(SO3::identity(), nalgebra::Vector3::new(0.1, 0.0, 5.0)).unwrap();
         stepper.steps(state).take(3).last().unwrap().unwrap().steps()

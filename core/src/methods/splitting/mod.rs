@@ -1,6 +1,5 @@
 //! Kinetic-potential splittings: the free body's motion and the potential's kicks by turns.
 
-mod angle;
 mod bias;
 mod kick;
 mod kinetic_flow;
