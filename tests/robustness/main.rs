@@ -3,6 +3,7 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+mod any_method;
 mod checkpoints;
 mod command_lines;
 mod compensated;

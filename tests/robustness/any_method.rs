@@ -1,0 +1,276 @@
+//! Whatever is put around a step goes with every method: the table of methods and additions, walked through.
+//!
+//! What makes no sense doesn't compile: `tests/ui/fail/compensated_collocation.rs` and the like.
+
+use checks::random::Random;
+use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
+use liestep::effects::PrincipalBody;
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect};
+use liestep::methods::{CompositionScheme, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody};
+use liestep::motion::{Plan, Remedy};
+use liestep::with::{Checkpoint, CheckpointError, Compensable};
+use liestep::{SO3, StepError, Stepper};
+use nalgebra::{UnitQuaternion, Vector3};
+use workbench::measure::relative;
+
+/// The state of a stepper.
+type State<S, P> = liestep::State<SO3, <S as Effect>::Advected, <P as Plan<S>>::Kept>;
+
+fn attitude() -> SO3 {
+    UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, -0.3)).into()
+}
+
+const VELOCITY: Vector3<f64> = Vector3::new(0.5, 2.0, 3.0);
+
+fn started<S, P>(stepper: &Stepper<S, P>) -> State<S, P>
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    stepper.start(attitude(), VELOCITY).unwrap()
+}
+
+/// How far two motions are from each other.
+fn apart<S, P, K>(a: &State<S, P>, b: &liestep::State<SO3, S::Advected, K>) -> f64
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    relative(&a.momentum(), &b.momentum()).max((a.attitude().as_matrix() - b.attitude().as_matrix()).norm())
+}
+
+/// `run`, `steps` and `step` make the same steps, a copy goes on with the same bits, and time is counted.
+fn assert_runs<S, P>(name: &str, stepper: &Stepper<S, P>)
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    let start = started(stepper);
+    let (mut stepped, mut run) = (start, start);
+    for _ in 0..20 {
+        stepper.step(&mut stepped).unwrap();
+    }
+    stepper.run(&mut run, 20).unwrap();
+    // Splittings join the flows at the ends of two steps.
+    assert!(apart::<S, P, _>(&stepped, &run) < 1e-9, "{name}: run");
+    let last = stepper.steps(start).take(20).last().unwrap().unwrap();
+    assert_eq!(format!("{last:?}"), format!("{stepped:?}"), "{name}: steps");
+    assert!((stepper.time(&run) - 20.0 * stepper.step_size()).abs() < 1e-15, "{name}: time");
+    assert_eq!(run.steps(), 20, "{name}");
+}
+
+/// Without a force nothing changes, to the bit; a torque in space turns the momentum by its impulse.
+fn assert_is_forced<S, P>(name: &str, stepper: &Stepper<S, P>)
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    let mut plain = started(stepper);
+    let mut forced = plain;
+    for _ in 0..5 {
+        stepper.step(&mut plain).unwrap();
+        stepper.step_forced(&mut forced, &Vector3::zeros()).unwrap();
+    }
+    assert_eq!(format!("{plain:?}"), format!("{forced:?}"), "{name}: no force");
+    let before = forced.momentum();
+    stepper.step(&mut plain).unwrap();
+    let torque = Vector3::new(0.3, -0.2, 0.5);
+    stepper.step_forced(&mut forced, &torque).unwrap();
+    let impulse = torque * stepper.step_size();
+    let gained = forced.momentum() - plain.momentum();
+    // To first order in the step; the rest is how the body turns meanwhile.
+    let allowed = 2.0 * impulse.norm() * VELOCITY.norm() * stepper.step_size();
+    assert!((gained - impulse).norm() < allowed, "{name}: {gained} for {impulse}, from {before}");
+    // The next step goes on from what was pushed.
+    stepper.step(&mut forced).unwrap();
+    assert!((forced.momentum() - plain.momentum()).norm() > 0.5 * impulse.norm(), "{name}: the push is lost");
+    assert!(matches!(
+        stepper.step_forced(&mut forced, &Vector3::from_element(f64::NAN)),
+        Err(StepError::NonFinite { .. })
+    ));
+}
+
+/// A motion is taken over by the step of another method, and back.
+fn assert_adopts<S, P>(name: &str, stepper: &Stepper<S, P>)
+where
+    S: Effect<Scalar = f64, Group = SO3> + Clone + liestep::mechanics::Regular,
+    P: Plan<S>,
+{
+    let other = Stepper::new(stepper.scene().clone(), stepper.step_size()).unwrap();
+    let mut state = started(stepper);
+    stepper.run(&mut state, 7).unwrap();
+    let mut adopted = other.adopt(&state);
+    assert_eq!((adopted.attitude(), adopted.momentum()), (state.attitude(), state.momentum()), "{name}");
+    other.step(&mut adopted).unwrap();
+    let mut back = stepper.adopt(&adopted);
+    stepper.step(&mut back).unwrap();
+    stepper.step(&mut state).unwrap();
+    stepper.step(&mut state).unwrap();
+    assert!(apart::<S, P, _>(&back, &state) < 1e-4, "{name}: adopt");
+}
+
+/// The step of this state is solvable, so the largest is the step; a step of `−h` undoes it.
+fn assert_has_limits_and_an_inverse<S, P>(name: &str, stepper: &Stepper<S, P>)
+where
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone,
+    P: Plan<S>,
+{
+    let start = started(stepper);
+    assert_eq!(stepper.max_step(&start).to_bits(), stepper.step_size().to_bits(), "{name}: max_step");
+    let back = stepper.inverse().unwrap();
+    let mut state = start;
+    for _ in 0..10 {
+        stepper.step(&mut state).unwrap();
+    }
+    let mut state = back.adopt(&state);
+    for _ in 0..10 {
+        back.step(&mut state).unwrap();
+    }
+    assert!(apart::<S, P, _>(&start, &state) < 1e-12, "{name}: inverse");
+}
+
+/// Saved at random steps, a motion goes on with the same bits; another method refuses the file.
+fn assert_is_saved<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    let mut random = Random::new(11);
+    let mut state = started(stepper);
+    for _ in 0..4 {
+        stepper.run(&mut state, workbench::measure::steps_in(random.signed().abs(), 0.05)).unwrap();
+        let text = serde_json::to_string(&stepper.checkpoint(&state)).unwrap();
+        let stored: Checkpoint<f64> = serde_json::from_str(&text).unwrap();
+        let (mut resumed, mut on) = (stepper.resume(&stored).unwrap(), state);
+        for _ in 0..10 {
+            assert_eq!(stepper.step(&mut on), stepper.step(&mut resumed), "{name}");
+        }
+        assert_eq!(format!("{on:?}"), format!("{resumed:?}"), "{name}: resumed");
+    }
+    for other in own.iter() {
+        let refused = stepper.resume(other).unwrap_err();
+        assert!(
+            matches!(
+                refused,
+                CheckpointError::AnotherMethod { .. }
+                    | CheckpointError::AnotherParameter { .. }
+                    | CheckpointError::AnotherScene
+            ),
+            "{name}: {refused}"
+        );
+    }
+    own.push(stepper.checkpoint(&state));
+}
+
+/// All that goes with every plan.
+fn assert_all<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
+where
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone,
+    P: Plan<S>,
+{
+    assert_runs(name, stepper);
+    assert_is_forced(name, stepper);
+    assert_adopts(name, stepper);
+    assert_has_limits_and_an_inverse(name, stepper);
+    assert_is_saved(name, stepper, own);
+}
+
+/// A plan, and the same with remedies around it, which change nothing where there is a step.
+fn assert_with_remedies<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
+where
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone,
+    P: Plan<S> + Clone,
+{
+    assert_all(name, stepper, own);
+    let substeps = stepper.clone().or_substeps(8);
+    assert_all(&format!("{name}, or substeps"), &substeps, own);
+    let fallback = stepper.clone().or_fallback(stepper.clone()).unwrap();
+    assert_all(&format!("{name}, or fallback"), &fallback, own);
+    let (mut plain, mut first, mut second) = (started(stepper), started(&substeps), started(&fallback));
+    for _ in 0..10 {
+        let report = stepper.step(&mut plain).unwrap();
+        assert_eq!(substeps.step(&mut first).unwrap(), report, "{name}");
+        assert_eq!(fallback.step(&mut second).unwrap(), report, "{name}");
+    }
+    assert_eq!(format!("{plain:?}"), format!("{first:?}"), "{name}");
+    assert_eq!(format!("{plain:?}"), format!("{second:?}"), "{name}");
+}
+
+/// And compensated, before and after.
+fn assert_everything<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
+where
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone,
+    P: Plan<S> + Compensable + Clone,
+{
+    assert_with_remedies(name, stepper, own);
+    let compensated = stepper.clone().compensated();
+    assert_with_remedies(&format!("{name}, compensated"), &compensated, own);
+    assert_all(&format!("{name}, or substeps, compensated"), &stepper.clone().or_substeps(8).compensated(), own);
+    // The same map but for roundings.
+    let (mut plain, mut carrying) = (started(stepper), started(&compensated));
+    stepper.run(&mut plain, 50).unwrap();
+    compensated.run(&mut carrying, 50).unwrap();
+    assert!(apart::<S, P, _>(&plain, &carrying) < 1e-13, "{name}: compensated");
+}
+
+#[test]
+fn every_method_goes_with_every_addition() {
+    let (h, mut own) = (0.01, Vec::new());
+    let top = HeavyTop::asymmetric();
+    assert_everything("its own step", &Stepper::new(top.clone(), h).unwrap(), &mut own);
+    for scheme in [CompositionScheme::SUZUKI_4, CompositionScheme::KAHAN_LI_6] {
+        assert_everything(scheme.name(), &Stepper::composed(top.clone(), h, scheme).unwrap(), &mut own);
+    }
+    let flow = SplitBody::<9>::new(&top.ordinary_inertia()).unwrap();
+    for scheme in [SplittingScheme::STRANG, SplittingScheme::FORCE_GRADIENT_4] {
+        assert_everything(scheme.name(), &Stepper::split(top.clone(), h, flow, scheme).unwrap(), &mut own);
+    }
+    let symmetric = HeavyTop::thesis();
+    let flow = SymmetricBody::new(&symmetric.ordinary_inertia()).unwrap();
+    let split = Stepper::split(symmetric, h, flow, SplittingScheme::NYSTROM_11).unwrap();
+    assert_everything("exact", &split, &mut own);
+    // Collocation compensates its own sums.
+    assert_with_remedies("2 stages", &Stepper::collocated::<1>(top.clone(), h).unwrap(), &mut own);
+    assert_with_remedies("8 stages", &Stepper::collocated::<4>(top, h).unwrap(), &mut own);
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    let preprocessed = Stepper::preprocessed(PrincipalBody { J_d }, h, PreprocessedOrder::Ten).unwrap();
+    assert_everything("preprocessed", &preprocessed, &mut own);
+}
+
+/// The thesis' published step has no solution for (3.13), nor for its compositions: every way around it says so, and
+/// keeps what every step keeps.
+#[test]
+fn every_remedy_is_taken_where_there_is_no_step() {
+    let Motion { top, attitude, velocity, .. } = Motion::looping();
+    let other = |h| Stepper::new(CayleyTop::of(&HeavyTop::thesis()), h).unwrap();
+    let vertical = |momentum: &Vector3<f64>, w: &Vector3<f64>| momentum.dot(w);
+
+    let declared = Stepper::new(top.clone(), 0.1).unwrap();
+    let mut state = declared.start(attitude, velocity).unwrap();
+    let start = vertical(&state.momentum(), &state.advected());
+    assert!(matches!(declared.step(&mut state), Err(StepError::BeyondSolvable { .. })));
+    assert!(declared.max_step(&state) < 0.1 && declared.max_step(&state) > 0.05);
+
+    let composed = Stepper::composed(top, 0.2, CompositionScheme::SUZUKI_4).unwrap();
+    let mut state = composed.start(attitude, velocity).unwrap();
+    let Err(StepError::BeyondSolvable { largest, .. }) = composed.step(&mut state) else { panic!("a step") };
+    let part = Stepper::composed(composed.scene().clone(), largest, CompositionScheme::SUZUKI_4).unwrap();
+    assert!(part.step(&mut part.adopt(&state)).is_ok(), "the largest step that is named, {largest}, is one");
+    let mut substeps = composed.clone().or_substeps(16).compensated();
+    let mut state = substeps.start(attitude, velocity).unwrap();
+    for _ in 0..10 {
+        let report = substeps.step(&mut state).unwrap();
+        assert!(matches!(report.remedy, Some(Remedy::Substeps(2 | 4))), "{report:?}");
+    }
+    assert!((vertical(&state.momentum(), &state.advected()) / start - 1.0).abs() < 1e-14);
+    substeps = composed.clone().or_substeps(1).compensated();
+    assert!(substeps.step(&mut state).is_err());
+
+    let fallback = composed.or_fallback(other(0.2)).unwrap();
+    let mut state = fallback.start(attitude, velocity).unwrap();
+    for _ in 0..10 {
+        assert_eq!(fallback.step(&mut state).unwrap().remedy, Some(Remedy::Fallback));
+    }
+    assert!((vertical(&state.momentum(), &state.advected()) / start - 1.0).abs() < 1e-13);
+    assert!(declared.or_fallback(other(0.05)).is_err(), "steps of another length");
+}
