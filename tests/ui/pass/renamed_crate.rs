@@ -25,7 +25,6 @@ struct Top {
 
 fn main() {
     use nalgebra::Vector3;
-    use physics::steps::groups::LieGroup as _;
     use physics::steps::{NonstandardInertia, SO3, Stepper};
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let stepper = Stepper::new(Top { inertia, rho: Vector3::z(), up: Vector3::z() }, 0.01).unwrap();
