@@ -95,5 +95,5 @@ pub use motion::{State, Stepper};
 pub use nalgebra;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

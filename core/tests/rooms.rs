@@ -41,7 +41,9 @@ fn named(code: &str) -> BTreeSet<&str> {
 
 fn check(room: &str, path: &Path, mistakes: &mut Vec<String>) {
     if path.is_dir() {
-        fs::read_dir(path).unwrap().for_each(|entry| check(room, &entry.unwrap().path(), mistakes));
+        for entry in fs::read_dir(path).unwrap() {
+            check(room, &entry.unwrap().path(), mistakes);
+        }
         return;
     }
     // Tests may import what they like.

@@ -34,7 +34,7 @@
 //! | [`Torque`] | constant in the body |
 //!
 //! A torque that is given anew each step isn't an effect but data of the step:
-//! [`Stepper::step_with`](crate::motion::Stepper::step_with).
+//! [`Stepper::step_forced`](crate::motion::Stepper::step_forced).
 
 // The letters of the field.
 #![allow(non_snake_case)]

@@ -106,6 +106,16 @@ impl<S: Effect> Stepper<S> {
 }
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
+    /// A scene and a plan of one's own, folded for it; `examples/how-to-add-a-method.rs` has one.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] for a parameter of the scene that can't be used.
+    pub fn with_plan(scene: S, plan: P) -> Result<Self, SetupError> {
+        scene.validate()?;
+        Ok(Self { scene, plan })
+    }
+
     /// A motion from an attitude (body to space) and a body velocity, on SO(3) in rad/s.
     ///
     /// The momentum is that of the continuous Lagrangian, `μ_0 = J Ω_0` for a rigid body: the half kick of the

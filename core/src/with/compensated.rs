@@ -223,6 +223,12 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
     }
 
     #[inline(always)]
+    fn turned(&self, increment: &G::Matrix) -> A {
+        let Self { motion, carry } = self;
+        carried_sum(&motion.advected, &motion.advected.change(increment), &carry.advected).0
+    }
+
+    #[inline(always)]
     fn push(&mut self, change: &G::Vector) {
         let momentum = carried_sum(&self.motion.momentum, change, &self.carry.momentum);
         (self.motion.momentum, self.carry.momentum) = momentum;

@@ -1,6 +1,5 @@
 //! All parameters in single precision.
 
-use liestep::groups::LieGroup as _;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 

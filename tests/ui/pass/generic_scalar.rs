@@ -2,7 +2,6 @@
 
 use core::fmt::Debug;
 
-use liestep::groups::LieGroup as _;
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{RealField, Vector3};

@@ -1,6 +1,5 @@
 //! Declarations inside `macro_rules!`, with parts from either side.
 
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;

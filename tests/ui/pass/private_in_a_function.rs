@@ -1,6 +1,5 @@
 //! A private struct in a module, and one inside a function, with private fields and without advected parameters.
 
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
 use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
@@ -16,7 +15,6 @@ mod inner {
 
     pub fn steps() -> u64 {
         use liestep::Stepper;
-        use liestep::groups::LieGroup as _;
         let inertia = DiagonalNonstandardInertia::from_diagonal(nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
         let stepper = Stepper::new(Body { inertia }, 0.01).unwrap();
         let state = stepper.start(SO3::identity(), nalgebra::Vector3::new(0.1, 0.0, 5.0)).unwrap();

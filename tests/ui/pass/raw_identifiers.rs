@@ -1,6 +1,5 @@
 //! Keywords as names of fields, of the advected parameter and of a `let`.
 
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;

@@ -2,7 +2,6 @@
 
 #![allow(dead_code)]
 
-use liestep::groups::LieGroup as _;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 

@@ -2,7 +2,6 @@
 
 #![allow(dead_code, non_camel_case_types, non_upper_case_globals)]
 
-use liestep::groups::LieGroup as _;
 use liestep::{SO3, Stepper, lagrangian};
 
 mod core {}
