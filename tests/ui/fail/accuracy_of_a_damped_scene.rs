@@ -1,7 +1,6 @@
 use liestep::effects::{Drag, RigidBody};
 use liestep::{SO3, Stepper};
 use liestep::accuracy::Accuracy;
-use liestep::groups::LieGroup;
 use liestep::mechanics::Sum;
 use nalgebra::Vector3;
 

@@ -18,7 +18,6 @@ mod groups {
 
 use groups::Affine;
 use liestep::{Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
 use liestep::numbers::Real;
 use nalgebra::{Matrix2, Vector2};
