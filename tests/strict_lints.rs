@@ -4,7 +4,6 @@
 #![deny(clippy::all, clippy::pedantic, clippy::nursery)]
 #![forbid(unsafe_code)]
 
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
@@ -49,7 +48,7 @@ fn steps() {
     let stepper = Stepper::new(Top { inertia, lever: z, up: z }, 0.01).unwrap();
     let mut state = stepper.start(SO3::identity(), velocity).unwrap();
     assert!(stepper.step(&mut state).is_ok());
-    let inertia = DiagonalNonstandardInertia::new(Vector3::new(2.0, 2.0, 1.0)).unwrap();
+    let inertia = DiagonalNonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let stepper = Stepper::new(Ball { inertia, lever: z, up: z, field: velocity }, 0.01).unwrap();
     let mut state = stepper.start(SO3::identity(), velocity).unwrap();
     assert!(stepper.step(&mut state).is_ok());

@@ -1,7 +1,8 @@
 //! Scenes with exact states, the methods that integrate them, and what accuracy costs each in time.
 
 // A library of this repository alone.
-#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
+#![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 pub mod asked;
 pub mod figure;

@@ -4,7 +4,8 @@
 //! What only the longer examples and the tests need is in packages of its own, so that the first example is built soon.
 
 // A library of this repository alone.
-#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
+#![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 pub mod args;
 pub mod csv;
@@ -16,6 +17,7 @@ pub mod output;
 pub mod plot;
 pub mod progress;
 pub mod run;
+pub mod switched;
 pub mod table;
 mod tenths;
 pub mod top_equations;

@@ -3,7 +3,8 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 // A library of this repository alone.
-#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc, clippy::must_use_candidate)]
+#![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
+#![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 mod cayley_top;
 mod elastic_flow;

@@ -76,7 +76,7 @@ impl Motion {
         // The thesis' cases give their initial values apart, in angles too; elsewhere these are the state at zero.
         let apart = !data["initial"].is_null();
         let (m, g) = if apart { (number(&data["m"]), number(&data["g"])) } else { (number(&data["mg"]), 1.0) };
-        let J_d = DiagonalNonstandardInertia::new(vector(&data["J_d"])).unwrap();
+        let J_d = DiagonalNonstandardInertia::from_diagonal(vector(&data["J_d"])).unwrap();
         let top = HeavyTop { J_d, m, g, rho: vector(&data["rho"]), up: Vector3::z() };
         let end = |state: &Value| {
             let attitude = if apart { &state["R"] } else { &state["R_row_major"] };

@@ -3,7 +3,6 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
-use liestep::groups::LieGroup as _;
 use liestep::methods::{KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme};
 use liestep::{SO3, Stepper};
 use nalgebra::Vector3;

@@ -215,7 +215,7 @@ struct HeavyTop<T: Real> {
 
 fn heavy_top<T: Real + RealField>() -> HeavyTop<T> {
     let diagonal = Vector3::new(2.0, 2.0, 1.0).map(convert);
-    let inertia = DiagonalNonstandardInertia::new(diagonal).expect("a body");
+    let inertia = DiagonalNonstandardInertia::from_diagonal(diagonal).expect("a body");
     HeavyTop { J_d: inertia, m: T::one(), g: convert(9.81), rho: Vector3::z(), up: Vector3::z() }
 }
 

@@ -15,8 +15,10 @@
 
 mod counting;
 mod stepping;
-mod switched;
 
+use core::hint::black_box;
+
+use declarations::HeavyTop;
 use liestep::effects::{
     CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
     RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
@@ -24,25 +26,10 @@ use liestep::effects::{
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Regular};
 use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
+use workbench::switched::Switched;
 
 use counting::{Uncounted, built, instructions};
 use stepping::{Count, Time, Visit};
-use switched::Switched;
-
-/// (3.13) in one piece.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * m * g * w.dot(&(rho + F * rho)),
-)]
-struct HeavyTop {
-    J_d: DiagonalNonstandardInertia,
-    m: f64,
-    g: f64,
-    rho: Vector3<f64>,
-    up: Vector3<f64>,
-}
 
 /// Body and rotor in one piece.
 #[lagrangian(
@@ -64,8 +51,8 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body + gravity", body + gravity);
     visit.visit("heavy top in one piece", HeavyTop { J_d, m, g, rho, up });
     visit.visit("body + gravity with m = 0", body + Gravity { m: 0.0, ..gravity });
-    visit.visit("body + gravity, flag off", body + Switched { effect: gravity, on: false });
-    visit.visit("body + gravity, flag on", body + Switched { effect: gravity, on: true });
+    visit.visit("body + gravity, flag off", body + black_box(Switched(None::<Gravity>)));
+    visit.visit("body + gravity, flag on", body + black_box(Switched(Some(gravity))));
     visit.visit("body + gravity gradient", body + GravityGradient { GM: 1.0, r: 1.0, J, direction: up });
     visit.visit("body + dipole", body + Dipole { moment: rho, field: up });
     visit.visit("body + spring", body + Spring { k: 1.0, length: 0.5, at: rho, anchor: up });

@@ -1,7 +1,6 @@
 //! Random states from a fixed seed: `SplitMix64` of Steele, Lea and Flood (2014), so that a failure repeats.
 
 use liestep::SO3;
-use liestep::groups::LieGroup as _;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 /// A stream of pseudo-random numbers.

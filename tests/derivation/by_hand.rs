@@ -1,7 +1,7 @@
 //! The run-time half works without the macro: the heavy top (3.13) written by hand in Cayley form.
 
 use liestep::accuracy::{Accuracy, Candidates};
-use liestep::groups::{CayleyRetraction, LieGroup as _};
+use liestep::groups::CayleyRetraction;
 use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, SceneVisitor, WithKinetic};
 use liestep::methods::{SplittingScheme, SymmetricBody};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};

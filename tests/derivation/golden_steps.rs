@@ -20,7 +20,7 @@ fn golden_entries_of_the_trapezoidal_top_are_reproduced() {
     assert_eq!(entries.len(), 4, "two bodies, two steps");
     for entry in entries {
         let top = HeavyTop {
-            J_d: DiagonalNonstandardInertia::new(vector(&entry["J_d"])).unwrap(),
+            J_d: DiagonalNonstandardInertia::from_diagonal(vector(&entry["J_d"])).unwrap(),
             m: 1.0,
             g: number(&entry["mg"]),
             rho: vector(&entry["rho"]),

@@ -2,7 +2,6 @@
 
 use checks::any_scalar::Top;
 use checks::random::Random;
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::methods::CompositionScheme;
 use liestep::motion::Motion;

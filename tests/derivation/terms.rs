@@ -108,7 +108,7 @@ fn top<T: RealField + Copy>(seed: u64) -> Top<T> {
 fn diagonal_top<T: RealField + Copy>(seed: u64) -> DiagonalTop<T> {
     let mut r = Random::new(seed);
     let diagonal = r.vector().map(|x| convert(0.1 + x.abs()));
-    let J_d = DiagonalNonstandardInertia::new(diagonal).unwrap();
+    let J_d = DiagonalNonstandardInertia::from_diagonal(diagonal).unwrap();
     DiagonalTop { J_d, m: real(0.7), g: real(9.81), rho: vector(&mut r), up: vector(&mut r) }
 }
 

@@ -1,7 +1,6 @@
 //! Torques that are given anew each step.
 
 use liestep::effects::{Drag, Gravity, RigidBody, Thrust, Torque};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Regular;
 use liestep::{NonstandardInertia, SO3, State, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};

@@ -3,7 +3,6 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{Effect, Scalar};
 use liestep::with::{Checkpoint, CheckpointError, Stored};
 use liestep::{SO3, Stepper};

@@ -63,7 +63,7 @@ fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Ve
                 }
             }
             done = steps;
-            found[decade].push(defects(if compensated { &*kept } else { &*plain }, vertical));
+            found[decade].push(defects(if compensated { &kept } else { &plain }, vertical));
         }
     }
     found.iter().map(|defects| sizes(defects)).collect()

@@ -232,7 +232,7 @@ fn check_step_error(
 /// One input, and what came of it.
 fn outcome(inputs: &mut Inputs) -> &'static str {
     let diagonal = inputs.diagonal();
-    let J_d = match DiagonalNonstandardInertia::new(diagonal) {
+    let J_d = match DiagonalNonstandardInertia::from_diagonal(diagonal) {
         Ok(inertia) => inertia,
         Err(error) => return check_inertia_error(&Matrix3::from_diagonal(&diagonal), error),
     };

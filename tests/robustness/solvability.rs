@@ -3,7 +3,6 @@
 use checks::random::Random;
 use declarations::{CayleyTop, FreeBody, FullTop, HeavyTop, Motion, Top as _};
 use liestep::effects::{Gravity, RigidBody};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, Regular};
 use liestep::motion::{DiscreteLiePoisson, Solvability};
 use liestep::{NonstandardInertia, SO3, StepError, Stepper};
@@ -124,7 +123,7 @@ fn s1_the_largest_step_of_extreme_momenta() {
 #[test]
 fn s1_a_lost_jacobian_is_no_solution() {
     let size = 7.477_080_264_543_605e20;
-    let J_d = DiagonalNonstandardInertia::new(Vector3::new(2.0, size, size)).unwrap();
+    let J_d = DiagonalNonstandardInertia::from_diagonal(Vector3::new(2.0, size, size)).unwrap();
     let (weight, rho) = (3.033_333_333_333_333, Vector3::repeat(size));
     let top = HeavyTop { J_d, m: weight, g: 3.689_588_068_472_114e19, rho, up: rho };
     let stepper = Stepper::new(top, 1.0).unwrap();

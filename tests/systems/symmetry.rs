@@ -116,7 +116,8 @@ fn assert_component<L: System<N, D>, const N: usize, const D: usize>(
 fn bodies_with_an_axis() {
     let symmetric = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 0.5)).unwrap();
     let mut top = samples::heavy_top();
-    (top.J_d, top.rho) = (DiagonalNonstandardInertia::new(Vector3::new(1.0, 1.0, 0.5)).unwrap(), Vector3::z() * 0.4);
+    (top.J_d, top.rho) =
+        (DiagonalNonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 0.5)).unwrap(), Vector3::z() * 0.4);
     assert_component(top, samples::on_so3(), 2);
     let mut top = samples::cayley_top();
     (top.J, top.rho) = (Inertia::from_principal_moments(Vector3::new(2.0, 2.0, 1.0)).unwrap(), Vector3::z() * 0.4);

@@ -77,6 +77,7 @@ fn inertia_errors() {
     let errors = [
         InertiaError::NotFinite,
         InertiaError::NotSymmetric { defect: 0.125 },
+        InertiaError::NotDiagonal { largest: 0.125 },
         InertiaError::TriangleInequality { smallest: -0.25 },
         InertiaError::Singular { smallest: 1e-30 },
         InertiaError::OutOfRange { trace: 1e200 },
@@ -85,6 +86,7 @@ fn inertia_errors() {
         let parts: &[&str] = match error {
             InertiaError::NotFinite => &["inertia", "not finite"],
             InertiaError::NotSymmetric { .. } => &["not symmetric", "1.25e-1", "more than rounding"],
+            InertiaError::NotDiagonal { .. } => &["not diagonal", "1.25e-1", "principal axes"],
             InertiaError::TriangleInequality { .. } => &["no body", "-2.5e-1", "exceeds the sum of the others"],
             InertiaError::Singular { .. } => &["singular", "1e-30"],
             InertiaError::OutOfRange { .. } => &["trace", "1e200", "out of range"],

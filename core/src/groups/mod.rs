@@ -49,6 +49,7 @@ pub use liestep_macros::matrix_group;
 pub(crate) use matrix_group::basis;
 pub use matrix_group::{MatrixGroup, NotInGroup};
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
+pub(crate) use rotation_functions::rotation_coefficients;
 pub use se2::{SE2, SE2Generators};
 pub use se3::{SE3, SE3Generators};
 pub use sl2::{SL2, SL2Generators};
@@ -59,8 +60,9 @@ pub use translations::{R1, R2, R3, TranslationGenerators};
 
 use core::fmt::Debug;
 
+use nalgebra::Matrix3;
+
 use crate::numbers::{Coordinates, Entries, Mask, Real, sum};
-use crate::solving::TurningLimits;
 
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
@@ -135,13 +137,9 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// `Ad*_F μ − μ` for `F = I + D`.
     fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector;
 
-    /// Bounds that decide whether the momentum equation `U(F) = a` has a solution, where they are proved for this `U`.
-    ///
-    /// The kinetic part has the inertia `J`; `unknown` is `h U(F)`, where coordinates reach `F`.
-    fn turning_limits(
-        _unknown: &dyn Fn(&Self) -> Option<Self::Vector>,
-        _inertia: &<Self::Vector as Coordinates<Self::Scalar>>::Square,
-    ) -> Option<TurningLimits> {
+    /// The element that is this rotation, if the group is that of the rotations of space: what is proved of rotations
+    /// holds for it.
+    fn from_rotation(_rotation: Matrix3<Self::Scalar>) -> Option<Self> {
         None
     }
 

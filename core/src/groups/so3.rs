@@ -6,7 +6,6 @@ use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vec
 
 use super::LieGroup;
 use crate::numbers::{Mask, Real, gathered, real};
-use crate::solving::{TurningLimits, solvability};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -64,7 +63,55 @@ impl<T: Real> SO3<T> {
     }
 }
 
+impl<T: Real> SO3<T> {
+    /// No rotation.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self(Matrix3::identity())
+    }
+
+    /// The rotation back.
+    #[must_use]
+    #[inline]
+    pub fn inverse(&self) -> Self {
+        Self(self.0.transpose())
+    }
+
+    /// `R S`: first `S`, then this.
+    #[must_use]
+    #[inline]
+    pub fn compose(&self, other: &Self) -> Self {
+        Self(self.0 * other.0)
+    }
+}
+
 impl<T: RealField + Copy> SO3<T> {
+    /// The attitude of a top with the Euler angles precession `φ`, nutation `θ` and spin `ψ`, rad:
+    /// `R = exp(φ ẑ) exp(θ x̂) exp(ψ ẑ)`.
+    ///
+    /// Other sequences are in nalgebra, whose rotations convert both ways.
+    #[must_use]
+    pub fn from_euler_angles(precession: T, nutation: T, spin: T) -> Self {
+        let [z, x] = [Vector3::z_axis(), Vector3::x_axis()];
+        let tilted = Rotation3::from_axis_angle(&z, precession) * Rotation3::from_axis_angle(&x, nutation);
+        Self((tilted * Rotation3::from_axis_angle(&z, spin)).into_inner())
+    }
+
+    /// Precession, nutation (0 to π) and spin of this attitude, as [`from_euler_angles`](Self::from_euler_angles) takes
+    /// them, rad.
+    ///
+    /// Upright or hanging, only the sum or the difference of precession and spin is defined; the spin is zero then.
+    #[must_use]
+    pub fn euler_angles(&self) -> [T; 3] {
+        let r = &self.0;
+        let across = r.m13.hypot(r.m23);
+        let nutation = across.atan2(r.m33);
+        if across <= T::default_epsilon() {
+            return [r.m21.atan2(r.m11), nutation, T::zero()];
+        }
+        [r.m13.atan2(-r.m23), nutation, r.m31.atan2(r.m32)]
+    }
+
     /// The rotation as a unit quaternion.
     #[must_use]
     pub fn to_quaternion(&self) -> UnitQuaternion<T> {
@@ -87,6 +134,18 @@ where
 {
     fn from(quaternion: UnitQuaternion<T>) -> Self {
         Self(quaternion.to_rotation_matrix().into_inner())
+    }
+}
+
+impl<T: RealField + Copy> From<SO3<T>> for UnitQuaternion<T> {
+    fn from(attitude: SO3<T>) -> Self {
+        attitude.to_quaternion()
+    }
+}
+
+impl<T: Real> From<SO3<T>> for Rotation3<T> {
+    fn from(attitude: SO3<T>) -> Self {
+        Self::from_matrix_unchecked(attitude.0)
     }
 }
 
@@ -216,8 +275,8 @@ impl<T: Real> LieGroup for SO3<T> {
         transpose_mul(increment, momentum)
     }
 
-    fn turning_limits(unknown: &dyn Fn(&Self) -> Option<Vector3<T>>, inertia: &Matrix3<T>) -> Option<TurningLimits> {
-        solvability::of_rotations(unknown, inertia)
+    fn from_rotation(rotation: Matrix3<T>) -> Option<Self> {
+        Some(Self(rotation))
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
@@ -246,4 +305,43 @@ pub(crate) fn transpose_mul<T: Real>(a: &Matrix3<T>, v: &Vector3<T>) -> Vector3<
         a.m12 * v.x + a.m22 * v.y + a.m32 * v.z,
         a.m13 * v.x + a.m23 * v.y + a.m33 * v.z,
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SO3;
+    use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+
+    #[test]
+    fn conversions_go_both_ways() {
+        let quaternion = UnitQuaternion::from_scaled_axis(Vector3::new(0.3, -1.1, 0.7));
+        let attitude = SO3::from(quaternion);
+        assert!((UnitQuaternion::from(attitude).coords - quaternion.coords).norm() < 1e-15);
+        assert_eq!(SO3::from(Rotation3::from(attitude)), attitude);
+        let back = attitude.compose(&attitude.inverse());
+        assert!((back.as_matrix() - SO3::identity().as_matrix()).norm() < 1e-15);
+    }
+
+    /// The matrix of a top's Euler angles, typed from its three factors.
+    #[test]
+    fn euler_angles_are_precession_nutation_and_spin() {
+        let about_z = |a: f64| Matrix3::new(a.cos(), -a.sin(), 0.0, a.sin(), a.cos(), 0.0, 0.0, 0.0, 1.0);
+        let about_x = |a: f64| Matrix3::new(1.0, 0.0, 0.0, 0.0, a.cos(), -a.sin(), 0.0, a.sin(), a.cos());
+        for [precession, nutation, spin] in [[0.4, 1.1, -2.0], [-3.0, 0.01, 3.0], [2.0, 3.1, 0.0], [1.2, 1e-9, 0.7]] {
+            let attitude = SO3::from_euler_angles(precession, nutation, spin);
+            let expected = about_z(precession) * about_x(nutation) * about_z(spin);
+            assert!((attitude.as_matrix() - expected).norm() < 1e-15);
+            let found = attitude.euler_angles();
+            let error = Vector3::from(found) - Vector3::new(precession, nutation, spin);
+            assert!(error.norm() < 1e-6 * (1.0 + 1e-9 / nutation), "{found:?}");
+        }
+        // At the poles one angle is left, and the attitude is the same all the same.
+        for nutation in [0.0, core::f64::consts::PI] {
+            let attitude = SO3::from_euler_angles(0.4, nutation, 0.3);
+            let [precession, nutation, spin] = attitude.euler_angles();
+            assert!(spin == 0.0);
+            let again = SO3::from_euler_angles(precession, nutation, spin);
+            assert!((again.as_matrix() - attitude.as_matrix()).norm() < 1e-15);
+        }
+    }
 }

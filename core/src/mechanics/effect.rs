@@ -5,7 +5,7 @@ use core::fmt::Debug;
 use crate::error::SetupError;
 use crate::groups::{Advected, LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::kinetic_part::KineticPart;
+use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::numbers::{Coordinates, Real};
 
@@ -200,6 +200,25 @@ pub trait Effect {
     /// `Ad*_F` of the part of the diamond that depends on `F`, written in the new `w⁺`; `increment` is `F − I`.
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;
 }
+
+/// An effect with a kinetic part, so that it can be stepped; every such [`Effect`] is.
+///
+/// This is the first half of what the literature calls a regular Lagrangian. The other half, that the inertia isn't
+/// singular, depends on the parameters and is checked by [`Stepper::new`](crate::motion::Stepper::new).
+pub trait Regular: Effect {}
+
+impl<E: Effect> Regular for E where E::Kinetic: Moves<E> {}
+
+/// The kinetic part of the effect `E`; names it in the message where there is none.
+#[diagnostic::on_unimplemented(
+    message = "`{E}` has no kinetic part, so it can't move by itself",
+    label = "has no kinetic part",
+    note = "add it to a body, as in `RigidBody {{ J_d }} + Gravity {{ m, g, rho, up }}`",
+    note = "a kinetic part is a term quadratic in `F - I` and divided by `h`: it makes a momentum determine a velocity"
+)]
+pub trait Moves<E: ?Sized> {}
+
+impl<E: ?Sized> Moves<E> for WithKinetic {}
 
 /// `μ = Jξ + s(w)`: the momentum of the body velocity `ξ`.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {

@@ -28,6 +28,11 @@ pub enum InertiaError {
         /// The largest `|A_ij − A_ji|`, kg m².
         defect: f64,
     },
+    /// An entry off the diagonal is larger than rounding, where a diagonal matrix is asked for.
+    NotDiagonal {
+        /// The largest of them, kg m².
+        largest: f64,
+    },
     /// `J_d` has a negative eigenvalue, so the principal moments violate the triangle inequality.
     TriangleInequality {
         /// The smallest eigenvalue of `J_d`, kg m².
@@ -55,6 +60,10 @@ impl fmt::Display for InertiaError {
                     "the inertia is not symmetric: two entries differ by {defect:e}, more than rounding; give it symmetric"
                 )
             }
+            Self::NotDiagonal { largest } => write!(
+                f,
+                "the inertia is not diagonal: an entry off the diagonal is {largest:e}; take `NonstandardInertia`, or the principal axes as the body's"
+            ),
             Self::TriangleInequality { smallest } => write!(
                 f,
                 "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given"
@@ -148,6 +157,12 @@ impl<T: RealField + Copy> NonstandardInertia<T> {
     pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
         Self::from_diagonal(nonstandard_diagonal(&moments))
     }
+
+    /// The principal moments of the ordinary inertia `J`, kg m², the smallest first.
+    #[must_use]
+    pub fn principal_moments(&self) -> Vector3<T> {
+        self.to_inertia().principal_moments()
+    }
 }
 
 impl<T: Real> NonstandardInertia<T> {
@@ -165,12 +180,26 @@ impl<T: Real> NonstandardInertia<T> {
 }
 
 impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
+    /// From the diagonal matrix `J_d`, kg m².
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where the matrix isn't that of a body, or isn't diagonal to rounding.
+    pub fn new(matrix: Matrix3<T>) -> Result<Self, InertiaError> {
+        let checked = check(&matrix)?;
+        let beside = (checked - Matrix3::from_diagonal(&checked.diagonal())).amax();
+        if beside > T::default_epsilon() * checked.amax() * real(64.0) {
+            return Err(InertiaError::NotDiagonal { largest: reported(beside) });
+        }
+        Ok(Self(checked.diagonal()))
+    }
+
     /// From the diagonal of `J_d` in principal axes, kg m²; not the principal moments.
     ///
     /// # Errors
     ///
     /// [`InertiaError`], where the matrix isn't that of a body.
-    pub fn new(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
+    pub fn from_diagonal(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
         check(&Matrix3::from_diagonal(&diagonal)).map(|_| Self(diagonal))
     }
 
@@ -180,7 +209,7 @@ impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
     ///
     /// [`InertiaError`], where no body has these moments.
     pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
-        Self::new(nonstandard_diagonal(&moments))
+        Self::from_diagonal(nonstandard_diagonal(&moments))
     }
 }
 
@@ -190,6 +219,13 @@ impl<T: Real> DiagonalNonstandardInertia<T> {
     pub(crate) fn of_moments_unchecked(moments: &Vector3<T>) -> Self {
         let half = (moments.x + moments.y + moments.z) * real(0.5);
         Self(moments.map(|moment| half - moment))
+    }
+
+    /// The principal moments of the ordinary inertia `J`, kg m², in the order of the axes.
+    #[must_use]
+    pub fn principal_moments(&self) -> Vector3<T> {
+        let d = &self.0;
+        Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y)
     }
 
     /// The diagonal of `J_d`, kg m².
@@ -216,13 +252,30 @@ impl<T: RealField + Copy> Inertia<T> {
         Ok(Self(symmetric_part(&matrix)))
     }
 
+    /// From the diagonal of `J` in principal axes, kg m²: the principal moments.
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], where no body has these moments.
+    pub fn from_diagonal(diagonal: Vector3<T>) -> Result<Self, InertiaError> {
+        Self::new(Matrix3::from_diagonal(&diagonal))
+    }
+
     /// From the principal moments, kg m².
     ///
     /// # Errors
     ///
     /// [`InertiaError`], where no body has these moments.
     pub fn from_principal_moments(moments: Vector3<T>) -> Result<Self, InertiaError> {
-        Self::new(Matrix3::from_diagonal(&moments))
+        Self::from_diagonal(moments)
+    }
+
+    /// The principal moments, kg m², the smallest first.
+    #[must_use]
+    pub fn principal_moments(&self) -> Vector3<T> {
+        let mut moments = self.0.symmetric_eigenvalues();
+        moments.as_mut_slice().sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
+        moments
     }
 }
 
@@ -299,4 +352,40 @@ fn check<T: RealField + Copy>(nonstandard: &Matrix3<T>) -> Result<Matrix3<T>, In
         return Err(InertiaError::Singular { smallest: reported(smallest_moment) });
     }
     Ok(symmetric)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
+    use nalgebra::{Matrix3, Vector3};
+
+    #[test]
+    fn the_same_body_by_three_constructors_of_three_types() {
+        let (moments, diagonal) = (Vector3::new(1.0, 2.0, 2.5), Vector3::new(1.75, 0.75, 0.25));
+        let bodies = [
+            NonstandardInertia::from_principal_moments(moments),
+            NonstandardInertia::from_diagonal(diagonal),
+            NonstandardInertia::new(Matrix3::from_diagonal(&diagonal)),
+            DiagonalNonstandardInertia::from_principal_moments(moments).map(Into::into),
+            DiagonalNonstandardInertia::from_diagonal(diagonal).map(Into::into),
+            DiagonalNonstandardInertia::new(Matrix3::from_diagonal(&diagonal)).map(Into::into),
+            Inertia::from_principal_moments(moments).map(|inertia| inertia.to_nonstandard()),
+            Inertia::from_diagonal(moments).map(|inertia| inertia.to_nonstandard()),
+            Inertia::new(Matrix3::from_diagonal(&moments)).map(|inertia| inertia.to_nonstandard()),
+        ];
+        for body in bodies {
+            let body = body.unwrap();
+            assert_eq!(body.as_matrix(), &Matrix3::from_diagonal(&diagonal));
+            assert!((body.principal_moments() - moments).norm() < 1e-15);
+        }
+        let ordered = DiagonalNonstandardInertia::from_diagonal(Vector3::new(0.25, 1.75, 0.75)).unwrap();
+        assert_eq!(ordered.principal_moments(), Vector3::new(2.5, 1.0, 2.0));
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_diagonal_is_refused() {
+        let full = Matrix3::new(1.0, 0.125, 0.0, 0.125, 1.0, 0.0, 0.0, 0.0, 1.0);
+        assert_eq!(DiagonalNonstandardInertia::new(full), Err(InertiaError::NotDiagonal { largest: 0.125 }));
+        assert!(NonstandardInertia::new(full).is_ok());
+    }
 }

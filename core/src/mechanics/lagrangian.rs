@@ -1,8 +1,8 @@
 //! The trait of reduced discrete Lagrangians that `#[lagrangian]` implements, and that can be implemented by hand.
 
 use crate::groups::SO3;
+use crate::mechanics::effect::Regular;
 use crate::mechanics::effect::{Effect, Matrix, Vector};
-use crate::mechanics::kinetic_part::Regular;
 
 /// A reduced discrete Lagrangian `l_d(F, w)` with all that an integrator needs of it.
 ///

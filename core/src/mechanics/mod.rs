@@ -14,11 +14,11 @@ mod sum;
 mod symmetry;
 
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Matrix, Parts, Scalar, Square, Vector};
+pub use effect::{Effect, Group, Matrix, Moves, Parts, Regular, Scalar, Square, Vector};
 pub(crate) use effect::{energy, momentum_of_velocity, velocity_of_momentum};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
-pub use kinetic_part::{KineticPart, Moves, Regular, WithKinetic, WithoutKinetic};
+pub use kinetic_part::{KineticPart, WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub use operations::Operations;
 pub use sum::{SharedBy, Sum};

@@ -59,5 +59,5 @@ pub(crate) fn count<T: Real>(number: usize) -> T {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
 pub(crate) fn counted<T: Real>(number: T) -> Option<usize> {
     let number = reported(number);
-    (number >= 0.0 && number < 1e6 && number.fract() == 0.0).then_some(number as usize)
+    ((0.0..1e6).contains(&number) && number.fract() == 0.0).then_some(number as usize)
 }

@@ -83,6 +83,9 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     /// momentum stays.
     fn turn(&mut self, increment: &G::Matrix);
 
+    /// What is advected, after that turn.
+    fn turned(&self, increment: &G::Matrix) -> A;
+
     /// Adds to the momentum.
     fn push(&mut self, change: &G::Vector);
 
@@ -146,6 +149,11 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     fn turn(&mut self, increment: &G::Matrix) {
         self.attitude = self.attitude.advance(increment);
         self.advected = self.advected.advect(increment);
+    }
+
+    #[inline(always)]
+    fn turned(&self, increment: &G::Matrix) -> A {
+        self.advected.advect(increment)
     }
 
     #[inline(always)]

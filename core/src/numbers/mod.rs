@@ -4,12 +4,14 @@
 
 mod coordinates;
 mod entries;
+mod exact;
 mod scalar;
 mod simd;
 
 pub use coordinates::Coordinates;
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};
+pub(crate) use exact::{carried_sum, two_square, two_sum};
 pub use scalar::real;
 pub use scalar::{Mask, Real};
 pub(crate) use scalar::{gathered, is_finite, nowhere, reported};

@@ -10,7 +10,7 @@ mod largest_step;
 mod problem;
 mod reused_jacobian;
 mod secants;
-pub(crate) mod solvability;
+mod solvability;
 
 pub(crate) use branch::trusted_radius;
 pub(crate) use guess::{Continued, DIFFERENCES, History};
@@ -19,4 +19,4 @@ pub(crate) use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Kick, Problem, Root};
 pub(crate) use reused_jacobian::safe;
 pub use solvability::Solvability;
-pub(crate) use solvability::TurningLimits;
+pub(crate) use solvability::{TurningLimits, turning_limits};

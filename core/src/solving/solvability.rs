@@ -12,10 +12,10 @@
 //! where `h|a| < J_min` there is exactly one solution below 90°. In between it depends on the direction, and the solver
 //! decides.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SimdRealField as _, Vector3};
 
-use crate::groups::SO3;
-use crate::numbers::Real;
+use crate::groups::LieGroup;
+use crate::numbers::{Coordinates, Entries as _, real};
 
 /// What is known of a step before it is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,17 +30,17 @@ pub enum Solvability {
 
 /// Between which sizes of `h a` the solvability of `U(F) = a` depends on the direction, on SO(3) in kg m².
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TurningLimits {
+pub(crate) struct TurningLimits {
     /// Below, there is exactly one solution under 90°.
-    pub certain: f64,
+    pub(crate) certain: f64,
     /// Above, there is none.
-    pub impossible: f64,
+    pub(crate) impossible: f64,
 }
 
 impl TurningLimits {
     /// What they say about `|h a|`.
     #[must_use]
-    pub fn decide(&self, size: f64) -> Solvability {
+    pub(crate) fn decide(&self, size: f64) -> Solvability {
         // What the roundings of `a` and of the moments could move it by.
         let margin = 1e-12;
         if size < self.certain * (1.0 - margin) {
@@ -57,24 +57,29 @@ impl TurningLimits {
 const PROBES: [[f64; 4]; 4] =
     [[9.0, 1.0, -2.0, 3.0], [5.0, 4.0, 1.0, -3.0], [2.0, -3.0, 7.0, 1.0], [2.0, 5.0, 3.0, 8.0]];
 
-/// The limits of the theorem, if `h U` is `(F J_d − J_d Fᵀ)^∨` to rounding and the body is a physical one.
+/// The limits of the theorem, if the group is that of rotations, `h U` is `(F J_d − J_d Fᵀ)^∨` to rounding and the body is
+/// a physical one.
 ///
 /// The unknown part is given by its values only, so it is recognised by them, whoever derived it.
-pub(crate) fn of_rotations<T: Real>(
-    unknown: &dyn Fn(&SO3<T>) -> Option<Vector3<T>>,
-    inertia: &Matrix3<T>,
+pub(crate) fn turning_limits<G: LieGroup>(
+    unknown: &dyn Fn(&G) -> Option<G::Vector>,
+    inertia: &Square<G>,
 ) -> Option<TurningLimits> {
-    let inertia = in_f64(inertia)?;
+    // So that on other groups nothing is computed.
+    G::from_rotation(Matrix3::identity())?;
+    let columns = [0, 1, 2].map(|k| in_f64::<G>(&(*inertia * G::Vector::axis(k))));
+    let [Some(first), Some(second), Some(third)] = columns else { return None };
+    let inertia = Matrix3::from_columns(&[first, second, third]);
     let nonstandard = Matrix3::from_diagonal_element(0.5 * inertia.trace()) - inertia;
     let scale = inertia.norm();
-    let tolerance = nalgebra::try_convert::<T, f64>(T::simd_default_epsilon())? * 64.0 * scale;
+    let tolerance = nalgebra::try_convert::<G::Scalar, f64>(G::Scalar::simd_default_epsilon())? * 64.0 * scale;
     for [w, x, y, z] in PROBES {
         let quaternion = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z));
         let f = quaternion.to_rotation_matrix().into_inner();
         let product = f * nonstandard;
         let twice_vee = product - product.transpose();
         let expected = Vector3::new(twice_vee.m32, twice_vee.m13, twice_vee.m21);
-        let value = in_f64(&unknown(&SO3::from_matrix_unchecked(f.map(crate::numbers::real)))?)?;
+        let value = in_f64::<G>(&unknown(&G::from_rotation(f.map(real))?)?)?;
         let is_same = (value - expected).norm() <= tolerance;
         if !is_same {
             return None;
@@ -88,9 +93,11 @@ pub(crate) fn of_rotations<T: Real>(
 }
 
 /// None where lanes differ.
-fn in_f64<T: Real, const R: usize, const C: usize>(
-    matrix: &nalgebra::SMatrix<T, R, C>,
-) -> Option<nalgebra::SMatrix<f64, R, C>> {
-    let converted = matrix.map(|entry| nalgebra::try_convert::<T, f64>(entry).unwrap_or(f64::NAN));
-    converted.iter().all(|entry| entry.is_finite()).then_some(converted)
+fn in_f64<G: LieGroup>(vector: &G::Vector) -> Option<Vector3<f64>> {
+    let mut entries = Vec::new();
+    vector.each(&mut |entry| entries.push(nalgebra::try_convert::<G::Scalar, f64>(entry).unwrap_or(f64::NAN)));
+    (entries.len() == 3 && entries.iter().all(|entry| entry.is_finite())).then(|| Vector3::from_row_slice(&entries))
 }
+
+/// Linear maps of the components of a group's algebra.
+type Square<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Square;

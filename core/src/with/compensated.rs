@@ -10,7 +10,7 @@ use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, KineticFlow, Preprocessed, Split};
 use crate::motion::{Cost, Declared, Kept, Motion, Plan, Proceeded, StepReport, Stepper, Summation, restored};
-use crate::numbers::{Entries, Real, zero};
+use crate::numbers::{Entries, Real, carried_sum, zero};
 use crate::with::remedies::{OrFallback, OrSubsteps};
 use nalgebra::SimdValue as _;
 
@@ -215,16 +215,22 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
     #[inline(always)]
     fn turn(&mut self, increment: &G::Matrix) {
         let Self { motion, carry } = self;
-        let attitude = sum(&motion.attitude.matrix(), &motion.attitude.change(increment), &carry.attitude);
-        let advected = sum(&motion.advected, &motion.advected.change(increment), &carry.advected);
+        let attitude = carried_sum(&motion.attitude.matrix(), &motion.attitude.change(increment), &carry.attitude);
+        let advected = carried_sum(&motion.advected, &motion.advected.change(increment), &carry.advected);
         motion.attitude = G::from_matrix_unchecked(attitude.0);
         motion.advected = advected.0;
         (carry.attitude, carry.advected) = (attitude.1, advected.1);
     }
 
     #[inline(always)]
+    fn turned(&self, increment: &G::Matrix) -> A {
+        let Self { motion, carry } = self;
+        carried_sum(&motion.advected, &motion.advected.change(increment), &carry.advected).0
+    }
+
+    #[inline(always)]
     fn push(&mut self, change: &G::Vector) {
-        let momentum = sum(&self.motion.momentum, change, &self.carry.momentum);
+        let momentum = carried_sum(&self.motion.momentum, change, &self.carry.momentum);
         (self.motion.momentum, self.carry.momentum) = momentum;
     }
 
@@ -251,18 +257,4 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
     fn replace(&mut self, motion: Motion<G, A>) {
         *self = Self { motion, carry: Carry::nothing() };
     }
-}
-
-/// `a + (b + carry)` rounded, and what the rounding left behind.
-///
-/// By Knuth's exact transformation, which asks for no order of the sizes: components pass through zero. A stage at a
-/// time, as all places go through each side by side.
-#[inline(always)]
-fn sum<T: Real, E: Entries<T>>(a: &E, b: &E, carry: &E) -> (E, E) {
-    let b = b.zip(carry, &mut |b, carry| b + carry);
-    let sum = a.zip(&b, &mut |a, b| a + b);
-    let rounded = sum.zip(a, &mut |sum, a| sum - a);
-    let lost_of_a = a.zip(&sum.zip(&rounded, &mut |sum, b| sum - b), &mut |a, rest| a - rest);
-    let lost_of_b = b.zip(&rounded, &mut |b, rounded| b - rounded);
-    (sum, lost_of_a.zip(&lost_of_b, &mut |a, b| a + b))
 }

@@ -70,6 +70,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError::InvalidStep`] where the other step isn't of the same length.
+    #[allow(clippy::type_complexity)] // a stepper with a stepper in it
     pub fn or_fallback<R, Q>(self, other: Stepper<R, Q>) -> Result<Stepper<S, OrFallback<P, Stepper<R, Q>>>, SetupError>
     where
         R: Effect<Scalar = S::Scalar, Group = S::Group, Advected = S::Advected>,

@@ -85,7 +85,7 @@ impl Reading {
     pub fn top(self) -> Result<HeavyTop, InertiaError> {
         let printed = Vector3::new(2.0, 2.0, 1.0);
         let inertia = match self {
-            Self::A => DiagonalNonstandardInertia::new(printed)?,
+            Self::A => DiagonalNonstandardInertia::from_diagonal(printed)?,
             Self::B => DiagonalNonstandardInertia::from_principal_moments(printed)?,
         };
         Ok(HeavyTop { J_d: inertia, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() })

@@ -36,7 +36,7 @@ impl HeavyTop {
 
     /// A body of 1 kg with `ρ = e₃`.
     pub fn symmetric(nonstandard: Vector3<f64>) -> Self {
-        let J_d = DiagonalNonstandardInertia::new(nonstandard).unwrap();
+        let J_d = DiagonalNonstandardInertia::from_diagonal(nonstandard).unwrap();
         Self { J_d, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
     }
 

@@ -9,7 +9,7 @@ use crate::row::{Effort, Failure, Row, short};
 
 /// A box of 1 kg with half-extents 0.1, 0.2, 0.3: `J_d = m/3 diag(a², b², c²)`.
 pub(crate) fn box_of_engines(velocity: [f64; 3], h: f64) -> Result<Spin, Failure> {
-    let inertia = DiagonalNonstandardInertia::new(Vector3::new(0.01, 0.04, 0.09) / 3.0)?;
+    let inertia = DiagonalNonstandardInertia::from_diagonal(Vector3::new(0.01, 0.04, 0.09) / 3.0)?;
     Ok(Spin { inertia, velocity: velocity.into(), h })
 }
 

@@ -4,7 +4,6 @@
 #![allow(non_snake_case)]
 
 use liestep::effects::{Drag, MagneticDamping, PrincipalBody};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Regular};
 use liestep::{NonstandardInertia, SO3, Stepper, force};
 use nalgebra::{UnitQuaternion, Vector3};

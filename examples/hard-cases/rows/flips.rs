@@ -2,7 +2,6 @@
 
 use declarations::SixthOrderBody;
 use liestep::effects::PrincipalBody;
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
 use liestep::methods::{CompositionScheme, PreprocessedOrder};
 use liestep::{SO3, Stepper};
@@ -88,7 +87,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let off = |method: &Steps<'_>, h: f64| period(method, start, h).map(|period| period / exact - 1.0);
 
     let ours = |h: f64| -> Result<Map<'_>, Failure> {
-        let stepper = Stepper::new(body.clone(), h)?;
+        let stepper = Stepper::new(body, h)?;
         Ok(Box::new(move |momentum| {
             let mut state = stepper.start_with_momentum(SO3::identity(), *momentum)?;
             stepper.step(&mut state)?;
@@ -135,7 +134,7 @@ pub(crate) fn b7(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     }
     // Near the intermediate axis roundings grow: those of some 30 000 stages to 2e-12, a half of the time to more than
     // 1.4e-12. One step would say little, so it is a mean of neighbouring ones that is right to 1e-12.
-    let sofroniou_spaletta = composed(body.clone(), CompositionScheme::SOFRONIOU_SPALETTA_10);
+    let sofroniou_spaletta = composed(body, CompositionScheme::SOFRONIOU_SPALETTA_10);
     let errors: Result<Vec<f64>, Failure> =
         (0..27).map(|k| off(&sofroniou_spaletta, 0.02 * (1.0 - 0.001 * f64::from(k)))).collect();
     let mut errors = errors?;

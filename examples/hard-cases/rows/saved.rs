@@ -11,7 +11,7 @@
 //! changes the digest, and belongs in the history with it.
 
 use declarations::{FreeBody, HeavyTop, Motion};
-use liestep::groups::{Advected, LieGroup as _};
+use liestep::groups::Advected;
 use liestep::mechanics::Regular;
 use liestep::motion;
 use liestep::{SO3, Stepper};

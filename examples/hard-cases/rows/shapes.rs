@@ -16,7 +16,7 @@ use crate::row::{Effort, Failure, Row, short};
 fn rod(slenderness: f64) -> Result<DiagonalNonstandardInertia, Failure> {
     let diameter = 1.0 / slenderness;
     let across = diameter * diameter / 16.0;
-    Ok(DiagonalNonstandardInertia::new(Vector3::new(across, across, 1.0 / 12.0))?)
+    Ok(DiagonalNonstandardInertia::from_diagonal(Vector3::new(across, across, 1.0 / 12.0))?)
 }
 
 pub(crate) fn b3(_: Effort, _: &mut Curves) -> Result<Row, Failure> {

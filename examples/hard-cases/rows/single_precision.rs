@@ -66,7 +66,7 @@ fn bodies(mut row: Row) -> Result<Row, Failure> {
         ("B3 plate", [2.0, 1.0, 0.0], plate, 1.0 / 60.0, 10_000, 1e-13),
     ];
     for (name, diagonal, velocity, h, steps, bound) in cases {
-        let J_d = DiagonalNonstandardInertia::new(Vector3::from(diagonal).cast::<f32>())?;
+        let J_d = DiagonalNonstandardInertia::from_diagonal(Vector3::from(diagonal).cast::<f32>())?;
         let full = RigidBody { J_d: J_d.into() };
         for (axes, [energy, momentum]) in
             [("", free(PrincipalBody { J_d }, velocity, h, steps)?), (", full", free(full, velocity, h, steps)?)]
@@ -92,7 +92,7 @@ type Turning = State<SO3<f32>, ((), Vector3<f32>)>;
 /// The top of a motion, and where it starts.
 fn started(motion: &Motion, h: f64) -> Result<(Stepper<Scene>, Turning), Failure> {
     let top = &motion.top;
-    let body = PrincipalBody { J_d: DiagonalNonstandardInertia::new(top.J_d.diagonal().cast::<f32>())? };
+    let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_diagonal(top.J_d.diagonal().cast::<f32>())? };
     let gravity = Gravity { m: single(top.m), g: single(top.g), rho: top.rho.cast(), up: top.up.cast() };
     let stepper = Stepper::new(body + gravity, single(h))?;
     let attitude = SO3::from_matrix_unchecked(motion.attitude.matrix().cast::<f32>());
@@ -128,7 +128,7 @@ fn folds(mut row: Row, motion: &Motion) -> Result<Row, Failure> {
     row = row.near("S1 fold", fold, 0.0815, 5e-5);
     let (stepper, mut state) = started(motion, 0.1)?;
     let named = match stepper.step(&mut state) {
-        Err(StepError::BeyondSolvable { largest, .. }) => f64::from(largest),
+        Err(StepError::BeyondSolvable { largest, .. }) => largest,
         _ => f64::NAN,
     };
     row = row.near("S2 largest step named", named, 0.0815, 1e-4);

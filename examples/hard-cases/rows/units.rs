@@ -16,7 +16,7 @@ type End = (Matrix3<f64>, Vector3<f64>, Vector3<f64>);
 fn moved(motion: &Motion, mass: f64, time: f64) -> Result<End, Failure> {
     let top = &motion.top;
     let scaled = HeavyTop {
-        J_d: DiagonalNonstandardInertia::new(top.J_d.diagonal() * mass)?,
+        J_d: DiagonalNonstandardInertia::from_diagonal(top.J_d.diagonal() * mass)?,
         m: top.m * mass,
         g: top.g / (time * time),
         ..top.clone()

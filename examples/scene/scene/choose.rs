@@ -1,9 +1,10 @@
 //! The choice of a scene's type, once a run.
 
+use workbench::switched::Switched;
+
 use super::effects::Table;
 use super::file::{Pace, SceneFile};
 use super::run::{Question, Run, Stopped, Task, ask, simulate};
-use super::switched::Switched;
 
 /// Simulates the sum of the body and those effects that the file has.
 ///

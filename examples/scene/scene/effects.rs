@@ -84,7 +84,7 @@ impl TryFrom<Triple<Inertia>> for Nonstandard {
     type Error = InertiaError;
 
     fn try_from(diagonal: Triple<Inertia>) -> Result<Self, InertiaError> {
-        DiagonalNonstandardInertia::new(diagonal.value).map(Self)
+        DiagonalNonstandardInertia::from_diagonal(diagonal.value).map(Self)
     }
 }
 

@@ -9,7 +9,6 @@ mod quantity;
 mod refused;
 mod run;
 mod start;
-mod switched;
 
 use std::fs::File;
 use std::io::{self, Read as _};

@@ -23,7 +23,7 @@ struct HeavyTop {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let inertia = DiagonalNonstandardInertia::new(Vector3::new(2.0, 2.0, 1.0))?;
+    let inertia = DiagonalNonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
     let top = HeavyTop { J_d: inertia, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
     let stepper = Stepper::new(top, 0.01)?;
     let mut state = stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 12.0))?;

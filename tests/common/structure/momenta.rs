@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-13;
 /// The six-point differences leave 10⁻¹³ of what they differentiate, which exceeds its derivatives some ten times.
 const DIFFERENCES: f64 = 1e-11;
 
-fn gradient<L: System<N, D>, const N: usize, const D: usize>(value: impl Fn(usize, f64) -> f64) -> SVector<f64, D> {
+fn gradient<const D: usize>(value: impl Fn(usize, f64) -> f64) -> SVector<f64, D> {
     SVector::from_fn(|k, _| derivative(|s| value(k, s)))
 }
 
@@ -41,10 +41,10 @@ pub fn assert_momenta<L: System<N, D>, const N: usize, const D: usize>(l: &L, se
             let error = (found - expected).norm();
             assert!(error <= allowed * scale, "{what}: off by {error:e} of {scale:e} at {size}");
         };
-        close("right", right, gradient::<L, N, D>(|k, s| l.l_d(&(exp(k, s) * f), &w, h)), DIFFERENCES);
-        close("left", left, gradient::<L, N, D>(|k, s| l.l_d(&(f * exp(k, s)), &w, h)), DIFFERENCES);
-        close("diamond", diamond, -gradient::<L, N, D>(|k, s| l.l_d(&f, &carried(k, s), h)), DIFFERENCES);
-        let joint = gradient::<L, N, D>(|k, s| l.l_d(&(exp(k, s) * f), &carried(k, s), h));
+        close("right", right, gradient::<D>(|k, s| l.l_d(&(exp(k, s) * f), &w, h)), DIFFERENCES);
+        close("left", left, gradient::<D>(|k, s| l.l_d(&(f * exp(k, s)), &w, h)), DIFFERENCES);
+        close("diamond", diamond, -gradient::<D>(|k, s| l.l_d(&f, &carried(k, s), h)), DIFFERENCES);
+        let joint = gradient::<D>(|k, s| l.l_d(&(exp(k, s) * f), &carried(k, s), h));
         close("momentum", momentum, joint, DIFFERENCES);
         for j in 0..D {
             let column = derivative(|s| l.legendre_minus(&(exp(j, s) * f), &w, h));

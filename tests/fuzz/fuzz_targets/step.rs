@@ -62,7 +62,7 @@ fn assert_solved(stepper: &Stepper<Top>, before: &State<SO3, Vector3<f64>>, afte
 
 fuzz_target!(|bytes: &[u8]| {
     let mut numbers = Numbers(bytes);
-    let Ok(J_d) = DiagonalNonstandardInertia::new(numbers.vector()) else { return };
+    let Ok(J_d) = DiagonalNonstandardInertia::from_diagonal(numbers.vector()) else { return };
     let (m, g, rho, up) = (numbers.next(), numbers.next(), numbers.vector(), numbers.vector());
     let Ok(stepper) = Stepper::new(Top { J_d, m, g, rho, up }, numbers.next()) else { return };
     let quaternion = Quaternion::new(numbers.next(), numbers.next(), numbers.next(), numbers.next());

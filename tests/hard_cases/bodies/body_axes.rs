@@ -59,7 +59,7 @@ fn b5_all_permutations_and_flips_of_the_axes() {
         let (attitude, velocity) = seen_in(q, &motion.attitude, &motion.velocity);
         let diagonal = (q * top.J_d.to_matrix() * q.transpose()).diagonal();
         let permuted = HeavyTop {
-            J_d: DiagonalNonstandardInertia::new(diagonal).unwrap(),
+            J_d: DiagonalNonstandardInertia::from_diagonal(diagonal).unwrap(),
             rho: q * top.rho,
             up: q * top.up,
             ..top.clone()

@@ -37,7 +37,7 @@ fn conversions_agree_with_the_integrals() {
 fn diagonals_and_principal_moments() {
     let (diagonal, moments) = (Vector3::new(2.0, 2.0, 1.0), Vector3::new(3.0, 3.0, 4.0));
     let full = NonstandardInertia::from_diagonal(diagonal).unwrap();
-    let principal = DiagonalNonstandardInertia::new(diagonal).unwrap();
+    let principal = DiagonalNonstandardInertia::from_diagonal(diagonal).unwrap();
     assert_eq!(full.as_matrix().diagonal(), diagonal);
     assert_eq!(full, NonstandardInertia::from_principal_moments(moments).unwrap());
     assert_eq!(full, principal.into());
@@ -48,7 +48,7 @@ fn diagonals_and_principal_moments() {
 
 fn nonstandard(diagonal: [f64; 3]) -> Result<Vector3<f64>, InertiaError> {
     let diagonal = Vector3::from(diagonal);
-    let principal = DiagonalNonstandardInertia::new(diagonal).map(|j_d| *j_d.diagonal());
+    let principal = DiagonalNonstandardInertia::from_diagonal(diagonal).map(|j_d| *j_d.diagonal());
     let full = NonstandardInertia::from_diagonal(diagonal).map(|j_d| j_d.as_matrix().diagonal());
     // NaN differs from itself, its text doesn't.
     assert_eq!(format!("{principal:?}"), format!("{full:?}"), "both types check alike");

@@ -2,7 +2,6 @@
 //! by the weight.
 
 use declarations::HeavyTop;
-use liestep::groups::LieGroup as _;
 use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 

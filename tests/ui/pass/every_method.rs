@@ -1,9 +1,8 @@
 //! Everything in the list of the attribute's documentation, in a block whose `let`s hide each other and the fields.
 
-use liestep::{SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian as _, Inertia};
 use liestep::numbers::Real;
+use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::{Matrix3, Vector3};
 
 macro_rules! declare {

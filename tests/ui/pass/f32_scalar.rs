@@ -1,7 +1,6 @@
 //! All parameters in single precision.
 
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use nalgebra::Vector3;
 
 #[lagrangian(

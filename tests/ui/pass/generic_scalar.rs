@@ -2,9 +2,8 @@
 
 use core::fmt::Debug;
 
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use liestep::numbers::Real;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{RealField, Vector3};
 
 #[lagrangian(

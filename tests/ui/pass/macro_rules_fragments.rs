@@ -1,8 +1,7 @@
 //! Declarations inside `macro_rules!`, with parts from either side.
 
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 /// The name, the types and the whole Lagrangian come from the call.
@@ -29,14 +28,14 @@ from_call!(
 macro_rules! from_both {
     ($name:ident { $field:ident: $ty:ty }, $group:path, $factor:literal, $potential:expr) => {
         #[lagrangian(
-                    group = $group,
-                    advected(w = up),
-                    l_d = {
-                        let d = F - I;
-                        let kinetic = (d * inertia * d.transpose()).trace() / (2.0 * h);
-                        kinetic - $factor * h * ($potential + w.dot(&$field))
-                    },
-                )]
+                                                    group = $group,
+                                                    advected(w = up),
+                                                    l_d = {
+                                                        let d = F - I;
+                                                        let kinetic = (d * inertia * d.transpose()).trace() / (2.0 * h);
+                                                        kinetic - $factor * h * ($potential + w.dot(&$field))
+                                                    },
+                                                )]
         struct $name {
             inertia: NonstandardInertia,
             $field: $ty,

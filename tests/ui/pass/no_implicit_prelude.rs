@@ -16,12 +16,11 @@ struct Top {
 }
 
 #[::liestep::lagrangian(group = ::liestep::SO3, l_d = 2.0 * k * (3.0 - F.trace()) / h - h * (k * F[(2, 2)]).exp())]
-struct Generic<T: ::liestep::Real> {
+struct Generic<T: ::liestep::numbers::Real> {
     k: T,
 }
 
 fn main() {
-    use ::liestep::LieGroup as _;
     let inertia = ::liestep::NonstandardInertia::from_diagonal(::nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let z = ::nalgebra::Vector3::z();
     let stepper = ::liestep::Stepper::new(Top { inertia, rho: z, up: z, field: z }, 0.01).unwrap();

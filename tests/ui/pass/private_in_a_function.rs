@@ -1,13 +1,12 @@
 //! A private struct in a module, and one inside a function, with private fields and without advected parameters.
 
-use liestep::{SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
+use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 mod inner {
-    use liestep::{SO3, lagrangian};
     use liestep::mechanics::DiagonalNonstandardInertia;
+    use liestep::{SO3, lagrangian};
 
     #[lagrangian(group = SO3, l_d = ((F - I) * inertia * (F - I).transpose()).trace() / (2.0 * h))]
     struct Body {
@@ -16,8 +15,7 @@ mod inner {
 
     pub fn steps() -> u64 {
         use liestep::Stepper;
-        use liestep::groups::LieGroup as _;
-        let inertia = DiagonalNonstandardInertia::new(nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
+        let inertia = DiagonalNonstandardInertia::from_diagonal(nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
         let stepper = Stepper::new(Body { inertia }, 0.01).unwrap();
         let state = stepper.start(SO3::identity(), nalgebra::Vector3::new(0.1, 0.0, 5.0)).unwrap();
         stepper.steps(state).take(3).last().unwrap().unwrap().steps()

@@ -25,7 +25,7 @@ struct Top {
 
 fn main() {
     use nalgebra::Vector3;
-    use physics::steps::{LieGroup as _, NonstandardInertia, SO3, Stepper};
+    use physics::steps::{NonstandardInertia, SO3, Stepper};
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let stepper = Stepper::new(Top { inertia, rho: Vector3::z(), up: Vector3::z() }, 0.01).unwrap();
     let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 5.0)).unwrap();

@@ -3,7 +3,6 @@
 #![allow(dead_code)]
 
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use nalgebra::Vector3;
 
 struct F;

@@ -3,7 +3,6 @@
 #![allow(dead_code, non_camel_case_types, non_upper_case_globals)]
 
 use liestep::{SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 
 mod core {}
 mod std {}

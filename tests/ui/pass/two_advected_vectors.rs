@@ -1,8 +1,7 @@
 //! Gravity and a magnetic field.
 
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 
 #[lagrangian(

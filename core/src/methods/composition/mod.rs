@@ -5,7 +5,7 @@ mod scheme;
 pub use scheme::CompositionScheme;
 
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, Vector};
+use crate::mechanics::{DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector};
 use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepped, Stepper, Summation, half_coordinates};
 use crate::numbers::{Coordinates, Mask, Real, real, reported};
 use crate::solving::{Guess, six_digits};
@@ -161,10 +161,11 @@ impl<S: Effect> Plan<S> for Composed<S> {
         let mut iterations = 0;
         for stage in &self.stages {
             let (now, declared) = (next.now(), &self.substeps[stage.substep]);
+            let turned = |increment: &Matrix<S>| next.turned(increment);
             let stepped = if M::CARRIES {
-                declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next)?
+                declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             } else {
-                declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next)?
+                declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             };
             next.proceed(&stepped.proceeded());
             let Stepped { step, half, far, .. } = stepped;

@@ -19,6 +19,7 @@ use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor};
 use crate::methods::splitting::torque;
 use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation};
+use crate::numbers::two_sum;
 use nalgebra::Vector3;
 
 /// The plan of [`Stepper::collocated`](crate::Stepper::collocated), of order `4 PAIRS`, for a body on SO(3) under a potential, by Gauss collocation with `2 PAIRS` stages.
@@ -202,7 +203,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S,
     }
 }
 
-/// `y + (change + carry)` rounded, and what the rounding left behind, by Knuth's exact transformation.
+/// `y + (change + carry)` rounded, and what the rounding left behind.
 ///
 /// The last change of the iteration, of the order of rounding, is an error of a sign of its own, which lengthens
 /// quaternion and momentum by the same factor; in a million steps momentum maps would lose three digits to it. The
@@ -213,11 +214,8 @@ fn compensated(y: &Lifted, change: &Lifted, carry: &Lifted) -> (Lifted, Lifted) 
     let (mut next, mut left) = (*y, *carry);
     let shorten = 0.5 * (1.0 - length_squared(y)) - (0..4).map(|k| y[k] * carry[k]).sum::<f64>();
     for component in 0..8 {
-        let (a, b) = (y[component], change[component] + (carry[component] + shorten * y[component]));
-        let sum = a + b;
-        let rounded = sum - a;
-        left[component] = (a - (sum - rounded)) + (b - rounded);
-        next[component] = sum;
+        let change = change[component] + (carry[component] + shorten * y[component]);
+        (next[component], left[component]) = two_sum(y[component], change);
     }
     (next, left)
 }
@@ -226,7 +224,7 @@ fn compensated(y: &Lifted, change: &Lifted, carry: &Lifted) -> (Lifted, Lifted) 
 mod tests {
     use super::{Plan as _, Stepper, Vector3};
     use crate::effects::{Gravity, RigidBody};
-    use crate::groups::{LieGroup as _, SO3};
+    use crate::groups::SO3;
     use crate::mechanics::{NonstandardInertia, Sum};
 
     fn assert_same_digits<const PAIRS: usize>(top: Sum<RigidBody, Gravity>) {

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
-use super::angle::rotation_coefficients;
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
+use crate::groups::rotation_coefficients;
 use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular, SceneVisitor};
 use crate::motion::{DiscreteLiePoisson, Stepped};
 use crate::numbers::{Coordinates as _, Real, real, reported};

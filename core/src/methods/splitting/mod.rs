@@ -1,6 +1,5 @@
 //! Kinetic-potential splittings: the free body's motion and the potential's kicks by turns.
 
-mod angle;
 mod bias;
 mod kick;
 mod kinetic_flow;
@@ -19,7 +18,9 @@ pub use split_body::SplitBody;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor};
-use crate::motion::{Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, StepReport, Stepper, Summation, is_due};
+use crate::motion::{
+    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, StepReport, Stepper, Summation, count, is_due,
+};
 use crate::numbers::{Coordinates, real, reported};
 use nalgebra::{Matrix3, SimdBool as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
 
@@ -261,7 +262,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
         &self,
         scene: &S,
         motion: &mut M,
-        _: &mut (),
+        (): &mut (),
         steps: u64,
     ) -> Result<u64, StepError> {
         let mut next = *motion;
@@ -302,9 +303,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     }
 
     fn cost(&self) -> Cost {
-        let kicks = self.scheme.kicks() as f64;
+        let kicks: f64 = count(self.scheme.kicks());
         let kick = 0.5 * f64::from(S::OPERATIONS.step);
-        let gradients = self.scheme.gradient_kicks() as f64 * (kick + OF_A_FORCE_GRADIENT);
+        let gradients = count::<f64>(self.scheme.gradient_kicks()) * (kick + OF_A_FORCE_GRADIENT);
         let Operations { step, iteration } = K::OPERATIONS;
         let (step, turn) = match self.spin {
             Some(_) => (step.saturating_sub(K::OPERATIONS_OF_SPIN), OF_A_TURN + f64::from(K::OPERATIONS_OF_SPIN)),

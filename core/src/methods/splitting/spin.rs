@@ -6,11 +6,11 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::angle::{rotation_coefficients, square};
+use crate::groups::rotation_coefficients;
 use crate::groups::{Advected, CayleyRetraction, LieGroup, Retraction as _, SO3};
 use crate::mechanics::DiscreteLagrangian;
 use crate::motion::Summation;
-use crate::numbers::{Real, real};
+use crate::numbers::{Real, real, two_square, two_sum};
 
 /// Attitudes without anything special about them.
 const SAMPLES: [[f64; 3]; 4] = [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5], [1.3, 0.8, -0.2], [-0.6, -1.2, 0.9]];
@@ -46,7 +46,7 @@ fn sine_and_versine<T: Real>(angle: T) -> (T, T) {
 #[inline(never)]
 pub(super) fn make_good<T: Real, A: Advected<SO3<T>>>(angle: T, turns: u32, motion: &mut impl Summation<SO3<T>, A>) {
     let (s, v) = sine_and_versine(angle);
-    let ((ss, ss_rest), (vv, vv_rest)) = (square(s), square(v));
+    let ((ss, ss_rest), (vv, vv_rest)) = (two_square(s), two_square(v));
     // s² + (1 + v)² − 1, of which the large parts cancel.
     let (twice, lost) = two_sum(ss, v + v);
     let (small, lost_again) = two_sum(twice, vv);
@@ -60,13 +60,6 @@ fn move_by<T: Real, A: Advected<SO3<T>>>(increment: &Matrix3<T>, motion: &mut im
     let change = SO3::adjoint_transpose_increment(increment, &motion.now().momentum);
     // The third component isn't even added to.
     motion.push(&Vector3::new(change.x, change.y, T::zero()));
-}
-
-/// `a + b` rounded and what the rounding left behind, by Knuth's sum.
-fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
-    let sum = a + b;
-    let of_b = sum - a;
-    (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
 fn diagonal_block<T: Real>(diagonal: T, s: T) -> Matrix3<T> {

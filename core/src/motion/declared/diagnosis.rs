@@ -3,10 +3,10 @@
 use super::{Declared, kicked};
 use crate::error::StepError;
 use crate::groups::Advected as _;
-use crate::groups::{LieGroup, Retraction as _};
+use crate::groups::Retraction as _;
 use crate::mechanics::{Effect, Group, Scalar, Vector};
 use crate::numbers::{Coordinates as _, real, reported};
-use crate::solving::{Problem, Root, Solvability, TurningLimits, largest_fraction, six_digits};
+use crate::solving::{Problem, Root, Solvability, TurningLimits, largest_fraction, six_digits, turning_limits};
 use nalgebra::SimdComplexField as _;
 
 impl<S: Effect> Declared<S> {
@@ -77,7 +77,7 @@ impl<S: Effect> Declared<S> {
                 let factor = (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::DENOMINATORS.cast_signed());
                 Some(S::newton_system(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
             };
-            Group::<S>::turning_limits(&unknown, &scene.inertia())
+            turning_limits::<Group<S>>(&unknown, &scene.inertia())
         };
         at(self.h * real(0.5)).and(at(self.h))
     }

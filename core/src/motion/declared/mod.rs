@@ -82,7 +82,8 @@ impl<S: Effect> Declared<S> {
         problem.attempt(&terms, &(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
     }
 
-    /// One step from `(μ, w)` and a guess of half the coordinates of `F`; `CARRIES` if its change will be carried.
+    /// One step from `(μ, w)` and a guess of half the coordinates of `F`; `turned` gives `w⁺` of `F − I`, and `CARRIES`
+    /// says that what rounding leaves behind will be carried.
     #[inline(always)]
     pub(crate) fn step_from<const CARRIES: bool>(
         &self,
@@ -90,10 +91,11 @@ impl<S: Effect> Declared<S> {
         momentum: &Vector<S>,
         advected: &S::Advected,
         half_guess: &Vector<S>,
+        turned: &impl Fn(&Matrix<S>) -> S::Advected,
     ) -> Result<Stepped<S>, StepError> {
-        match self.step_directly::<CARRIES>(scene, momentum, advected, half_guess) {
+        match self.step_directly::<CARRIES>(scene, momentum, advected, half_guess, turned) {
             Some(stepped) => Ok(stepped),
-            None => self.step_carefully::<CARRIES>(scene, momentum, advected, half_guess),
+            None => self.step_carefully::<CARRIES>(scene, momentum, advected, half_guess, turned),
         }
     }
 
@@ -105,10 +107,11 @@ impl<S: Effect> Declared<S> {
         momentum: &Vector<S>,
         advected: &S::Advected,
         half_guess: &Vector<S>,
+        turned: &impl Fn(&Matrix<S>) -> S::Advected,
     ) -> Option<Stepped<S>> {
         let problem = self.problem(scene, momentum, advected);
         let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
-        let stepped = self.moved::<CARRIES>(momentum, advected, &problem.a, &root);
+        let stepped = self.moved::<CARRIES>(momentum, advected, &problem.a, &root, turned(&root.increment));
         // A finite sum has finite terms. Where it isn't, it may have overflowed.
         is_finite(stepped.total()).then_some(stepped)
     }
@@ -122,13 +125,19 @@ impl<S: Effect> Declared<S> {
         momentum: &Vector<S>,
         advected: &S::Advected,
         half_guess: &Vector<S>,
+        turned: &impl Fn(&Matrix<S>) -> S::Advected,
     ) -> Result<Stepped<S>, StepError> {
         if self.h == real(0.0) {
             return Ok(Self::stand_still(momentum, advected));
         }
         let root = self.solve_carefully(scene, momentum, advected, half_guess)?;
-        let stepped =
-            self.moved::<CARRIES>(momentum, advected, &kicked::<S>(&self.constants, momentum, advected), &root);
+        let stepped = self.moved::<CARRIES>(
+            momentum,
+            advected,
+            &kicked::<S>(&self.constants, momentum, advected),
+            &root,
+            turned(&root.increment),
+        );
         if stepped.step.momentum.is_finite() && stepped.step.advected.is_finite() {
             Ok(stepped)
         } else {
@@ -144,17 +153,28 @@ impl<S: Effect> Declared<S> {
         advected: &S::Advected,
         a: &Vector<S>,
         root: &Root<S>,
+        next: S::Advected,
     ) -> Stepped<S> {
         let Root { half, increment, iterations, far, ref kick } = *root;
-        let next = advected.advect(&increment);
         let mut change = Group::<S>::adjoint_transpose_increment(&increment, a);
-        if S::PARTS.kick_before {
+        if CARRIES {
             // In `a` the kick is rounded to the digits of the momentum, which is what a carry is to make good.
-            let kick = if CARRIES { S::kick_before(&self.constants, advected) } else { *a - *momentum };
-            change = change + kick;
-        }
-        if S::PARTS.kick_after {
-            change = change + self.kick_after(&increment, &next, kick);
+            let mut kicks = None;
+            if S::PARTS.kick_before {
+                kicks = Some(S::kick_before(&self.constants, advected));
+            }
+            if S::PARTS.kick_after {
+                let after = self.kick_after(&increment, &next, kick);
+                kicks = Some(kicks.map_or(after, |before| before + after));
+            }
+            change = kicks.map_or(change, |kicks| change + kicks);
+        } else {
+            if S::PARTS.kick_before {
+                change = change + (*a - *momentum);
+            }
+            if S::PARTS.kick_after {
+                change = change + self.kick_after(&increment, &next, kick);
+            }
         }
         let momentum = *momentum + change;
         let step = Increment { coordinates: half + half, increment, momentum, advected: next, iterations };
@@ -219,10 +239,11 @@ impl<S: Effect> Plan<S> for Declared<S> {
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
+        let turned = |increment: &Matrix<S>| motion.turned(increment);
         let stepped = if M::CARRIES {
-            self.step_directly::<true>(scene, &now.momentum, &now.advected, &guess)
+            self.step_directly::<true>(scene, &now.momentum, &now.advected, &guess, &turned)
         } else {
-            self.step_directly::<false>(scene, &now.momentum, &now.advected, &guess)
+            self.step_directly::<false>(scene, &now.momentum, &now.advected, &guess, &turned)
         };
         match stepped {
             Some(stepped) => Ok(taken(scene, motion, kept, &stepped)),
@@ -255,10 +276,11 @@ impl<S: Effect> Declared<S> {
         kept: &mut Warm<Vector<S>>,
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
+        let turned = |increment: &Matrix<S>| motion.turned(increment);
         let stepped = if M::CARRIES {
-            self.step_carefully::<true>(scene, &now.momentum, &now.advected, &guess)?
+            self.step_carefully::<true>(scene, &now.momentum, &now.advected, &guess, &turned)?
         } else {
-            self.step_carefully::<false>(scene, &now.momentum, &now.advected, &guess)?
+            self.step_carefully::<false>(scene, &now.momentum, &now.advected, &guess, &turned)?
         };
         Ok(taken(scene, motion, kept, &stepped))
     }

@@ -1,7 +1,8 @@
 //! The flow on momenta, (2.8).
 
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{Effect, Group, Regular, Scalar, Vector};
+use crate::groups::Advected as _;
+use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, Vector};
 use crate::motion::declared::Declared;
 use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::Plan as _;
@@ -89,7 +90,8 @@ impl<L: Effect> DiscreteLiePoisson<L> {
         advected: &L::Advected,
         half_guess: &Vector<L>,
     ) -> Result<Stepped<L>, StepError> {
-        self.declared.step_from::<false>(&self.scene, momentum, advected, half_guess)
+        let turned = |increment: &Matrix<L>| advected.advect(increment);
+        self.declared.step_from::<false>(&self.scene, momentum, advected, half_guess, &turned)
     }
 
     /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic

@@ -7,9 +7,9 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use self::axes::Axes;
 use self::rotor::Rotor;
-use super::angle::rotation_coefficients;
 use super::kinetic_flow::{KineticFlow, Turn};
 use crate::error::{SetupError, StepError};
+use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
 use crate::numbers::{Mask, Real, is_finite, real, reported};

@@ -1,6 +1,6 @@
 //! One rotation about a body axis by an angle in proportion to the momentum about it, and how many there are.
 
-use crate::methods::splitting::angle::rotation_coefficients;
+use crate::groups::rotation_coefficients;
 use crate::numbers::{Real, real};
 
 /// Shares of the first and the second axis by turns, from the first to the middle one. \[FR90\]

@@ -1,4 +1,7 @@
-//! Rotations by large and small angles without a library function.
+//! Rotations by large and small angles without a library function, so that they are the same on every machine.
+//!
+//! The functions beside it take sines from the library where an angle is large: they are asked for by declarations with
+//! `log` and `exp`, and for single elements. This one is for steps.
 
 use nalgebra::SimdBool as _;
 
@@ -16,7 +19,7 @@ const MOST_DOUBLINGS: u32 = 30;
 /// two products and doesn't cancel: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each doubles
 /// the absolute error, as the angle's own rounding does.
 #[inline(always)]
-pub(super) fn rotation_coefficients<T: Real>(q: T) -> (T, T) {
+pub(crate) fn rotation_coefficients<T: Real>(q: T) -> (T, T) {
     if q.simd_le(real(SMALL)).all() { small(q) } else { large(q) }
 }
 
@@ -69,21 +72,9 @@ const fn coefficients(first: usize) -> [f64; 8] {
     coefficients
 }
 
-/// `a²` rounded and what the rounding left behind, by Dekker's product.
-#[inline(always)]
-pub(super) fn square<T: Real>(a: T) -> (T, T) {
-    // Half of the digits: of 53 or of 24.
-    let single = T::simd_default_epsilon().simd_gt(real(1e-10)).any();
-    let split = a * real(if single { 4_097.0 } else { 134_217_729.0 });
-    let high = split - (split - a);
-    let low = a - high;
-    let product = a * a;
-    (product, ((high * high - product) + (high * low + high * low)) + low * low)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{rotation_coefficients, small, square};
+    use super::{rotation_coefficients, small};
 
     /// Both sides of each place where the number of doublings changes, and some angles beyond a turn.
     #[test]
@@ -96,13 +87,6 @@ mod tests {
             assert!((versine - 2.0 * half * half).abs() < 4e-16, "{q}: {versine}");
         }
         assert_eq!(rotation_coefficients(0.0), (1.0, 0.5));
-    }
-
-    #[test]
-    fn a_square_is_exact_in_two_numbers() {
-        // (1 + 2⁻³⁰)² = 1 + 2⁻²⁹ + 2⁻⁶⁰.
-        let (product, rest) = square(1.0 + 2.0_f64.powi(-30));
-        assert_eq!((product, rest), (1.0 + 2.0_f64.powi(-29), 2.0_f64.powi(-60)));
     }
 
     #[test]

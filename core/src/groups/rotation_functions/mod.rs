@@ -10,6 +10,10 @@
 //! in the family: `c_k' = (k c_{k+2} − c_{k+1})/2` and `2n(1 − n) G⁽ᵏ⁺¹⁾ = 2k² G⁽ᵏ⁻¹⁾ − (2k + 1)(1 − 2n) G⁽ᵏ⁾`, with
 //! one in place of the first term for `k = 0`.
 
+mod by_halving;
+
+pub(crate) use by_halving::rotation_coefficients;
+
 use crate::groups::{LieGroup as _, SO3};
 use crate::numbers::{Real, real};
 use nalgebra::{Matrix3, SMatrix, SimdBool as _, Vector3};

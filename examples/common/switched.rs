@@ -1,4 +1,5 @@
-//! An effect that a scene has or hasn't: asked in each step, so that all scenes are of few types.
+//! An effect that a scene has or hasn't: asked in each step, as simulators have it that hold every effect in every
+//! scene, and so that all scenes are of few types.
 
 use liestep::mechanics::{DiscreteLagrangian, Effect, Matrix, Operations, Parts, SceneVisitor};
 use liestep::numbers::Entries as _;
@@ -7,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 /// The effect, or nothing, of which all shares are zero.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Switched<E>(pub(super) Option<E>);
+pub struct Switched<E>(pub Option<E>);
 
 impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
     type Scalar = f64;
@@ -58,19 +59,23 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
         self.0.as_ref().map(|effect| effect.constants(h))
     }
 
+    #[inline(always)]
     fn kick_before(constants: &Self::Constants, w: &E::Advected) -> Vector3<f64> {
         constants.as_ref().map_or_else(Vector3::zeros, |constants| E::kick_before(constants, w))
     }
 
+    #[inline(always)]
     fn kick_derivative(constants: &Self::Constants, w: &E::Advected, velocity: &Vector3<f64>) -> Option<Vector3<f64>> {
         let derivative = |constants| E::kick_derivative(constants, w, velocity);
         constants.as_ref().map_or_else(|| Some(Vector3::zeros()), derivative)
     }
 
+    #[inline(always)]
     fn step_terms(constants: &Self::Constants, a: &Vector3<f64>, w: &E::Advected) -> Self::StepTerms {
         constants.as_ref().map(|constants| E::step_terms(constants, a, w))
     }
 
+    #[inline(always)]
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -82,6 +87,7 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
         }
     }
 
+    #[inline(always)]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<E>, next: &E::Advected) -> Vector3<f64> {
         constants.as_ref().map_or_else(Vector3::zeros, |constants| E::kick_after(constants, increment, next))
     }
