@@ -67,7 +67,6 @@ impl PreprocessedOrder {
 ///
 /// ```
 /// use liestep::effects::PrincipalBody;
-/// use liestep::groups::LieGroup as _;
 /// use liestep::methods::PreprocessedOrder;
 /// use liestep::{SO3, Stepper};
 /// use liestep::mechanics::DiagonalNonstandardInertia;
