@@ -77,8 +77,8 @@
 //! [`DiscreteLiePoisson`]: crate::motion::DiscreteLiePoisson
 //! [`DiscreteLiePoisson::step`]: crate::motion::DiscreteLiePoisson::step
 //! [`LieGroup::advance`]: crate::groups::LieGroup::advance
-//! [`State::momentum_along`]: crate::motion::State::momentum_along
-//! [`State::spatial_momentum`]: crate::motion::State::spatial_momentum
+//! [`State::momentum_along`]: crate::motion::Motion::momentum_along
+//! [`State::spatial_momentum`]: crate::motion::Motion::spatial_momentum
 //! [`Stepper::energy`]: crate::motion::Stepper::energy
 //! [`Stepper::start`]: crate::motion::Stepper::start
 //! [`Stepper::step`]: crate::motion::Stepper::step
