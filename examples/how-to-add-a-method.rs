@@ -18,8 +18,8 @@ use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 
 /// Half a kick of the potential, turns about the body's principal axes, half a kick: order 2, and nothing is solved.
 ///
-/// Each turn is the exact motion of a rotor with the energy `p_k²/(2 J_k)`. All parts are Poisson maps that keep the
-/// momentum about the vertical, so their product is. It is for scenes of a body in its principal axes and potentials.
+/// Each turn is the exact motion for the energy `p_k²/(2 J_k)`. All parts are Poisson maps that keep the momentum about
+/// the vertical, so their product is. It is for scenes of a body in its principal axes and potentials.
 struct Verlet<S: DiscreteLagrangian> {
     h: f64,
     moments: Vector3<f64>,
@@ -114,10 +114,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let stepper = verlet(h)?;
         let mut state = stepper.start(attitude, velocity)?;
         stepper.run(&mut state, steps)?;
-        Ok((state.attitude().matrix() - there.attitude().matrix()).norm())
+        Ok((state.momentum() - there.momentum()).norm())
     };
     let ratio = error(0.01, 200)? / error(0.005, 400)?;
-    println!("half the step has an error smaller by {ratio:.3}");
+    println!("with half the step the error is smaller by {ratio:.3}");
     assert!((ratio - 4.0).abs() < 0.1);
 
     // Its sums, compensated: what rounding takes of the vertical momentum in 10⁵ steps.
@@ -129,11 +129,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let losses = [&*a, &*b].map(|motion| (motion.momentum_along(&Vector3::z()) - vertical).abs());
     println!("of the vertical momentum rounding takes {:.1e}, compensated {:.1e} kg m²/s", losses[0], losses[1]);
     assert!(losses[0] < 1e-11 && losses[1] < 0.1 * losses[0]);
-
-    // A step of −h undoes one of h.
-    let mut back = plain.inverse()?.adopt(&a);
-    plain.inverse()?.run(&mut back, 100_000)?;
-    assert!((back.attitude().matrix() - plain.start(attitude, velocity)?.attitude().matrix()).norm() < 1e-9);
 
     // A step that turns the body too far is made of parts.
     let careful = verlet(0.1)?.or_substeps(16);

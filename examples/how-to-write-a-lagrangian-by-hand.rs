@@ -136,12 +136,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let difference = (a.momentum() - b.momentum()).norm();
     println!("after 10 s by hand and derived differ by {difference:.1e} kg m²/s");
     assert!(difference < 1e-11);
-    // Alone it conserves the spatial momentum.
-    let free = Stepper::new(Body { inertia }, 0.01)?;
-    let mut state = free.start(attitude, velocity)?;
-    let momentum = state.spatial_momentum();
-    free.run(&mut state, 1000)?;
-    assert!((state.spatial_momentum() - momentum).norm() < 1e-12);
     Ok(())
 }
 

@@ -48,6 +48,7 @@
 //! | use `f32`, SIMD lanes, dual numbers | [`numbers::Real`] |
 //! | know what is conserved, and what left and right mean here | [`conventions::guarantees`], [`conventions`] |
 //! | find an equation of the thesis | [`conventions::equations`] |
+//! | step by a method of your own | [`motion::Plan`], [`Stepper::with_plan`] |
 //! | work without the macro | [`mechanics::DiscreteLagrangian`] |
 //!
 //! # Features

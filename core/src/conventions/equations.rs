@@ -58,9 +58,9 @@
 //!
 //! | equation | what | file | item |
 //! |---|---|---|---|
-//! | (3.1)–(3.4) | Euler angles and their rates | `examples/heavy-top.rs` | initial values only; no angle enters a step |
+//! | (3.1)–(3.4) | Euler angles and their rates | `examples/common/heavy_top/cases.rs` | initial values only; no angle enters a step |
 //! | (3.5)–(3.12) | equations of motion in Euler angles | | not in the code |
-//! | (3.13) | the reduced discrete Lagrangian | `examples/heavy-top.rs` | declared |
+//! | (3.13) | the reduced discrete Lagrangian | `examples/common/heavy_top/declaration.rs` | declared |
 //! | (3.14) | `R_{i+1} = R_i F_i` | `groups/so3.rs` | [`LieGroup::advance`] |
 //! | (3.15) | `w_{i+1} = F_iᵀ w_i` | `advected.rs` | [`Advected::advect`] |
 //! | (3.16) | the flow on increments | | derived from (3.13); [`DiscreteEulerPoincare::step`] |
@@ -77,8 +77,8 @@
 //! [`DiscreteLiePoisson`]: crate::motion::DiscreteLiePoisson
 //! [`DiscreteLiePoisson::step`]: crate::motion::DiscreteLiePoisson::step
 //! [`LieGroup::advance`]: crate::groups::LieGroup::advance
-//! [`State::momentum_along`]: crate::motion::State::momentum_along
-//! [`State::spatial_momentum`]: crate::motion::State::spatial_momentum
+//! [`State::momentum_along`]: crate::motion::Motion::momentum_along
+//! [`State::spatial_momentum`]: crate::motion::Motion::spatial_momentum
 //! [`Stepper::energy`]: crate::motion::Stepper::energy
 //! [`Stepper::start`]: crate::motion::Stepper::start
 //! [`Stepper::step`]: crate::motion::Stepper::step

@@ -120,9 +120,9 @@
 //! | `w_{i+1} = f_i⁻¹ w_i` | [`advect`](crate::groups::Advected::advect) |
 //! | `a_0`; the thesis' `w_0` of chapter 2 | [`advected`](crate::mechanics::Effect::advected) |
 //! | `J_d`, `J` | [`NonstandardInertia`], [`Inertia`](crate::mechanics::Inertia) |
-//! | `μ_i`, `Π_i` | [`momentum`](crate::motion::State::momentum) |
-//! | `R Π`, `e₃·R Π` | [`spatial_momentum`](crate::motion::State::spatial_momentum), [`momentum_along`](crate::motion::State::momentum_along) |
-//! | `‖RᵀR − I‖` | [`orthogonality_defect`](crate::motion::State::orthogonality_defect) |
+//! | `μ_i`, `Π_i` | [`momentum`](crate::motion::Motion::momentum) |
+//! | `R Π`, `e₃·R Π` | [`spatial_momentum`](crate::motion::Motion::spatial_momentum), [`momentum_along`](crate::motion::Motion::momentum_along) |
+//! | `‖RᵀR − I‖` | [`orthogonality_defect`](crate::motion::Motion::orthogonality_defect) |
 //! | `E`, `−∂l_d/∂h` | [`energy`](crate::motion::Stepper::energy), [`discrete_energy`](crate::mechanics::DiscreteLagrangian::discrete_energy) |
 //!
 //! # Bibliography

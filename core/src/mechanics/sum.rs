@@ -30,7 +30,7 @@ use crate::numbers::{Coordinates as _, real};
 /// let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.01)?;
 /// let state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 12.0))?;
 /// for state in stepper.steps(state).take(100) {
-///     let vertical: f64 = stepper.momentum_along_advected(&state?);
+///     let vertical: f64 = stepper.momentum_along_advected(&*state?);
 ///     assert!((vertical - 48.0).abs() < 1e-12);
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -75,7 +75,7 @@ impl PreprocessedOrder {
 /// let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
 /// let stepper = Stepper::preprocessed(PrincipalBody { J_d }, 0.1, PreprocessedOrder::Ten)?;
 /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
-/// let energy = stepper.energy(&state);
+/// let energy: f64 = stepper.energy(&state);
 /// for _ in 0..1000 {
 ///     stepper.step(&mut state)?;
 /// }

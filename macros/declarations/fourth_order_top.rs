@@ -1,0 +1,1 @@
+../../examples/declarations/fourth_order_top.rs

@@ -1,0 +1,1 @@
+../../examples/declarations/log_top.rs

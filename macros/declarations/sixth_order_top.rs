@@ -1,0 +1,1 @@
+../../examples/declarations/sixth_order_top.rs
