@@ -9,7 +9,7 @@
 use core::hint::black_box;
 
 use super::problem::{Lanes, MAX_ITERATIONS, Problem, Root, settled};
-use super::reused_jacobian::{is_enough, is_near, is_plain};
+use super::reused_jacobian::{has_no_derivatives, has_sufficed, may_suffice};
 use crate::mechanics::{Effect, Scalar, Vector};
 use crate::numbers::Coordinates as _;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _};
@@ -17,7 +17,7 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _};
 impl<L: Effect> Problem<'_, L> {
     /// [`solve_directly`](Self::solve_directly) for several lanes: the same digits.
     #[inline(always)]
-    pub(super) fn solve_together<const AGAIN: bool>(
+    pub(super) fn solve_together<const REUSE: bool>(
         &self,
         terms: &L::StepTerms,
         guess: &Vector<L>,
@@ -30,13 +30,13 @@ impl<L: Effect> Problem<'_, L> {
         if settled.all() {
             return self.usual(&half, made.det, 1, largest);
         }
-        // As in `again`: with one function for both, lanes were a quarter slower.
-        if AGAIN && is_plain::<Scalar<L>>() {
-            let is_near = is_near(first, half.dot(&half)) & made.det.simd_gt(self.safe) & !settled;
+        // As in `reuse_jacobian`: with one function for both, lanes were a quarter slower.
+        if REUSE && has_no_derivatives::<Scalar<L>>() {
+            let is_near = may_suffice(first, half.dot(&half)) & made.det.simd_gt(self.safe) & !settled;
             if is_near.all() {
                 let second = self.simplified(terms, &half, &made);
                 let half = half - second;
-                if is_enough(first, second.dot(&second), half.dot(&half)).all() {
+                if has_sufficed(first, second.dot(&second), half.dot(&half)).all() {
                     return self.usual(&half, made.det, 2, largest);
                 }
             }
@@ -46,12 +46,12 @@ impl<L: Effect> Problem<'_, L> {
         let made = black_box(made);
         let mut lanes = Lanes::starting_at(guess);
         lanes.advance(&made.update, made.det, &made.update);
-        let mut again = self.again::<AGAIN>(terms, &made, &mut lanes);
+        let mut again = self.reuse_jacobian::<REUSE>(terms, &made, &mut lanes);
         for iteration in 1..=MAX_ITERATIONS {
             if lanes.settled.all() {
                 return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
             }
-            again = self.refine::<AGAIN>(terms, &mut lanes);
+            again = self.iterate_once::<REUSE>(terms, &mut lanes);
         }
         None
     }

@@ -69,7 +69,7 @@ impl<L: Effect> Root<L> {
 /// Where the lanes of an iteration have come to.
 pub(super) struct Lanes<L: Effect> {
     pub(super) half: Vector<L>,
-    /// Of the last Jacobian: at the iterate before `half`, or before two [short updates](simplified).
+    /// Of the last Jacobian: at the iterate before `half`, or before two [short updates](super::reused_jacobian).
     pub(super) det: Scalar<L>,
     pub(super) settled: Mask<Scalar<L>>,
     pub(super) kick: Kick<L>,
@@ -119,23 +119,23 @@ impl<L: Effect> Problem<'_, L> {
     /// What it returns is what [`solve`](Self::solve) returns. A right side whose square is above `largest` is
     /// doubtful: the Jacobian is lost in its rounding, and an update may vanish far from any solution.
     ///
-    /// `AGAIN` says whether a Jacobian may be [used again](simplified).
+    /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian).
     ///
     /// Nothing here is lent to a function that isn't inlined, so that all of it can stay in registers; that is a sixth
     /// of the time of a step.
     #[inline(always)]
-    pub(crate) fn solve_directly<const AGAIN: bool>(&self, guess: &Vector<L>, largest: Scalar<L>) -> Option<Root<L>> {
+    pub(crate) fn solve_directly<const REUSE: bool>(&self, guess: &Vector<L>, largest: Scalar<L>) -> Option<Root<L>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
         if Self::goes_by_secants() {
             let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
             return lanes.settled.all().then(|| Root::of(&lanes, iterations));
         }
         if Scalar::<L>::LANES > 1 {
-            return self.solve_together::<AGAIN>(&terms, guess, largest);
+            return self.solve_together::<REUSE>(&terms, guess, largest);
         }
         let mut lanes = Lanes::<L>::starting_at(guess);
         for iteration in 1..=MAX_ITERATIONS {
-            let again = self.refine::<AGAIN>(&terms, &mut lanes);
+            let again = self.iterate_once::<REUSE>(&terms, &mut lanes);
             if lanes.settled.all() {
                 return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
             }
@@ -207,7 +207,7 @@ impl<L: Effect> Problem<'_, L> {
     /// Until all lanes have settled or the iterations are used up; how many there were.
     pub(super) fn iterate(&self, terms: &L::StepTerms, mut lanes: Lanes<L>) -> (Lanes<L>, u32) {
         for iteration in 1..=MAX_ITERATIONS {
-            let again = self.refine::<true>(terms, &mut lanes);
+            let again = self.iterate_once::<true>(terms, &mut lanes);
             if lanes.settled.all() {
                 return (lanes, iteration + u32::from(again));
             }

@@ -25,14 +25,14 @@ use crate::mechanics::{Effect, Scalar, Square, Vector};
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
 
-/// What may be missing at the end, in roundings of `y`: below the rounding of the residual that the last update was
-/// made of.
-const MISSING: f64 = 1.0 / 16.0;
+/// How much of `y` may be missing at the end, in its roundings. It is less than the rounding of the residual that the
+/// last update was made of.
+const REST: f64 = 1.0 / 16.0;
 /// Of the determinant at rest.
 const SAFE: f64 = 1.0 / 16.0;
-/// The `C` that a first update is judged by, which is that of the heavy tops of the thesis at common steps: a top whose
-/// own is larger wastes a residual in a narrow range of updates.
-const COMMON: f64 = 1.0 / 16.0;
+/// The `C` that a first update is judged by: that of the heavy tops of the thesis at common steps. A top with a larger
+/// one wastes a residual in a narrow range of updates.
+const TYPICAL_CURVATURE: f64 = 1.0 / 16.0;
 
 /// The determinant that [`Problem::safe`] is, from that of the Jacobian at rest.
 pub(crate) fn safe<T: Real>(at_rest: T) -> T {
@@ -42,82 +42,87 @@ pub(crate) fn safe<T: Real>(at_rest: T) -> T {
 /// Whether iterations that converge at a rate will do: only with plain floating-point numbers. The derivatives that a
 /// dual number carries converge with the quadratic iteration as its values do, but lag behind them in others.
 #[inline(always)]
-pub(super) fn is_plain<T: Real>() -> bool {
+pub(super) fn has_no_derivatives<T: Real>() -> bool {
     let element = TypeId::of::<<T as SimdValue>::Element>();
     element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
 }
 
-/// What an iteration has made of a Jacobian.
-pub(super) struct Made<L: Effect> {
+/// A Newton iteration: its update, and its Jacobian in factors, for another update.
+pub(super) struct Iteration<L: Effect> {
     pub(super) update: Vector<L>,
     factors: Square<L>,
     pub(super) det: Scalar<L>,
 }
 
 impl<L: Effect> Problem<'_, L> {
-    /// An iteration of the lanes that haven't settled, and in those that it has brought near enough one more with the
-    /// same Jacobian, if it may be used `AGAIN`: where steps are so long that it seldom can, asking costs more. Whether
-    /// a lane has settled by that.
+    /// An iteration of the lanes that haven't settled. With `REUSE`, the lanes that it has brought near enough make one
+    /// more with the same Jacobian. Where steps are so long that they seldom can, asking costs more than it saves.
+    /// Returns whether a lane has settled by that.
     #[inline(always)]
-    pub(super) fn refine<const AGAIN: bool>(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
+    pub(super) fn iterate_once<const REUSE: bool>(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
         let made = self.newton(terms, &lanes.half);
         lanes.advance(&made.update, made.det, &made.update);
-        self.again::<AGAIN>(terms, &made, lanes)
+        self.reuse_jacobian::<REUSE>(terms, &made, lanes)
     }
 
     /// An iteration from there.
     #[inline(always)]
-    pub(super) fn newton(&self, terms: &L::StepTerms, half: &Vector<L>) -> Made<L> {
+    pub(super) fn newton(&self, terms: &L::StepTerms, half: &Vector<L>) -> Iteration<L> {
         let (residual, jacobian) = L::newton_system(self.constants, terms, half);
         let (factors, det) = Vector::<L>::factorise(&jacobian);
-        Made { update: Vector::<L>::solve_again(&factors, det, &residual), factors, det }
+        Iteration { update: Vector::<L>::solve_again(&factors, det, &residual), factors, det }
     }
 
     /// The update from there by the Jacobian that another was made with.
     #[inline(always)]
-    pub(super) fn simplified(&self, terms: &L::StepTerms, half: &Vector<L>, made: &Made<L>) -> Vector<L> {
+    pub(super) fn simplified(&self, terms: &L::StepTerms, half: &Vector<L>, made: &Iteration<L>) -> Vector<L> {
         let (residual, _) = L::newton_residual(self.constants, terms, half);
         Vector::<L>::solve_again(&made.factors, made.det, &residual)
     }
 
-    /// The second part of [`refine`](Self::refine).
+    /// The second part of [`iterate_once`](Self::iterate_once).
     #[inline(always)]
-    pub(super) fn again<const AGAIN: bool>(&self, terms: &L::StepTerms, made: &Made<L>, lanes: &mut Lanes<L>) -> bool {
-        if !AGAIN || !is_plain::<Scalar<L>>() || lanes.settled.all() {
+    pub(super) fn reuse_jacobian<const REUSE: bool>(
+        &self,
+        terms: &L::StepTerms,
+        made: &Iteration<L>,
+        lanes: &mut Lanes<L>,
+    ) -> bool {
+        if !REUSE || !has_no_derivatives::<Scalar<L>>() || lanes.settled.all() {
             return false;
         }
         let before = made.update.dot(&made.update);
-        let is_near = is_near(before, lanes.half.dot(&lanes.half)) & made.det.simd_gt(self.safe) & !lanes.settled;
+        let is_near = may_suffice(before, lanes.half.dot(&lanes.half)) & made.det.simd_gt(self.safe) & !lanes.settled;
         if !is_near.any() {
             return false;
         }
         let second = self.simplified(terms, &lanes.half, made);
         let next = lanes.half - second;
         lanes.half = next.select(is_near, lanes.half);
-        let settled = is_near & is_enough(before, second.dot(&second), next.dot(&next));
+        let settled = is_near & has_sufficed(before, second.dot(&second), next.dot(&next));
         lanes.settled = lanes.settled | settled;
         settled.any()
     }
 }
 
 /// Whether an update will be enough after one with the square `first` that has led to one with the square `size`:
-/// `2C|u₁|³ ≤ MISSING ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
+/// `2C|u₁|³ ≤ REST ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
 #[inline(always)]
-pub(super) fn is_near<T: Real>(first: T, size: T) -> Mask<T> {
-    let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING / COMMON);
+pub(super) fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
+    let tolerance = T::simd_default_epsilon() * real(0.5 * REST / TYPICAL_CURVATURE);
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
-/// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ MISSING ε|y|`. All are squares.
+/// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. All are squares.
 #[inline(always)]
-pub(super) fn is_enough<T: Real>(first: T, second: T, size: T) -> Mask<T> {
-    let tolerance = T::simd_default_epsilon() * real(0.5 * MISSING);
+pub(super) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
+    let tolerance = T::simd_default_epsilon() * real(0.5 * REST);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{is_enough, is_near};
+    use super::{has_sufficed, may_suffice};
 
     const EPSILON: f64 = f64::EPSILON;
 
@@ -129,8 +134,8 @@ mod tests {
             for (first, enough) in [(limit * 0.999, true), (limit * 1.001, false)] {
                 let second = first * first / 16.0;
                 let [first, second, size] = [first, second, size].map(|length| length * length);
-                assert_eq!(is_near(first, size), enough);
-                assert_eq!(is_enough(first, second, size), enough);
+                assert_eq!(may_suffice(first, size), enough);
+                assert_eq!(has_sufficed(first, second, size), enough);
             }
         }
     }
@@ -141,12 +146,12 @@ mod tests {
         let (first, size) = (1e-6_f64, 0.06_f64);
         let enough = |curvature: f64, size: f64| {
             let second = curvature * first * first;
-            is_enough(first * first, second * second, size * size)
+            has_sufficed(first * first, second * second, size * size)
         };
         let limit = |curvature: f64| 32.0 * curvature * curvature.max(1.0) * first.powi(3) / EPSILON;
         for curvature in [1e-3, 0.1, 10.0, 1e3] {
             assert!(enough(curvature, limit(curvature) * 1.001) && !enough(curvature, limit(curvature) * 0.999));
         }
-        assert!(!enough(1.0, f64::NAN) && !is_enough(0.0, f64::NAN, size));
+        assert!(!enough(1.0, f64::NAN) && !has_sufficed(0.0, f64::NAN, size));
     }
 }

@@ -37,7 +37,7 @@
 //!   it. But what the samples of the ball have missed is seen by these.
 
 use super::problem::{Lanes, Problem};
-use super::reused_jacobian::is_plain;
+use super::reused_jacobian::has_no_derivatives;
 use crate::groups::Retraction as _;
 use crate::mechanics::{Effect, Scalar, Vector};
 use crate::numbers::{Coordinates as _, Mask, nowhere, real};
@@ -48,7 +48,7 @@ const MAX_UPDATES: usize = 8;
 /// Updates must shrink at least by this.
 const CONTRACTION: f64 = 0.25;
 /// What may be missing at the end, in roundings of `ξ`.
-const MISSING: f64 = 1.0 / 16.0;
+const REST: f64 = 1.0 / 16.0;
 /// Updates below this many roundings of `ξ` may consist of them.
 const FLOOR: f64 = 32.0;
 
@@ -114,7 +114,7 @@ impl<L: Effect> Updates<L> {
             let shrinks = ratio.simd_le(limit);
             // At the floor a larger ratio is one of roundings.
             self.contraction = self.contraction.simd_max(ratio.select(shrinks, limit));
-            let is_enough = (length * self.contraction).simd_le(within(MISSING));
+            let is_enough = (length * self.contraction).simd_le(within(REST));
             verdict.settled = verdict.settled | is_enough | (at_floor & self.at_floor);
             verdict.doubtful = !(shrinks | at_floor);
         }
@@ -130,7 +130,7 @@ impl<L: Effect> Problem<'_, L> {
     /// Whether the solve starts without the Jacobian.
     #[inline(always)]
     pub(super) fn goes_by_secants() -> bool {
-        L::JACOBIAN_IS_EXPENSIVE && is_plain::<Scalar<L>>()
+        L::JACOBIAN_IS_EXPENSIVE && has_no_derivatives::<Scalar<L>>()
     }
 
     /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of
@@ -171,7 +171,7 @@ impl<L: Effect> Problem<'_, L> {
     fn kick_has_settled(&self, change: &Vector<L>, update: &Vector<L>, updates: &mut Updates<L>) -> Mask<Scalar<L>> {
         let Some(last) = updates.count.checked_sub(1) else { return nowhere::<Scalar<L>>() };
         updates.kick_slope = updates.kick_slope.simd_max(change.dot(change) / updates.lengths[last]);
-        let tolerance = Scalar::<L>::simd_default_epsilon() * real(MISSING);
+        let tolerance = Scalar::<L>::simd_default_epsilon() * real(REST);
         (updates.kick_slope * update.dot(update)).simd_le(self.a.dot(&self.a) * (tolerance * tolerance))
     }
 }
