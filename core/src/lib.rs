@@ -55,6 +55,7 @@
 //!
 //! | feature | |
 //! |---|---|
+//! | `dispatch` (default) | lanes and collocation take the vector instructions that the machine is found to have; no digit depends on it |
 //! | `serde` | [`Stepper::checkpoint`](motion::Stepper#method.checkpoint): files that a run goes on from, bit for bit |
 //!
 //! # How it is built

@@ -1,7 +1,5 @@
 //! The vector instructions of the machine that the program runs on, whatever it was compiled for.
 
-use pulp::{Arch, Simd, WithSimd};
-
 /// What is worth compiling for several instruction sets.
 ///
 /// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions
@@ -14,19 +12,29 @@ pub(crate) trait Kernel {
     fn run(self) -> Self::Output;
 }
 
-/// Does it with the best instructions there are, if that is asked for.
+/// Does it with the best instructions that the machine has, if that is asked for and the feature `dispatch` is on.
+#[cfg(feature = "dispatch")]
 #[inline(always)]
 pub(crate) fn dispatch<K: Kernel>(best: bool, kernel: K) -> K::Output {
+    use pulp::{Arch, Simd, WithSimd};
+
+    struct Dispatched<K>(K);
+
+    impl<K: Kernel> WithSimd for Dispatched<K> {
+        type Output = K::Output;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) -> K::Output {
+            self.0.run()
+        }
+    }
+
     if best { Arch::new().dispatch(Dispatched(kernel)) } else { kernel.run() }
 }
 
-struct Dispatched<K>(K);
-
-impl<K: Kernel> WithSimd for Dispatched<K> {
-    type Output = K::Output;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> K::Output {
-        self.0.run()
-    }
+/// Does it with the instructions that it was compiled for.
+#[cfg(not(feature = "dispatch"))]
+#[inline(always)]
+pub(crate) fn dispatch<K: Kernel>(_: bool, kernel: K) -> K::Output {
+    kernel.run()
 }

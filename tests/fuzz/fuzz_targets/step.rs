@@ -49,7 +49,7 @@ fn is_finite(state: &State<SO3, Vector3<f64>>) -> bool {
 
 /// `𝔽l_d⁻(F, w) = μ` and `𝔽l_d⁺(F, w) = μ⁺`, to the roundings of `F = RᵀR⁺` and of terms that cancel.
 fn assert_solved(stepper: &Stepper<Top>, before: &State<SO3, Vector3<f64>>, after: &State<SO3, Vector3<f64>>) {
-    let (top, h) = (stepper.lagrangian(), stepper.step_size());
+    let (top, h) = (stepper.scene(), stepper.step_size());
     let f = before.attitude().inverse().compose(&after.attitude()).matrix();
     let (w, size) = (before.advected(), top.J_d.diagonal().amax() / h.abs());
     let kick = 3.0 * (h * top.m * top.g).abs() * top.rho.amax() * w.amax();
