@@ -16,9 +16,7 @@
 
 use std::process::ExitCode;
 
-use liestep::Stepper;
-use liestep::effects::PrincipalBody;
-use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::args::{Common, Failure, example};
 use workbench::common_help;

@@ -70,6 +70,9 @@
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;
 
+// First, so that the page of `Stepper` begins with `new`, `start` and `step`.
+pub mod motion;
+
 mod error;
 mod solving;
 
@@ -80,7 +83,6 @@ pub mod groups;
 pub mod laws;
 pub mod mechanics;
 pub mod methods;
-pub mod motion;
 pub mod numbers;
 pub mod prelude;
 pub mod with;

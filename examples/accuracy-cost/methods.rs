@@ -1,13 +1,12 @@
 //! The methods, ours and others', behind one way to run them.
 
 use declarations::motions::End;
-use liestep::effects::PrincipalBody;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::{
     CompositionScheme, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody,
 };
 use liestep::motion::Plan;
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 
 use crate::rivals::{dop853, library};
 use crate::scenes::{Kind, Scene};

@@ -4,9 +4,7 @@
 
 use declarations::motions::End;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderBody, SixthOrderTop};
-use liestep::SO3;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::top_equations::{Equations, State};
 

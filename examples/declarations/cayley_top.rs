@@ -1,7 +1,6 @@
 //! The heavy top with the Cayley kinetic term.
 
-use liestep::mechanics::Inertia;
-use liestep::{SO3, lagrangian};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 
 /// The heavy top with the Cayley kinetic term: `x = tan(θ/2) n` has the Legendre transform

@@ -1,7 +1,6 @@
 //! The heavy top with the geodesic kinetic term.
 
-use liestep::mechanics::Inertia;
-use liestep::{SO3, lagrangian};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 
 /// The heavy top with the geodesic kinetic term `ξ·Jξ/(2h)`, `F = exp(ξ̂)`, which is exact for a sphere.

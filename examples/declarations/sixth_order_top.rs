@@ -1,7 +1,6 @@
 //! The heavy top to the sixth order.
 
-use liestep::mechanics::Inertia;
-use liestep::{SO3, lagrangian};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 
 /// The heavy top to the sixth order in one solve: the action of a path that satisfies the equations of motion to the

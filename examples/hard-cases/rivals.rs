@@ -1,9 +1,7 @@
 //! Other methods on the bodies of the rows.
 
 use declarations::{FreeBody, HeavyTop, Motion};
-use liestep::Stepper;
-use liestep::effects::PrincipalBody;
-use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use plotters::style::RGBColor;
 use workbench::free_body::engines::{Engine, Moments, explicit, implicit, rescaled};

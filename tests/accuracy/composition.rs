@@ -3,10 +3,9 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderTop, Top as _};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::CompositionScheme;
-use liestep::{SO3, StepError, Stepper};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -3,11 +3,10 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, Motion, Top as _};
-use liestep::effects::{Gravity, RigidBody};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{Effect as _, RigidScene};
+use liestep::effects;
+use liestep::mechanics::RigidScene;
 use liestep::methods::{Collocated, Gauss};
-use liestep::{NonstandardInertia, SO3, SetupError, State, StepError, Stepper, effects};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 

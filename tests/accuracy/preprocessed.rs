@@ -3,11 +3,8 @@
 use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FreeBody, Motion};
-use liestep::effects::PrincipalBody;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::methods::PreprocessedOrder;
-use liestep::{SO3, StepError, Stepper};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -3,12 +3,9 @@
 use checks::random::Random;
 use checks::structure::poisson::TOLERANCE;
 use declarations::{HeavyTop, Motion};
-use liestep::effects::PrincipalBody;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::Inertia;
 use liestep::methods::{KineticFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody, Turn};
 use liestep::numbers::Real;
-use liestep::{SO3, SetupError, StepError, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use workbench::measure::{order, relative};

@@ -3,12 +3,11 @@
 use checks::random::Random;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::effects::{GravityGradient, Rotor, Spring};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia};
+use liestep::mechanics::Effect;
 use liestep::methods::{
     CompositionScheme, Flow, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme, SymmetricBody,
 };
-use liestep::{SO3, SetupError, Stepper};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -21,9 +21,8 @@
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::numbers::Real;
-use liestep::{SO3, State, Stepper, lagrangian};
+use liestep::prelude::*;
 use nalgebra::{RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 

@@ -22,11 +22,10 @@ mod by_hand;
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::motion::Declared;
 use liestep::motion::Warm;
+use liestep::prelude::*;
 use liestep::with::{Carried, Compensated as Plan};
-use liestep::{SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::top_equations::Equations;
 

@@ -20,11 +20,11 @@ use core::hint::black_box;
 
 use declarations::HeavyTop;
 use liestep::effects::{
-    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
-    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
+    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, GravityGradient, MagneticDamping, Rotor, SixthOrderBody,
+    Spring, Thrust, Torque,
 };
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Regular};
-use liestep::{SO3, lagrangian};
+use liestep::mechanics::Regular;
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::switched::Switched;
 

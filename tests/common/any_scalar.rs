@@ -1,8 +1,7 @@
 //! A top of any scalar: of SIMD lanes, dual numbers or plain ones.
 
-use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::numbers::Real;
-use liestep::{SO3, lagrangian};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 
 /// (3.13) in principal axes, for any scalar.

@@ -1,9 +1,8 @@
 //! Orders of declared Lagrangians, measured at motions of `tests/data`.
 
 use declarations::Motion;
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::Regular;
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use workbench::measure::{four_halvings, order, relative, steps_in};
 
 /// Above what some hundred steps lose to rounding.

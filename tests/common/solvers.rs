@@ -3,12 +3,12 @@
 use core::cell::Cell;
 use core::fmt::Debug;
 
-use liestep::groups::{LieGroup as _, Retraction as _};
+use liestep::groups::Retraction as _;
 use liestep::mechanics::{
     DiscreteLagrangian, Effect, Group, Matrix, Parts, Scalar, SceneVisitor, Square, Vector, WithKinetic,
 };
 use liestep::numbers::Real;
-use liestep::{SO3, SetupError};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
 /// The terms that don't know stages.

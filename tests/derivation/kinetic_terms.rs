@@ -2,10 +2,8 @@
 
 use declarations::motions::{matrix, number, read, vector};
 use declarations::{CayleyTop, FourthOrderTop, LogTop, SixthOrderTop, Top};
-use liestep::SO3;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::Inertia;
 use liestep::motion::DiscreteLiePoisson;
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::relative;
 

@@ -2,11 +2,10 @@
 
 use checks::any_scalar::Top;
 use checks::random::Random;
-use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::methods::CompositionScheme;
 use liestep::motion::Motion;
 use liestep::numbers::Real;
-use liestep::{SO3, StepError, Stepper, lagrangian};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 

@@ -1,10 +1,8 @@
 //! Dual numbers through the stepper: derivatives of a whole trajectory with respect to a parameter.
 
 use checks::any_scalar::Top;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian as _};
 use liestep::numbers::Real;
-use liestep::{SO3, State, Stepper};
+use liestep::prelude::*;
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 use num_dual::Dual64;
 

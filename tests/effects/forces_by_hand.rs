@@ -1,9 +1,8 @@
 //! Forces fit into scenes as effects that aren't Lagrangians: viscous drag, written by hand.
 
-use liestep::effects::RigidBody;
 use liestep::groups::CayleyRetraction;
 use liestep::mechanics::{Effect, Parts, SceneVisitor, Sum, WithoutKinetic};
-use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// The torque `−c Ω`, by the discrete Lagrange–d'Alembert principle with `f⁻ = −(c − e) s` and `f⁺ = −e s` for

@@ -3,12 +3,9 @@
 use checks::order;
 use checks::random::Random;
 use declarations::{CayleyTop, LogTop, Motion};
-use liestep::effects::{
-    CayleyBody, Drag, FourthOrderBody, GeodesicBody, Gravity, PrincipalBody, RigidBody, Rotor, SixthOrderBody,
-};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Regular};
-use liestep::{SO3, State, Stepper};
+use liestep::effects::{CayleyBody, Drag, FourthOrderBody, GeodesicBody, Rotor, SixthOrderBody};
+use liestep::mechanics::Regular;
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

@@ -1,10 +1,9 @@
 //! Each effect of the library against the physics that it stands for.
 
 use checks::random::Random;
-use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{AxiallyInvariant, DiagonalNonstandardInertia, Effect, Inertia, Regular};
-use liestep::{SO3, State, Stepper};
+use liestep::effects::{Dipole, GravityGradient, Rotor, Spring};
+use liestep::mechanics::{AxiallyInvariant, Effect, Regular};
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

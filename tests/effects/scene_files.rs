@@ -9,9 +9,8 @@ use std::sync::OnceLock;
 use checks::examples;
 use expect_test::expect;
 use liestep::accuracy::Accuracy;
-use liestep::effects::{Dipole, Drag, Gravity, GravityGradient, MagneticDamping, PrincipalBody, Rotor, Spring, Torque};
-use liestep::mechanics::DiagonalNonstandardInertia;
-use liestep::{NonstandardInertia, Stepper};
+use liestep::effects::{Dipole, Drag, GravityGradient, MagneticDamping, Rotor, Spring, Torque};
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const TOP: &str = r#"title = "A heavy top with drag"

@@ -3,10 +3,9 @@
 
 use core::f64::consts::PI;
 
-use liestep::groups::{
-    CayleyRetraction, ExponentialRetraction, LieGroup, NotInGroup, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
-};
+use liestep::groups::{CayleyRetraction, ExponentialRetraction, LieGroup, NotInGroup, R3, Retraction, SL2, SU2};
 use liestep::laws::samples::Random;
+use liestep::prelude::*;
 use nalgebra::{
     Isometry2, Isometry3, Matrix2, Matrix3, Matrix4, SVector, UnitComplex, UnitQuaternion, Vector1, Vector2, Vector3,
 };

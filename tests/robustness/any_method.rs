@@ -4,12 +4,11 @@
 
 use checks::random::Random;
 use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
-use liestep::effects::PrincipalBody;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect};
+use liestep::mechanics::{DiscreteLagrangian, Effect};
 use liestep::methods::{CompositionScheme, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody};
 use liestep::motion::{Plan, Remedy};
+use liestep::prelude::*;
 use liestep::with::{Checkpoint, CheckpointError, Compensable};
-use liestep::{SO3, StepError, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 

@@ -2,10 +2,9 @@
 
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
-use liestep::groups::LieGroup as _;
 use liestep::motion::{self, Declared};
+use liestep::prelude::*;
 use liestep::with::Compensated;
-use liestep::{SO3, Stepper};
 use nalgebra::{SVector, Vector3};
 use workbench::measure::{relative, slope, steps_in};
 

@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 
 use checks::random::Random;
 use declarations::HeavyTop;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian as _, Effect as _, InertiaError};
+use liestep::mechanics::InertiaError;
 use liestep::motion::Solvability;
-use liestep::{NonstandardInertia, SO3, SetupError, State, StepError, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
 /// How many; the environment may ask for another number.

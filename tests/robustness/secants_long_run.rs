@@ -3,9 +3,8 @@
 
 use checks::solvers::WithJacobian;
 use declarations::{self, FourthOrderTop, SixthOrderTop};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiscreteLagrangian, Inertia, Regular};
-use liestep::{SO3, Stepper};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEPS: u32 = 100_000;

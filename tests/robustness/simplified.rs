@@ -3,9 +3,8 @@
 
 use checks::any_scalar::Top;
 use checks::solvers::{WithJacobian, jacobians};
-use liestep::Stepper;
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _};
 use liestep::motion::DiscreteLiePoisson;
+use liestep::prelude::*;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
 use num_dual::Dual64;
 use workbench::measure::relative;

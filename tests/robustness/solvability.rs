@@ -2,10 +2,9 @@
 
 use checks::random::Random;
 use declarations::{CayleyTop, FreeBody, FullTop, HeavyTop, Motion, Top as _};
-use liestep::effects::{Gravity, RigidBody};
-use liestep::mechanics::{DiagonalNonstandardInertia, Regular};
+use liestep::mechanics::Regular;
 use liestep::motion::{DiscreteLiePoisson, Solvability};
-use liestep::{NonstandardInertia, SO3, StepError, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// Steps and directions all around the two bounds: the sure ones have a solution under 90°, the impossible ones none.

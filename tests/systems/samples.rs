@@ -7,9 +7,8 @@ use declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
     OrbitingBody, Satellite, SixthOrderTop, Spring, TetheredPlate, Top, UnderwaterBody,
 };
-use liestep::groups::{CovariantTensor, SE2, SE3, SL2};
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
-use liestep::{NonstandardInertia, SO3};
+use liestep::groups::{CovariantTensor, SL2};
+use liestep::prelude::*;
 use nalgebra::{
     Matrix2, Matrix3, Matrix4, Point2, Point3, SVector, UnitComplex, UnitQuaternion, Vector2, Vector3, Vector4, Vector6,
 };

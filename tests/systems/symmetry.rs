@@ -6,9 +6,8 @@
 
 use checks::structure::System;
 use checks::structure::symmetry::{drift, symmetries};
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
 use liestep::motion::DiscreteLiePoisson;
-use liestep::{NonstandardInertia, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, SVector, Vector3, Vector4};
 
 use crate::samples::{self, Start};

@@ -4,6 +4,9 @@
 //! the plan keeps from step to step. [`Declared`] is the plan of the scene's own step; the others are in
 //! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with).
 
+// First, as on its page in the documentation.
+mod stepper;
+
 mod any;
 mod declared;
 mod flows;
@@ -11,7 +14,6 @@ mod kept;
 mod plan;
 mod report;
 mod state;
-mod stepper;
 mod summation;
 
 pub use any::{AnyKept, AnyState, AnyStepper};

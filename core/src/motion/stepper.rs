@@ -87,35 +87,9 @@ impl<S: Effect> Stepper<S> {
         let plan = Declared::new(&scene, h)?;
         Ok(Self { scene, plan })
     }
-
-    /// The flow on momenta, (2.8), of the same scene and step.
-    #[must_use]
-    pub fn flow(&self) -> DiscreteLiePoisson<S>
-    where
-        S: Clone,
-    {
-        DiscreteLiePoisson::of(self.scene.clone(), self.plan.clone())
-    }
-
-    /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
-    /// see [`DiscreteLiePoisson::solvability`].
-    #[must_use]
-    pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
-        self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
-    }
 }
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
-    /// A scene and a plan of one's own, folded for it; `examples/how-to-add-a-method.rs` has one.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError::Parameter`] for a parameter of the scene that can't be used.
-    pub fn with_plan(scene: S, plan: P) -> Result<Self, SetupError> {
-        scene.validate()?;
-        Ok(Self { scene, plan })
-    }
-
     /// A motion from an attitude (body to space) and a body velocity, on SO(3) in rad/s.
     ///
     /// The momentum is that of the continuous Lagrangian, `μ_0 = J Ω_0` for a rigid body: the half kick of the
@@ -298,6 +272,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         State { motion, kept: self.plan.keep(&self.scene, &motion) }
     }
 
+    /// A scene and a plan of one's own, folded for it; `examples/how-to-add-a-method.rs` has one.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] for a parameter of the scene that can't be used.
+    pub fn with_plan(scene: S, plan: P) -> Result<Self, SetupError> {
+        scene.validate()?;
+        Ok(Self { scene, plan })
+    }
+
     /// The scene.
     #[must_use]
     pub fn scene(&self) -> &S {
@@ -397,6 +381,24 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         S: AxiallyInvariant<Group = SO3<Scalar<S>>>,
     {
         motion.momentum.dot(&S::axis(&motion.advected))
+    }
+}
+
+impl<S: Effect> Stepper<S> {
+    /// The flow on momenta, (2.8), of the same scene and step.
+    #[must_use]
+    pub fn flow(&self) -> DiscreteLiePoisson<S>
+    where
+        S: Clone,
+    {
+        DiscreteLiePoisson::of(self.scene.clone(), self.plan.clone())
+    }
+
+    /// What is proved about the next step: whether it surely has a solution or surely has none, where bounds are known;
+    /// see [`DiscreteLiePoisson::solvability`].
+    #[must_use]
+    pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
+        self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, KineticFlow, Preprocessed, Split};
 use crate::motion::{Cost, Declared, Kept, Motion, Plan, Proceeded, StepReport, Stepper, Summation, restored};
 use crate::numbers::{Entries, Real, carried_sum, zero};
-use crate::with::remedies::{OrFallback, OrSubsteps};
+use crate::with::remedies::OrElse;
 use nalgebra::SimdValue as _;
 
 /// A plan whose sums are compensated, by [`Stepper::compensated`].
@@ -79,8 +79,7 @@ impl<S: Effect> Compensable for Declared<S> {}
 impl<S: Effect> Compensable for Composed<S> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<T: Real> Compensable for Preprocessed<T> {}
-impl<P: Compensable> Compensable for OrSubsteps<P> {}
-impl<P: Compensable, Q> Compensable for OrFallback<P, Q> {}
+impl<P: Compensable, R> Compensable for OrElse<P, R> {}
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept

@@ -10,4 +10,4 @@ mod remedies;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{Carried, Compensable, Compensated};
-pub use remedies::{OrFallback, OrSubsteps};
+pub use remedies::{Instead, OrElse, Substeps};

@@ -8,18 +8,43 @@ use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::motion::{Cost, Motion, Plan, Remedy, StepReport, Stepper, Summation};
 use crate::numbers::real;
 
-/// A plan that takes a step without a solution in equal parts, by [`Stepper::or_substeps`].
+/// A plan that has a remedy for steps without a solution, by [`Stepper::or_substeps`] or [`Stepper::or_fallback`].
 #[derive(Clone, Copy, Debug)]
-pub struct OrSubsteps<P> {
+pub struct OrElse<P, R> {
     plan: P,
+    remedy: R,
+}
+
+/// The remedy that takes a step in equal parts.
+#[derive(Clone, Copy, Debug)]
+pub struct Substeps {
     at_most: u32,
 }
 
-/// A plan that leaves a step without a solution to another stepper, by [`Stepper::or_fallback`].
-#[derive(Clone, Copy, Debug)]
-pub struct OrFallback<P, F> {
-    plan: P,
-    other: F,
+/// Another step in the place of one that has no solution: [`Substeps`], or the step of another [`Stepper`].
+pub trait Instead<S: Effect>: Sized {
+    /// The remedy for the same plan with another step.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where there is no such step.
+    fn refolded(&self, h: Scalar<S>) -> Result<Self, SetupError>;
+
+    /// Makes the step in another way, or leaves everything as it was and returns the error.
+    ///
+    /// # Errors
+    ///
+    /// The error that the step was refused with, where there is no other way either.
+    fn step<P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
+        &self,
+        plan: &P,
+        scene: &S,
+        moved: (&mut M, &mut P::Kept),
+        error: StepError,
+    ) -> Result<StepReport, StepError>;
+
+    /// Shows its name and every constant.
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>);
 }
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
@@ -55,8 +80,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn or_substeps(self, at_most: u32) -> Stepper<S, OrSubsteps<P>> {
-        Stepper { scene: self.scene, plan: OrSubsteps { plan: self.plan, at_most } }
+    pub fn or_substeps(self, at_most: u32) -> Stepper<S, OrElse<P, Substeps>> {
+        Stepper { scene: self.scene, plan: OrElse { plan: self.plan, remedy: Substeps { at_most } } }
     }
 
     /// The same steps, and where there is none the step of another scene, or another method, with the same group and
@@ -71,7 +96,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// [`SetupError::InvalidStep`] where the other step isn't of the same length.
     #[allow(clippy::type_complexity)] // a stepper with a stepper in it
-    pub fn or_fallback<R, Q>(self, other: Stepper<R, Q>) -> Result<Stepper<S, OrFallback<P, Stepper<R, Q>>>, SetupError>
+    pub fn or_fallback<R, Q>(self, other: Stepper<R, Q>) -> Result<Stepper<S, OrElse<P, Stepper<R, Q>>>, SetupError>
     where
         R: Effect<Scalar = S::Scalar, Group = S::Group, Advected = S::Advected>,
         Q: Plan<R>,
@@ -80,11 +105,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         if !other.step_size().simd_eq(self.step_size()).all() {
             return Err(SetupError::InvalidStep { step: crate::numbers::reported(other.step_size()) });
         }
-        Ok(Stepper { scene: self.scene, plan: OrFallback { plan: self.plan, other } })
+        Ok(Stepper { scene: self.scene, plan: OrElse { plan: self.plan, remedy: other } })
     }
 }
 
-impl<S: Effect, P: Plan<S>> Plan<S> for OrSubsteps<P> {
+impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
     type Kept = P::Kept;
 
     const DISPATCHED: bool = P::DISPATCHED;
@@ -95,7 +120,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for OrSubsteps<P> {
     }
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
-        Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
+        Ok(Self { plan: self.plan.refolded(scene, h)?, remedy: self.remedy.refolded(h)? })
     }
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
@@ -111,7 +136,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for OrSubsteps<P> {
     ) -> Result<StepReport, StepError> {
         match self.plan.step(scene, motion, kept) {
             Ok(report) => Ok(report),
-            Err(error) => self.in_parts(scene, motion, kept, error),
+            Err(error) => self.remedy.step(&self.plan, scene, (motion, kept), error),
         }
     }
 
@@ -130,8 +155,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for OrSubsteps<P> {
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
-        visitor.term("or substeps");
-        visitor.parameter("at most", real(f64::from(self.at_most)));
+        self.remedy.describe(visitor);
         self.plan.describe(visitor);
     }
 
@@ -140,30 +164,30 @@ impl<S: Effect, P: Plan<S>> Plan<S> for OrSubsteps<P> {
     }
 }
 
-impl<P> OrSubsteps<P> {
+impl<S: Effect> Instead<S> for Substeps {
+    fn refolded(&self, _: Scalar<S>) -> Result<Self, SetupError> {
+        Ok(*self)
+    }
+
     #[cold]
     #[inline(never)]
-    fn in_parts<S: Effect, M: Summation<Group<S>, S::Advected>>(
+    fn step<P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
         &self,
+        plan: &P,
         scene: &S,
-        motion: &mut M,
-        kept: &mut P::Kept,
+        (motion, kept): (&mut M, &mut P::Kept),
         error: StepError,
-    ) -> Result<StepReport, StepError>
-    where
-        P: Plan<S>,
-    {
+    ) -> Result<StepReport, StepError> {
         if matches!(error, StepError::NonFinite { .. }) {
             return Err(error);
         }
         let steps = motion.now().steps;
         let mut parts = 2;
         while parts <= self.at_most {
-            if let Some((mut moved, iterations)) = self.substepped(scene, *motion, parts) {
-                let last = Motion { steps: steps + 1, ..*moved.now() };
-                // What isn't a step of the whole tells nothing of the next one's increment.
-                *kept = self.plan.keep(scene, &last);
+            if let Some((mut moved, iterations)) = substepped(plan, scene, *motion, parts) {
                 moved.recount(steps + 1);
+                // What isn't a step of the whole tells nothing of the next one's increment.
+                *kept = plan.keep(scene, moved.now());
                 *motion = moved;
                 return Ok(StepReport { iterations, remedy: Some(Remedy::Substeps(parts)) });
             }
@@ -173,112 +197,58 @@ impl<P> OrSubsteps<P> {
         Err(error)
     }
 
-    /// The motion after so many steps of an equal part of `h`, and all their iterations.
-    fn substepped<S: Effect, M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        mut motion: M,
-        parts: u32,
-    ) -> Option<(M, u32)>
-    where
-        P: Plan<S>,
-    {
-        let small = self.plan.refolded(scene, self.plan.step_size() / real(f64::from(parts))).ok()?;
-        motion.recount(0);
-        let mut kept = small.keep(scene, motion.now());
-        let mut iterations = 0;
-        for _ in 0..parts {
-            iterations += small.step(scene, &mut motion, &mut kept).ok()?.iterations;
-        }
-        Some((motion, iterations))
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
+        visitor.term("or substeps");
+        visitor.parameter("at most", real(f64::from(self.at_most)));
     }
 }
 
-impl<S, P, R, Q> Plan<S> for OrFallback<P, Stepper<R, Q>>
+/// The motion after so many steps of an equal part of `h`, and all their iterations.
+fn substepped<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
+    plan: &P,
+    scene: &S,
+    mut motion: M,
+    parts: u32,
+) -> Option<(M, u32)> {
+    let small = plan.refolded(scene, plan.step_size() / real(f64::from(parts))).ok()?;
+    motion.recount(0);
+    let mut kept = small.keep(scene, motion.now());
+    let mut iterations = 0;
+    for _ in 0..parts {
+        iterations += small.step(scene, &mut motion, &mut kept).ok()?.iterations;
+    }
+    Some((motion, iterations))
+}
+
+impl<S, R, Q> Instead<S> for Stepper<R, Q>
 where
     S: Effect,
-    P: Plan<S>,
     R: Effect<Scalar = S::Scalar, Group = S::Group, Advected = S::Advected> + Clone,
     Q: Plan<R>,
 {
-    type Kept = P::Kept;
-
-    const DISPATCHED: bool = P::DISPATCHED;
-    const EXPLAINS: bool = P::EXPLAINS;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.plan.step_size()
+    fn refolded(&self, h: Scalar<S>) -> Result<Self, SetupError> {
+        Ok(Self { scene: self.scene.clone(), plan: self.plan.refolded(&self.scene, h)? })
     }
 
-    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
-        let plan = self.other.plan.refolded(&self.other.scene, h)?;
-        let other = Stepper { scene: self.other.scene.clone(), plan };
-        Ok(Self { plan: self.plan.refolded(scene, h)?, other })
-    }
-
-    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
-        self.plan.keep(scene, motion)
-    }
-
-    #[inline(always)]
-    fn step<M: Summation<Group<S>, S::Advected>>(
+    #[cold]
+    #[inline(never)]
+    fn step<P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
         &self,
+        plan: &P,
         scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-    ) -> Result<StepReport, StepError> {
-        match self.plan.step(scene, motion, kept) {
-            Ok(report) => Ok(report),
-            Err(error) => self.by_the_other(scene, motion, kept, error),
-        }
-    }
-
-    fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, impulse: &Vector<S>) {
-        self.plan.push(motion, kept, impulse);
-    }
-
-    fn explained(
-        &self,
+        (motion, kept): (&mut M, &mut P::Kept),
         error: StepError,
-        scene: &S,
-        motion: &Motion<Group<S>, S::Advected>,
-        kept: &Self::Kept,
-    ) -> StepError {
-        self.plan.explained(error, scene, motion, kept)
+    ) -> Result<StepReport, StepError> {
+        let mut remembered = self.plan.keep(&self.scene, motion.now());
+        let Ok(report) = self.plan.step(&self.scene, motion, &mut remembered) else { return Err(error) };
+        // Its increments are those of another map.
+        *kept = plan.keep(scene, motion.now());
+        Ok(StepReport { remedy: Some(Remedy::Fallback), ..report })
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term("or fallback");
-        self.other.scene.describe(visitor);
-        self.other.plan.describe(visitor);
+        self.scene.describe(visitor);
         self.plan.describe(visitor);
-    }
-
-    fn cost(&self) -> Cost {
-        self.plan.cost()
-    }
-}
-
-impl<P, R: Effect, Q: Plan<R>> OrFallback<P, Stepper<R, Q>> {
-    #[cold]
-    #[inline(never)]
-    fn by_the_other<S, M>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut P::Kept,
-        error: StepError,
-    ) -> Result<StepReport, StepError>
-    where
-        S: Effect<Scalar = R::Scalar, Group = R::Group, Advected = R::Advected>,
-        M: Summation<Group<S>, S::Advected>,
-        P: Plan<S>,
-    {
-        let Stepper { scene: other, plan } = &self.other;
-        let mut remembered = plan.keep(other, motion.now());
-        let Ok(report) = plan.step(other, motion, &mut remembered) else { return Err(error) };
-        // Its increments are those of another map.
-        *kept = self.plan.keep(scene, motion.now());
-        Ok(StepReport { remedy: Some(Remedy::Fallback), ..report })
     }
 }

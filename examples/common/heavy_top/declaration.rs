@@ -3,8 +3,7 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
-use liestep::{SO3, lagrangian};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 
 /// A heavy top: the reduced discrete Lagrangian \[RDAE, (3.13)\].

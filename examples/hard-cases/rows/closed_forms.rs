@@ -1,8 +1,6 @@
 //! B8: on the separatrix, and symmetric bodies, against closed forms.
 
-use liestep::effects::PrincipalBody;
-use liestep::groups::LieGroup as _;
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::heavy_top::rk4::{Body, OnQuaternion};
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};

@@ -1,10 +1,9 @@
 //! B7: a body that flips about its middle axis, and when.
 
 use declarations::SixthOrderBody;
-use liestep::effects::PrincipalBody;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::{CompositionScheme, PreprocessedOrder};
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::free_body::engines::{Moments, explicit, implicit, rescaled};
 use workbench::heavy_top::rk4::{Body, OnQuaternion};

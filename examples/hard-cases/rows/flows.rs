@@ -1,12 +1,10 @@
 //! P5: two ways to write the flow, and two ways to write the scene.
 
 use declarations::{FreeBody, FullTop, Motion};
-use liestep::effects::{Gravity, PrincipalBody};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::motion::{DiscreteEulerPoincare, reconstruct};
 use liestep::numbers::Entries as _;
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::measure::{greater, relative};
 

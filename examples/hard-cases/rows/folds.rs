@@ -1,9 +1,8 @@
 //! S1, S2: steps up to the fold, where the momentum equation loses its solution, and beyond.
 
 use declarations::Motion;
-use liestep::groups::LieGroup as _;
 use liestep::motion::Solvability;
-use liestep::{StepError, Stepper};
+use liestep::prelude::*;
 use workbench::measure::{greater, relative};
 use workbench::plot::BLUE;
 use workbench::run::Method as _;

@@ -7,10 +7,8 @@
 //! in every thousand, beside it, is what more of that would give.
 
 use declarations::{HeavyTop, Motion};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{Effect as _, Inertia};
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use plotters::style::RGBColor;
 use workbench::measure::{Tenths, float};

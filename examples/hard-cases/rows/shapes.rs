@@ -1,9 +1,8 @@
 //! B3 to B5: thin, flat, round, and in other axes.
 
 use declarations::FreeBody;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
-use liestep::{NonstandardInertia, SO3, Stepper};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::measure::{greater, relative};
 

@@ -5,10 +5,8 @@
 #![allow(non_snake_case)] // the letter of the field
 
 use declarations::Motion;
-use liestep::effects::{Gravity, PrincipalBody, RigidBody};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, InertiaError, Regular, Sum};
-use liestep::{NonstandardInertia, SO3, State, StepError, Stepper};
+use liestep::mechanics::{DiscreteLagrangian, InertiaError, Regular, Sum};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{Tenths, four_halvings, greater, order, relative, steps_in};
 

@@ -1,8 +1,7 @@
 //! T4: steps so small that `F` is the identity in most of its digits.
 
 use declarations::Motion;
-use liestep::groups::LieGroup as _;
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 use workbench::heavy_top::continuous::{phase, solution};
 use workbench::measure::{relative, steps_in};

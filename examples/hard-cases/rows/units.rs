@@ -1,9 +1,7 @@
 //! T9: other units of mass and time.
 
 use declarations::{HeavyTop, Motion};
-use liestep::Stepper;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::curves::Curves;

@@ -1,10 +1,8 @@
 //! T8: no gravity.
 
 use declarations::{FullTop, HeavyTop, Motion};
-use liestep::effects::{Gravity, PrincipalBody};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{greater, relative};
 

@@ -1,8 +1,6 @@
 //! (3.13) in principal axes, declared and stepped.
 
-use liestep::{SO3, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::prelude::*;
 use nalgebra::Vector3;
 
 const EDIT: u32 = 0;

@@ -6,9 +6,7 @@
 #![allow(non_snake_case)]
 
 use libfuzzer_sys::fuzz_target;
-use liestep::{SO3, State, StepError, Stepper, lagrangian};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian as _};
+use liestep::prelude::*;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// (3.13).

@@ -4,9 +4,8 @@
 
 use checks::random::Random;
 use declarations::{FullTop, HeavyTop, Motion};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
-use liestep::{SO3, Stepper};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 

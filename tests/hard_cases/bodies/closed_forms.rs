@@ -3,9 +3,8 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
-use liestep::{SO3, State, Stepper};
+use liestep::prelude::*;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 

@@ -4,10 +4,9 @@
 
 use checks::random::Random;
 use declarations::{FullTop, HeavyTop};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::motion::DiscreteLiePoisson;
-use liestep::{SO3, StepError};
+use liestep::prelude::*;
 use nalgebra::Vector3;
 
 /// Other bodies, other directions: near the fold nothing but a rotation on the branch of the identity comes out, and

@@ -4,10 +4,9 @@
 //! `x = 2` on.
 
 use checks::random::Random;
-use liestep::effects::{Drag, MagneticDamping, PrincipalBody, Torque};
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Regular};
-use liestep::{SO3, Stepper};
+use liestep::effects::{Drag, MagneticDamping, Torque};
+use liestep::mechanics::Regular;
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::{four_halvings, order, relative, steps_in};
 

@@ -6,9 +6,8 @@
 //! An attitude that is found far from the group is put back, and what is advected with it.
 
 use declarations::HeavyTop;
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
-use liestep::{SO3, Stepper};
+use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
 type TopMotion = liestep::motion::Motion<SO3, Vector3<f64>>;
