@@ -1,6 +1,6 @@
 //! What a million steps leave of the energy, of the vertical momentum and of the attitude's orthogonality.
 //!
-//! Each method makes as many steps, of the length with which it reached [`ERROR`] after ten seconds.
+//! Each method makes as many steps, of the length with which it reached `ERROR` after ten seconds.
 
 use declarations::motions::End;
 use nalgebra::Matrix3;
