@@ -37,6 +37,7 @@ impl Body {
 }
 
 /// What a step of `h` from `y` adds to it.
+#[inline]
 pub(crate) fn change<V: Copy + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f: impl Fn(V) -> V) -> V {
     let k1 = f(y);
     let k2 = f(y + k1 * (0.5 * h));

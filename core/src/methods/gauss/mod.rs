@@ -126,6 +126,31 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         let weights = [coefficients.weights.map(|weight| h * weight); 2];
         Ok(Self { h, lift, coefficients, weights })
     }
+
+    /// A step of quaternion and momentum; returns its iterations.
+    #[inline(always)]
+    fn advance(&self, kept: &mut Collocated<PAIRS>) -> Result<u32, StepError> {
+        let Collocated { lifted: y, carry, stages } = &*kept;
+        let mut stages = match stages {
+            Some(stages) => stages.continued(&self.coefficients),
+            None => Stages::constant(&self.lift.rate(y), &self.weights[0]),
+        };
+        let iterations = stages.solve(&self.coefficients, (y, carry), self)?;
+        let (next, left) = compensated(y, &stages.change(), carry);
+        if !next.iter().all(|component| component.is_finite()) {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        *kept = Collocated { lifted: next, carry: left, stages: Some(stages) };
+        Ok(iterations)
+    }
+
+    /// The motion after so many steps more.
+    #[inline(always)]
+    fn read_off<M: Summation<SO3, S::Advected>>(&self, motion: &mut M, kept: &Collocated<PAIRS>, steps: u64) {
+        let (attitude, momentum) = (kept.attitude(), kept.momentum());
+        let advected = self.lift.seen_from(&attitude);
+        motion.replace(Motion { attitude, momentum, advected, steps: motion.now().steps + steps });
+    }
 }
 
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS> {
@@ -153,21 +178,28 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
-        let Collocated { lifted: y, carry, stages } = &*kept;
-        let mut stages = match stages {
-            Some(stages) => stages.continued(&self.coefficients),
-            None => Stages::constant(&self.lift.rate(y), &self.weights[0]),
-        };
-        let iterations = stages.solve(&self.coefficients, (y, carry), self)?;
-        let (next, left) = compensated(y, &stages.change(), carry);
-        if !next.iter().all(|component| component.is_finite()) {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
-        }
-        *kept = Collocated { lifted: next, carry: left, stages: Some(stages) };
-        let (attitude, momentum) = (kept.attitude(), kept.momentum());
-        let advected = self.lift.seen_from(&attitude);
-        motion.replace(Motion { attitude, momentum, advected, steps: motion.now().steps + 1 });
+        let iterations = self.advance(kept)?;
+        self.read_off(motion, kept, 1);
         Ok(StepReport::of(iterations))
+    }
+
+    /// Attitude and momentum are read off at the end.
+    #[inline(always)]
+    fn run<M: Summation<SO3, S::Advected>>(
+        &self,
+        _: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        let mut iterations = 0;
+        for _ in 0..steps {
+            iterations += u64::from(self.advance(kept)?);
+        }
+        if steps > 0 {
+            self.read_off(motion, kept, steps);
+        }
+        Ok(iterations)
     }
 
     fn push(&self, motion: &mut Motion<SO3, S::Advected>, kept: &mut Self::Kept, impulse: &Vector3<f64>) {
