@@ -29,7 +29,6 @@ impl Equations {
 
     /// The body velocity, rad/s.
     #[inline(always)]
-    #[inline]
     pub fn velocity(&self, &[.., p1, p2, p3]: &State) -> [f64; 3] {
         let [i1, i2, i3] = self.inverse_moments;
         [i1 * p1, i2 * p2, i3 * p3]
@@ -44,8 +43,6 @@ impl Equations {
     }
 
     #[inline(always)]
-    // The rivals are measured, and what isn't inlined into their crate is a call in each stage.
-    #[inline]
     pub fn rate(&self, state: &State) -> State {
         let [a, b, c, d, p1, p2, p3] = *state;
         let [l1, l2, l3] = self.lever;
@@ -64,7 +61,6 @@ impl Equations {
 
     /// A step of the classical method, with the quaternion brought back to unit length.
     #[inline]
-    #[inline]
     pub fn rk4_step(&self, h: f64, y: &State) -> State {
         let plus = |h: f64, k: &State| -> State { core::array::from_fn(|i| y[i] + h * k[i]) };
         let k1 = self.rate(y);
@@ -77,7 +73,6 @@ impl Equations {
 
 /// The quaternion brought back to unit length.
 #[inline(always)]
-#[inline]
 fn normalised([a, b, c, d, p1, p2, p3]: State) -> State {
     let scale = 1.0 / (a * a + b * b + c * c + d * d).sqrt();
     [a * scale, b * scale, c * scale, d * scale, p1, p2, p3]
