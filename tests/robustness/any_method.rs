@@ -256,6 +256,7 @@ fn every_remedy_is_taken_where_there_is_no_step() {
     let part = Stepper::composed(composed.scene().clone(), largest, CompositionScheme::SUZUKI_4).unwrap();
     assert!(part.step(&mut part.adopt(&state)).is_ok(), "the largest step that is named, {largest}, is one");
     let mut substeps = composed.clone().or_substeps(16).compensated();
+    assert!(substeps.max_step(&substeps.adopt(&state)) < 0.2, "what only a remedy makes is no step of the method");
     let mut state = substeps.start(attitude, velocity).unwrap();
     for _ in 0..10 {
         let report = substeps.step(&mut state).unwrap();

@@ -69,11 +69,11 @@ impl Debug for AnyKept {
     }
 }
 
+/// A stepper with its types left out. A run is so many steps, and whether an error is explained.
 trait Erased<G: LieGroup, A> {
     fn start(&self, attitude: G, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError>;
     fn step(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept) -> Result<StepReport, StepError>;
-    fn run(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, steps: u64) -> Result<u64, StepError>;
-    fn run_unexplained(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, steps: u64) -> Result<u64, StepError>;
+    fn run(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, run: (u64, bool)) -> Result<u64, StepError>;
     fn step_size(&self) -> G::Scalar;
     fn velocity(&self, motion: &Motion<G, A>) -> G::Vector;
     fn energy(&self, motion: &Motion<G, A>) -> G::Scalar;
@@ -124,22 +124,10 @@ where
         &self,
         motion: &mut Motion<Group<S>, S::Advected>,
         kept: &mut AnyKept,
-        steps: u64,
+        (steps, explain): (u64, bool),
     ) -> Result<u64, StepError> {
         let mut state = own(self, motion, kept);
-        let iterations = self.run(&mut state, steps)?;
-        back(state, motion, kept);
-        Ok(iterations)
-    }
-
-    fn run_unexplained(
-        &self,
-        motion: &mut Motion<Group<S>, S::Advected>,
-        kept: &mut AnyKept,
-        steps: u64,
-    ) -> Result<u64, StepError> {
-        let mut state = own(self, motion, kept);
-        let iterations = self.run_unexplained(&mut state, steps)?;
+        let iterations = if explain { self.run(&mut state, steps)? } else { self.run_unexplained(&mut state, steps)? };
         back(state, motion, kept);
         Ok(iterations)
     }
@@ -194,12 +182,12 @@ impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
     ///
     /// As [`Stepper::run`].
     pub fn run(&self, state: &mut AnyState<G, A>, steps: u64) -> Result<u64, StepError> {
-        self.0.run(&mut state.motion, &mut state.kept, steps)
+        self.0.run(&mut state.motion, &mut state.kept, (steps, true))
     }
 
     /// As [`Stepper::run_unexplained`].
     pub(crate) fn run_unexplained(&self, state: &mut AnyState<G, A>, steps: u64) -> Result<u64, StepError> {
-        self.0.run_unexplained(&mut state.motion, &mut state.kept, steps)
+        self.0.run(&mut state.motion, &mut state.kept, (steps, false))
     }
 
     /// The step `h`, s.

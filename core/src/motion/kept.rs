@@ -61,3 +61,33 @@ pub(crate) fn counted<T: Real>(number: T) -> Option<usize> {
     let number = reported(number);
     ((0.0..1e6).contains(&number) && number.fract() == 0.0).then_some(number as usize)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Kept as _;
+    use crate::solving::Warm;
+    use nalgebra::Vector2;
+
+    /// Half the increment, a guess, how many increments there were, and their differences.
+    fn read(increments: f64) -> Option<Warm<Vector2<f64>>> {
+        let mut numbers = [1.0, 2.0, 3.0, 4.0, increments].into_iter().chain((0..14).map(f64::from));
+        Warm::from_numbers(&mut || numbers.next().unwrap())
+    }
+
+    #[test]
+    fn a_memory_is_its_numbers() {
+        let mut numbers = Vec::new();
+        read(3.0).unwrap().each(&mut |number| numbers.push(number));
+        let mut again = numbers.iter().copied();
+        assert_eq!(Warm::<Vector2<f64>>::from_numbers(&mut || again.next().unwrap()), read(3.0));
+        assert_eq!((numbers.len(), again.next()), (19, None));
+    }
+
+    #[test]
+    fn a_count_that_is_none_is_refused() {
+        for count in [2.5, -1.0, 9.0, 9.2e18, f64::NAN] {
+            assert_eq!(read(count), None, "{count}");
+        }
+        assert!(read(8.0).is_some());
+    }
+}

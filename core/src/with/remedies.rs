@@ -154,6 +154,11 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         self.plan.explained(error, scene, motion, kept)
     }
 
+    /// Of the plan itself: a step that only its remedy makes is none of its own.
+    fn max_step(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>, kept: &Self::Kept) -> Scalar<S> {
+        self.plan.max_step(scene, motion, kept)
+    }
+
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         self.remedy.describe(visitor);
         self.plan.describe(visitor);

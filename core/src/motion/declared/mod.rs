@@ -212,7 +212,7 @@ impl<S: Effect> Declared<S> {
     fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Stepped<S> {
         let Root { half, increment, iterations, far, .. } = Root::<S>::at(&Vector::<S>::zero(), 0);
         let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
-        Stepped { step, change: half, half, far }
+        Stepped { step, change: Vector::<S>::zero(), half, far }
     }
 }
 
