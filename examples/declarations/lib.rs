@@ -8,6 +8,7 @@
 
 mod cayley_top;
 mod elastic_flow;
+mod flyer;
 mod fourth_order_top;
 mod free_body;
 mod full_top;
@@ -21,10 +22,12 @@ mod sixth_order_top;
 mod spring;
 mod tethered_plate;
 mod tops;
+mod torquer;
 mod underwater_body;
 
 pub use cayley_top::CayleyTop;
 pub use elastic_flow::ElasticFlow;
+pub use flyer::{FluidDrag, Flyer, Thruster};
 pub use fourth_order_top::FourthOrderTop;
 pub use free_body::FreeBody;
 pub use full_top::FullTop;
@@ -38,6 +41,7 @@ pub use sixth_order_top::SixthOrderTop;
 pub use spring::Spring;
 pub use tethered_plate::TetheredPlate;
 pub use tops::Top;
+pub use torquer::Torquer;
 pub use underwater_body::UnderwaterBody;
 
 // The first example declares this.

@@ -23,6 +23,7 @@ mod program;
 ///     generators = […],               its generators, row by row, if it is a group of your own; of one that
 ///                                     `matrix_group!` declares, `group = Name!` finds them
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
+///     given(u = torque, …),           u is the field `torque` until a step is given another value; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
@@ -32,10 +33,10 @@ mod program;
 /// In scope in the expression are `F` (the increment `g_i⁻¹ g_{i+1}`, a matrix), `I`, `h` (the step), the advected
 /// names and the fields. It is ordinary Rust over nalgebra, so it also becomes the method `l_d` as it stands:
 /// `+ - * /`, unary minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix()
-/// .component_mul(&v) .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and four functions:
-/// `vee(A)`, the vector of `½ (A − Aᵀ)`; `log(F)`, the rotation vector of a rotation; `exp(v)`, the rotation by a
-/// vector; and `inverse(J)` of a field or of `F`. A large Lagrangian is best written with `let`s: what isn't cheaper
-/// multiplied out is differentiated through them, by multipliers.
+/// .component_mul(&v) .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and five functions:
+/// `hat(v)`, the matrix `Σ v_k E_k` of the Lie algebra; `vee(A)`, the vector of `½ (A − Aᵀ)`; `log(F)`, the rotation
+/// vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a field or of `F`. A large Lagrangian
+/// is best written with `let`s: what isn't cheaper multiplied out is differentiated through them, by multipliers.
 ///
 /// The fields are `f64`, `Vector3<f64>`, `Point3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
 /// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the
@@ -43,6 +44,9 @@ mod program;
 /// group moves points, stands for its homogeneous coordinates, `(x, y, z, 1)` on SE(3). An advected vector is a
 /// covector, moved by `ρ(f)ᵀ`; a point is moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`,
 /// `CovariantTensor` and `MixedTensor` are the other kinds.
+///
+/// What changes with time is given: `Stepper::step_with` makes a step with other values of what is advected and of what
+/// `given(…)` names, a scalar, a vector or a matrix that the group doesn't move.
 ///
 /// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
 /// `body + potential`.
@@ -58,8 +62,9 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 ///
 /// ```text
 /// #[force(
-///     group = SO3,                    the group that F belongs to; forces are on SO(3)
+///     group = SO3,                    the group that F belongs to; with `generators`, one of your own
 ///     advected(w = up, …),            as for a Lagrangian
+///     given(u = torque, …),           as for a Lagrangian
 ///     work = …,                       the virtual work f⁻·eta + f⁺·eta_next, linear in the displacements
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
@@ -67,8 +72,10 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 /// ```
 ///
 /// In scope are also `eta` and `eta_next`, the virtual displacements of the body at the beginning and at the end of the
-/// step, each in the body's axes then (rad): the discrete Lagrange–d'Alembert principle. A torque `τ(F, w)` that acts
-/// half at either end is `0.5 * h * tau.dot(&(eta + eta_next))`. What `eta` is multiplied with enters the momentum
+/// step, each in the body's axes then: the discrete Lagrange–d'Alembert principle. They have a component for each
+/// generator of the group; on SO(3) they are small rotations (rad), on SE(3) these and three small translations (m), and
+/// `hat(eta) * p` is how far the body's point `p` goes. A torque `τ(F, w)` that acts half at either end is
+/// `0.5 * h * tau.dot(&(eta + eta_next))`. What `eta` is multiplied with enters the momentum
 /// equation, and its derivative the Newton Jacobian.
 #[proc_macro_attribute]
 pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {

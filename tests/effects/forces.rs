@@ -1,12 +1,14 @@
 //! Forces by the discrete Lagrange–d'Alembert principle: what is derived from their virtual work, and what they do.
 
-use checks::random::Random;
+use declarations::{FluidDrag, Thruster};
 use liestep::effects::{Drag, Gravity, MagneticDamping, RigidBody, Thrust, Torque};
-use liestep::groups::{Advected as _, LieGroup as _, Retraction as _};
-use liestep::laws::samples::derivative;
+use liestep::groups::{Advected as _, LieGroup as _, Retraction as _, SE2, SL2};
+
+use liestep::laws::samples::{self, MatrixLieGroup, along, derivative};
 use liestep::mechanics::Force;
+use liestep::numbers::Coordinates;
 use liestep::{NonstandardInertia, SO3, Stepper, force};
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix2, Matrix3, Point2, SMatrix, SVector, Vector2, Vector3};
 use workbench::measure::relative;
 
 /// A force of no physics, different at both ends, with terms of all kinds.
@@ -27,42 +29,47 @@ struct Push {
     up: Vector3<f64>,
 }
 
-fn unit(k: usize) -> Vector3<f64> {
-    Vector3::ith(k, 1.0)
-}
-
 /// `f⁻` and `f⁺` by their components.
-fn forces<E: Force<Scalar = f64, Group = SO3>>(
+fn forces<E, const N: usize, const D: usize>(
     push: &E,
-    f: &Matrix3<f64>,
+    f: &SMatrix<f64, N, N>,
     w: &E::Advected,
     h: f64,
-) -> (Vector3<f64>, Vector3<f64>) {
-    let zero = Vector3::zeros();
-    let before = Vector3::from_fn(|k, _| push.virtual_work(f, w, h, &unit(k), &zero));
-    (before, Vector3::from_fn(|k, _| push.virtual_work(f, w, h, &zero, &unit(k))))
+) -> [SVector<f64, D>; 2]
+where
+    E: Force<Scalar = f64, Group: MatrixLieGroup<N, D>>,
+{
+    let zero = SVector::zeros();
+    let unit = |k| SVector::from_fn(|i, _| f64::from(u8::from(i == k)));
+    let before = SVector::from_fn(|k, _| push.virtual_work(f, w, h, &unit(k), &zero));
+    [before, SVector::from_fn(|k, _| push.virtual_work(f, w, h, &zero, &unit(k)))]
 }
 
 /// The stages against the declared virtual work, at random increments.
-fn check<E: Force<Scalar = f64, Group = SO3>>(push: &E, r: &mut Random) {
-    let (h, half) = (0.1, r.vector() * 0.5);
+fn check<E, const N: usize, const D: usize>(push: &E, r: &mut samples::Random)
+where
+    E: Force<Scalar = f64, Group: MatrixLieGroup<N, D>>,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    let (h, half) = (0.1, r.sample::<SVector<f64, D>>() * 0.4);
     let element = E::Retraction::retract(&(half * 2.0));
     let f = element.matrix();
-    let w = push.advected().seen_from(&r.rotation());
+    let w = push.advected().seen_from(&along::<E::Group, N, D>(&r.sample(), 1.0));
     let constants = push.constants(h);
-    let (before, after) = forces(push, &f, &w, h);
+    let [before, after] = forces(push, &f, &w, h);
     let kick = E::kick_before(&constants, &w);
     // U = −(f⁻ − kick_before), and newton_system is a multiple of U − a.
-    let a = r.vector();
+    let a: SVector<f64, D> = r.sample();
     let terms = E::step_terms(&constants, &a, &w);
     let (residual, jacobian) = E::newton_system(&constants, &terms, &half);
     let factor = 0.5 * h * (1.0 + half.norm_squared()).powi(E::DENOMINATORS.cast_signed());
     assert!((residual - (kick - before - a) * factor).norm() < 1e-13 * factor * (1.0 + before.norm()));
-    for j in 0..3 {
-        let slope = derivative(|s| E::newton_system(&constants, &terms, &(half + unit(j) * s)).0);
+    for j in 0..D {
+        let unit = SVector::<f64, D>::axis(j);
+        let slope = derivative(|s| E::newton_system(&constants, &terms, &(half + unit * s)).0);
         assert!((jacobian.column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()));
-        let along = |s: f64| SO3::from(UnitQuaternion::from_scaled_axis(unit(j) * s)).compose(&element).matrix();
-        let slope = derivative(|s| -forces(push, &along(s), &w, h).0);
+        let turned = |s: f64| along::<E::Group, N, D>(&unit, s).compose(&element).matrix();
+        let slope = derivative(|s| -forces::<E, N, D>(push, &turned(s), &w, h)[0]);
         assert!((push.momentum_jacobian(&f, &w, h).column(j) - slope).norm() < 1e-9 * (1.0 + slope.norm()));
     }
     let next = w.advect(&element.increment());
@@ -74,16 +81,47 @@ fn check<E: Force<Scalar = f64, Group = SO3>>(push: &E, r: &mut Random) {
 
 #[test]
 fn stages_follow_from_the_virtual_work() {
-    let mut r = Random::new(7);
+    let mut r = samples::Random::new(7);
     for _ in 0..10 {
         let J = body().J_d.to_inertia();
         check(&Drag { c: 1.0 + r.signed(), J }, &mut r);
-        check(&Torque { torque: r.vector() }, &mut r);
-        check(&Thrust { at: r.vector(), thrust: r.vector() }, &mut r);
-        check(&MagneticDamping { k: 1.0 + r.signed(), field: r.vector(), J }, &mut r);
-        let push = Push { k: r.signed(), c: r.signed(), A: r.matrix(), rho: r.vector(), up: r.direction() };
+        check(&Torque { torque: r.sample() }, &mut r);
+        check(&Thrust { at: r.sample(), thrust: r.sample() }, &mut r);
+        check(&MagneticDamping { k: 1.0 + r.signed(), field: r.sample(), J }, &mut r);
+        let push = Push { k: r.signed(), c: r.signed(), A: r.sample(), rho: r.sample(), up: r.sample() };
         check(&push, &mut r);
+        check(&Thruster { at: r.sample::<Vector3<f64>>().into(), thrust: r.sample() }, &mut r);
+        check(&FluidDrag { C: r.sample() }, &mut r);
+        check(&Shear { k: r.sample(), s: r.sample(), A: r.sample(), line: r.sample() }, &mut r);
+        check(&Pull { u: r.sample(), c: r.signed(), point: r.sample::<Vector2<f64>>().into() }, &mut r);
     }
+}
+
+/// On a group with generators that aren't orthogonal to each other, with a matrix that is given.
+#[force(
+    group = SL2,
+    advected(w = line),
+    given(K = k),
+    work = h * w.dot(&(hat(eta) * (F * w))) - (A * hat(eta_next) * F).trace() + h * s.dot(&(K * (eta + eta_next))),
+)]
+struct Shear {
+    k: Matrix3<f64>,
+    s: Vector3<f64>,
+    A: Matrix2<f64>,
+    line: Vector2<f64>,
+}
+
+/// On the plane, towards a point, with a weight for each displacement.
+#[force(
+    group = SE2,
+    advected(p = point),
+    given(v = u),
+    work = h * v.dot(&eta) - c * h * p.dot(&(hat(eta_next) * p)) * F[(0, 2)] + v.norm_squared() * h * eta_next[2],
+)]
+struct Pull {
+    u: Vector3<f64>,
+    c: f64,
+    point: Point2<f64>,
 }
 
 fn body() -> RigidBody {

@@ -5,6 +5,7 @@
 
 mod changing_scenes;
 mod control;
+mod driven;
 mod forces;
 mod forces_by_hand;
 mod kinetic_terms;

@@ -9,7 +9,8 @@ use liestep_macros::lagrangian;
 /// The second-order term of the potential of a body about its centre of mass in the field of a far point mass,
 /// `3 GM/(2 r³) n·Jn` with the direction `n` of that mass; it turns the axis of the least moment into that direction.
 ///
-/// The direction is fixed in space: a satellite on an orbit sees its planet turn, which is another effect.
+/// The direction is fixed in space. A satellite on an orbit sees its planet go round:
+/// [`step_with`](crate::Stepper::step_with) gives each step the direction in its middle.
 #[lagrangian(
     group = SO3,
     advected(n = direction),

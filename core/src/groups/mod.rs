@@ -39,7 +39,7 @@ mod translations;
 
 pub(crate) use advected::homogeneous;
 pub use advected::{
-    Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor, inverse_increment,
+    Advected, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, inverse_increment,
 };
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};

@@ -23,7 +23,7 @@ pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
-pub use plan::{Cost, Plan};
+pub use plan::{Cost, Plan, Steerable};
 pub use report::{Remedy, StepReport};
 pub use state::State;
 #[cfg(feature = "serde")]

@@ -82,6 +82,12 @@ pub trait Plan<S: Effect> {
         Summation::push(motion, impulse);
     }
 
+    /// Puts other advected values in the place of those that the body sees, and forgets what is kept of them.
+    #[inline(always)]
+    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, advected: S::Advected) {
+        motion.advected = advected;
+    }
+
     /// Whether the errors of [`step`](Self::step) are those of a stage, and [`explained`](Self::explained) only when they
     /// are shown.
     const EXPLAINS: bool = false;
@@ -119,6 +125,15 @@ pub trait Plan<S: Effect> {
     /// How much arithmetic a step is, about.
     fn cost(&self) -> Cost;
 }
+
+/// A plan whose steps see what is advected in the motion and nowhere else, so that each can be
+/// [given](crate::Stepper::step_with) other values.
+#[diagnostic::on_unimplemented(
+    message = "a step of `{Self}` can't be given values",
+    label = "not with this method",
+    note = "the stages of Gauss collocation see what is advected from the scene; give values to another method's steps"
+)]
+pub trait Steerable {}
 
 /// How many operations a step makes, about: what methods are ranked by, the same on every machine.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use crate::mechanics::{
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::Plan;
+use crate::motion::plan::{Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -230,6 +230,61 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         if !next.motion.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
+        *state = next;
+        Ok(report)
+    }
+
+    /// One step in which what is advected has these values in space, in the place of the scene's own; on an error the
+    /// state is unchanged.
+    ///
+    /// It is how a scene is driven: a field that is switched, a direction that goes round with the orbit, and what the
+    /// declaration names in `given(…)`, a torque for example. The values are those of `scene.advected()`, in a sum a pair,
+    /// and are held over the step: taken in the middle of it, the scheme stays of second order. Each step is variational
+    /// by itself. Between the steps the state sees the scene's own values again, which
+    /// [`energy`](Self::energy) is computed with.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where a value isn't finite, and as [`step`](Self::step).
+    ///
+    /// # Examples
+    ///
+    /// A wheel's torque that grows with time.
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::groups::{Given, LieGroup as _};
+    /// use liestep::{NonstandardInertia, SO3, Stepper, force};
+    /// use nalgebra::Vector3;
+    ///
+    /// #[force(group = SO3, given(u = torque), work = 0.5 * h * u * (eta + eta_next)[2])]
+    /// struct Wheel {
+    ///     torque: f64,
+    /// }
+    ///
+    /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0))?;
+    /// let stepper = Stepper::new(RigidBody { J_d } + Wheel { torque: 0.0 }, 0.01)?;
+    /// let mut state = stepper.start(SO3::identity(), Vector3::zeros())?;
+    /// for step in 0..100 {
+    ///     let middle = stepper.time(&state) + 0.005;
+    ///     stepper.step_with(&mut state, &((), Given::scalar(middle)))?;
+    /// }
+    /// assert!((state.momentum().z - 0.5_f64).abs() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn step_with(&self, state: &mut StateOf<S, P>, values: &S::Advected) -> Result<StepReport, StepError>
+    where
+        P: Steerable,
+    {
+        if !values.is_finite() {
+            return Err(StepError::NonFinite { what: "value given to the step" });
+        }
+        let mut next = *state;
+        let State { motion, kept } = &mut next;
+        self.plan.see(motion, kept, values.seen_from(&motion.attitude));
+        let report = self.step(&mut next)?;
+        let State { motion, kept } = &mut next;
+        self.plan.see(motion, kept, self.scene.advected().seen_from(&motion.attitude));
         *state = next;
         Ok(report)
     }

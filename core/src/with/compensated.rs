@@ -9,7 +9,9 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composed, KineticFlow, Preprocessed, Split};
-use crate::motion::{Cost, Declared, Kept, Motion, Plan, Proceeded, StepReport, Stepper, Summation, restored};
+use crate::motion::{
+    Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
+};
 use crate::numbers::{Entries, Real, carried_sum, zero};
 use crate::with::remedies::OrElse;
 use nalgebra::SimdValue as _;
@@ -80,6 +82,8 @@ impl<S: Effect> Compensable for Composed<S> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<T: Real> Compensable for Preprocessed<T> {}
 impl<P: Compensable, R> Compensable for OrElse<P, R> {}
+
+impl<P: Steerable> Steerable for Compensated<P> {}
 
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The same step with compensated sums: what rounding takes from attitude, momentum and advected parameters is kept
@@ -155,6 +159,11 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         let mut sums = Sums { motion: *motion, carry: kept.carry };
         Summation::push(&mut sums, impulse);
         (*motion, kept.carry) = (sums.motion, sums.carry);
+    }
+
+    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+        self.0.see(motion, &mut kept.kept, advected);
+        kept.carry.advected = zero();
     }
 
     fn explained(

@@ -5,7 +5,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Motion, Plan, Remedy, StepReport, Stepper, Summation};
+use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::real;
 
 /// A plan that has a remedy for steps without a solution, by [`Stepper::or_substeps`] or [`Stepper::or_fallback`].
@@ -144,6 +144,10 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         self.plan.push(motion, kept, impulse);
     }
 
+    fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+        self.plan.see(motion, kept, advected);
+    }
+
     fn explained(
         &self,
         error: StepError,
@@ -168,6 +172,9 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         self.plan.cost()
     }
 }
+
+impl<P: Steerable> Steerable for OrElse<P, Substeps> {}
+impl<P: Steerable, R: Effect, Q: Steerable> Steerable for OrElse<P, Stepper<R, Q>> {}
 
 impl<S: Effect> Instead<S> for Substeps {
     fn refolded(&self, _: Scalar<S>) -> Result<Self, SetupError> {

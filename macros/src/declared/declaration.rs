@@ -68,11 +68,13 @@ pub(crate) struct Declaration {
     pub(crate) scalar: Scalar,
 }
 
-/// `w = up`: `w` in the expression is the field `up`, carried by the group.
+/// `w = up`: `w` in the expression is the field `up`, carried by the group, or given for each step.
 pub(crate) struct AdvectedParameter {
     pub(crate) name: Ident,
     /// The index of the field; `None` where there is no such field of a known type.
     pub(crate) field: Option<usize>,
+    /// Whether it is a value of the step, which the group doesn't move: `given(…)`.
+    pub(crate) is_given: bool,
 }
 
 impl AdvectedParameter {
@@ -86,7 +88,11 @@ impl Declaration {
     /// What an advected parameter's field promises; a plain vector after a mistake.
     pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
         let size = self.group.size;
-        let field = self.advected.get(index).and_then(|w| self.fields.get(w.field?));
+        let parameter = self.advected.get(index);
+        let field = parameter.and_then(|w| self.fields.get(w.field?));
+        if parameter.is_some_and(|w| w.is_given) {
+            return FieldKind::Given(field.map_or(Shape::Scalar, |field| field.kind.shape()));
+        }
         let kind = field.map(|field| field.kind).filter(|kind| kind.is_carried_by(size));
         kind.unwrap_or(FieldKind::Vector(size))
     }
@@ -117,6 +123,8 @@ pub(crate) enum FieldKind {
     Matrix(usize),
     /// An advected parameter with its kind in its type.
     Advected(Variance, usize),
+    /// A value of the step: as a field it is a scalar, a vector or a matrix.
+    Given(Shape),
     /// `NonstandardInertia`, `Inertia`.
     SymmetricInertia,
     /// `DiagonalNonstandardInertia`.
@@ -129,6 +137,7 @@ impl FieldKind {
         match self {
             Self::Advected(variance, _) => variance,
             Self::Point(_) => Variance::Vector,
+            Self::Given(_) => Variance::Fixed,
             _ => Variance::Covector,
         }
     }
@@ -143,9 +152,15 @@ impl FieldKind {
         matches!(self, Self::Advected(..))
     }
 
+    /// Whether a step can be given such a value.
+    pub(crate) fn can_be_given(self) -> bool {
+        matches!(self, Self::Scalar | Self::Vector(_) | Self::Matrix(_))
+    }
+
     pub(crate) fn shape(self) -> Shape {
         match self {
             Self::Scalar => Shape::Scalar,
+            Self::Given(shape) => shape,
             Self::Vector(rows) | Self::Point(rows) => Shape::Matrix(rows, 1),
             Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
             Self::Matrix(rows) => Shape::Matrix(rows, rows),

@@ -49,7 +49,9 @@ pub(crate) fn readings_without(
     for (index, field) in declaration.fields.iter().enumerate() {
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
-            FieldKind::Vector(_) | FieldKind::Advected(..) => (ambient(field.kind.shape()), Structure::General),
+            FieldKind::Vector(_) | FieldKind::Advected(..) | FieldKind::Given(_) => {
+                (ambient(field.kind.shape()), Structure::General)
+            }
             FieldKind::Point(rows) => ((rows, 1), Structure::Point),
             FieldKind::Matrix(rows) => ((rows, rows), Structure::General),
             FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
@@ -317,6 +319,10 @@ impl Lowering<'_> {
                 self.closed(tree, value)
             }
             Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
+            Kind::Hat(a, generators) => {
+                let components = self.expression(a)?;
+                self.hat(&components, generators, tree.shape.rows())
+            }
             Kind::Inverse(a) => match &a.kind {
                 Kind::Name(name) => match self.names.get(name) {
                     Some(&id) => Expression::inverse(id, &self.symbols),
@@ -332,6 +338,20 @@ impl Lowering<'_> {
             }
         };
         Ok(result)
+    }
+
+    /// `Σ v_k E_k`, entry by entry.
+    fn hat(&self, components: &Expression, generators: &[Vec<Rational>], size: usize) -> Expression {
+        let mut sum = Expression::zero((size, size));
+        for (k, generator) in generators.iter().enumerate() {
+            let component = self.unit(k, generators.len(), true).times(components, &self.symbols);
+            for (place, &entry) in generator.iter().enumerate().filter(|(_, entry)| !entry.is_zero()) {
+                let (row, column) = (self.unit(place / size, size, false), self.unit(place % size, size, true));
+                let there = row.times(&component, &self.symbols).times(&column, &self.symbols);
+                sum = sum.plus(there.scaled(entry));
+            }
+        }
+        sum
     }
 
     fn unit(&self, index: usize, size: usize, transposed: bool) -> Expression {

@@ -15,6 +15,14 @@ pub(crate) enum Shape {
 }
 
 impl Shape {
+    /// How many rows it has.
+    pub(crate) fn rows(self) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Matrix(rows, _) => rows,
+        }
+    }
+
     /// In a message: `a scalar`, `a vector of 3`, `a 3 × 3 matrix`.
     pub(crate) fn describe(self) -> String {
         match self {
@@ -80,6 +88,8 @@ pub(crate) enum Kind {
     Power(Rc<Tree>, i32),
     Apply(Function, Rc<Tree>),
     Vee(Rc<Tree>),
+    /// `Σ v_k E_k`, with the generators by rows.
+    Hat(Rc<Tree>, Rc<[Vec<Rational>]>),
     /// Of a parameter or of `F`.
     Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
@@ -98,6 +108,7 @@ impl Kind {
             | Self::Power(a, _)
             | Self::Apply(_, a)
             | Self::Vee(a)
+            | Self::Hat(a, _)
             | Self::Inverse(a)
             | Self::Entry(a, ..)
             | Self::Bound(_, a) => [Some(a), None],

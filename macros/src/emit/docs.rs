@@ -154,6 +154,7 @@ fn setting(declaration: &Declaration) -> String {
             Variance::Contravariant => ("V ⊗ V", "F⁻¹ w F⁻ᵀ"),
             Variance::Covariant => ("V* ⊗ V*", "Fᵀ w F"),
             Variance::Mixed => ("V ⊗ V*", "F⁻¹ w F"),
+            Variance::Fixed => return format!("    {} is given for each step\n", w.plain_name()),
         };
         let name = w.plain_name();
         format!("    {name}⁺ = F⁻¹·{name} = {} for {name} in {space}\n", moved.replace('w', &name))

@@ -4,7 +4,7 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
-use crate::declared::{Declaration, FieldKind, Scalar};
+use crate::declared::{Declaration, FieldKind, Scalar, Shape};
 use crate::mathematics::symbolic::Variance;
 
 /// What the signatures are written with.
@@ -69,10 +69,11 @@ impl Header {
         let (variance, rows) = match kind {
             FieldKind::Advected(variance, rows) => (variance, rows),
             FieldKind::Point(rows) => return self.point(rows - 1),
+            FieldKind::Given(shape) => return self.given(shape),
             _ => return self.column(self.size),
         };
         let name = match variance {
-            Variance::Vector | Variance::Covector => "ContravariantVector",
+            Variance::Vector | Variance::Covector | Variance::Fixed => "ContravariantVector",
             Variance::Contravariant => "ContravariantTensor",
             Variance::Covariant => "CovariantTensor",
             Variance::Mixed => "MixedTensor",
@@ -85,6 +86,16 @@ impl Header {
     fn point(&self, coordinates: usize) -> TokenStream {
         let (private, scalar, coordinates) = (&self.private, &self.scalar, Literal::usize_unsuffixed(coordinates));
         quote_spanned!(Span::mixed_site()=> #private::nalgebra::Point<#scalar, #coordinates>)
+    }
+
+    fn given(&self, shape: Shape) -> TokenStream {
+        let (rows, columns) = match shape {
+            Shape::Scalar => (1, 1),
+            Shape::Matrix(rows, columns) => (rows, columns),
+        };
+        let (private, scalar) = (&self.private, &self.scalar);
+        let (rows, columns) = (Literal::usize_unsuffixed(rows), Literal::usize_unsuffixed(columns));
+        quote_spanned!(Span::mixed_site()=> #private::Given<#scalar, #rows, #columns>)
     }
 
     fn matrix_of(&self, rows: usize) -> TokenStream {

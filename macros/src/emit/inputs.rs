@@ -15,7 +15,7 @@ impl Emitter<'_> {
         match found {
             Some(Name::Step) => quote_spanned!(span=> h),
             Some(Name::Increment) => entry(&quote_spanned!(span=> f), input),
-            Some(Name::Advected(index)) => entry(&self.part(&quote_spanned!(span=> w), index), input),
+            Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),
             // Displacements are replaced by directions before.
             Some(Name::DisplacementBefore | Name::DisplacementAfter) | None => self.derived_input(input),
@@ -27,7 +27,7 @@ impl Emitter<'_> {
         let span = Span::mixed_site();
         let directions = &self.derived.directions;
         if let Some(index) = directions.next.iter().position(|&next| next == input.symbol) {
-            return entry(&self.part(&quote_spanned!(span=> next), index), input);
+            return self.advected_entry(&quote_spanned!(span=> next), index, input);
         }
         if input.symbol == directions.coordinates {
             return entry(&quote_spanned!(span=> half), input);
@@ -53,8 +53,8 @@ impl Emitter<'_> {
         quote_spanned!(span=> compile_error!(#message))
     }
 
-    /// The vector or matrix of one advected parameter.
-    fn part(&self, all: &TokenStream, index: usize) -> TokenStream {
+    /// An entry of one advected parameter.
+    fn advected_entry(&self, all: &TokenStream, index: usize, input: Input) -> TokenStream {
         let span = Span::mixed_site();
         let part = if self.declaration.advected.len() == 1 {
             all.clone()
@@ -63,10 +63,10 @@ impl Emitter<'_> {
             quote_spanned!(span=> #all.#index)
         };
         match self.declaration.advected_kind(index) {
-            FieldKind::Advected(..) => quote_spanned!(span=> #part.0),
+            FieldKind::Advected(..) | FieldKind::Given(_) => entry(&quote_spanned!(span=> #part.0), input),
             // The last coordinate is a constant before.
-            FieldKind::Point(_) => quote_spanned!(span=> #part.coords),
-            _ => part,
+            FieldKind::Point(_) => entry(&quote_spanned!(span=> #part.coords), input),
+            _ => entry(&part, input),
         }
     }
 
@@ -77,7 +77,7 @@ impl Emitter<'_> {
         let place = |value: TokenStream| entry(&value, input);
         match field.kind {
             FieldKind::Scalar => quote_spanned!(span=> self.#name),
-            FieldKind::Vector(_) | FieldKind::Matrix(_) | FieldKind::Advected(..) => {
+            FieldKind::Vector(_) | FieldKind::Matrix(_) | FieldKind::Advected(..) | FieldKind::Given(_) => {
                 place(quote_spanned!(span=> self.#name))
             }
             FieldKind::Point(_) => place(quote_spanned!(span=> self.#name.coords)),

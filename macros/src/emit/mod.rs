@@ -16,7 +16,7 @@ use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
 use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, Role};
+use crate::declared::{Declaration, FieldKind, Role};
 use crate::judged::{Chosen, Findings};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::{Expression, SymbolId};
@@ -102,7 +102,7 @@ pub(crate) fn implementation(
 /// What advects nothing is invariant under the whole group.
 fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream> {
     let implementation = header.implementation("LeftInvariant");
-    let is_invariant = declaration.role == Role::Lagrangian && declaration.advected.is_empty();
+    let is_invariant = declaration.role == Role::Lagrangian && declaration.advected.iter().all(|w| w.is_given);
     is_invariant.then(|| {
         quote_spanned! {Span::mixed_site()=>
             #[automatically_derived]
@@ -236,11 +236,20 @@ impl Emitter<'_> {
 
     fn advected(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let fields = self.declaration.advected.iter().filter_map(|w| self.declaration.fields.get(w.field?));
-        let names: Vec<_> = fields.map(|field| &field.name).collect();
-        let value = match names.as_slice() {
-            [single] => quote_spanned!(span=> self.#single),
-            names => quote_spanned!(span=> (#(self.#names),*)),
+        let private = &self.header.private;
+        let values = self.declaration.advected.iter().filter_map(|w| {
+            let field = self.declaration.fields.get(w.field?)?;
+            let name = &field.name;
+            Some(match field.kind {
+                FieldKind::Scalar => quote_spanned!(span=> #private::Given::scalar(self.#name)),
+                _ if w.is_given => quote_spanned!(span=> #private::Given(self.#name)),
+                _ => quote_spanned!(span=> self.#name),
+            })
+        });
+        let values: Vec<TokenStream> = values.collect();
+        let value = match values.as_slice() {
+            [single] => single.clone(),
+            values => quote_spanned!(span=> (#(#values),*)),
         };
         quote_spanned! {span=>
             fn advected(&self) -> Self::Advected { #value }

@@ -11,7 +11,7 @@ use syn::visit_mut::{self, VisitMut};
 use syn::{Expr, Ident};
 
 use super::Header;
-use crate::declared::{Declaration, FieldKind, Role};
+use crate::declared::{Declaration, FieldKind, Role, Shape};
 
 /// The Lagrangian's `l_d`, or a force's `virtual_work`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
@@ -32,6 +32,9 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     bind("I", quote_spanned!(span=> <#square>::identity()));
     let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
     bind("vee", quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)));
+    let vector = header.vector();
+    let group = quote_spanned!(span=> <Self as #private::Effect>::Group);
+    bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
     bind("eta", quote_spanned!(span=> *eta));
     bind("eta_next", quote_spanned!(span=> *eta_next));
     bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
@@ -44,7 +47,8 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             quote_spanned!(span=> w.#index)
         };
         let value = match declaration.advected_kind(index) {
-            FieldKind::Advected(..) => quote_spanned!(span=> #part.0),
+            FieldKind::Given(Shape::Scalar) => quote_spanned!(span=> #part.0.x),
+            FieldKind::Advected(..) | FieldKind::Given(_) => quote_spanned!(span=> #part.0),
             FieldKind::Point(_) => quote_spanned!(span=> #private::Parameter::value(&#part)),
             _ => part,
         };
@@ -64,7 +68,6 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
     let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
     let traits = header.parameter.as_ref().map(|_| quote!(use #private::nalgebra::SimdComplexField as _;));
-    let vector = header.vector();
     let signature = match declaration.role {
         Role::Lagrangian => quote_spanned! {span=>
             /// The Lagrangian as declared.

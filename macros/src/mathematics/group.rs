@@ -22,6 +22,40 @@ impl Group {
         self.generators.len()
     }
 
+    /// Linear forms that are the components of `Σ x_k E_k`, each a sum of terms `(k, row, column, factor)` in its entries.
+    ///
+    /// Elimination picks entries that the generators differ in, so that a component has few terms.
+    pub(crate) fn dual(&self) -> Vec<(usize, usize, usize, Rational)> {
+        let dimension = self.dimension();
+        // Each row is a combination of the generators, and which one it is.
+        let mut rows: Vec<(Vec<Rational>, Vec<Rational>)> =
+            (0..dimension).filter_map(|k| Some((self.generators.get(k)?.clone(), unit(k, dimension)))).collect();
+        let mut pivots = Vec::new();
+        for k in 0..rows.len() {
+            let Some((entries, factors)) = rows.get(k) else { break };
+            let Some(pivot) = entries.iter().position(|entry| !entry.is_zero()) else { break };
+            let inverse = entries[pivot].inverse();
+            let scaled = |row: &[Rational]| row.iter().map(|&entry| entry * inverse).collect::<Vec<_>>();
+            let (entries, factors) = (scaled(entries), scaled(factors));
+            for (_, row) in rows.iter_mut().enumerate().filter(|(other, _)| *other != k) {
+                let factor = row.0[pivot];
+                let eliminate = |from: &mut [Rational], what: &[Rational]| {
+                    from.iter_mut().zip(what).for_each(|(a, &b)| *a = *a + -(factor * b));
+                };
+                eliminate(&mut row.0, &entries);
+                eliminate(&mut row.1, &factors);
+            }
+            rows[k] = (entries, factors);
+            pivots.push(pivot);
+        }
+        // Σ x_k E_k has the pivots p_j = Σ x_k (T⁻¹)_kj, where the rows are T E.
+        let terms = rows.iter().zip(pivots).flat_map(|((_, factors), pivot)| {
+            let place = move |(k, &factor): (usize, &Rational)| (k, pivot / self.size, pivot % self.size, factor);
+            factors.iter().enumerate().filter(|(_, factor)| !factor.is_zero()).map(place)
+        });
+        terms.collect()
+    }
+
     /// Whether its elements are affine maps in homogeneous coordinates: their last row is that of the identity.
     pub(crate) fn is_affine(&self) -> bool {
         let last_row = self.size * self.size.saturating_sub(1);
@@ -40,6 +74,11 @@ impl Group {
         let orthogonal = generators.iter().all(skew);
         Self { size, generators, orthogonal, is_so3: false }
     }
+}
+
+/// Row `k` of the identity.
+fn unit(k: usize, dimension: usize) -> Vec<Rational> {
+    (0..dimension).map(|j| if j == k { Rational::ONE } else { Rational::ZERO }).collect()
 }
 
 /// Entries that aren't zero: row, column, numerator, denominator.

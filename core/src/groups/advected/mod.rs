@@ -12,6 +12,7 @@
 //! | `V ⊗ V` | [`ContravariantTensor`] | `F⁻¹ S F⁻ᵀ` | a conductivity |
 //! | `V* ⊗ V*` | [`CovariantTensor`] | `Fᵀ S F` | a metric, a strain, the gradient of a field of force |
 //! | `V ⊗ V*` | [`MixedTensor`] | `F⁻¹ S F` | a velocity gradient |
+//! | a trivial representation | [`Given`] | `x` | a torque or a field's strength that each step is given anew |
 //!
 //! `V` is the space that the group's matrices act on, `F` the matrix itself. Points are moved by groups of affine maps,
 //! as SE(2) and SE(3) are, and written in homogeneous coordinates; vectors with another last coordinate move by the
@@ -19,9 +20,11 @@
 
 use core::fmt::Debug;
 
+mod given;
 mod points;
 mod tensors;
 
+pub use given::Given;
 pub(crate) use points::homogeneous;
 pub use tensors::inverse_increment;
 pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};

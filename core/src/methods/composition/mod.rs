@@ -6,7 +6,9 @@ pub use scheme::CompositionScheme;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector};
-use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepped, Stepper, Summation, half_coordinates};
+use crate::motion::{
+    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, half_coordinates,
+};
 use crate::numbers::{Coordinates, Mask, Real, real, reported};
 use crate::solving::{Guess, six_digits};
 use nalgebra::SimdBool as _;
@@ -133,6 +135,8 @@ impl<S: Effect> Composed<S> {
         &self.scheme
     }
 }
+
+impl<S: Effect> Steerable for Composed<S> {}
 
 impl<S: Effect> Plan<S> for Composed<S> {
     type Kept = Guess<Vector<S>>;

@@ -19,7 +19,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, StepReport, Stepper, Summation, count, is_due,
+    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
 };
 use crate::numbers::{Coordinates, real, reported};
 use nalgebra::{Matrix3, SimdBool as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
@@ -231,6 +231,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         Ok(())
     }
 }
+
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     type Kept = ();

@@ -6,7 +6,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, velocity_of_momentum};
 use crate::motion::flows::{Increment, Stepped};
-use crate::motion::plan::{Cost, Plan};
+use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
@@ -215,6 +215,8 @@ impl<S: Effect> Declared<S> {
         Stepped { step, change: Vector::<S>::zero(), half, far }
     }
 }
+
+impl<S: Effect> Steerable for Declared<S> {}
 
 impl<S: Effect> Plan<S> for Declared<S> {
     type Kept = Warm<Vector<S>>;

@@ -1,4 +1,4 @@
-//! The free functions of the declared syntax: `vee`, `log`, `exp` and `inverse`.
+//! The free functions of the declared syntax: `hat`, `vee`, `log`, `exp` and `inverse`.
 
 use std::rc::Rc;
 
@@ -8,6 +8,7 @@ use syn::{Expr, ExprCall};
 use super::Checker;
 use super::methods::{METHODS, SQUARE, VECTOR};
 use crate::declared::{Kind, Name, Shape, Tree};
+use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
 
 impl Checker<'_> {
@@ -16,13 +17,13 @@ impl Checker<'_> {
             Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
             _ => String::new(),
         };
-        if !["vee", "log", "exp", "inverse"].contains(&function.as_str()) {
+        if !["hat", "vee", "log", "exp", "inverse"].contains(&function.as_str()) {
             let advice = if is_identity(&call.func) {
                 "write `I` for the identity".to_owned()
             } else if METHODS.contains(&function.as_str()) {
                 format!("write `{function}` as a method, `x.{function}(…)`")
             } else {
-                "there are `vee(A)`, `log(F)`, `exp(v)` and `inverse(J)`".to_owned()
+                "there are `hat(v)`, `vee(A)`, `log(F)`, `exp(v)` and `inverse(J)`".to_owned()
             };
             let noun = self.declaration.role.noun();
             self.errors.push_over(&call.func, format!("this function isn't known in {noun}: {advice}"));
@@ -32,12 +33,21 @@ impl Checker<'_> {
         let (span, at) = (call.span(), call.func.span());
         let mut arguments = call.args.iter();
         let (Some(argument), None) = (arguments.next(), arguments.next()) else {
-            let wanted = if function == "exp" { "vector" } else { "matrix" };
+            let wanted = if ["exp", "hat"].contains(&function.as_str()) { "vector" } else { "matrix" };
             self.errors.push(at, format!("`{function}` takes one {wanted}"));
             return None;
         };
         let argument = self.expression(argument)?;
         match (function.as_str(), argument.shape) {
+            ("hat", shape) if shape == Shape::Matrix(self.declaration.group.dimension(), 1) => {
+                let Group { size, generators, .. } = &self.declaration.group;
+                let generators = generators.as_slice().into();
+                Some(Tree::new(span, Shape::Matrix(*size, *size), Kind::Hat(argument, generators)))
+            }
+            ("hat", shape) => {
+                let dimension = self.declaration.group.dimension();
+                self.mismatch("hat", &format!("a vector of {dimension}, one for each generator"), shape, at)
+            }
             ("vee", SQUARE) => Some(Tree::new(span, VECTOR, Kind::Vee(argument))),
             ("vee", shape) => self.mismatch("vee", "a 3 × 3 matrix", shape, at),
             ("log", SQUARE) if self.declaration.group.is_so3 => Some(logarithm(span, argument)),

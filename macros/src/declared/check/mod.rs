@@ -271,11 +271,15 @@ impl Checker<'_> {
                     (self.declaration.advected_kind(index).shape(), Name::Advected(index))
                 } else if let Some(index) = field(self.declaration) {
                     if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
-                        let w = w.plain_name();
-                        self.errors.push(
-                            span,
-                            format!("`{name}` is the spatial value of `{w}`: write `{w}`, which is what the body sees"),
-                        );
+                        let (plain, is_given) = (w.plain_name(), w.is_given);
+                        let message = if is_given {
+                            format!("`{name}` is the value of `{plain}` until another is given: write `{plain}`")
+                        } else {
+                            format!(
+                                "`{name}` is the spatial value of `{plain}`: write `{plain}`, which is what the body sees"
+                            )
+                        };
+                        self.errors.push(span, message);
                         return None;
                     }
                     (self.declaration.fields[index].kind.shape(), Name::Field(index))

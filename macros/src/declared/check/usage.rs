@@ -5,9 +5,6 @@ use crate::declared::{Declaration, Name, Role};
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     if declaration.role == Role::Force {
-        if !declaration.group.is_so3 {
-            errors.push_over(&declaration.group_path, "forces are only known on `SO3`");
-        }
         let displacements = [Name::DisplacementBefore, Name::DisplacementAfter];
         if !used.iter().any(|name| displacements.contains(name)) {
             errors.push_over(
@@ -32,8 +29,8 @@ fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     let the = declaration.role.definite();
     for (index, w) in declaration.advected.iter().enumerate() {
         if !used.contains(&Name::Advected(index)) {
-            let name = w.plain_name();
-            errors.push(w.name.span(), format!("`{name}` isn't used in {the}: remove it from `advected(…)`"));
+            let (name, list) = (w.plain_name(), if w.is_given { "given" } else { "advected" });
+            errors.push(w.name.span(), format!("`{name}` isn't used in {the}: remove it from `{list}(…)`"));
         }
     }
     for (index, field) in declaration.fields.iter().enumerate() {

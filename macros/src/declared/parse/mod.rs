@@ -41,7 +41,8 @@ fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<Item
 #[derive(Default)]
 struct Arguments {
     group: Option<Path>,
-    advected: Vec<(Ident, Ident)>,
+    /// Name, field, and whether it is given for each step.
+    advected: Vec<(Ident, Ident, bool)>,
     expression: Option<Expr>,
     root: Option<Path>,
     generators: Option<ExprArray>,
@@ -141,22 +142,22 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             input.parse::<Token![=]>()?;
             arguments.generators = Some(input.parse()?);
         }
-        "advected" => {
+        pairs @ ("advected" | "given") => {
+            let is_given = pairs == "given";
             if !input.peek(syn::token::Paren) {
-                return Err(syn::Error::new(
-                    key.span(),
-                    "write `advected(w = up)`: a name for the expression, then the field",
-                ));
+                let example = if is_given { "given(u = torque)" } else { "advected(w = up)" };
+                let message = format!("write `{example}`: a name for the expression, then the field");
+                return Err(syn::Error::new(key.span(), message));
             }
             let content;
             parenthesized!(content in input);
             let pairs = content.parse_terminated(advected_pair, Token![,]);
             // What is left after a mistake would be reported as unexpected.
             content.parse::<TokenStream>()?;
-            arguments.advected.extend(pairs?);
+            arguments.advected.extend(pairs?.into_iter().map(|(name, field)| (name, field, is_given)));
         }
         other => {
-            let known = ["group", "advected", role.key(), "generators", "crate"];
+            let known = ["group", "advected", "given", role.key(), "generators", "crate"];
             let near = suggestion(other, known);
             let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
             let attribute = role.attribute();
@@ -227,9 +228,9 @@ fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     let name = last_segment(ty)?.ident.to_string();
     Some(match name.as_str() {
         "f64" | "f32" => FieldKind::Scalar,
-        "Vector2" | "Vector3" | "Vector4" => FieldKind::Vector(digit(&name)?),
+        "Vector2" | "Vector3" | "Vector4" | "Vector5" | "Vector6" => FieldKind::Vector(digit(&name)?),
         "Point1" | "Point2" | "Point3" => FieldKind::Point(digit(&name)? + 1),
-        "Matrix2" | "Matrix3" | "Matrix4" => FieldKind::Matrix(digit(&name)?),
+        "Matrix2" | "Matrix3" | "Matrix4" | "Matrix5" | "Matrix6" => FieldKind::Matrix(digit(&name)?),
         "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
         "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
         "CovariantTensor" => FieldKind::Advected(Variance::Covariant, length(ty)?),
@@ -322,14 +323,14 @@ fn points(fields: &mut [(Field, Span)], group: &crate::mathematics::group::Group
 
 fn advected(
     role: Role,
-    pairs: &[(Ident, Ident)],
+    pairs: &[(Ident, Ident, bool)],
     fields: &[(Field, Span)],
     unreadable: &[String],
     size: usize,
     errors: &mut Errors,
 ) -> Vec<AdvectedParameter> {
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
-    for (name, field) in pairs {
+    for &(ref name, ref field, is_given) in pairs {
         let unraw = name.unraw().to_string();
         let field_names: Vec<String> = fields.iter().map(|(field, _)| field.plain_name()).collect();
         if ["F", "I", "h"].contains(&unraw.as_str()) || field_names.contains(&unraw) {
@@ -338,7 +339,7 @@ fn advected(
             continue;
         }
         if parameters.iter().any(|other| other.name == *name) {
-            errors.push(name.span(), format!("`{unraw}` is advected twice: remove one"));
+            errors.push(name.span(), format!("`{unraw}` is declared twice: remove one"));
             continue;
         }
         let wanted = field.unraw().to_string();
@@ -347,7 +348,14 @@ fn advected(
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
         }
-        if let Some((found, span)) = index.and_then(|index| fields.get(index))
+        if let Some((found, span)) = index.and_then(|index| fields.get(index)).filter(|_| is_given) {
+            if !found.kind.can_be_given() {
+                errors.push(
+                    *span,
+                    format!("a step is given numbers: make `{wanted}` an f64, a Vector3<f64> or a Matrix3<f64>"),
+                );
+            }
+        } else if let Some((found, span)) = index.and_then(|index| fields.get(index))
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
@@ -359,7 +367,7 @@ fn advected(
             };
             errors.push(*span, message);
         }
-        parameters.push(AdvectedParameter { name: name.clone(), field: index });
+        parameters.push(AdvectedParameter { name: name.clone(), field: index, is_given });
     }
     parameters
 }

@@ -33,10 +33,7 @@ impl<'a, T: Number> Evaluation<'a, T> {
     fn operation(&mut self, tree: &Rc<Tree>) -> Value<T> {
         match &tree.kind {
             Kind::Number(value) => Value::scalar(T::of(*value)),
-            Kind::Identity => Value::identity(match tree.shape {
-                Shape::Matrix(rows, _) => rows,
-                Shape::Scalar => 1,
-            }),
+            Kind::Identity => Value::identity(tree.shape.rows()),
             Kind::Name(name) => self.values.get(name).cloned().unwrap_or_else(|| Value::scalar(T::UNDEFINED)),
             Kind::Negate(a) => self.of(a).map(|x| -x),
             Kind::Add(a, b) => self.of(a).zip(&self.of(b), |x, y| x + y),
@@ -73,6 +70,18 @@ impl<'a, T: Number> Evaluation<'a, T> {
                     let (i, j) = ((row + 2) % 3, (row + 1) % 3);
                     half * (a.at(i, j) - a.at(j, i))
                 })
+            }
+            Kind::Hat(a, generators) => {
+                let (components, size) = (self.of(a), tree.shape.rows());
+                let entry = |row, column| {
+                    let of =
+                        |generator: &Vec<Rational>| generator.get(row * size + column).map_or(T::ZERO, |x| T::of(*x));
+                    generators
+                        .iter()
+                        .enumerate()
+                        .fold(T::ZERO, |sum, (k, generator)| sum + components.at(k, 0) * of(generator))
+                };
+                Value::new(size, size, entry)
             }
             Kind::Inverse(a) => self.of(a).inverse(),
             Kind::Bound(_, a) => self.of(a),

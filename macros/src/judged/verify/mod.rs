@@ -202,6 +202,7 @@ impl<'a, T: Number> Sample<'a, T> {
                 Variance::Contravariant => g.times(w).times(&g.transpose()),
                 Variance::Covariant => inverse.transpose().times(w).times(inverse),
                 Variance::Mixed => g.times(w).times(inverse),
+                Variance::Fixed => w.clone(),
             };
             values.insert(*name, moved);
         }

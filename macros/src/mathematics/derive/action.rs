@@ -7,6 +7,7 @@
 //! V ⊗ V      E S + S Eᵀ        F S⁺ Fᵀ
 //! V* ⊗ V*   −Eᵀ S − S E        F⁻ᵀ S⁺ F⁻¹
 //! V ⊗ V*     E S − S E         F S⁺ F⁻¹
+//! given      0                 w⁺
 //! ```
 
 use super::Context;
@@ -24,6 +25,7 @@ pub(super) fn infinitesimal(context: &Context, variance: Variance, e: &Expressio
         Variance::Contravariant => from_left(e).plus(from_right(&transposed)),
         Variance::Covariant => minus(from_left(&transposed).plus(from_right(e))),
         Variance::Mixed => from_left(e).minus(from_right(e)),
+        Variance::Fixed => Expression::zero(w.shape()),
     }
 }
 
@@ -42,5 +44,6 @@ pub(super) fn moved_back(
         Variance::Contravariant => product([f, next, &f_t]),
         Variance::Covariant => product([&inverse_t, next, inverse]),
         Variance::Mixed => product([f, next, inverse]),
+        Variance::Fixed => next.clone(),
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
-    let direction = context.symbol(directions.first).vee(&symbols);
+    let direction = context.components(&context.symbol(directions.first));
     let work = |before: i128, after: i128| {
         let along = |factor| direction.clone().scaled(Rational::integer(factor));
         let map = BTreeMap::from([(displacements.before, along(before)), (displacements.after, along(after))]);

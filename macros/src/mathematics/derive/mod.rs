@@ -17,7 +17,7 @@ mod transport;
 use std::collections::BTreeMap;
 
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance};
+use crate::mathematics::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols, Variance};
 
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
@@ -255,6 +255,24 @@ impl Context<'_> {
         left.times(right, self.symbols)
     }
 
+    /// The components of an element of the algebra with respect to the generators.
+    fn components(&self, element: &Expression) -> Expression {
+        let group = &self.declared.group;
+        if group.is_so3 {
+            return element.vee(self.symbols);
+        }
+        let unit = |index, size, transposed| {
+            let shape = if transposed { (1, size) } else { (size, 1) };
+            Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, self.symbols)
+        };
+        let (size, dimension) = (group.size, group.dimension());
+        let terms = group.dual().into_iter().map(|(k, row, column, factor)| {
+            let entry = self.product(&self.product(&unit(row, size, true), element), &unit(column, size, false));
+            self.product(&unit(k, dimension, false), &entry).scaled(factor)
+        });
+        terms.fold(Expression::zero((dimension, 1)), Expression::plus)
+    }
+
     fn substituted(&self, expression: &Expression, map: &BTreeMap<SymbolId, Expression>) -> Expression {
         crate::mathematics::symbolic::substitute(expression, map, self.symbols)
     }
@@ -284,10 +302,10 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         next: declared
             .advected
             .iter()
-            .map(|&(w, variance)| {
-                let name = format!("{}⁺", symbols.get(w).name);
-                let columns = if variance.is_tensor() { size } else { 1 };
-                symbols.add(name, (size, columns), symbols.get(w).structure, Stage::Step)
+            .map(|&(w, _)| {
+                let before = symbols.get(w);
+                let (name, shape, structure) = (format!("{}⁺", before.name), before.shape, before.structure);
+                symbols.add(name, shape, structure, Stage::Step)
             })
             .collect(),
     }

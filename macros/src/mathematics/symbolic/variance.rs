@@ -13,11 +13,13 @@ pub(crate) enum Variance {
     Covariant,
     /// `V ⊗ V*`.
     Mixed,
+    /// Not at all: what is given for a step, in the trivial representation.
+    Fixed,
 }
 
 impl Variance {
     /// Whether it is a matrix.
     pub(crate) fn is_tensor(self) -> bool {
-        !matches!(self, Self::Vector | Self::Covector)
+        matches!(self, Self::Contravariant | Self::Covariant | Self::Mixed)
     }
 }

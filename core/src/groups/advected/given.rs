@@ -1,0 +1,58 @@
+//! Values of a step, which the group doesn't move.
+
+use nalgebra::{SMatrix, Vector1};
+
+use super::Advected;
+use crate::groups::LieGroup;
+use crate::numbers::{Entries, Real, is_finite};
+
+/// A value that a step may be [given](crate::Stepper::step_with) anew: a scalar, a vector in body axes or a matrix.
+///
+/// It is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Given<T, const R: usize = 1, const C: usize = 1>(pub SMatrix<T, R, C>);
+
+impl<T: Real> Given<T> {
+    /// A scalar.
+    #[inline(always)]
+    pub const fn scalar(value: T) -> Self {
+        Self(Vector1::new(value))
+    }
+}
+
+impl<T: Real, const R: usize, const C: usize> Entries<T> for Given<T, R, C> {
+    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+        Self(Entries::from_entries(next))
+    }
+
+    #[inline(always)]
+    fn each(&self, visit: &mut impl FnMut(T)) {
+        self.0.each(visit);
+    }
+
+    #[inline(always)]
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+        Self(self.0.zip(&other.0, combine))
+    }
+}
+
+impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<G> for Given<T, R, C> {
+    #[inline(always)]
+    fn seen_from(&self, _: &G) -> Self {
+        *self
+    }
+
+    #[inline(always)]
+    fn change(&self, _: &G::Matrix) -> Self {
+        Self(SMatrix::zeros())
+    }
+
+    #[inline(always)]
+    fn advect(&self, _: &G::Matrix) -> Self {
+        *self
+    }
+
+    fn is_finite(&self) -> bool {
+        self.0.iter().all(|&entry| is_finite(entry))
+    }
+}

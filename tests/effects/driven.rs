@@ -1,0 +1,227 @@
+//! Scenes that each step is given values for.
+
+use declarations::{FluidDrag, Flyer, Thruster, Torquer};
+use liestep::effects::{CayleyBody, Dipole, GravityGradient, RigidBody};
+use liestep::groups::{Given, SE3};
+use liestep::laws::samples::Random;
+use liestep::mechanics::{Scene, Sum};
+use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
+use liestep::motion::{Plan, Steerable};
+use liestep::prelude::*;
+use liestep::{StepError, Stepper};
+use nalgebra::{Matrix3, Matrix4, Point3, Rotation3, Vector3, Vector4};
+use workbench::measure::relative;
+
+type Values = ((), (Vector3<f64>, Given<f64, 3>));
+
+fn body() -> RigidBody {
+    RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.5)).unwrap() }
+}
+
+fn torquer((): (), (field, Given(moment)): (Vector3<f64>, Given<f64, 3>)) -> Torquer {
+    Torquer { moment, field }
+}
+
+/// A step that is given values is the step of the scene with these values, by any method.
+fn is_the_step_of_such_a_scene<S, P>(make: impl Fn(Torquer) -> Stepper<S, P>)
+where
+    S: Scene<Scalar = f64, Group = SO3, Advected = Values>,
+    P: Plan<S> + Steerable,
+{
+    let mut random = Random::new(3);
+    let own = Torquer { moment: random.sample(), field: random.sample() };
+    let driven = make(own);
+    let mut state = driven.start(SO3::identity(), Vector3::new(0.5, -1.0, 2.0)).unwrap();
+    for _ in 0..20 {
+        let values: Values = ((), (random.sample(), Given(random.sample())));
+        let such = make(torquer(values.0, values.1));
+        let mut expected = such.adopt(&state);
+        such.step(&mut expected).unwrap();
+        driven.step_with(&mut state, &values).unwrap();
+        assert!(relative(&state.momentum(), &expected.momentum()) < 1e-13);
+        assert!((state.attitude().as_matrix() - expected.attitude().as_matrix()).norm() < 1e-13);
+        // Between the steps the scene's own values are seen.
+        let (seen, Given(moment)) = state.advected().1;
+        assert!((seen - state.attitude().as_matrix().transpose() * own.field).norm() < 1e-13);
+        assert_eq!(moment, own.moment);
+    }
+}
+
+#[test]
+fn given_values_are_those_of_the_scene() {
+    is_the_step_of_such_a_scene(|torquer| Stepper::new(body() + torquer, 0.1).unwrap());
+    is_the_step_of_such_a_scene(|torquer| Stepper::new(body() + torquer, 0.1).unwrap().compensated());
+    is_the_step_of_such_a_scene(|torquer| Stepper::new(body() + torquer, 0.1).unwrap().or_substeps(4));
+    is_the_step_of_such_a_scene(|torquer| {
+        let other = Stepper::new(CayleyBody { J: body().J_d.to_inertia() } + torquer, 0.1).unwrap();
+        Stepper::new(body() + torquer, 0.1).unwrap().or_fallback(other).unwrap()
+    });
+    is_the_step_of_such_a_scene(|torquer| {
+        Stepper::composed(body() + torquer, 0.1, CompositionScheme::SUZUKI_4).unwrap()
+    });
+    is_the_step_of_such_a_scene(|torquer| {
+        let flow = SymmetricBody::new(&body().J_d.to_inertia()).unwrap();
+        Stepper::split(body() + torquer, 0.1, flow, SplittingScheme::STRANG).unwrap()
+    });
+}
+
+/// With the values that the scene has, the step is the scene's to rounding, and a dipole's.
+#[test]
+fn a_constant_moment_is_a_dipole() {
+    let (moment, field) = (Vector3::new(0.3, -0.2, 0.5), Vector3::new(1.0, 2.0, -0.5));
+    let driven = Stepper::new(body() + Torquer { moment: Vector3::zeros(), field: Vector3::z() }, 0.05).unwrap();
+    let dipole = Stepper::new(body() + Dipole { moment, field }, 0.05).unwrap();
+    let velocity = Vector3::new(0.5, -1.0, 2.0);
+    let mut state = driven.start(SO3::identity(), velocity).unwrap();
+    let mut expected = dipole.start(SO3::identity(), velocity).unwrap();
+    for _ in 0..200 {
+        driven.step_with(&mut state, &((), (field, Given(moment)))).unwrap();
+        dipole.step(&mut expected).unwrap();
+    }
+    assert!(relative(&state.momentum(), &expected.momentum()) < 1e-12);
+}
+
+#[test]
+fn a_step_that_fails_leaves_the_state() {
+    let stepper = Stepper::new(body() + Torquer { moment: Vector3::x(), field: Vector3::z() }, 0.1).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::new(0.5, -1.0, 2.0)).unwrap();
+    let before = state;
+    for (field, moment) in [(Vector3::x() * f64::NAN, Vector3::x()), (Vector3::x(), Vector3::y() * f64::INFINITY)] {
+        let error = stepper.step_with(&mut state, &((), (field, Given(moment)))).unwrap_err();
+        assert_eq!(error, StepError::NonFinite { what: "value given to the step" });
+        assert_eq!(state, before);
+    }
+    // A torque that no step of this length can take.
+    let error = stepper.step_with(&mut state, &((), (Vector3::x() * 1e4, Given(Vector3::y())))).unwrap_err();
+    assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error}");
+    assert_eq!(state, before);
+}
+
+/// The orbital rate, rad/s.
+const RATE: f64 = 0.5;
+
+/// On a circular orbit in the plane of x and y.
+fn satellite(h: f64) -> Stepper<Sum<RigidBody, GravityGradient>> {
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.5, 2.5, 3.0)).unwrap();
+    let gradient = GravityGradient { GM: RATE * RATE, r: 1.0, J: J_d.to_inertia(), direction: -Vector3::x() };
+    Stepper::new(RigidBody { J_d } + gradient, h).unwrap()
+}
+
+/// Where the planet is at a time.
+fn planet(t: f64) -> Vector3<f64> {
+    -Vector3::new((RATE * t).cos(), (RATE * t).sin(), 0.0)
+}
+
+/// In the plane of the orbit, `J_z θ'' = −3 n² (J_y − J_x) sin θ cos θ` for the angle to the vertical; RK4 on this.
+#[test]
+fn a_satellite_librates_to_second_order() {
+    let accelerated = |theta: f64| -3.0 * RATE * RATE * (2.5 - 1.5) / 3.0 * theta.sin() * theta.cos();
+    let (mut theta, mut rate, k) = (0.4_f64, 0.0_f64, 1e-3);
+    for _ in 0..20_000 {
+        let (k1, l1) = (rate, accelerated(theta));
+        let (k2, l2) = (rate + 0.5 * k * l1, accelerated(theta + 0.5 * k * k1));
+        let (k3, l3) = (rate + 0.5 * k * l2, accelerated(theta + 0.5 * k * k2));
+        let (k4, l4) = (rate + k * l3, accelerated(theta + k * k3));
+        theta += k / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        rate += k / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
+    }
+    let error = |steps: u32| {
+        let stepper = satellite(20.0 / f64::from(steps));
+        let start = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.4);
+        let mut state = stepper.start(start, Vector3::new(0.0, 0.0, RATE)).unwrap();
+        for step in 0..steps {
+            let middle = (f64::from(step) + 0.5) * stepper.step_size();
+            stepper.step_with(&mut state, &((), planet(middle))).unwrap();
+        }
+        let expected = Rotation3::from_axis_angle(&Vector3::z_axis(), theta + RATE * 20.0);
+        (state.attitude().as_matrix() - expected.matrix()).norm()
+    };
+    let (coarse, fine) = (error(200), error(400));
+    println!("{coarse:e} {fine:e}");
+    assert!(coarse < 0.02 && (coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
+}
+
+/// In the frame of the orbit the system doesn't depend on time: the Jacobi integral oscillates and doesn't drift.
+#[test]
+fn the_jacobi_integral_of_an_orbit_stays() {
+    let stepper = satellite(0.1);
+    let start = Rotation3::from_scaled_axis(Vector3::new(0.3, -0.2, 0.4));
+    let mut state = stepper.start(start, Vector3::new(0.05, -0.1, RATE)).unwrap();
+    let scene = stepper.scene();
+    let integral = |state: &liestep::State<SO3, ((), Vector3<f64>)>, t: f64| {
+        let velocity = stepper.velocity(state);
+        let seen = state.attitude().as_matrix().transpose() * planet(t);
+        0.5 * velocity.dot(&state.momentum()) + scene.potential(&((), seen)) - RATE * state.spatial_momentum().z
+    };
+    let first = integral(&state, 0.0);
+    let (mut early, mut late) = (0.0_f64, 0.0_f64);
+    for step in 0..200_000_u32 {
+        let t = f64::from(step) * 0.1;
+        stepper.step_with(&mut state, &((), planet(t + 0.05))).unwrap();
+        let off = (integral(&state, t + 0.1) - first).abs();
+        if step < 20_000 {
+            early = early.max(off);
+        } else if step >= 180_000 {
+            late = late.max(off);
+        }
+    }
+    println!("{early:e} {late:e}");
+    assert!(early > 1e-7 && late < 1.2 * early && late < 1e-3, "{early:e} {late:e}");
+}
+
+fn flyer() -> Flyer {
+    Flyer { J: Matrix4::from_diagonal(&Vector4::new(0.75, 1.25, 1.0, 2.0)) }
+}
+
+/// A nozzle beside the axis turns the body evenly faster, so that its velocity is a Fresnel integral.
+#[test]
+fn a_thruster_beside_the_axis_draws_a_spiral() {
+    let (force, arm, end) = (1.5, 0.2, 4.0);
+    let turning = force * arm / 2.0;
+    // Position at the end by Simpson's rule: x(t) = ∫ (t − s) (f/m) cos(½ a s²) ds.
+    let weight = |k: u32| f64::from(if k == 0 || k == 2000 { 1 } else { 2 + 2 * (k % 2) });
+    let place = |part: fn(f64) -> f64| {
+        let at = |k: u32| f64::from(k) * end / 2000.0;
+        let sum: f64 = (0..=2000).map(|k| weight(k) * (end - at(k)) * part(0.5 * turning * at(k) * at(k))).sum();
+        sum * end / 6000.0 * force / 2.0
+    };
+    let expected = Vector3::new(place(f64::cos), place(f64::sin), 0.0);
+    let error = |steps: u32| {
+        let nozzle = Thruster { at: Point3::new(-1.0, -arm, 0.0), thrust: Vector4::zeros() };
+        let stepper = Stepper::new(flyer() + nozzle, end / f64::from(steps)).unwrap();
+        let mut state = stepper.start(SE3::identity(), nalgebra::Vector6::zeros()).unwrap();
+        for _ in 0..steps {
+            stepper.step_with(&mut state, &((), Given(Vector4::new(force, 0.0, 0.0, 0.0)))).unwrap();
+        }
+        let attitude = state.attitude().matrix();
+        (attitude.fixed_view::<3, 1>(0, 3) - expected).norm()
+    };
+    let (coarse, fine) = (error(100), error(200));
+    println!("{coarse:e} {fine:e}");
+    assert!(coarse < 1e-2 && (coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
+}
+
+/// Drag alone: the place goes as far as `m v/c`, the body turns as far as `J Ω/c_r`, and the energy falls in every step.
+#[test]
+fn drag_stops_a_flyer() {
+    let C = Matrix4::from_diagonal(&Vector4::new(0.5, 0.5, 0.5, 0.8));
+    let stepper = Stepper::new(flyer() + FluidDrag { C }, 0.05).unwrap();
+    let turning_and_moving = nalgebra::Vector6::new(0.0, 0.0, 0.3, 1.0, 0.0, 0.0);
+    let mut state = stepper.start(SE3::identity(), turning_and_moving).unwrap();
+    let mut energy = stepper.energy(&state);
+    for _ in 0..2000 {
+        stepper.step(&mut state).unwrap();
+        let next = stepper.energy(&state);
+        assert!(next <= energy);
+        energy = next;
+    }
+    assert!(energy < 1e-14);
+    let end = state.attitude().matrix();
+    let turned = end[(1, 0)].atan2(end[(0, 0)]);
+    // J_z = 0.75 + 1.25 and c_z = 0.5 + 0.5.
+    assert!((turned - 0.6).abs() < 1e-3, "{turned}");
+    let view: Matrix3<f64> = end.fixed_view::<3, 3>(0, 0).into();
+    assert!((view.transpose() * view - Matrix3::identity()).norm() < 1e-13);
+    // The momentum in space falls as e^(−ct/m) along a line, whatever the body's turn.
+    assert!((end[(0, 3)] - 2.5).abs() < 5e-3 && end[(1, 3)].abs() < 5e-3, "{end}");
+}
