@@ -41,6 +41,14 @@ impl Role {
         }
     }
 
+    /// The names that mean something in each expression, and can't be those of parameters.
+    pub(crate) fn reserved(self) -> &'static [&'static str] {
+        match self {
+            Self::Lagrangian => &["F", "I", "h", "vee", "log", "exp"],
+            Self::Force => &["F", "I", "h", "vee", "log", "exp", "eta", "eta_next"],
+        }
+    }
+
     /// The name of the attribute.
     pub(crate) fn attribute(self) -> &'static str {
         match self {
