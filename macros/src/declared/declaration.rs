@@ -1,5 +1,6 @@
 //! A declaration after parsing: the struct, the attribute's arguments, and what the fields' types promise.
 
+use proc_macro2::Span;
 use syn::ext::IdentExt as _;
 use syn::{Expr, Ident, ItemStruct, Path};
 
@@ -104,6 +105,8 @@ impl Declaration {
 pub(crate) struct Field {
     pub(crate) name: Ident,
     pub(crate) kind: FieldKind,
+    /// The place of its type.
+    pub(crate) at: Span,
 }
 
 impl Field {

@@ -69,7 +69,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
             }
         }
     };
-    quote_spanned! {span=>
+    let implementations = quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic)]
         #of_role
@@ -94,7 +94,8 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         }
 
         #addition
-    }
+    };
+    header.enclosing(implementations)
 }
 
 /// The struct, or one of the same name in the place of an enum.

@@ -32,8 +32,10 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     bind("I", quote_spanned!(span=> <#square>::identity()));
     let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
     bind("vee", quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)));
-    bind("eta", quote_spanned!(span=> *eta));
-    bind("eta_next", quote_spanned!(span=> *eta_next));
+    if declaration.role == Role::Force {
+        bind("eta", quote_spanned!(span=> *eta));
+        bind("eta_next", quote_spanned!(span=> *eta_next));
+    }
     bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
     bind("exp", quote_spanned!(span=> #private::rotation_exp::<#scalar>));
     for (index, parameter) in declaration.advected.iter().enumerate() {
@@ -51,7 +53,8 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         bind(&parameter.plain_name(), value);
     }
     for field in &declaration.fields {
-        let member = &field.name;
+        let (member, span) = (&field.name, field.at.resolved_at(span));
+        let private = header.private_at(span);
         let value = if field.kind == FieldKind::Scalar {
             quote_spanned!(span=> self.#member)
         } else {

@@ -114,7 +114,7 @@ pub(crate) fn as_far_as_readable(
         group,
         advected,
         expression: arguments.expression.filter(|_| has_meaning),
-        fields: fields.into_iter().map(|(field, _)| field).collect(),
+        fields,
         unreadable,
         scalar,
         item,
@@ -254,8 +254,8 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
     Ok((name, field))
 }
 
-/// The fields with the place of their types, and the names of those whose type has no meaning.
-fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Span)>, Vec<String>) {
+/// The fields, and the names of those whose type has no meaning.
+fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec<Field>, Vec<String>) {
     let Fields::Named(named) = &item.fields else {
         let what = match role {
             Role::Lagrangian => "a Lagrangian",
@@ -269,7 +269,7 @@ fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec<(Field, Sp
         let Some(name) = field.ident.clone() else { continue };
         check_free(role, &name, errors);
         if let Some(kind) = field_kind(&field.ty, item) {
-            fields.push((Field { name, kind }, field.ty.span()));
+            fields.push(Field { name, kind, at: field.ty.span() });
         } else {
             unreadable.push(name.unraw().to_string());
             errors.push_over(
@@ -379,8 +379,8 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
 }
 
 /// Points belong to the space that the group acts on; after a mistake they are taken for vectors of that space.
-fn points(fields: &mut [(Field, Span)], group: &crate::mathematics::group::Group, errors: &mut Errors) {
-    for (field, span) in fields {
+fn points(fields: &mut [Field], group: &crate::mathematics::group::Group, errors: &mut Errors) {
+    for field in fields {
         let FieldKind::Point(rows) = field.kind else { continue };
         let (name, size) = (field.plain_name(), group.size);
         let message = if !group.is_affine() {
@@ -396,7 +396,7 @@ fn points(fields: &mut [(Field, Span)], group: &crate::mathematics::group::Group
         } else {
             continue;
         };
-        errors.push(*span, message);
+        errors.push(field.at, message);
         field.kind = FieldKind::Vector(size);
     }
 }
@@ -404,7 +404,7 @@ fn points(fields: &mut [(Field, Span)], group: &crate::mathematics::group::Group
 fn advected(
     role: Role,
     pairs: &[(Ident, Ident)],
-    fields: &[(Field, Span)],
+    fields: &[Field],
     unreadable: &[String],
     size: usize,
     errors: &mut Errors,
@@ -412,7 +412,7 @@ fn advected(
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for (name, field) in pairs {
         let unraw = name.unraw().to_string();
-        let field_names: Vec<String> = fields.iter().map(|(field, _)| field.plain_name()).collect();
+        let field_names: Vec<String> = fields.iter().map(Field::plain_name).collect();
         if field_names.contains(&unraw) {
             errors.push_decisive(name.span(), format!("`{unraw}` is a field already: choose another name"));
             continue;
@@ -434,7 +434,7 @@ fn advected(
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
         }
-        if let Some((found, span)) = index.and_then(|index| fields.get(index))
+        if let Some(found) = index.and_then(|index| fields.get(index))
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
@@ -444,7 +444,7 @@ fn advected(
             } else {
                 format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>")
             };
-            errors.push_decisive(*span, message);
+            errors.push_decisive(found.at, message);
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index });
     }

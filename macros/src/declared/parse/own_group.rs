@@ -54,7 +54,7 @@ pub(crate) fn own_group(tokens: TokenStream, errors: &mut Errors) -> Option<OwnG
 
 /// `group = Name!`: the arguments, and what stands behind some keys.
 pub(crate) struct Asked {
-    pub(crate) group: TokenStream,
+    pub(crate) group: Path,
     pub(crate) root: Option<Path>,
     pub(crate) arguments: TokenStream,
 }
@@ -63,16 +63,14 @@ pub(crate) struct Asked {
 pub(crate) fn asked(arguments: &TokenStream) -> Option<Asked> {
     let tokens: Vec<TokenTree> = arguments.clone().into_iter().collect();
     let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(found) if found.as_char() == mark);
-    let is_path = |name: &[TokenTree]| name.iter().all(|token| matches!(token, TokenTree::Ident(_)) || is(token, ':'));
+    let path = |tokens: &[TokenTree]| Path::parse_mod_style.parse2(tokens.iter().cloned().collect()).ok();
     let (mut group, mut root) = (None, None);
     for argument in tokens.split(|token| is(token, ',')) {
         let [TokenTree::Ident(key), equals, value @ ..] = argument else { continue };
         match value {
             _ if key == "generators" => return None,
-            [name @ .., mark] if key == "group" && is(equals, '=') && is(mark, '!') && is_path(name) => {
-                group = Some(name.iter().cloned().collect());
-            }
-            _ if key == "crate" => root = Path::parse_mod_style.parse2(value.iter().cloned().collect()).ok(),
+            [name @ .., mark] if key == "group" && is(equals, '=') && is(mark, '!') => group = path(name),
+            _ if key == "crate" => root = path(value),
             _ => {}
         }
     }
