@@ -82,7 +82,9 @@ impl Checker<'_> {
 
     fn advice_on(&self, name: &str, known: &[&str]) -> String {
         if NOT_SMOOTH.contains(&name) {
-            return format!("`{name}` isn't smooth, and its derivative is needed: use a smooth function, `x.powi(2)`");
+            return format!(
+                "`{name}` isn't smooth, and its derivative is needed: use a smooth function such as `.powi(2)`"
+            );
         }
         if let Some(advice) = instead_of(name) {
             return self.isnt_known(name, &format!(": {advice}"));
