@@ -43,6 +43,7 @@ mod program;
 /// group moves points, stands for its homogeneous coordinates, `(x, y, z, 1)` on SE(3). An advected vector is a
 /// covector, moved by `ρ(f)ᵀ`; a point is moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`,
 /// `CovariantTensor` and `MixedTensor` are the other kinds.
+/// At most six are advected, and no parameter is called `F`, `I`, `h`, `vee`, `log` or `exp`.
 ///
 /// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
 /// `body + potential`.

@@ -1,5 +1,7 @@
 //! Every name of liestep at once: a scene's methods stay the only ones of their names.
 
+#![allow(unused_imports)]
+
 use liestep::accuracy::*;
 use liestep::effects::*;
 use liestep::groups::*;

@@ -61,17 +61,19 @@ impl Checker<'_> {
                         let group = &self.declaration.group;
                         let hint = match (a, b) {
                             (Shape::Matrix(m, 1), Shape::Matrix(n, 1)) if m == n => {
-                                ": write `a.dot(&b)`, or `a * b.transpose()`"
+                                "write `a.dot(&b)`, or `a * b.transpose()`".to_owned()
                             }
-                            (Shape::Matrix(_, columns), Shape::Matrix(rows, 1))
+                            (Shape::Matrix(_, columns), Shape::Matrix(rows @ 1..=3, 1))
                                 if group.is_affine() && columns == group.size && columns == rows + 1 =>
                             {
-                                ": this group moves points, whose type stands for their coordinates and a one"
+                                format!("on this group a point of the body has the type Point{rows}<f64>")
                             }
-                            _ => ": the columns of the left must be as many as the rows of the right",
+                            _ => "the columns of the left must be as many as the rows of the right".to_owned(),
                         };
-                        self.errors
-                            .push(operator, format!("{} can't be multiplied by {}{hint}", a.describe(), b.describe()));
+                        self.errors.push(
+                            operator,
+                            format!("{} can't be multiplied by {}: {hint}", a.describe(), b.describe()),
+                        );
                         return None;
                     }
                 };

@@ -104,7 +104,7 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
-    let advected = advected(role, &arguments.advected, &fields, &unreadable, group.size, errors);
+    let advected = advected(role, &arguments.advected, &fields, &unreadable, &group, errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
     Declaration {
@@ -406,9 +406,10 @@ fn advected(
     pairs: &[(Ident, Ident)],
     fields: &[Field],
     unreadable: &[String],
-    size: usize,
+    group: &crate::mathematics::group::Group,
     errors: &mut Errors,
 ) -> Vec<AdvectedParameter> {
+    let size = group.size;
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for (name, field) in pairs {
         let unraw = name.unraw().to_string();
@@ -442,7 +443,13 @@ fn advected(
             let message = if found.kind.is_wrapped() {
                 format!("`{wanted}` is {shape}, but the group's matrices have {size} rows: write {size} for its size")
             } else {
-                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>")
+                let point = match found.kind {
+                    FieldKind::Vector(rows @ 1..=3) if group.is_affine() && rows + 1 == size => {
+                        format!(", or Point{rows}<f64> for a point")
+                    }
+                    _ => String::new(),
+                };
+                format!("`{wanted}` is {shape}, but the group carries a vector of {size}: use Vector{size}<f64>{point}")
             };
             errors.push_decisive(found.at, message);
         }
