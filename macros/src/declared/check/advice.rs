@@ -14,12 +14,7 @@ use crate::declared::{AdvectedParameter, Field, Shape};
 impl Checker<'_> {
     /// Behind `… isn't known here`, for a name.
     pub(super) fn advice_on_name(&self, name: &str) -> String {
-        let fields = self.declaration.fields.iter().map(Field::plain_name);
-        let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
-        let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
-        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
-        let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
-        let known: Vec<String> = builtin.chain(advected).chain(fields).chain(bound).collect();
+        let known = self.known_names();
         let near = suggestion(name, known.iter().map(String::as_str));
         if !near.is_empty() {
             return near;
@@ -41,6 +36,8 @@ impl Checker<'_> {
             "Id" | "id" | "identity" | "Identity" | "eye" => "; the identity is `I`".to_owned(),
             "dt" | "step" | "time_step" | "timestep" | "delta_t" => "; the step is `h`".to_owned(),
             "self" => "; the fields are known by their names alone".to_owned(),
+            _ if FUNCTIONS.contains(&name) => format!("; it is a function: write `{name}(…)`"),
+            _ if METHODS.contains(&name) => format!("; it is a method: write `x{}`", called(name)),
             _ if constants.any(|constant| constant.ident == name) => {
                 "; it is no real number: make it a field".to_owned()
             }
@@ -49,6 +46,16 @@ impl Checker<'_> {
                 format!(": make it a field of the struct, or write {value}\nknown: {}", known.join(", "))
             }
         }
+    }
+
+    /// What has a value.
+    fn known_names(&self) -> Vec<String> {
+        let fields = self.declaration.fields.iter().map(Field::plain_name);
+        let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
+        let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
+        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
+        let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
+        builtin.chain(advected).chain(fields).chain(bound).collect()
     }
 
     /// For a method that isn't known.
@@ -67,12 +74,14 @@ impl Checker<'_> {
 
     /// For a function that isn't known.
     pub(super) fn advice_on_function(&self, function: &Expr) -> String {
-        let Expr::Path(path) = function else { return self.advice_on("this", &FUNCTIONS) };
+        let Expr::Path(path) = function else { return NO_FUNCTION.to_owned() };
         let last = path.path.segments.last().map(|last| last.ident.unraw().to_string()).unwrap_or_default();
         if last == "identity" {
             "write `I` for the identity".to_owned()
         } else if path.path.segments.len() > 1 {
             "what this makes would be a constant: make it a field of the struct".to_owned()
+        } else if self.known_names().contains(&last) {
+            NO_FUNCTION.to_owned()
         } else if METHODS.contains(&last.as_str()) {
             format!("`{last}` is a method: write `x{}`", called(&last))
         } else {
@@ -133,6 +142,8 @@ pub(super) fn number_of(name: &str) -> Option<f64> {
         _ => None,
     }
 }
+
+const NO_FUNCTION: &str = "this is a value and no function: a product is written with `*`";
 
 const NOT_SMOOTH: [&str; 8] = ["abs", "max", "min", "signum", "floor", "ceil", "round", "clamp"];
 

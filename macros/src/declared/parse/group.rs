@@ -55,7 +55,7 @@ pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Name
 /// checked.
 pub(super) fn group(
     named: Option<Named>,
-    matrices: Option<(Ident, Expr)>,
+    matrices: Option<(Ident, ExprArray)>,
     is_readable: bool,
     errors: &mut Errors,
 ) -> (Option<Path>, Group) {
@@ -77,9 +77,7 @@ pub(super) fn group(
             errors.push_decisive(key.span(), message);
             Ok(group)
         }
-        (Some((_, matrices)), _) => {
-            array(&matrices).and_then(generators).map(|(size, generators)| Group::declared(size, generators))
-        }
+        (Some((_, matrices)), _) => generators(&matrices).map(|(size, generators)| Group::declared(size, generators)),
         (None, Some(group)) => Ok(group),
         // The generators may stand in an argument that couldn't be read.
         (None, None) if !is_readable => return stand_in(),
@@ -102,10 +100,14 @@ pub(super) fn group(
     }
 }
 
-fn array(expression: &Expr) -> syn::Result<&ExprArray> {
-    match expression {
+/// The generators, to be read when the group is known.
+pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
+    let plain = |expression| match expression {
+        Expr::Group(inner) => *inner.expr,
+        other => other,
+    };
+    match plain(input.parse()?) {
         Expr::Array(array) => Ok(array),
-        Expr::Group(inner) => array(&inner.expr),
         other => {
             let message = "write the generators as an array of matrices, each by its rows: \
                            `[[[0.0, -1.0], [1.0, 0.0]]]`";

@@ -4,14 +4,18 @@ mod group;
 mod own_group;
 mod size;
 
-use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::spanned::Spanned as _;
-use syn::{Expr, Fields, GenericArgument, Ident, ItemStruct, Path, PathArguments, Token, Type, braced, parenthesized};
+use syn::{
+    Expr, ExprArray, Fields, GenericArgument, Ident, Item, ItemStruct, Path, PathArguments, Token, Type, braced,
+    parenthesized,
+};
 
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{AdvectedParameter, Declaration, Field, FieldKind, Role, Scalar};
+use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::Variance;
 
 pub(crate) use own_group::{Asked, OwnGroup, asked, own_group};
@@ -33,8 +37,16 @@ const MOST_ADVECTED: usize = 6;
 
 /// The annotated struct.
 fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<ItemStruct> {
-    let message = format!("`{}` belongs on a struct with named fields", role.attribute());
-    let item = syn::parse2(item.clone()).map_err(|error| errors.push(error.span(), message)).ok()?;
+    let item: ItemStruct = match syn::parse2(item.clone()) {
+        Ok(item) => item,
+        Err(error) => {
+            // Of what is no item the compiler has told before.
+            if syn::parse2::<Item>(item.clone()).is_ok() {
+                errors.push(error.span(), format!("`{}` belongs on a struct with named fields", role.attribute()));
+            }
+            return None;
+        }
+    };
     if let Some(again) = declared_again(&item) {
         errors.push_over(
             again,
@@ -61,7 +73,7 @@ struct Arguments {
     expression: Option<Expr>,
     root: Option<Path>,
     /// With its key.
-    generators: Option<(Ident, Expr)>,
+    generators: Option<(Ident, ExprArray)>,
     /// Whether an argument has come without a name, which one message says.
     has_nameless: bool,
 }
@@ -75,7 +87,7 @@ pub(crate) fn as_far_as_readable(
 ) -> Declaration {
     // In braces that span the last token, so that what ends too early is reported there.
     let last = arguments.clone().into_iter().last().map_or(Span::call_site(), |token| token.span());
-    let mut braces = Group::new(Delimiter::Brace, arguments);
+    let mut braces = proc_macro2::Group::new(Delimiter::Brace, arguments);
     braces.set_span(last);
     let parser = |input: ParseStream| {
         let content;
@@ -104,7 +116,8 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
-    let advected = advected(role, &arguments.advected, &fields, &unreadable, &group, errors);
+    let advected =
+        advected(role, &arguments.advected, &fields, &unreadable, group_path.as_ref().map(|_| &group), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
     Declaration {
@@ -176,7 +189,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         "generators" => {
             once(arguments.generators.is_some());
             equals(&key, input)?;
-            arguments.generators = Some((key, input.parse()?));
+            arguments.generators = Some((key, group::array(input)?));
         }
         "advected" => {
             if !input.peek(syn::token::Paren) {
@@ -379,7 +392,7 @@ fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
 }
 
 /// Points belong to the space that the group acts on; after a mistake they are taken for vectors of that space.
-fn points(fields: &mut [Field], group: &crate::mathematics::group::Group, errors: &mut Errors) {
+fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
     for field in fields {
         let FieldKind::Point(rows) = field.kind else { continue };
         let (name, size) = (field.plain_name(), group.size);
@@ -406,10 +419,9 @@ fn advected(
     pairs: &[(Ident, Ident)],
     fields: &[Field],
     unreadable: &[String],
-    group: &crate::mathematics::group::Group,
+    group: Option<&Group>,
     errors: &mut Errors,
 ) -> Vec<AdvectedParameter> {
-    let size = group.size;
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for (name, field) in pairs {
         let unraw = name.unraw().to_string();
@@ -435,7 +447,8 @@ fn advected(
             let near = suggestion(&wanted, field_names.iter().map(String::as_str));
             errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
         }
-        if let Some(found) = index.and_then(|index| fields.get(index))
+        if let (Some(found), Some(group)) = (index.and_then(|index| fields.get(index)), group)
+            && let size = group.size
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
