@@ -31,6 +31,11 @@ pub fn inverse_of<G: LieGroup>(element: G::Matrix) -> G::Matrix {
 }
 
 /// A field of a declared Lagrangian: its value for the declared expression, and whether it can be used.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` isn't the type that a declaration takes it for",
+    label = "another type of this name",
+    note = "types of fields are known by their names: give yours another one, or import that of liestep or nalgebra"
+)]
 pub trait Parameter {
     /// What the expression computes with.
     type Value;

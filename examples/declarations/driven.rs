@@ -59,7 +59,7 @@ fn figure(
     title: &str,
     about: &str,
     names: &[(&str, plotters::style::RGBColor)],
-    panels: [Panel<'_>; 2],
+    panels: &[Panel<'_>; 2],
 ) -> Drawn<String> {
     render((900, 700), |area| {
         let (header, body) = area.split_vertically(px(84));
@@ -117,7 +117,7 @@ fn orbit(output: &mut Output) -> Result<String, Failure> {
         },
     ];
     let about = "gravity gradient whose direction is given for each step, h = 10 s";
-    output.write("orbit.svg", &figure("A satellite librates in its orbit", about, &[], panels)?)?;
+    output.write("orbit.svg", &figure("A satellite librates in its orbit", about, &[], &panels)?)?;
     Ok(format!(
         "Orbit: 10 turns in {steps} steps; the pitch swings up to {swing:.1}°, the Jacobi integral is kept to {worst:.1e}.\n"
     ))
@@ -154,7 +154,7 @@ fn thruster(output: &mut Output) -> Result<String, Failure> {
     ];
     let names = [("burning", ORANGE), ("gliding", BLUE)];
     let about = "a follower force on SE(3), given for each step, and drag";
-    output.write("thruster.svg", &figure("A thruster beside the axis", about, &names, panels)?)?;
+    output.write("thruster.svg", &figure("A thruster beside the axis", about, &names, &panels)?)?;
     Ok(format!("Thruster: burns for 20 s, then the energy falls to {end:.1e} J in 20 s.\n"))
 }
 
@@ -191,6 +191,6 @@ fn torquers(output: &mut Output) -> Result<String, Failure> {
     ];
     let names = [("Ω_X", ORANGE), ("Ω_Y", BLUE), ("Ω_Z", GREEN)];
     let about = "each coil full on against the change of the field that it sees, h = 0.5 s";
-    output.write("torquers.svg", &figure("Switched magnetic torquers stop a tumble", about, &names, panels)?)?;
+    output.write("torquers.svg", &figure("Switched magnetic torquers stop a tumble", about, &names, &panels)?)?;
     Ok(format!("Torquers: from {first:.2} rad/s to {end:.1e} rad/s in {steps} steps.\n"))
 }

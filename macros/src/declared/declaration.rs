@@ -1,5 +1,6 @@
 //! A declaration after parsing: the struct, the attribute's arguments, and what the fields' types promise.
 
+use proc_macro2::Span;
 use syn::ext::IdentExt as _;
 use syn::{Expr, Ident, ItemStruct, Path};
 
@@ -38,6 +39,14 @@ impl Role {
         match self {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
+        }
+    }
+
+    /// The names that mean something in each expression, and can't be those of parameters.
+    pub(crate) fn reserved(self) -> &'static [&'static str] {
+        match self {
+            Self::Lagrangian => &["F", "I", "h", "hat", "vee", "log", "exp"],
+            Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "eta", "eta_next"],
         }
     }
 
@@ -102,6 +111,8 @@ impl Declaration {
 pub(crate) struct Field {
     pub(crate) name: Ident,
     pub(crate) kind: FieldKind,
+    /// The place of its type.
+    pub(crate) at: Span,
 }
 
 impl Field {

@@ -5,39 +5,59 @@ use quote::ToTokens;
 
 /// The mistakes found so far.
 #[derive(Debug, Default)]
-pub(crate) struct Errors(Vec<syn::Error>);
+pub(crate) struct Errors {
+    list: Vec<syn::Error>,
+    /// Whether one of them is decisive.
+    hides_the_rest: bool,
+}
 
 impl Errors {
     /// A mistake at a token: what is wrong, then what to write.
     pub(crate) fn push(&mut self, span: Span, message: impl std::fmt::Display) {
-        self.0.push(syn::Error::new(span, message));
+        self.list.push(syn::Error::new(span, message));
+    }
+
+    /// A mistake that changes what the expression means: what would be found there follows from it.
+    pub(crate) fn push_decisive(&mut self, span: Span, message: impl std::fmt::Display) {
+        self.push(span, message);
+        self.hides_the_rest = true;
     }
 
     /// A mistake that a whole expression or type makes.
     pub(crate) fn push_over(&mut self, tokens: impl ToTokens, message: impl std::fmt::Display) {
-        self.0.push(syn::Error::new_spanned(tokens, message));
+        self.list.push(syn::Error::new_spanned(tokens, message));
     }
 
     pub(crate) fn extend(&mut self, error: syn::Error) {
-        self.0.extend(error);
+        self.list.extend(error);
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.list.is_empty()
+    }
+
+    /// Whether the expression is better left unread.
+    pub(crate) fn hides_the_rest(&self) -> bool {
+        self.hides_the_rest
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &syn::Error> {
-        self.0.iter()
+        self.list.iter()
     }
 }
 
-/// ` (did you mean …?)` for the known name nearest to an unknown one, if it is near.
+/// `; did you mean …?` for the known name that an unknown one is a slip of the pen for, if there is one.
+///
+/// A slip changes one letter of three, and no digit: `rho1` isn't `rho2`. Of one letter it changes the case alone, as
+/// `PI` isn't `I`.
 pub(crate) fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let length = unknown.chars().count();
-    let nearest = known.into_iter().map(|name| (distance(unknown, name), name)).min();
+    let digits = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
+    let alike = known.into_iter().filter(|name| digits(name) == digits(unknown));
+    let nearest = alike.map(|name| (distance(unknown, name), name)).min();
     match nearest {
-        // A name of which every letter differs is another name.
-        Some((distance, name)) if distance < length && distance <= 1 + length / 3 => {
+        Some((0, name)) => format!("; did you mean `{name}`?"),
+        Some((distance, name)) if name.len() > 1 && distance < length && distance <= (length / 3).max(1) => {
             format!("; did you mean `{name}`?")
         }
         _ => String::new(),
@@ -80,5 +100,9 @@ mod tests {
         assert_eq!(suggestion("f", ["m", "F"]), "; did you mean `F`?");
         assert_eq!(suggestion("w", ["m", "F"]), "");
         assert_eq!(suggestion("velocity", ["m", "rho"]), "");
+        assert_eq!(suggestion("PI", ["F", "I", "h"]), "");
+        assert_eq!(suggestion("rho1", ["rho2", "rho"]), "");
+        assert_eq!(suggestion("advect", ["group", "advected"]), "; did you mean `advected`?");
+        assert_eq!(suggestion("log", ["ln", "cos"]), "");
     }
 }

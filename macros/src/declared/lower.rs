@@ -129,7 +129,7 @@ fn report(failure: Failure, tree: &Tree, errors: &mut Errors) {
             span,
             format!(
                 "multiplied out, this has more than {MOST_FACTORS} factors or a product of more than {LONGEST_PRODUCT} \
-                 matrices: the expression is too large"
+                 matrices: declare parts as terms of their own, and add them, `a + b`"
             ),
         ),
         Failure::Overflow => errors

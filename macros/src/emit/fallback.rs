@@ -18,7 +18,9 @@ pub(crate) fn mistakes(role: Role, arguments: TokenStream, item: &TokenStream, e
 
 /// An implementation that type-checks wherever the real one would be used.
 fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStream {
-    let Some(item) = as_struct(item) else { return TokenStream::new() };
+    let Some(item) = as_struct(item).filter(|item| parse::declared_again(item).is_none()) else {
+        return TokenStream::new();
+    };
     let span = Span::mixed_site();
     let mut silent = Errors::default();
     let header = Header::new(&parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent));
@@ -67,7 +69,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
             }
         }
     };
-    quote_spanned! {span=>
+    let implementations = quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic)]
         #of_role
@@ -92,7 +94,8 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         }
 
         #addition
-    }
+    };
+    header.enclosing(implementations)
 }
 
 /// The struct, or one of the same name in the place of an enum.

@@ -1,6 +1,6 @@
 //! Types and generics of the implementation.
 
-use proc_macro2::{Literal, Span, TokenStream};
+use proc_macro2::{Literal, Span, TokenStream, TokenTree};
 use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
@@ -11,6 +11,8 @@ use crate::mathematics::symbolic::Variance;
 pub(crate) struct Header {
     /// The module of liestep that expansions name, and nothing beside it: where the rest of the library stands is free.
     pub(crate) private: Path,
+    /// Where liestep is found, if not at `::liestep`.
+    root: Option<Path>,
     group_path: Path,
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
@@ -24,8 +26,10 @@ pub(crate) struct Header {
 
 impl Header {
     pub(crate) fn new(declaration: &Declaration) -> Self {
-        let root = declaration.root.clone().unwrap_or_else(|| syn::parse_quote!(::liestep));
-        let private: Path = syn::parse_quote_spanned!(Span::mixed_site()=> #root::__private);
+        let private: Path = match declaration.root {
+            Some(_) => syn::parse_quote_spanned!(Span::mixed_site()=> __liestep),
+            None => syn::parse_quote_spanned!(Span::mixed_site()=> ::liestep::__private),
+        };
         let group_path = declaration.group_path.clone().unwrap_or_else(|| syn::parse_quote!(#private::SO3));
         let (scalar, parameter) = match &declaration.scalar {
             // The primitive type even where the name is shadowed.
@@ -34,6 +38,7 @@ impl Header {
         };
         Self {
             private,
+            root: declaration.root.clone(),
             group_path,
             scalar,
             parameter,
@@ -42,6 +47,26 @@ impl Header {
             advected: (0..declaration.advected.len()).map(|index| declaration.advected_kind(index)).collect(),
             size: declaration.group.size,
             dimension: declaration.group.dimension(),
+        }
+    }
+
+    /// `private`, and what is wrong with what it is given, at that place.
+    pub(crate) fn private_at(&self, place: Span) -> TokenStream {
+        let placed = |mut token: TokenTree| {
+            token.set_span(place);
+            token
+        };
+        self.private.to_token_stream().into_iter().map(placed).collect()
+    }
+
+    /// The items where `private` is found: a path of the user's is written once, so that a wrong one is one mistake.
+    pub(crate) fn enclosing(&self, items: TokenStream) -> TokenStream {
+        let Some(root) = &self.root else { return items };
+        quote_spanned! {Span::mixed_site()=>
+            const _: () = {
+                use #root::__private as __liestep;
+                #items
+            };
         }
     }
 

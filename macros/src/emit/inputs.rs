@@ -71,10 +71,10 @@ impl Emitter<'_> {
     }
 
     fn field_entry(&self, index: usize, input: Input) -> TokenStream {
-        let span = Span::mixed_site();
         let Some(field) = self.declaration.fields.get(index) else { return TokenStream::new() };
-        let name = &field.name;
-        let place = |value: TokenStream| entry(&value, input);
+        // Where a type of that name isn't the one that is meant, the compiler shows it.
+        let (name, span) = (&field.name, field.at.resolved_at(Span::mixed_site()));
+        let place = |value: TokenStream| entry_at(span, &value, input);
         match field.kind {
             FieldKind::Scalar => quote_spanned!(span=> self.#name),
             FieldKind::Vector(_) | FieldKind::Matrix(_) | FieldKind::Advected(..) | FieldKind::Given(_) => {
@@ -84,7 +84,7 @@ impl Emitter<'_> {
             FieldKind::SymmetricInertia => place(quote_spanned!(span=> self.#name.as_matrix())),
             FieldKind::DiagonalInertia => {
                 let diagonal = Input { column: 0, ..input };
-                entry(&quote_spanned!(span=> self.#name.diagonal()), diagonal)
+                entry_at(span, &quote_spanned!(span=> self.#name.diagonal()), diagonal)
             }
         }
     }
@@ -92,6 +92,10 @@ impl Emitter<'_> {
 
 /// Column-major storage: `[[_; rows]; columns]`.
 fn entry(value: &TokenStream, input: Input) -> TokenStream {
+    entry_at(Span::mixed_site(), value, input)
+}
+
+fn entry_at(span: Span, value: &TokenStream, input: Input) -> TokenStream {
     let (row, column) = (Literal::usize_unsuffixed(input.row), Literal::usize_unsuffixed(input.column));
-    quote_spanned!(Span::mixed_site()=> #value.data.0[#column][#row])
+    quote_spanned!(span=> #value.data.0[#column][#row])
 }

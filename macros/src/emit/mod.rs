@@ -63,9 +63,7 @@ pub(crate) fn implementation(
         let is_self_adjoint = findings.self_adjointness.is_found();
         quote_spanned!(span=> const SELF_ADJOINT: #private::core::primitive::bool = #is_self_adjoint;)
     });
-    quote_spanned! {span=>
-        #item
-
+    let implementations = quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #of_role {
@@ -96,7 +94,9 @@ pub(crate) fn implementation(
 
         #invariance
         #addition
-    }
+    };
+    let implementations = header.enclosing(implementations);
+    quote_spanned!(span=> #item #implementations)
 }
 
 /// What advects nothing is invariant under the whole group.
@@ -199,6 +199,8 @@ impl Emitter<'_> {
         let checks = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
+            let span = field.at.resolved_at(span);
+            let private = self.header.private_at(span);
             if field.kind == crate::declared::FieldKind::Scalar {
                 quote_spanned!(span=> #private::validate_scalar(self.#name, #text)?;)
             } else {
@@ -220,6 +222,8 @@ impl Emitter<'_> {
         let fields = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
+            let span = field.at.resolved_at(span);
+            let private = self.header.private_at(span);
             if field.kind == crate::declared::FieldKind::Scalar {
                 quote_spanned!(span=> #private::SceneVisitor::parameter(visitor, #text, self.#name);)
             } else {

@@ -35,8 +35,10 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let vector = header.vector();
     let group = quote_spanned!(span=> <Self as #private::Effect>::Group);
     bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
-    bind("eta", quote_spanned!(span=> *eta));
-    bind("eta_next", quote_spanned!(span=> *eta_next));
+    if declaration.role == Role::Force {
+        bind("eta", quote_spanned!(span=> *eta));
+        bind("eta_next", quote_spanned!(span=> *eta_next));
+    }
     bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
     bind("exp", quote_spanned!(span=> #private::rotation_exp::<#scalar>));
     for (index, parameter) in declaration.advected.iter().enumerate() {
@@ -55,7 +57,8 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         bind(&parameter.plain_name(), value);
     }
     for field in &declaration.fields {
-        let member = &field.name;
+        let (member, span) = (&field.name, field.at.resolved_at(span));
+        let private = header.private_at(span);
         let value = if field.kind == FieldKind::Scalar {
             quote_spanned!(span=> self.#member)
         } else {

@@ -17,9 +17,10 @@ mod groups {
 }
 
 use groups::Affine;
-use liestep::{Stepper, lagrangian};
+use liestep::groups::LieGroup as _;
 use liestep::mechanics::Effect as _;
 use liestep::numbers::Real;
+use liestep::{Stepper, lagrangian};
 use nalgebra::{Matrix2, Vector2};
 
 /// The name is found where the type is imported.
@@ -44,6 +45,26 @@ mod by_its_path {
     }
 }
 
+/// The name of a group of liestep's is free where that isn't imported.
+mod of_a_known_name {
+    use nalgebra::{RealField, SMatrix};
+
+    liestep::groups::matrix_group! {
+        /// The squeezes of the plane, and not the translations of a line.
+        pub type R1 = [[[1.0, 0.0], [0.0, -1.0]]];
+
+        fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+            m[(1, 0)].abs() + m[(0, 1)].abs() + (m[(0, 0)] * m[(1, 1)] - T::one()).abs()
+        }
+    }
+
+    #[liestep::lagrangian(group = R1!, l_d = m * (F - I).norm_squared() / h - h * (v.x + v.y) * (F * v).y)]
+    pub struct Squeezed {
+        pub m: f64,
+        pub v: nalgebra::Vector2<f64>,
+    }
+}
+
 fn main() {
     let scaling = Scaling { J: Matrix2::identity(), k: 1.0, r: Vector2::new(1.0, 0.5), covector: Vector2::x() };
     assert!(format!("{scaling:?}").contains("covector") && Scaling::<f64>::DERIVATION.contains("in Affine"));
@@ -51,4 +72,8 @@ fn main() {
     let mut state = stepper.start(Affine::<f64>::identity(), Vector2::new(0.1, 0.2)).unwrap();
     stepper.step(&mut state).unwrap();
     assert!(Stepper::new(by_its_path::Plain { m: 1.0 }, 0.01).is_ok());
+    let squeezed = Stepper::new(of_a_known_name::Squeezed { m: 1.0, v: Vector2::new(1.0, -1.0) }, 0.01).unwrap();
+    let mut state = squeezed.start(of_a_known_name::R1::identity(), nalgebra::Vector1::new(0.1)).unwrap();
+    squeezed.step(&mut state).unwrap();
+    assert!(state.attitude().matrix()[(0, 0)] > 1.0 && state.attitude().matrix()[(0, 1)] == 0.0);
 }

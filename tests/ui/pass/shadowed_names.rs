@@ -37,6 +37,18 @@ struct Top {
     up: ::nalgebra::Vector3<::core::primitive::f64>,
 }
 
+/// Displacements are those of forces, and in a Lagrangian names like others.
+#[lagrangian(
+    group = SO3,
+    advected(eta = up),
+    l_d = ((F - I) * inertia * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * eta.dot(&(eta_next + F * eta_next)),
+)]
+struct Efficiency {
+    inertia: liestep::NonstandardInertia,
+    eta_next: ::nalgebra::Vector3<::core::primitive::f64>,
+    up: ::nalgebra::Vector3<::core::primitive::f64>,
+}
+
 fn main() {
     use ::nalgebra::Vector3;
     let inertia = liestep::NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();

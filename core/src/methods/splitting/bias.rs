@@ -14,7 +14,7 @@ where
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
     K: KineticFlow<T>,
 {
-    let of_flow = kinetic.momentum_bias();
+    let of_flow = K::momentum_bias(kinetic);
     [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5]].iter().all(|xi| {
         let attitude = CayleyRetraction::retract(&nalgebra::Vector3::from(*xi).map(real::<T>));
         let declared = lagrangian.momentum_bias(&lagrangian.advected().seen_from(&attitude));

@@ -10,6 +10,9 @@ use crate::motion::{DiscreteLiePoisson, Stepped};
 use crate::numbers::{Coordinates as _, Real, real, reported};
 
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
+///
+/// What it says of the body are functions and no methods: a declared Lagrangian is a flow, too, and its own
+/// [`inertia`](Effect::inertia) stays the only method of that name.
 pub trait KineticFlow<T: Real>: Clone {
     /// The flow over one share of the step, its constants folded.
     type Drift: Clone;
@@ -21,13 +24,13 @@ pub trait KineticFlow<T: Real>: Clone {
     const OPERATIONS_OF_SPIN: u32 = 0;
 
     /// Shows its name and every constant: two flows that show the same move a body in the same way.
-    fn describe(&self, visitor: &mut dyn SceneVisitor<T>);
+    fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>);
 
     /// The inertia `J` of the body, kg m².
-    fn inertia(&self) -> Matrix3<T>;
+    fn inertia(flow: &Self) -> Matrix3<T>;
 
     /// The momentum `s` at rest, `p = JΩ + s`, kg m²/s: that of rotors in the body, which most bodies haven't got.
-    fn momentum_bias(&self) -> Vector3<T> {
+    fn momentum_bias(_flow: &Self) -> Vector3<T> {
         Vector3::repeat(T::zero())
     }
 
@@ -112,14 +115,14 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     // The other rotation's sine and cosine, its product with the first and what it does to the momentum.
     const OPERATIONS_OF_SPIN: u32 = 69;
 
-    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+    fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         visitor.term("exact flow of a symmetric body");
-        visitor.parameter("transverse", self.transverse);
-        visitor.parameter("axial", self.axial);
+        visitor.parameter("transverse", flow.transverse);
+        visitor.parameter("axial", flow.axial);
     }
 
-    fn inertia(&self) -> Matrix3<T> {
-        Matrix3::from_diagonal(&Vector3::new(self.transverse, self.transverse, self.axial))
+    fn inertia(flow: &Self) -> Matrix3<T> {
+        Matrix3::from_diagonal(&Vector3::new(flow.transverse, flow.transverse, flow.axial))
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
@@ -189,17 +192,17 @@ where
     const OPERATIONS: Operations =
         Operations { step: L::OPERATIONS.step.saturating_add(52), iteration: L::OPERATIONS.iteration };
 
-    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+    fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         visitor.term("declared flow");
-        Effect::describe(self, visitor);
+        Effect::describe(flow, visitor);
     }
 
-    fn inertia(&self) -> Matrix3<T> {
-        Effect::inertia(self)
+    fn inertia(flow: &Self) -> Matrix3<T> {
+        Effect::inertia(flow)
     }
 
-    fn momentum_bias(&self) -> Vector3<T> {
-        Effect::momentum_bias(self, &())
+    fn momentum_bias(flow: &Self) -> Vector3<T> {
+        Effect::momentum_bias(flow, &())
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {

@@ -132,7 +132,7 @@ impl<S: Effect> Stepper<S> {
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let inertia = scene.inertia();
-        let differences = (inertia - kinetic.inertia()).map(nalgebra::SimdComplexField::simd_abs);
+        let differences = (inertia - K::inertia(&kinetic)).map(nalgebra::SimdComplexField::simd_abs);
         let difference = differences.fold(real(0.0), nalgebra::SimdPartialOrd::simd_max);
         if !difference.simd_le(inertia.trace() * Scalar::<S>::simd_default_epsilon() * real(64.0)).all() {
             return Err(SetupError::InertiaMismatch { difference: reported(difference) });
@@ -301,7 +301,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
             visitor.parameter("share", real(share));
             visitor.parameter("gradient", real(gradient));
         }
-        self.kinetic.describe(visitor);
+        K::describe(&self.kinetic, visitor);
     }
 
     fn cost(&self) -> Cost {

@@ -43,13 +43,13 @@ impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {
 
     const OPERATIONS: Operations = Preprocessed::<T>::OPERATIONS;
 
-    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
-        visitor.term(self.order.name());
-        self.inertia.diagonal().iter().for_each(|&entry| visitor.parameter("J_d", entry));
+    fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
+        visitor.term(flow.order.name());
+        flow.inertia.diagonal().iter().for_each(|&entry| visitor.parameter("J_d", entry));
     }
 
-    fn inertia(&self) -> Matrix3<T> {
-        let d = self.inertia.diagonal();
+    fn inertia(flow: &Self) -> Matrix3<T> {
+        let d = flow.inertia.diagonal();
         Matrix3::from_diagonal(&Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y))
     }
 

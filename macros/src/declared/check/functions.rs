@@ -6,10 +6,12 @@ use syn::spanned::Spanned as _;
 use syn::{Expr, ExprCall};
 
 use super::Checker;
-use super::methods::{METHODS, SQUARE, VECTOR};
+use super::methods::{SQUARE, VECTOR};
 use crate::declared::{Kind, Name, Shape, Tree};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
+
+pub(super) const FUNCTIONS: [&str; 5] = ["hat", "vee", "log", "exp", "inverse"];
 
 impl Checker<'_> {
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
@@ -17,16 +19,9 @@ impl Checker<'_> {
             Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
             _ => String::new(),
         };
-        if !["hat", "vee", "log", "exp", "inverse"].contains(&function.as_str()) {
-            let advice = if is_identity(&call.func) {
-                "write `I` for the identity".to_owned()
-            } else if METHODS.contains(&function.as_str()) {
-                format!("write `{function}` as a method, `x.{function}(…)`")
-            } else {
-                "there are `hat(v)`, `vee(A)`, `log(F)`, `exp(v)` and `inverse(J)`".to_owned()
-            };
-            let noun = self.declaration.role.noun();
-            self.errors.push_over(&call.func, format!("this function isn't known in {noun}: {advice}"));
+        if !FUNCTIONS.contains(&function.as_str()) {
+            let advice = self.advice_on_function(&call.func);
+            self.errors.push_over(&call.func, advice);
             self.arguments(&call.args);
             return None;
         }
@@ -90,11 +85,6 @@ impl Checker<'_> {
             }
         }
     }
-}
-
-/// `Matrix3::identity` and its like.
-fn is_identity(function: &Expr) -> bool {
-    matches!(function, Expr::Path(path) if path.path.segments.last().is_some_and(|last| last.ident == "identity"))
 }
 
 /// `G(n) vee(A)` with `n = (3 − tr A)/4`.

@@ -8,7 +8,6 @@ use syn::spanned::Spanned as _;
 use syn::{Expr, ExprMethodCall, Lit, Token, UnOp};
 
 use super::Checker;
-use crate::declared::errors::suggestion;
 use crate::declared::{Kind, Shape, Tree};
 use crate::mathematics::symbolic::Function;
 
@@ -38,7 +37,9 @@ impl Checker<'_> {
         let receiver = self.expression(&call.receiver);
         let name = call.method.to_string();
         if !METHODS.contains(&name.as_str()) {
-            self.unknown_method(&name, call.method.span());
+            let shape = receiver.as_ref().map(|receiver| receiver.shape);
+            let advice = self.advice_on_method(&name, &call.receiver, shape);
+            self.errors.push(call.method.span(), advice);
             self.arguments(&call.args);
             return None;
         }
@@ -101,6 +102,10 @@ impl Checker<'_> {
                 return Some(if name == "norm" { Tree::new(span, Shape::Scalar, norm(squared)) } else { squared });
             }
             ("norm_squared" | "norm", Shape::Scalar) => ("a vector or a matrix", None),
+            ("exp", VECTOR) => {
+                self.errors.push(at, "`exp` of a vector is a function: write `exp(v)`");
+                return None;
+            }
             (function, Shape::Scalar) => {
                 let function = Function::METHODS.into_iter().find(|known| known.name() == function);
                 ("", function.map(|function| (Shape::Scalar, Kind::Apply(function, receiver))))
@@ -147,28 +152,13 @@ impl Checker<'_> {
         None
     }
 
-    fn unknown_method(&mut self, name: &str, span: Span) {
-        let message = match name {
-            "abs" | "max" | "min" | "signum" | "floor" | "ceil" | "round" | "clamp" => {
-                format!("`{name}` isn't smooth, and its derivative is needed: use a smooth function such as `.powi(2)`")
-            }
-            "magnitude" => "write `norm`".to_owned(),
-            "magnitude_squared" => "write `norm_squared`".to_owned(),
-            "tr_mul" | "tr_dot" => "write `.transpose()` and `*`".to_owned(),
-            _ => {
-                let known = METHODS.iter().copied().filter(|known| *known != "clone").collect::<Vec<_>>().join(", ");
-                let near = suggestion(name, METHODS);
-                let list = if near.is_empty() { format!("\nknown: {known}") } else { String::new() };
-                format!("`{name}` isn't known in {}{near}{list}", self.declaration.role.noun())
-            }
-        };
-        self.errors.push(span, message);
-    }
-
     /// What is given to an unknown function may have mistakes of its own.
     pub(super) fn arguments(&mut self, arguments: &Punctuated<Expr, Token![,]>) {
         for argument in arguments {
-            self.expression(argument);
+            // A whole number may be what such a function takes.
+            if integer(argument).is_none() {
+                self.expression(argument);
+            }
         }
     }
 }

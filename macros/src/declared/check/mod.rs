@@ -1,5 +1,6 @@
 //! From Rust syntax to a tree with shapes. Nothing is derived before all shapes fit.
 
+mod advice;
 mod functions;
 mod methods;
 mod operators;
@@ -8,13 +9,14 @@ mod usage;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use proc_macro2::Span;
+use proc_macro2::{Span, TokenStream};
+use quote::ToTokens;
 use syn::ext::IdentExt as _;
 use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
-use crate::declared::errors::{Errors, suggestion};
-use crate::declared::{AdvectedParameter, Declaration, Field, Kind, Name, Role, Shape, Tree};
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::Rational;
 
 /// Deeper expressions than a person writes would overflow the stack of the compiler.
@@ -64,6 +66,15 @@ struct Binding {
     used: bool,
 }
 
+/// An expression that begins with the token that has no meaning.
+struct FirstToken<'a>(&'a Expr);
+
+impl ToTokens for FirstToken<'_> {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        tokens.extend(self.0.to_token_stream().into_iter().take(1));
+    }
+}
+
 struct Checker<'a> {
     declaration: &'a Declaration,
     errors: &'a mut Errors,
@@ -106,10 +117,11 @@ impl Checker<'_> {
             Expr::Path(path) => match path.path.get_ident() {
                 Some(name) if path.qself.is_none() => self.name(name),
                 _ => {
-                    self.errors.push(
-                        span,
-                        "a path has no meaning here: use the struct's fields, `F`, `I`, `h` and the advected names",
-                    );
+                    let last = path.path.segments.last().and_then(|last| advice::number_of(&last.ident.to_string()));
+                    let value = last.map_or_else(|| "its value".to_owned(), |number| format!("`{number}`"));
+                    let message =
+                        format!("a path has no meaning here: make it a field of the struct, or write {value}");
+                    self.errors.push_over(path, message);
                     None
                 }
             },
@@ -118,21 +130,32 @@ impl Checker<'_> {
                     let operand = self.expression(&unary.expr)?;
                     Some(Tree::new(span, operand.shape, Kind::Negate(operand)))
                 }
-                _ => self.unknown(span),
+                UnOp::Deref(star) => {
+                    self.errors.push(star.span, "leave this `*` away; a power is written `x.powi(2)`");
+                    None
+                }
+                _ => self.unknown(unary.op),
             },
             Expr::Binary(binary) => self.binary(binary),
             Expr::MethodCall(call) => self.method(call),
             Expr::Call(call) => self.call(call),
             Expr::Index(index) => self.index(index),
             Expr::Field(field) => self.component(field),
-            _ => self.unknown(span),
+            Expr::Cast(cast) => self.unknown(cast.as_token),
+            Expr::Try(question) => self.unknown(question.question_token),
+            Expr::Await(wait) => self.unknown(wait.await_token),
+            Expr::Range(range) => self.unknown(range.limits),
+            Expr::Assign(assignment) => self.unknown(assignment.eq_token),
+            Expr::Reference(reference) => self.unknown(reference.mutability),
+            _ => self.unknown(FirstToken(expression)),
         }
     }
 
-    fn unknown(&mut self, span: Span) -> Option<Rc<Tree>> {
+    /// The token, and not what it stands among, has no meaning.
+    fn unknown(&mut self, token: impl ToTokens) -> Option<Rc<Tree>> {
         let noun = self.declaration.role.noun();
-        self.errors.push(
-            span,
+        self.errors.push_over(
+            token,
             format!(
                 "this has no meaning in {noun}: use + - * /, `let`, indexing, `vee(…)` and the methods of vectors and \
                  matrices"
@@ -230,7 +253,11 @@ impl Checker<'_> {
         let (digits, suffix, is_integer) = match literal {
             Lit::Float(float) => (float.base10_digits().to_owned(), float.suffix().to_owned(), false),
             Lit::Int(integer) => (integer.base10_digits().to_owned(), integer.suffix().to_owned(), true),
-            other => return self.unknown(other.span()),
+            Lit::Str(text) => {
+                self.errors.push(text.span(), "leave the quotes away: expressions are written as they are");
+                return None;
+            }
+            other => return self.unknown(other),
         };
         if is_integer {
             self.errors.push(literal.span(), format!("write `{digits}.0`: scalars are real numbers"));
@@ -285,7 +312,8 @@ impl Checker<'_> {
                     (self.declaration.fields[index].kind.shape(), Name::Field(index))
                 } else {
                     if !self.declaration.unreadable.contains(&name) {
-                        self.unknown_name(&name, span);
+                        let advice = self.advice_on_name(&name);
+                        self.errors.push(span, format!("`{name}` isn't known here{advice}"));
                     }
                     return None;
                 }
@@ -301,29 +329,5 @@ impl Checker<'_> {
 
     fn displacement(&self) -> Shape {
         Shape::Matrix(self.declaration.group.dimension(), 1)
-    }
-
-    fn unknown_name(&mut self, name: &str, span: Span) {
-        let fields = self.declaration.fields.iter().map(Field::plain_name);
-        let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
-        let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
-        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
-        let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
-        let known: Vec<String> = builtin.chain(advected).chain(fields).chain(bound).collect();
-        let near = suggestion(name, known.iter().map(String::as_str));
-        let noun = self.declaration.role.noun();
-        let advice = match name {
-            _ if !near.is_empty() => near,
-            "w" => "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned(),
-            "t" | "time" => format!(
-                "; {noun} has no time: force a step with `step_forced`, or go on with other parameters by `adopt`"
-            ),
-            "omega" | "Omega" | "xi" | "velocity" => {
-                let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
-                format!("; the velocity of a step is in `F`: write {velocity}")
-            }
-            _ => format!("\nknown: {}", known.join(", ")),
-        };
-        self.errors.push(span, format!("`{name}` isn't known here{advice}"));
     }
 }

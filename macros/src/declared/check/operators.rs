@@ -2,14 +2,20 @@
 
 use std::rc::Rc;
 
+use syn::ext::IdentExt as _;
 use syn::spanned::Spanned as _;
 use syn::{BinOp, Expr, ExprBinary, ExprField, ExprIndex, Lit, Member};
 
 use super::Checker;
+use super::advice::called;
+use super::methods::METHODS;
 use crate::declared::{Kind, Shape, Tree};
 
 impl Checker<'_> {
     pub(super) fn binary(&mut self, binary: &ExprBinary) -> Option<Rc<Tree>> {
+        if !matches!(binary.op, BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_)) {
+            return self.unknown_operator(binary.op);
+        }
         let (left, right) = (self.expression(&binary.left), self.expression(&binary.right));
         let (left, right) = (left?, right?);
         let (span, operator) = (binary.span(), binary.op.span());
@@ -20,8 +26,17 @@ impl Checker<'_> {
                     let verb = if matches!(binary.op, BinOp::Add(_)) { "added to" } else { "subtracted from" };
                     let (a, b) = if matches!(binary.op, BinOp::Add(_)) { (a, b) } else { (b, a) };
                     let advice = match (left.shape, right.shape) {
-                        (Shape::Scalar, Shape::Matrix(3, 3)) | (Shape::Matrix(3, 3), Shape::Scalar) => {
-                            ": write `a * I` for a scalar `a`"
+                        (Shape::Scalar, Shape::Matrix(1, 1)) | (Shape::Matrix(1, 1), Shape::Scalar) => {
+                            ": write `a.dot(&b)` for `a.transpose() * b`"
+                        }
+                        (Shape::Scalar, Shape::Matrix(_, 1)) | (Shape::Matrix(_, 1), Shape::Scalar) => {
+                            ": take a `.dot(…)` or a component of the vector"
+                        }
+                        (Shape::Scalar, Shape::Matrix(rows, columns))
+                        | (Shape::Matrix(rows, columns), Shape::Scalar)
+                            if rows == columns =>
+                        {
+                            ": write `a * I` for a scalar `a`, or take the `.trace()` of the matrix"
                         }
                         _ => ": both sides need one shape",
                     };
@@ -43,12 +58,22 @@ impl Checker<'_> {
                         Shape::Matrix(rows, columns)
                     }
                     (a, b) => {
+                        let group = &self.declaration.group;
                         let hint = match (a, b) {
-                            (Shape::Matrix(3, 1), Shape::Matrix(3, 1)) => ": write `a.dot(&b)`, or `a * b.transpose()`",
-                            _ => ": the columns of the left must be as many as the rows of the right",
+                            (Shape::Matrix(m, 1), Shape::Matrix(n, 1)) if m == n => {
+                                "write `a.dot(&b)`, or `a * b.transpose()`".to_owned()
+                            }
+                            (Shape::Matrix(_, columns), Shape::Matrix(rows @ 1..=3, 1))
+                                if group.is_affine() && columns == group.size && columns == rows + 1 =>
+                            {
+                                format!("on this group a point of the body has the type Point{rows}<f64>")
+                            }
+                            _ => "the columns of the left must be as many as the rows of the right".to_owned(),
                         };
-                        self.errors
-                            .push(operator, format!("{} can't be multiplied by {}{hint}", a.describe(), b.describe()));
+                        self.errors.push(
+                            operator,
+                            format!("{} can't be multiplied by {}: {hint}", a.describe(), b.describe()),
+                        );
                         return None;
                     }
                 };
@@ -69,7 +94,17 @@ impl Checker<'_> {
                 let shape = left.shape;
                 Some(Tree::new(span, shape, Kind::Divide(left, right)))
             }
-            _ => self.unknown(operator),
+            _ => self.unknown_operator(binary.op),
+        }
+    }
+
+    fn unknown_operator(&mut self, operator: BinOp) -> Option<Rc<Tree>> {
+        match operator {
+            BinOp::BitXor(token) => {
+                self.errors.push_over(token, "a power is written `x.powi(2)`");
+                None
+            }
+            other => self.unknown(other),
         }
     }
 
@@ -107,20 +142,54 @@ impl Checker<'_> {
         }
     }
 
-    /// `v.x`, `v.y`, `v.z`.
+    /// `v.x`, `v.y`, `v.z`, and `v.w` of four.
     pub(super) fn component(&mut self, field: &ExprField) -> Option<Rc<Tree>> {
-        let operand = self.expression(&field.base)?;
-        let place = match &field.member {
-            Member::Named(name) => ["x", "y", "z"].iter().position(|axis| name == axis),
-            Member::Unnamed(_) => None,
+        let member = match &field.member {
+            Member::Named(name) => name.unraw().to_string(),
+            Member::Unnamed(index) => index.index.to_string(),
         };
-        if let (Some(row), Shape::Matrix(3, 1)) = (place, operand.shape) {
-            Some(Tree::new(field.span(), Shape::Scalar, Kind::Entry(operand, row, 0)))
+        if let Expr::Path(path) = &*field.base
+            && path.path.is_ident("self")
+        {
+            self.errors.push_over(path, format!("write `{member}`: the fields are known by their names alone"));
+            return None;
+        }
+        let operand = self.expression(&field.base)?;
+        let axes = match operand.shape {
+            Shape::Matrix(rows @ 2..=4, 1) => AXES.get(..rows).unwrap_or_default(),
+            _ => &[],
+        };
+        if let Some(row) = axes.iter().position(|axis| *axis == member) {
+            return Some(Tree::new(field.span(), Shape::Scalar, Kind::Entry(operand, row, 0)));
+        }
+        let advice = if METHODS.contains(&member.as_str()) {
+            format!("`{member}` is a method: write `{}`", called(&member))
         } else {
             let shape = operand.shape.describe();
-            self.errors.push(field.member.span(), format!("{shape} has no such component; a vector has x, y and z"));
-            None
-        }
+            let entries = match operand.shape {
+                Shape::Scalar => "leave it away".to_owned(),
+                Shape::Matrix(_, 1) => format!("there are {}, and `v[0]`", axes.join(", ")),
+                Shape::Matrix(..) => match entry_of(&member) {
+                    Some((row, column)) => format!("write `A[({row}, {column})]`"),
+                    None => "write an entry by its indices, `A[(0, 1)]`".to_owned(),
+                },
+            };
+            format!("{shape} has no `{member}`: {entries}")
+        };
+        self.errors.push(field.member.span(), advice);
+        None
+    }
+}
+
+/// The components of nalgebra's vectors.
+const AXES: [&str; 4] = ["x", "y", "z", "w"];
+
+/// `m12`, as nalgebra calls the entry `(0, 1)`.
+fn entry_of(member: &str) -> Option<(u32, u32)> {
+    let mut digits = member.strip_prefix('m')?.chars().map(|digit| digit.to_digit(10)?.checked_sub(1));
+    match (digits.next()??, digits.next()??, digits.next()) {
+        (row, column, None) => Some((row, column)),
+        _ => None,
     }
 }
 

@@ -1,46 +1,117 @@
 //! The group of a declaration: a built-in one by its name, or one that the user gives by its generators.
 
 use proc_macro2::Span;
+use syn::parse::ParseStream;
 use syn::spanned::Spanned as _;
-use syn::{Expr, ExprArray, Path};
+use syn::{Expr, ExprArray, Ident, Path, PathArguments, Token};
 
 use crate::declared::errors::{Errors, suggestion};
 use crate::mathematics::group::{Group, NAMES, built_in};
 use crate::mathematics::symbolic::Rational;
 
+/// What stands behind `group =`.
+pub(super) struct Named {
+    path: Path,
+    /// `Name!`, a group that `matrix_group!` declares, whatever its name.
+    is_own: bool,
+}
+
+impl Named {
+    fn name(&self) -> String {
+        self.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default()
+    }
+
+    /// The group of liestep that it names, if it names one.
+    fn built_in(&self) -> Option<Group> {
+        if self.is_own { None } else { built_in(&self.name()) }
+    }
+
+    /// Whether the path can't lead to a group of the user's.
+    fn is_ours(&self) -> bool {
+        let segments = &self.path.segments;
+        segments.len() == 1 || segments.first().is_some_and(|first| first.ident == "liestep")
+    }
+}
+
+/// `SO3`, `own::Affine!`.
+pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Named> {
+    let span = input.span();
+    let mut path: Path =
+        input.parse().map_err(|_| syn::Error::new(span, "write the name of a group: `group = SO3`"))?;
+    let is_own = input.parse::<Option<Token![!]>>()?.is_some();
+    for segment in &mut path.segments {
+        // The scalar is given again where the type is written.
+        let arguments = std::mem::replace(&mut segment.arguments, PathArguments::None);
+        if !arguments.is_empty() {
+            let (name, mark) = (&segment.ident, if is_own { "!" } else { "" });
+            let message = format!("write `group = {name}{mark}`: the scalar is that of the fields");
+            errors.push_over(arguments, message);
+        }
+    }
+    Ok(Named { path, is_own })
+}
+
 /// The path as written, and what is known of the group; after a mistake none, and SO(3), so that the rest can be
 /// checked.
 pub(super) fn group(
-    path: Option<Path>,
-    matrices: Option<&ExprArray>,
+    named: Option<Named>,
+    matrices: Option<(Ident, ExprArray)>,
     is_readable: bool,
     errors: &mut Errors,
 ) -> (Option<Path>, Group) {
     let stand_in = || (None, built_in("SO3").unwrap_or_else(|| Group::declared(3, Vec::new())));
-    let Some(path) = path else {
+    let Some(named) = named else {
         // What seems to be missing may stand in an argument that couldn't be read.
         if is_readable {
             errors.push(Span::call_site(), "the group is missing: write `group = SO3`");
         }
         return stand_in();
     };
-    let name = path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default();
-    let found = match matrices {
-        Some(matrices) => generators(matrices).map(|(size, generators)| Group::declared(size, generators)),
-        None => built_in(&name).ok_or_else(|| {
+    let (name, found) = (named.name(), named.built_in());
+    let found = match (matrices, found) {
+        (Some((key, _)), Some(group)) if named.is_ours() => {
+            let message = format!(
+                "`{name}` has its generators already: remove these, or give a group of your own another name than \
+                 liestep's"
+            );
+            errors.push_decisive(key.span(), message);
+            Ok(group)
+        }
+        (Some((_, matrices)), _) => generators(&matrices).map(|(size, generators)| Group::declared(size, generators)),
+        (None, Some(group)) => Ok(group),
+        // The generators may stand in an argument that couldn't be read.
+        (None, None) if !is_readable => return stand_in(),
+        (None, None) => {
             let (near, known) = (suggestion(&name, NAMES), NAMES.join(", "));
             let own = format!(
                 "of a group that `matrix_group!` declares write `group = {name}!`, of another give the generators too: \
                  `generators = [[[0.0, -1.0], [1.0, 0.0]]]`"
             );
-            syn::Error::new_spanned(&path, format!("the group `{name}` isn't known{near}\nknown: {known}; {own}"))
-        }),
+            let message = format!("the group `{name}` isn't known{near}\nknown: {known}; {own}");
+            Err(syn::Error::new_spanned(&named.path, message))
+        }
     };
     match found {
-        Ok(group) => (Some(path), group),
+        Ok(group) => (Some(named.path), group),
         Err(error) => {
             errors.extend(error);
             stand_in()
+        }
+    }
+}
+
+/// The generators, to be read when the group is known.
+pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
+    let plain = |expression| match expression {
+        Expr::Group(inner) => *inner.expr,
+        other => other,
+    };
+    match plain(input.parse()?) {
+        Expr::Array(array) => Ok(array),
+        other => {
+            let message = "write the generators as an array of matrices, each by its rows: \
+                           `[[[0.0, -1.0], [1.0, 0.0]]]`";
+            Err(syn::Error::new_spanned(other, message))
         }
     }
 }

@@ -52,35 +52,27 @@ pub(crate) fn own_group(tokens: TokenStream, errors: &mut Errors) -> Option<OwnG
     syn::parse2(tokens).map_err(|error| errors.extend(error)).ok()
 }
 
-/// `group = Name!`: the arguments without the mark, and what stands behind some keys.
+/// `group = Name!`: the arguments, and what stands behind some keys.
 pub(crate) struct Asked {
-    pub(crate) group: TokenStream,
+    pub(crate) group: Path,
     pub(crate) root: Option<Path>,
     pub(crate) arguments: TokenStream,
 }
 
-/// The group that is to be asked for its generators, if there is one.
+/// The group that is to be asked for its generators, if there is one, and if it hasn't answered.
 pub(crate) fn asked(arguments: &TokenStream) -> Option<Asked> {
     let tokens: Vec<TokenTree> = arguments.clone().into_iter().collect();
     let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(found) if found.as_char() == mark);
-    let (mut group, mut root, mut rest) = (None, None, TokenStream::new());
-    for argument in tokens.split_inclusive(|token| is(token, ',')) {
-        let [TokenTree::Ident(key), equals, value @ ..] = argument else {
-            rest.extend(argument.iter().cloned());
-            continue;
-        };
-        let value = value.split(|token| is(token, ',')).next().unwrap_or_default();
+    let path = |tokens: &[TokenTree]| Path::parse_mod_style.parse2(tokens.iter().cloned().collect()).ok();
+    let (mut group, mut root) = (None, None);
+    for argument in tokens.split(|token| is(token, ',')) {
+        let [TokenTree::Ident(key), equals, value @ ..] = argument else { continue };
         match value {
-            [name @ .., mark] if key == "group" && is(equals, '=') && is(mark, '!') => {
-                group = Some(name.iter().cloned().collect());
-                let kept = argument.iter().filter(|token| !is(token, '!'));
-                rest.extend(kept.cloned());
-                continue;
-            }
-            _ if key == "crate" => root = Path::parse_mod_style.parse2(value.iter().cloned().collect()).ok(),
+            _ if key == "generators" => return None,
+            [name @ .., mark] if key == "group" && is(equals, '=') && is(mark, '!') => group = path(name),
+            _ if key == "crate" => root = path(value),
             _ => {}
         }
-        rest.extend(argument.iter().cloned());
     }
-    group.map(|group| Asked { group, root, arguments: rest })
+    group.map(|group| Asked { group, root, arguments: arguments.clone() })
 }

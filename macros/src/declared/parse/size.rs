@@ -63,7 +63,9 @@ pub(super) fn check(role: Role, arguments: &TokenStream, errors: &mut Errors) ->
         count += 1;
         if count > MOST_TOKENS {
             let the = role.definite();
-            let message = format!("{the} has more than {MOST_TOKENS} tokens: the expression is too large");
+            let message = format!(
+                "{the} has more than {MOST_TOKENS} tokens: declare parts as terms of their own, and add them, `a + b`"
+            );
             errors.push(token.span(), message);
             return None;
         }

@@ -44,6 +44,21 @@ fn page(arguments: &str, item: &str) -> String {
     lines.lines().map(|line| line.strip_prefix(' ').unwrap_or(line)).collect::<Vec<_>>().join("\n")
 }
 
+/// A vector has as many components by name as it has rows, up to four.
+#[test]
+fn components_are_entries() {
+    for (group, rows) in [("SE3", 4), ("SE2", 3), ("SL2", 2)] {
+        let item = format!("struct Body {{ A: Matrix{rows}<f64>, v: Vector{rows}<f64> }}");
+        let with = |last: &str, first: &str| {
+            let kinetic = "((F - I) * A * A.transpose() * (F - I).transpose()).trace() / h";
+            derivation(&format!("group = {group}, l_d = {kinetic} - h * v{last} * (F * v){first}"), &item)
+        };
+        let last = ["", ".x", ".y", ".z", ".w"][rows];
+        assert_eq!(with(last, ".x"), with(&format!("[{}]", rows - 1), "[0]"));
+        assert_ne!(with(last, ".x"), with("[0]", "[0]"));
+    }
+}
+
 /// Where an editor shows it; the user's own attributes come first, and the item stays as it is.
 #[test]
 #[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them

@@ -22,7 +22,12 @@ const DICTIONARY: &[&str] = &[
     "k",
     "A",
     "group",
+    "generators",
     "SO3",
+    "<",
+    ">",
+    "f64",
+    "\"SO3\"",
     "advected",
     "l_d",
     "crate",
@@ -190,7 +195,11 @@ fn survives(arguments: &str, item: &str) {
     let start = Instant::now();
     // An item that isn't one is handed on as it stands, for the compiler to complain.
     let expansion = expand(arguments, &item);
-    is_refused(&expansion);
+    if syn::parse2::<syn::Item>(item.clone()).is_ok() {
+        is_refused(&expansion);
+    } else {
+        assert_eq!(expansion.to_string(), item.to_string());
+    }
     assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
 }
 

@@ -34,7 +34,7 @@ fn a_declaration_asks_it() {
     let item = "pub struct Top { m: f64 }";
     let asked = expanded("advected(w = up), group = own::Affine!, l_d = m * !F, crate = here", item).to_string();
     let expected = "own :: Affine ! { { here :: __private :: lagrangian } \
-                    { advected (w = up) , group = own :: Affine , l_d = m * ! F , crate = here } \
+                    { advected (w = up) , group = own :: Affine !, l_d = m * ! F , crate = here } \
                     pub struct Top { m : f64 } }";
     assert_eq!(asked, expected);
     // Without the mark, an unknown name is a mistake.

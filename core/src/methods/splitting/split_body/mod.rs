@@ -125,13 +125,13 @@ impl<const ROTATIONS: usize, T: Real> KineticFlow<T> for SplitBody<ROTATIONS, T>
     #[allow(clippy::cast_possible_truncation)] // seven or nine
     const OPERATIONS: Operations = Operations { step: 75 + 52 * ROTATIONS as u32, iteration: 0 };
 
-    fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {
+    fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         visitor.term(if ROTATIONS == 9 { "nine rotations" } else { "seven rotations" });
-        self.moments.iter().for_each(|&moment| visitor.parameter("moment", moment));
+        flow.moments.iter().for_each(|&moment| visitor.parameter("moment", moment));
     }
 
-    fn inertia(&self) -> Matrix3<T> {
-        Matrix3::from_diagonal(&self.moments)
+    fn inertia(flow: &Self) -> Matrix3<T> {
+        Matrix3::from_diagonal(&flow.moments)
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {

@@ -1,0 +1,182 @@
+//! What to write in the place of a name that isn't known, by what it means elsewhere.
+//!
+//! Letters alone would lead astray: a tangent isn't `ln`, and a constant `PI` isn't `I`.
+
+use syn::Expr;
+use syn::ext::IdentExt as _;
+
+use super::Checker;
+use super::functions::FUNCTIONS;
+use super::methods::METHODS;
+use crate::declared::errors::suggestion;
+use crate::declared::{AdvectedParameter, Field, Shape};
+
+impl Checker<'_> {
+    /// Behind `… isn't known here`, for a name.
+    pub(super) fn advice_on_name(&self, name: &str) -> String {
+        let known = self.known_names();
+        let near = suggestion(name, known.iter().map(String::as_str));
+        if !near.is_empty() {
+            return near;
+        }
+        let noun = self.declaration.role.noun();
+        let mut constants = self.declaration.item.generics.const_params();
+        match name {
+            "w" => "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned(),
+            "t" | "time" => format!(
+                "; {noun} has no time: force a step with `step_forced`, or go on with other parameters by `adopt`"
+            ),
+            "omega" | "Omega" | "xi" | "velocity" => {
+                let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
+                format!("; the velocity of a step is in `F`: write {velocity}")
+            }
+            "R" | "rotation" | "attitude" | "orientation" => format!(
+                "; {noun} is reduced, and sees no `{name}`: what is fixed in space is declared with `advected(w = field)`"
+            ),
+            "Id" | "id" | "identity" | "Identity" | "eye" => "; the identity is `I`".to_owned(),
+            "dt" | "step" | "time_step" | "timestep" | "delta_t" => "; the step is `h`".to_owned(),
+            "self" => "; the fields are known by their names alone".to_owned(),
+            _ if FUNCTIONS.contains(&name) => format!("; it is a function: write `{name}(…)`"),
+            _ if METHODS.contains(&name) => format!("; it is a method: write `x{}`", called(name)),
+            _ if constants.any(|constant| constant.ident == name) => {
+                "; it is no real number: make it a field".to_owned()
+            }
+            _ => {
+                let value = number_of(name).map_or_else(|| "its value".to_owned(), |number| format!("`{number}`"));
+                format!(": make it a field of the struct, or write {value}\nknown: {}", known.join(", "))
+            }
+        }
+    }
+
+    /// What has a value.
+    fn known_names(&self) -> Vec<String> {
+        let fields = self.declaration.fields.iter().map(Field::plain_name);
+        let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
+        let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
+        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
+        let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
+        builtin.chain(advected).chain(fields).chain(bound).collect()
+    }
+
+    /// For a method that isn't known.
+    pub(super) fn advice_on_method(&self, name: &str, receiver: &Expr, shape: Option<Shape>) -> String {
+        let of = spelled(receiver);
+        match name {
+            "log" if shape == Some(Shape::Scalar) => self.isnt_known(name, &format!(": write `{of}.ln()`")),
+            "inverse" | "try_inverse" if shape == Some(Shape::Scalar) => {
+                self.isnt_known(name, &format!(": write `1.0 / {of}`"))
+            }
+            "try_inverse" => self.isnt_known(name, &format!(": write `inverse({of})`")),
+            _ if FUNCTIONS.contains(&name) => format!("`{name}` is a function: write `{name}({of})`"),
+            _ => self.advice_on(name, &METHODS),
+        }
+    }
+
+    /// For a function that isn't known.
+    pub(super) fn advice_on_function(&self, function: &Expr) -> String {
+        let Expr::Path(path) = function else { return NO_FUNCTION.to_owned() };
+        let last = path.path.segments.last().map(|last| last.ident.unraw().to_string()).unwrap_or_default();
+        if last == "identity" {
+            "write `I` for the identity".to_owned()
+        } else if path.path.segments.len() > 1 {
+            "what this makes would be a constant: make it a field of the struct".to_owned()
+        } else if self.known_names().contains(&last) {
+            NO_FUNCTION.to_owned()
+        } else if METHODS.contains(&last.as_str()) {
+            format!("`{last}` is a method: write `x{}`", called(&last))
+        } else {
+            self.advice_on(&last, &FUNCTIONS)
+        }
+    }
+
+    fn advice_on(&self, name: &str, known: &[&str]) -> String {
+        if NOT_SMOOTH.contains(&name) {
+            return format!(
+                "`{name}` isn't smooth, and its derivative is needed: use a smooth function such as `.powi(2)`"
+            );
+        }
+        if let Some(advice) = instead_of(name) {
+            return self.isnt_known(name, &format!(": {advice}"));
+        }
+        let near = if is_of_others(name) { String::new() } else { suggestion(name, known.iter().copied()) };
+        if !near.is_empty() {
+            return self.isnt_known(name, &near);
+        }
+        let methods = METHODS.iter().filter(|method| **method != "clone");
+        let methods: Vec<String> = methods.map(|method| format!(".{method}")).collect();
+        self.isnt_known(name, &format!("\nknown: {}, {}", FUNCTIONS.join(", "), methods.join(", ")))
+    }
+
+    fn isnt_known(&self, name: &str, advice: &str) -> String {
+        format!("`{name}` isn't known in {}{advice}", self.declaration.role.noun())
+    }
+}
+
+/// A method with what it is given: `.trace()`, `.dot(&v)`.
+pub(super) fn called(method: &str) -> String {
+    let arguments = match method {
+        "dot" | "cross" | "component_mul" => "&v",
+        "powi" => "2",
+        _ => "",
+    };
+    format!(".{method}({arguments})")
+}
+
+/// A plain name as it is written; else dots.
+fn spelled(expression: &Expr) -> String {
+    match expression {
+        Expr::Path(path) => path.path.get_ident().map_or_else(|| "…".to_owned(), ToString::to_string),
+        Expr::Paren(inner) => spelled(&inner.expr),
+        Expr::Group(inner) => spelled(&inner.expr),
+        _ => "…".to_owned(),
+    }
+}
+
+/// The constants that all know by name.
+pub(super) fn number_of(name: &str) -> Option<f64> {
+    match name {
+        "PI" | "pi" => Some(std::f64::consts::PI),
+        "TAU" => Some(std::f64::consts::TAU),
+        "FRAC_PI_2" => Some(std::f64::consts::FRAC_PI_2),
+        "SQRT_2" => Some(std::f64::consts::SQRT_2),
+        _ => None,
+    }
+}
+
+const NO_FUNCTION: &str = "this is a value and no function: a product is written with `*`";
+
+const NOT_SMOOTH: [&str; 8] = ["abs", "max", "min", "signum", "floor", "ceil", "round", "clamp"];
+
+/// What is written for a function that other libraries have, with `x`, `v` and `A` for what it is of.
+fn instead_of(function: &str) -> Option<&'static str> {
+    Some(match function {
+        "tan" => "write the sine over the cosine, `x.sin() / x.cos()`",
+        "sin_cos" => "write `x.sin()` and `x.cos()`",
+        "sinh" => "write `0.5 * (x.exp() - (-x).exp())`",
+        "cosh" => "write `0.5 * (x.exp() + (-x).exp())`",
+        "tanh" => "write `1.0 - 2.0 / ((2.0 * x).exp() + 1.0)`",
+        "log10" | "log2" => "write `x.ln()`, over that of the base",
+        "exp_m1" => "write `x.exp() - 1.0`",
+        "ln_1p" => "write `(1.0 + x).ln()`",
+        "pow" | "powf" | "square" | "squared" => "write `x.powi(2)`, with a whole number, or `x.sqrt()`",
+        "recip" => "write `1.0 / x`",
+        "mul_add" => "write `a * b + c`",
+        "magnitude" => "write `v.norm()`",
+        "magnitude_squared" => "write `v.norm_squared()`",
+        "normalize" | "normalized" => "write `v / v.norm()`",
+        "hat" | "skew" | "skew_symmetric" | "wedge" => "write `v.cross_matrix()`",
+        "tr" => "write `A.trace()`",
+        "tr_mul" | "tr_dot" => "write `.transpose()` and `*`",
+        "adjoint" | "t" | "T" => "write `A.transpose()`",
+        "outer" | "outer_product" => "write `a * b.transpose()`",
+        "row" | "column" => "write entries by their indices: `v[0]`, `A[(0, 1)]`",
+        _ => return None,
+    })
+}
+
+/// Whether it is the name of another function, and no slip of the pen.
+fn is_of_others(name: &str) -> bool {
+    let arc = name.strip_prefix('a').map(|name| name.strip_prefix("rc").unwrap_or(name));
+    let arc = arc.map(|name| name.strip_suffix('h').unwrap_or(name));
+    matches!(arc, Some("sin" | "cos" | "tan" | "tan2")) || matches!(name, "len" | "cbrt" | "log" | "ln1p" | "expm1")
+}

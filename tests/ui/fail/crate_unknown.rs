@@ -1,0 +1,13 @@
+use liestep::{NonstandardInertia, SO3, lagrangian};
+
+#[lagrangian(group = SO3, crate = nothing, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
+struct Body {
+    J_d: NonstandardInertia,
+}
+
+#[lagrangian(group = SO3, crate = crate::nothing, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
+struct Other {
+    J_d: NonstandardInertia,
+}
+
+fn main() {}
