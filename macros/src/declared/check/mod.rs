@@ -14,7 +14,7 @@ use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
 use crate::declared::errors::{Errors, suggestion};
-use crate::declared::{AdvectedParameter, Declaration, Field, Kind, Name, Role, Shape, Tree};
+use crate::declared::{AdvectedParameter, Declaration, Field, Kind, Name, Role, Shape, Spelling, Tree};
 use crate::mathematics::symbolic::Rational;
 
 /// Deeper expressions than a person writes would overflow the stack of the compiler.
@@ -67,7 +67,7 @@ struct Binding {
 struct Checker<'a> {
     declaration: &'a Declaration,
     errors: &'a mut Errors,
-    scopes: Vec<BTreeMap<String, Binding>>,
+    scopes: Vec<BTreeMap<Spelling, Binding>>,
     used: Vec<Name>,
     depth: usize,
     /// Both operands of an operation may be too deep, and one message says it.
@@ -208,7 +208,7 @@ impl Checker<'_> {
         });
         let binding = Binding { tree, span: name.span(), used: false };
         if let Some(scope) = self.scopes.last_mut() {
-            scope.insert(name.unraw().to_string(), binding);
+            scope.insert(Spelling::of(name), binding);
         }
     }
 
@@ -218,7 +218,7 @@ impl Checker<'_> {
             Pat::Ident(name) => {
                 let binding = Binding { tree: None, span: name.span(), used: true };
                 if let Some(scope) = self.scopes.last_mut() {
-                    scope.insert(name.ident.unraw().to_string(), binding);
+                    scope.insert(Spelling::of(&name.ident), binding);
                 }
             }
             Pat::Tuple(tuple) => tuple.elems.iter().for_each(|part| self.bind_nothing(part)),
@@ -249,9 +249,10 @@ impl Checker<'_> {
     }
 
     fn name(&mut self, ident: &syn::Ident) -> Option<Rc<Tree>> {
-        let (name, span) = (ident.unraw().to_string(), ident.span());
+        let (spelling, span) = (Spelling::of(ident), ident.span());
+        let name = spelling.letters.clone();
         for scope in self.scopes.iter_mut().rev() {
-            if let Some(binding) = scope.get_mut(&name) {
+            if let Some(binding) = scope.get_mut(&spelling) {
                 binding.used = true;
                 return binding.tree.clone();
             }
@@ -302,7 +303,7 @@ impl Checker<'_> {
     fn unknown_name(&mut self, name: &str, span: Span) {
         let fields = self.declaration.fields.iter().map(Field::plain_name);
         let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
-        let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
+        let bound = self.scopes.iter().flat_map(|scope| scope.keys().map(|bound| bound.letters.clone()));
         let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
         let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
         let known: Vec<String> = builtin.chain(advected).chain(fields).chain(bound).collect();
