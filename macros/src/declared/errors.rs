@@ -1,7 +1,7 @@
 //! Errors accumulate, so that one compilation reports all mistakes of a declaration.
 
-use proc_macro2::Span;
-use quote::ToTokens;
+use proc_macro2::{Ident, Span};
+use quote::{ToTokens, quote};
 
 /// The mistakes found so far.
 #[derive(Debug, Default)]
@@ -11,6 +11,12 @@ impl Errors {
     /// A mistake at a token: what is wrong, then what to write.
     pub(crate) fn push(&mut self, span: Span, message: impl std::fmt::Display) {
         self.0.push(syn::Error::new(span, message));
+    }
+
+    /// A mistake from one token to another.
+    pub(crate) fn push_between(&mut self, [first, last]: [Span; 2], message: impl std::fmt::Display) {
+        let ends = [first, last].map(|span| Ident::new("_", span));
+        self.push_over(quote!(#(#ends)*), message);
     }
 
     /// A mistake that a whole expression or type makes.

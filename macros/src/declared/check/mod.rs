@@ -57,6 +57,23 @@ pub(crate) fn value(expression: &Expr) -> &Expr {
     }
 }
 
+/// The last token of an expression; the compiler doesn't join spans.
+fn end(expression: &Expr) -> Span {
+    match expression {
+        Expr::Binary(binary) => end(&binary.right),
+        Expr::Unary(unary) => end(&unary.expr),
+        Expr::Group(inner) => end(&inner.expr),
+        Expr::Reference(inner) => end(&inner.expr),
+        Expr::Paren(inner) => inner.paren_token.span.close(),
+        Expr::MethodCall(call) => call.paren_token.span.close(),
+        Expr::Call(call) => call.paren_token.span.close(),
+        Expr::Index(index) => index.bracket_token.span.close(),
+        Expr::Field(field) => field.member.span(),
+        Expr::Block(block) => block.block.brace_token.span.close(),
+        other => other.span(),
+    }
+}
+
 /// A `let`: its tree, or nothing if that had a mistake, and whether it has been used.
 struct Binding {
     tree: Option<Rc<Tree>>,
@@ -85,7 +102,7 @@ impl Checker<'_> {
             return None;
         }
         self.depth += 1;
-        let tree = self.expression_inside(expression);
+        let tree = self.expression_inside(expression).map(|tree| Tree::until(tree, end(expression)));
         self.depth -= 1;
         if tree.as_ref().is_some_and(|tree| tree.depth > DEEPEST) {
             self.errors
@@ -203,8 +220,8 @@ impl Checker<'_> {
             return;
         };
         let tree = self.expression(&init.expr).map(|tree| {
-            let (span, shape, kind) = (tree.span, tree.shape, Kind::Bound(name.unraw().to_string(), tree));
-            Tree::new(span, shape, kind)
+            let (span, end, shape) = (tree.span, tree.end, tree.shape);
+            Tree::until(Tree::new(span, shape, Kind::Bound(name.unraw().to_string(), tree)), end)
         });
         let binding = Binding { tree, span: name.span(), used: false };
         if let Some(scope) = self.scopes.last_mut() {
