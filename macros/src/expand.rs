@@ -30,6 +30,7 @@ pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
     let tree = check::check(&declaration, errors)?;
+    judged::terms(&declaration, &tree, errors)?;
     let readings = lower::readings(&declaration, &tree, errors)?;
     // Handed over, as a long reading is derived only if no short one can be.
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &tree, errors)?;

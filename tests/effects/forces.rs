@@ -18,7 +18,7 @@ use workbench::measure::relative;
     work = h * k * w.cross(&rho).dot(&eta)
         - c * (A * vee(F)).dot(&eta)
         + h * w.dot(&(F * rho)) * rho.dot(&eta)
-        - 0.3 * c * vee(F * A).dot(&eta_next)
+        - 3.0 * h * c * vee(F * A).dot(&eta_next)
         + h * k * (F.transpose() * w).cross(&rho).dot(&eta_next),
 )]
 struct Push {

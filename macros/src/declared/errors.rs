@@ -1,7 +1,7 @@
 //! Errors accumulate, so that one compilation reports all mistakes of a declaration.
 
-use proc_macro2::Span;
-use quote::ToTokens;
+use proc_macro2::{Ident, Span};
+use quote::{ToTokens, quote};
 
 /// The mistakes found so far.
 #[derive(Debug, Default)]
@@ -21,6 +21,12 @@ impl Errors {
     pub(crate) fn push_decisive(&mut self, span: Span, message: impl std::fmt::Display) {
         self.push(span, message);
         self.hides_the_rest = true;
+    }
+
+    /// A mistake from one token to another.
+    pub(crate) fn push_between(&mut self, [first, last]: [Span; 2], message: impl std::fmt::Display) {
+        let ends = [first, last].map(|span| Ident::new("_", span));
+        self.push_over(quote!(#(#ends)*), message);
     }
 
     /// A mistake that a whole expression or type makes.

@@ -12,7 +12,9 @@ mod declaration;
 pub(crate) mod errors;
 pub(crate) mod lower;
 pub(crate) mod parse;
+mod spelling;
 mod tree;
 
 pub(crate) use declaration::{AdvectedParameter, Declaration, Field, FieldKind, Role, Scalar};
+pub(crate) use spelling::Spelling;
 pub(crate) use tree::{Kind, Name, Shape, Tree};

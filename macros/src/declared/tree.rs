@@ -37,7 +37,9 @@ impl Shape {
 /// An expression with its shape, read as mathematics.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
+    /// Of its first token, and of its last one.
     pub(crate) span: Span,
+    pub(crate) end: Span,
     pub(crate) shape: Shape,
     pub(crate) kind: Kind,
     /// How deep the operations are nested, through `let`s too.
@@ -47,7 +49,20 @@ pub(crate) struct Tree {
 impl Tree {
     pub(crate) fn new(span: Span, shape: Shape, kind: Kind) -> Rc<Self> {
         let depth = kind.operands().into_iter().flatten().map(|operand| operand.depth).max().unwrap_or(0) + 1;
-        Rc::new(Self { span, shape, kind, depth })
+        Rc::new(Self { span, end: span, shape, kind, depth })
+    }
+
+    /// A scalar in the place of another one.
+    pub(crate) fn in_place_of(part: &Self, kind: Kind) -> Rc<Self> {
+        Self::until(Self::new(part.span, Shape::Scalar, kind), part.end)
+    }
+
+    /// Where nothing else knows it yet, the same with its last token.
+    pub(crate) fn until(mut tree: Rc<Self>, end: Span) -> Rc<Self> {
+        if let Some(tree) = Rc::get_mut(&mut tree) {
+            tree.end = end;
+        }
+        tree
     }
 }
 

@@ -1,8 +1,9 @@
 //! The declared expression as the method `l_d` or `virtual_work`, as it stands.
 //!
 //! Its names are bound to the values that the macro gave them, so that rustc checks the types that the macro assumed.
-//! Their spans keep the place but resolve where the bindings do, whatever `macro_rules!` they came through. In a struct
-//! that is generic in its scalar, literals and scalar functions are written as the scalar's own.
+//! Their spans keep the place but resolve where the bindings do, whatever `macro_rules!` they came through; the names of
+//! its own `let`s keep theirs. In a struct that is generic in its scalar, literals and scalar functions are written as
+//! the scalar's own.
 
 use proc_macro2::{Span, TokenStream};
 use quote::{quote, quote_spanned};
@@ -11,14 +12,14 @@ use syn::visit_mut::{self, VisitMut};
 use syn::{Expr, Ident};
 
 use super::Header;
-use crate::declared::{Declaration, FieldKind, Role, Shape};
+use crate::declared::{Declaration, FieldKind, Role, Shape, Spelling};
 
 /// The Lagrangian's `l_d`, or a force's `virtual_work`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
     let (private, scalar, square) = (&header.private, &header.scalar, header.matrix());
     let Some(mut expression) = declaration.expression.clone() else { return TokenStream::new() };
-    let mut rewrite = Rewrite { header, mentioned: Vec::new() };
+    let mut rewrite = Rewrite { header, mentioned: Vec::new(), scopes: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
     let mut names: Vec<Ident> = Vec::new();
     let mut values: Vec<TokenStream> = Vec::new();
@@ -103,12 +104,33 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
 struct Rewrite<'a> {
     header: &'a Header,
     mentioned: Vec<String>,
+    /// The names that the `let`s of the blocks around have bound so far.
+    scopes: Vec<Vec<Spelling>>,
 }
 
 impl VisitMut for Rewrite<'_> {
     fn visit_ident_mut(&mut self, ident: &mut Ident) {
+        if self.scopes.iter().flatten().any(|bound| *bound == Spelling::of(ident)) {
+            return;
+        }
         self.mentioned.push(ident.unraw().to_string());
         ident.set_span(ident.span().resolved_at(Span::mixed_site()));
+    }
+
+    fn visit_block_mut(&mut self, block: &mut syn::Block) {
+        self.scopes.push(Vec::new());
+        visit_mut::visit_block_mut(self, block);
+        self.scopes.pop();
+    }
+
+    fn visit_local_mut(&mut self, local: &mut syn::Local) {
+        // A name is bound behind its value, which may use an earlier one of that name.
+        if let Some(init) = &mut local.init {
+            self.visit_expr_mut(&mut init.expr);
+        }
+        if let (syn::Pat::Ident(name), Some(scope)) = (&local.pat, self.scopes.last_mut()) {
+            scope.push(Spelling::of(&name.ident));
+        }
     }
 
     fn visit_expr_method_call_mut(&mut self, call: &mut syn::ExprMethodCall) {
@@ -125,6 +147,13 @@ impl VisitMut for Rewrite<'_> {
 
     fn visit_expr_mut(&mut self, expression: &mut Expr) {
         visit_mut::visit_expr_mut(self, expression);
+        // The invisible brackets of a `macro_rules!` fragment don't reach the compiler.
+        if let Expr::Group(fragment) = expression {
+            let inner = std::mem::replace(&mut *fragment.expr, Expr::Verbatim(TokenStream::new()));
+            let paren_token = syn::token::Paren(fragment.group_token.span);
+            let expr = Box::new(inner);
+            *expression = Expr::Paren(syn::ExprParen { attrs: Vec::new(), paren_token, expr });
+        }
         if let (Expr::Lit(literal), Some(parameter)) = (&*expression, &self.header.parameter)
             && matches!(literal.lit, syn::Lit::Float(_))
         {

@@ -5,11 +5,74 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use super::verify::KineticPart;
+use super::verify::{self, KineticPart, TermMistake};
 use crate::declared::check;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Kind, Name, Tree};
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
+
+/// Reports the terms that can't be meant; `None` where there are some.
+pub(crate) fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
+    let mistakes = verify::term_mistakes(declaration, tree);
+    for (place, mistake) in &mistakes {
+        errors.push_between([place.span, place.end], term(*mistake));
+    }
+    mistakes.is_empty().then_some(())
+}
+
+/// What is wrong with a term, and what to write.
+fn term(mistake: TermMistake) -> String {
+    let by_a_power = |least: i32| format!("; if it is a correction, write its power as `h.powi({least})` or higher");
+    match mistake {
+        TermMistake::ZeroDivisor => {
+            "this is zero whatever the parameters, so what is divided by it has no value".to_owned()
+        }
+        TermMistake::FunctionOfZero => {
+            "this is the root or the logarithm of zero whatever the parameters, where it has no derivative".to_owned()
+        }
+        TermMistake::Potential(order @ 2..) => format!(
+            "this vanishes like {} as h → 0: a potential goes like `h`, as in `0.5 * h * …`{}",
+            power_of_step(order),
+            by_a_power(2)
+        ),
+        TermMistake::Potential(order) => {
+            format!("this goes like {} as h → 0: a potential goes like `h`, as in `0.5 * h * …`", power_of_step(order))
+        }
+        TermMistake::Vanishing(order) => format!(
+            "this vanishes like {} as h → 0: a kinetic part goes like `h`, that is, a square of `F - I` over `h`, as in \
+             `… / (2.0 * h)`{}",
+            power_of_step(order),
+            by_a_power(2)
+        ),
+        TermMistake::TooSingular(power) => {
+            format!("a term with `F` goes like h^{power}: the kinetic part of a discrete Lagrangian goes like 1/h")
+        }
+        TermMistake::Constant => {
+            "this is the same for all `F`, so it does nothing: leave it out, or write `F - I` for `F`".to_owned()
+        }
+        TermMistake::Work(order @ 2..) => format!(
+            "this vanishes like {} as h → 0: virtual work goes like `h`, and `F - I` and `vee(F)` count as `h`{}",
+            power_of_step(order),
+            by_a_power(2)
+        ),
+        TermMistake::Work(order) => format!(
+            "this goes like {} as h → 0: virtual work goes like `h`, as in `0.5 * h * …`; `F - I` and `vee(F)` count as \
+             `h`",
+            power_of_step(order)
+        ),
+    }
+}
+
+/// `1`, `h`, `h^2`, `1/h`, `1/h^2`.
+fn power_of_step(order: i32) -> String {
+    match order {
+        0 => "1".to_owned(),
+        1 => "h".to_owned(),
+        -1 => "1/h".to_owned(),
+        2.. => format!("h^{order}"),
+        _ => format!("1/h^{}", order.unsigned_abs()),
+    }
+}
 
 /// Reports why nothing could be derived.
 pub(super) fn refusal(refusal: Refusal, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {

@@ -14,4 +14,5 @@ mod hypotheses;
 mod verify;
 
 pub(crate) use choose::{Chosen, cheapest};
+pub(crate) use explain::terms;
 pub(crate) use findings::{Findings, findings};

@@ -23,37 +23,19 @@ impl Group {
     }
 
     /// Linear forms that are the components of `Σ x_k E_k`, each a sum of terms `(k, row, column, factor)` in its entries.
-    ///
-    /// Elimination picks entries that the generators differ in, so that a component has few terms.
     pub(crate) fn dual(&self) -> Vec<(usize, usize, usize, Rational)> {
-        let dimension = self.dimension();
-        // Each row is a combination of the generators, and which one it is.
-        let mut rows: Vec<(Vec<Rational>, Vec<Rational>)> =
-            (0..dimension).filter_map(|k| Some((self.generators.get(k)?.clone(), unit(k, dimension)))).collect();
-        let mut pivots = Vec::new();
-        for k in 0..rows.len() {
-            let Some((entries, factors)) = rows.get(k) else { break };
-            let Some(pivot) = entries.iter().position(|entry| !entry.is_zero()) else { break };
-            let inverse = entries[pivot].inverse();
-            let scaled = |row: &[Rational]| row.iter().map(|&entry| entry * inverse).collect::<Vec<_>>();
-            let (entries, factors) = (scaled(entries), scaled(factors));
-            for (_, row) in rows.iter_mut().enumerate().filter(|(other, _)| *other != k) {
-                let factor = row.0[pivot];
-                let eliminate = |from: &mut [Rational], what: &[Rational]| {
-                    from.iter_mut().zip(what).for_each(|(a, &b)| *a = *a + -(factor * b));
-                };
-                eliminate(&mut row.0, &entries);
-                eliminate(&mut row.1, &factors);
-            }
-            rows[k] = (entries, factors);
-            pivots.push(pivot);
+        let (places, dimension) = (self.size * self.size, self.dimension());
+        // With a unit vector behind each generator, so that what is taken away of a matrix is counted there.
+        let mut basis = Span::default();
+        for (k, generator) in self.generators.iter().enumerate() {
+            basis.extend([generator.clone(), unit(k, dimension)].concat());
         }
-        // Σ x_k E_k has the pivots p_j = Σ x_k (T⁻¹)_kj, where the rows are T E.
-        let terms = rows.iter().zip(pivots).flat_map(|((_, factors), pivot)| {
-            let place = move |(k, &factor): (usize, &Rational)| (k, pivot / self.size, pivot % self.size, factor);
-            factors.iter().enumerate().filter(|(_, factor)| !factor.is_zero()).map(place)
-        });
-        terms.collect()
+        let of_entry = |place: usize| {
+            let taken = basis.rest(unit(place, places + dimension)).split_off(places);
+            let terms = taken.into_iter().enumerate().filter(|(_, factor)| !factor.is_zero());
+            terms.map(move |(k, factor)| (k, place / self.size, place % self.size, -factor))
+        };
+        (0..places).flat_map(of_entry).collect()
     }
 
     /// Whether its elements are affine maps in homogeneous coordinates: their last row is that of the identity.
@@ -73,6 +55,77 @@ impl Group {
         };
         let orthogonal = generators.iter().all(skew);
         Self { size, generators, orthogonal, is_so3: false }
+    }
+
+    /// What keeps the generators from being a basis of a Lie algebra, in exact arithmetic; nothing where that doesn't
+    /// reach.
+    pub(crate) fn defect(&self) -> Option<Defect> {
+        let mut basis = Span::default();
+        for (k, generator) in self.generators.iter().enumerate() {
+            if generator.iter().all(|entry| entry.is_zero()) {
+                return Some(Defect::Zero(k));
+            }
+            if !basis.extend(generator.clone()) {
+                return Some(Defect::Dependent(k));
+            }
+        }
+        let count = self.generators.len();
+        let pairs = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+        let mut brackets = pairs.map(|(i, j)| (i, j, self.bracket(&self.generators[i], &self.generators[j])));
+        brackets.find(|(_, _, bracket)| !basis.contains(bracket.clone())).map(|(i, j, _)| Defect::Open(i, j))
+    }
+
+    /// `AB − BA`.
+    fn bracket(&self, a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+        let size = self.size;
+        let product = |a: &[Rational], b: &[Rational], at: usize| {
+            let terms = (0..size).map(|k| a[at / size * size + k] * b[k * size + at % size]);
+            terms.fold(Rational::ZERO, |sum, term| sum + term)
+        };
+        (0..size * size).map(|at| product(a, b, at) - product(b, a, at)).collect()
+    }
+}
+
+/// Why matrices are no basis of a Lie algebra, by their places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Defect {
+    /// A matrix is zero.
+    Zero(usize),
+    /// A matrix is a combination of those before.
+    Dependent(usize),
+    /// The bracket of two isn't a combination of all.
+    Open(usize, usize),
+}
+
+/// A vector space by a basis in echelon form: the place of each vector's first entry that isn't zero, which is one.
+#[derive(Default)]
+struct Span(Vec<(usize, Vec<Rational>)>);
+
+impl Span {
+    /// What is left of a vector once the basis is taken away.
+    fn rest(&self, mut vector: Vec<Rational>) -> Vec<Rational> {
+        for (at, basis) in &self.0 {
+            let factor = vector[*at];
+            for (entry, &other) in vector.iter_mut().zip(basis) {
+                *entry = *entry - factor * other;
+            }
+        }
+        vector
+    }
+
+    /// Whether it is in the space, or beyond exact arithmetic.
+    fn contains(&self, vector: Vec<Rational>) -> bool {
+        let rest = self.rest(vector);
+        rest.iter().all(|entry| entry.is_zero()) || rest.iter().any(|entry| entry.is_overflow())
+    }
+
+    /// Adds a vector; false where it is in the space.
+    fn extend(&mut self, vector: Vec<Rational>) -> bool {
+        let rest = self.rest(vector);
+        let Some(at) = rest.iter().position(|entry| !entry.is_zero()) else { return false };
+        let scale = rest[at].inverse();
+        self.0.push((at, rest.into_iter().map(|entry| entry * scale).collect()));
+        true
     }
 }
 
@@ -125,3 +178,34 @@ pub(crate) fn built_in(name: &str) -> Option<Group> {
 
 const ROTATIONS: [Sparse; 3] =
     [&[(1, 2, -1, 1), (2, 1, 1, 1)], &[(0, 2, 1, 1), (2, 0, -1, 1)], &[(0, 1, -1, 1), (1, 0, 1, 1)]];
+
+#[cfg(test)]
+mod tests {
+    use super::{Defect, Group, NAMES, built_in};
+    use crate::mathematics::symbolic::Rational;
+
+    fn defect(generators: &[[i128; 4]]) -> Option<Defect> {
+        let exact = |entries: &[i128; 4]| entries.iter().map(|&entry| Rational::integer(entry)).collect();
+        Group::declared(2, generators.iter().map(exact).collect()).defect()
+    }
+
+    #[test]
+    fn a_basis_of_a_lie_algebra() {
+        for name in NAMES {
+            assert_eq!(built_in(name).and_then(|group| group.defect()), None, "{name}");
+        }
+        assert_eq!(defect(&[[1, 0, 0, 0], [0, 1, 0, 0]]), None);
+        assert_eq!(defect(&[[1, 0, 0, 0], [0, 0, 0, 0]]), Some(Defect::Zero(1)));
+        assert_eq!(defect(&[[1, 0, 0, 1], [0, 1, 0, 0], [3, 2, 0, 3]]), Some(Defect::Dependent(2)));
+        assert_eq!(defect(&[[1, 0, 0, 0], [0, 1, 1, 0]]), Some(Defect::Open(0, 1)));
+    }
+
+    #[test]
+    fn a_bracket_that_is_nearly_a_combination() {
+        let tiny = Rational::new(1, 10_i128.pow(13));
+        let [zero, one] = [Rational::ZERO, Rational::ONE];
+        let group = |entry| Group::declared(2, vec![vec![zero, one, entry, zero], vec![one, zero, zero, zero]]);
+        assert_eq!(group(zero).defect(), None);
+        assert_eq!(group(tiny).defect(), Some(Defect::Open(0, 1)));
+    }
+}

@@ -2,7 +2,7 @@ use liestep::{NonstandardInertia, SO3, lagrangian};
 
 #[lagrangian(
     group = SO3,
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - F.trace() / (1.0 + h),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * F.trace() / (1.0 + h),
 )]
 struct Top {
     J_d: NonstandardInertia,

@@ -29,7 +29,7 @@ fn real() {}
     group = SO3,
     advected(w = up),
     l_d = ((F - I) * inertia * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * w.dot(&(rho + F * rho)) - h * vee(F).dot(&rho).powi(2),
+        - 0.5 * h * w.dot(&(rho + F * rho)) - h.powi(3) * (vee(F).dot(&rho) / h).powi(2),
 )]
 struct Top {
     inertia: liestep::NonstandardInertia,

@@ -52,7 +52,7 @@ impl Checker<'_> {
     fn known_names(&self) -> Vec<String> {
         let fields = self.declaration.fields.iter().map(Field::plain_name);
         let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
-        let bound = self.scopes.iter().flat_map(|scope| scope.keys().cloned());
+        let bound = self.scopes.iter().flat_map(|scope| scope.keys().map(|bound| bound.letters.clone()));
         let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
         let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
         builtin.chain(advected).chain(fields).chain(bound).collect()

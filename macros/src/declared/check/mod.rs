@@ -16,7 +16,7 @@ use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
 use crate::declared::errors::Errors;
-use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
+use crate::declared::{Declaration, Kind, Name, Role, Shape, Spelling, Tree};
 use crate::mathematics::symbolic::Rational;
 
 /// Deeper expressions than a person writes would overflow the stack of the compiler.
@@ -59,6 +59,23 @@ pub(crate) fn value(expression: &Expr) -> &Expr {
     }
 }
 
+/// The last token of an expression; the compiler doesn't join spans.
+fn end(expression: &Expr) -> Span {
+    match expression {
+        Expr::Binary(binary) => end(&binary.right),
+        Expr::Unary(unary) => end(&unary.expr),
+        Expr::Group(inner) => end(&inner.expr),
+        Expr::Reference(inner) => end(&inner.expr),
+        Expr::Paren(inner) => inner.paren_token.span.close(),
+        Expr::MethodCall(call) => call.paren_token.span.close(),
+        Expr::Call(call) => call.paren_token.span.close(),
+        Expr::Index(index) => index.bracket_token.span.close(),
+        Expr::Field(field) => field.member.span(),
+        Expr::Block(block) => block.block.brace_token.span.close(),
+        other => other.span(),
+    }
+}
+
 /// A `let`: its tree, or nothing if that had a mistake, and whether it has been used.
 struct Binding {
     tree: Option<Rc<Tree>>,
@@ -78,7 +95,7 @@ impl ToTokens for FirstToken<'_> {
 struct Checker<'a> {
     declaration: &'a Declaration,
     errors: &'a mut Errors,
-    scopes: Vec<BTreeMap<String, Binding>>,
+    scopes: Vec<BTreeMap<Spelling, Binding>>,
     used: Vec<Name>,
     depth: usize,
     /// Both operands of an operation may be too deep, and one message says it.
@@ -96,7 +113,7 @@ impl Checker<'_> {
             return None;
         }
         self.depth += 1;
-        let tree = self.expression_inside(expression);
+        let tree = self.expression_inside(expression).map(|tree| Tree::until(tree, end(expression)));
         self.depth -= 1;
         if tree.as_ref().is_some_and(|tree| tree.depth > DEEPEST) {
             self.errors
@@ -226,12 +243,12 @@ impl Checker<'_> {
             return;
         };
         let tree = self.expression(&init.expr).map(|tree| {
-            let (span, shape, kind) = (tree.span, tree.shape, Kind::Bound(name.unraw().to_string(), tree));
-            Tree::new(span, shape, kind)
+            let (span, end, shape) = (tree.span, tree.end, tree.shape);
+            Tree::until(Tree::new(span, shape, Kind::Bound(name.unraw().to_string(), tree)), end)
         });
         let binding = Binding { tree, span: name.span(), used: false };
         if let Some(scope) = self.scopes.last_mut() {
-            scope.insert(name.unraw().to_string(), binding);
+            scope.insert(Spelling::of(name), binding);
         }
     }
 
@@ -241,7 +258,7 @@ impl Checker<'_> {
             Pat::Ident(name) => {
                 let binding = Binding { tree: None, span: name.span(), used: true };
                 if let Some(scope) = self.scopes.last_mut() {
-                    scope.insert(name.ident.unraw().to_string(), binding);
+                    scope.insert(Spelling::of(&name.ident), binding);
                 }
             }
             Pat::Tuple(tuple) => tuple.elems.iter().for_each(|part| self.bind_nothing(part)),
@@ -276,9 +293,10 @@ impl Checker<'_> {
     }
 
     fn name(&mut self, ident: &syn::Ident) -> Option<Rc<Tree>> {
-        let (name, span) = (ident.unraw().to_string(), ident.span());
+        let (spelling, span) = (Spelling::of(ident), ident.span());
+        let name = spelling.letters.clone();
         for scope in self.scopes.iter_mut().rev() {
-            if let Some(binding) = scope.get_mut(&name) {
+            if let Some(binding) = scope.get_mut(&spelling) {
                 binding.used = true;
                 return binding.tree.clone();
             }

@@ -6,7 +6,7 @@ use syn::spanned::Spanned as _;
 use syn::{Expr, ExprArray, Ident, Path, PathArguments, Token};
 
 use crate::declared::errors::{Errors, suggestion};
-use crate::mathematics::group::{Group, NAMES, built_in};
+use crate::mathematics::group::{Defect, Group, NAMES, built_in};
 use crate::mathematics::symbolic::Rational;
 
 /// What stands behind `group =`.
@@ -77,7 +77,7 @@ pub(super) fn group(
             errors.push_decisive(key.span(), message);
             Ok(group)
         }
-        (Some((_, matrices)), _) => generators(&matrices).map(|(size, generators)| Group::declared(size, generators)),
+        (Some((_, matrices)), _) => generators(&matrices),
         (None, Some(group)) => Ok(group),
         // The generators may stand in an argument that couldn't be read.
         (None, None) if !is_readable => return stand_in(),
@@ -116,8 +116,8 @@ pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
     }
 }
 
-/// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows.
-pub(super) fn generators(array: &ExprArray) -> syn::Result<(usize, Vec<Vec<Rational>>)> {
+/// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows. They are a basis of a Lie algebra.
+pub(super) fn generators(array: &ExprArray) -> syn::Result<Group> {
     let rows = |expression: &Expr| match expression {
         Expr::Array(array) => Ok(array.elems.clone()),
         other => Err(syn::Error::new(other.span(), "write a matrix as an array of rows: `[[0.0, -1.0], [1.0, 0.0]]`")),
@@ -140,11 +140,37 @@ pub(super) fn generators(array: &ExprArray) -> syn::Result<(usize, Vec<Vec<Ratio
         generators.push(entries);
     }
     match size {
-        Some(size) if (1..=MOST_ROWS).contains(&size) => Ok((size, generators)),
+        Some(size) if (1..=MOST_ROWS).contains(&size) => {
+            let group = Group::declared(size, generators);
+            match group.defect() {
+                None => Ok(group),
+                Some(defect) => Err(explained(defect, array)),
+            }
+        }
         _ => Err(syn::Error::new(
             array.span(),
             format!("a group has at least one generator, of at most {MOST_ROWS} rows"),
         )),
+    }
+}
+
+/// At the generator that is too many, or at all of them where one is missing.
+fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
+    let at = |k: usize| array.elems.get(k).map_or_else(|| array.span(), |matrix| matrix.span());
+    match defect {
+        Defect::Zero(k) => syn::Error::new(at(k), "this generator is zero, and moves nothing: leave it out"),
+        Defect::Dependent(k) => {
+            syn::Error::new(at(k), "this generator is a combination of those before it: leave it out")
+        }
+        Defect::Open(i, j) => syn::Error::new(
+            array.span(),
+            format!(
+                "the bracket of generators {} and {} isn't a combination of them: add it to them, so that they span a \
+                 Lie algebra",
+                i + 1,
+                j + 1
+            ),
+        ),
     }
 }
 

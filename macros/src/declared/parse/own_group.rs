@@ -38,7 +38,7 @@ impl Parse for OwnGroup {
         input.parse::<Token![=]>()?;
         let array: ExprArray = input.parse()?;
         input.parse::<Token![;]>()?;
-        let (size, _) = generators(&array)?;
+        let size = generators(&array)?.size;
         let mut functions = Vec::new();
         while !input.is_empty() {
             functions.push(input.parse()?);

@@ -10,8 +10,10 @@ mod force;
 mod inertia;
 mod linear;
 mod number;
+mod orders;
 mod residue;
 mod reversal;
+mod series;
 mod step;
 mod terms;
 #[cfg(test)]
@@ -32,6 +34,7 @@ use evaluation::Evaluation;
 pub(super) use force::force;
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
+pub(super) use orders::{TermMistake, kinetic_with_advected, not_smooth_at_identity, term_mistakes};
 use step::Step;
 use terms::Terms;
 use value::Value;
@@ -72,6 +75,17 @@ fn evaluated(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Valu
     })
 }
 
+/// Numbers between zero and one.
+fn stream(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    // A linear congruence (Knuth's MMIX constants) is random enough for sample points.
+    #[allow(clippy::cast_precision_loss)] // 53 bits are left
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
 /// `exp(s E_k)`, by its series: `s` is small.
 fn turn(group: &Group, k: usize, s: f64) -> Value {
     let size = group.size;
@@ -101,13 +115,7 @@ struct Sample<'a, T = f64> {
 
 impl<'a> Sample<'a> {
     fn new(declaration: &Declaration, lowered: &Lowered, derived: &'a Derived, seed: u64) -> Self {
-        let mut state = seed;
-        // A linear congruence (Knuth's MMIX constants) is random enough for sample points.
-        #[allow(clippy::cast_precision_loss)] // 53 bits are left
-        let mut number = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut number = stream(seed);
         let group = &declaration.group;
         let (mut increment, mut inverse) = (Value::identity(group.size), Value::identity(group.size));
         for k in 0..group.dimension() {

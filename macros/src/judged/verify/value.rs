@@ -42,6 +42,10 @@ impl<T: Number> Value<T> {
         Self { entries: self.entries.iter().zip(&other.entries).map(|(&x, &y)| f(x, y)).collect(), ..*self }
     }
 
+    pub(super) fn plus(&self, other: &Self) -> Self {
+        self.zip(other, |x, y| x + y)
+    }
+
     pub(super) fn transpose(&self) -> Self {
         Self::new(self.columns, self.rows, |row, column| self.at(column, row))
     }

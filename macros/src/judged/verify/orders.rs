@@ -1,0 +1,372 @@
+//! How each term of a declared expression goes as `h → 0`, with `F = exp(h ξ̂)` and numbers for all else.
+//!
+//! Of a Lagrangian only differences count: what is the same for all `F` and `w` changes no equation. A potential is what
+//! depends on `w` where `F = I`, and goes like `h`, as does the work of a force.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::evaluation::Evaluation;
+use super::number::Number as _;
+use super::series::Series;
+use super::value::Value;
+use super::{parameter, stream};
+use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
+use crate::mathematics::symbolic::{Function, Rational};
+
+/// What is wrong with a term.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TermMistake {
+    /// A divisor is zero, whatever the parameters.
+    ZeroDivisor,
+    /// A root or a logarithm of what is zero, whatever the parameters.
+    FunctionOfZero,
+    /// A potential goes like that power of `h`, not like the first.
+    Potential(i32),
+    /// A part with `F` alone goes like that power of `h` along a motion, and vanishes.
+    Vanishing(i32),
+    /// A part goes like that power of `h` with `F` held fixed, below −1.
+    TooSingular(i32),
+    /// It is the same for all `F`.
+    Constant,
+    /// Virtual work goes like that power of `h`, not like the first.
+    Work(i32),
+}
+
+/// The mistakes of the terms, at their places.
+pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(Rc<Tree>, TermMistake)> {
+    let points = Points::new(declaration);
+    if let Some(found) = singular(tree, &points.turned) {
+        return vec![found];
+    }
+    let mut search = Search {
+        role: declaration.role,
+        turned: Evaluation::new(&points.turned),
+        turned_further: Evaluation::new(&points.turned_further),
+        moving: Evaluation::new(&points.moving),
+        at_rest: Evaluation::new(&points.at_rest),
+        elsewhere: Evaluation::new(&points.elsewhere),
+        kept: Vec::new(),
+        found: Vec::new(),
+    };
+    let whole = search.behaviour(tree);
+    if search.role == Role::Force && !search.is_linear(tree) {
+        return Vec::new();
+    }
+    if search.too_large(tree).is_some() {
+        search.report_too_large(tree);
+    } else {
+        search.report_vanishing(tree, &whole);
+    }
+    search.found
+}
+
+/// Where a value at `F = I` isn't smooth: what is divided by, or under a function, is zero there.
+pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>) -> Option<(Rc<Tree>, TermMistake)> {
+    singular(tree, &Points::new(declaration).at_rest)
+}
+
+/// The terms whose kinetic part depends on an advected parameter.
+pub(crate) fn kinetic_with_advected(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<Rc<Tree>> {
+    let points = Points::new(declaration);
+    let [there, back] = [Rational::ONE, -Rational::ONE].map(|sign| {
+        [&points.at_rest, &points.elsewhere].map(|values| {
+            let mut values = values.clone();
+            values.insert(Name::Increment, motion(declaration, &points.velocity, sign));
+            values
+        })
+    });
+    let rest = [&points.at_rest, &points.elsewhere];
+    let (mut open, mut found) = (vec![tree.clone()], Vec::new());
+    while let Some(tree) = open.pop() {
+        if let Some(parts) = split(&tree) {
+            open.extend(parts.into_iter().rev());
+            continue;
+        }
+        let value = |values: &Values| Evaluation::new(values).of(&tree).first();
+        let two = Series::ONE + Series::ONE;
+        let curvature = |at: usize| value(&there[at]) + value(&back[at]) - two * value(rest[at]);
+        if (curvature(0) - curvature(1)).order().is_some_and(|order| order <= 1) {
+            found.push(tree);
+        }
+    }
+    found
+}
+
+type Values = BTreeMap<Name, Value<Series>>;
+
+/// Numbers for all names, with `h` as it is.
+struct Points {
+    velocity: Value<Series>,
+    /// At some `F`, and at another.
+    turned: Values,
+    turned_further: Values,
+    /// At `F = exp(h ξ̂)`.
+    moving: Values,
+    /// At `F = I`, and there with other advected parameters, or of a force with twice the displacements.
+    at_rest: Values,
+    elsewhere: Values,
+}
+
+impl Points {
+    fn new(declaration: &Declaration) -> Self {
+        let group = &declaration.group;
+        let numbers = |seed: u64| {
+            let mut number = stream(seed);
+            move || Series::constant(number())
+        };
+        let mut number = numbers(1);
+        let mut at_rest = Values::from([(Name::Step, Value::scalar(Series::STEP))]);
+        at_rest.insert(Name::Increment, Value::identity(group.size));
+        for (index, field) in declaration.fields.iter().enumerate() {
+            at_rest.insert(Name::Field(index), parameter(field.kind, &mut number));
+        }
+        let mut velocity = Value::diagonal(group.size, |_| Series::ZERO);
+        for entries in &group.generators {
+            let speed = number() + Series::constant(0.5);
+            velocity = Value::square(group.size, entries).map(|entry: Series| entry * speed).plus(&velocity);
+        }
+        let dimension = group.dimension();
+        for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
+            let entries = (0..dimension).map(|_| number()).collect();
+            at_rest.insert(name, Value { rows: dimension, columns: 1, entries });
+        }
+        let with_advected = |values: &Values, seed: u64| {
+            let (mut values, mut number) = (values.clone(), numbers(seed));
+            for index in 0..declaration.advected.len() {
+                values.insert(Name::Advected(index), parameter(declaration.advected_kind(index), &mut number));
+            }
+            values
+        };
+        let at_rest = with_advected(&at_rest, 2);
+        let mut elsewhere = match declaration.role {
+            Role::Lagrangian => with_advected(&at_rest, 3),
+            Role::Force => at_rest.clone(),
+        };
+        for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
+            elsewhere.entry(name).and_modify(|value| *value = value.plus(value));
+        }
+        let with_increment = |increment: Value<Series>| {
+            let mut values = at_rest.clone();
+            values.insert(Name::Increment, increment);
+            values
+        };
+        // At h = 0.3 and at h = 0.2.
+        let turn = |h: f64| exponential(group.size, &velocity.map(|entry| entry * Series::constant(h)));
+        Self {
+            turned: with_increment(turn(0.3)),
+            turned_further: with_increment(turn(0.2)),
+            moving: with_increment(motion(declaration, &velocity, Rational::ONE)),
+            elsewhere,
+            velocity,
+            at_rest: at_rest.clone(),
+        }
+    }
+}
+
+/// `exp(± h ξ̂)`.
+fn motion(declaration: &Declaration, velocity: &Value<Series>, sign: Rational) -> Value<Series> {
+    let step = Series::STEP * Series::of(sign);
+    exponential(declaration.group.size, &velocity.map(|entry| entry * step))
+}
+
+/// The matrix exponential of what is small, or of a power of `h`.
+fn exponential(size: usize, exponent: &Value<Series>) -> Value<Series> {
+    let (mut sum, mut power) = (Value::identity(size), Value::identity(size));
+    for order in 1..20 {
+        power = power.times(exponent).map(|x| x * Series::of(Rational::new(1, order)));
+        sum = sum.plus(&power);
+    }
+    sum
+}
+
+/// How a term goes.
+struct Behaviour {
+    /// With `F = exp(h ξ̂)`; of a Lagrangian, the difference to `F = I`.
+    along: Series,
+    /// At `F = I`; of a Lagrangian, the difference to other advected parameters.
+    at_rest: Series,
+    /// At `F = I`.
+    value: Series,
+    /// Between two fixed `F`.
+    fixed: Series,
+}
+
+struct Search<'a> {
+    role: Role,
+    turned: Evaluation<'a, Series>,
+    turned_further: Evaluation<'a, Series>,
+    moving: Evaluation<'a, Series>,
+    at_rest: Evaluation<'a, Series>,
+    elsewhere: Evaluation<'a, Series>,
+    /// What has been evaluated stays, as its place says what it is.
+    kept: Vec<Rc<Tree>>,
+    found: Vec<(Rc<Tree>, TermMistake)>,
+}
+
+impl Search<'_> {
+    fn behaviour(&mut self, tree: &Rc<Tree>) -> Behaviour {
+        self.kept.push(tree.clone());
+        let [moving, value] = [&mut self.moving, &mut self.at_rest].map(|at| at.of(tree).first());
+        match self.role {
+            Role::Lagrangian => {
+                let [elsewhere, turned, further] =
+                    [&mut self.elsewhere, &mut self.turned, &mut self.turned_further].map(|at| at.of(tree).first());
+                Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further }
+            }
+            Role::Force => Behaviour { along: moving, at_rest: value, value, fixed: value },
+        }
+    }
+
+    /// What keeps the limit `h → 0` from existing, if anything does. A first derivative of the kinetic part isn't meant.
+    fn too_large(&mut self, tree: &Rc<Tree>) -> Option<TermMistake> {
+        let Behaviour { along, at_rest, fixed, .. } = self.behaviour(tree);
+        if ![along, at_rest, fixed].iter().all(Series::is_defined) {
+            return None;
+        }
+        let is_low = |series: Series| series.order().filter(|&order| order < 1);
+        match self.role {
+            Role::Force => is_low(along).map(TermMistake::Work),
+            Role::Lagrangian => is_low(at_rest).map(TermMistake::Potential).or_else(|| {
+                let power = fixed.order().filter(|&power| power < -1)?;
+                is_low(along).map(|_| TermMistake::TooSingular(power))
+            }),
+        }
+    }
+
+    /// Whether virtual work is linear in the displacements, as far as twice of them tell.
+    fn is_linear(&mut self, tree: &Rc<Tree>) -> bool {
+        let [once, twice] = [&mut self.at_rest, &mut self.elsewhere].map(|at| at.of(tree).first());
+        (once + once - twice).is_zero()
+    }
+
+    /// At the terms that are too large; what cancels in a sum isn't one of them.
+    fn report_too_large(&mut self, tree: &Rc<Tree>) {
+        let Some(mistake) = self.too_large(tree) else { return };
+        let before = self.found.len();
+        for part in split(tree).into_iter().flatten() {
+            self.report_too_large(&part);
+        }
+        if self.found.len() == before {
+            self.found.push((tree.clone(), mistake));
+        }
+    }
+
+    /// At the terms that a smaller step makes ever less important, or that never do anything.
+    fn report_vanishing(&mut self, tree: &Rc<Tree>, whole: &Behaviour) {
+        if let Some(parts) = split(tree) {
+            parts.iter().for_each(|part| self.report_vanishing(part, whole));
+            return;
+        }
+        let Behaviour { along, at_rest, value, fixed } = self.behaviour(tree);
+        if ![along, at_rest, value].iter().all(Series::is_defined) {
+            return;
+        }
+        let names = Names::of(tree);
+        // Once too often, or a square of what is small that isn't over `h`; higher powers are corrections.
+        let is_square = along
+            .order()
+            .zip(fixed.order())
+            .is_some_and(|(order, power)| order - power == 2 && (power == 0 || power > 0 && value.is_zero()));
+        let is_low = |series: Series| series.order().is_some_and(|order| order < 1);
+        let vanishing = if names.has_advected {
+            // What is zero at F = I is a correction, as the difference of a potential at both ends is.
+            at_rest.order().filter(|&order| order == 2).map(TermMistake::Potential)
+        } else if self.role == Role::Force {
+            along.order().filter(|&order| order == 2).map(TermMistake::Work)
+        } else {
+            along.order().filter(|_| is_square).map(TermMistake::Vanishing)
+        };
+        let mistake = match (self.role, vanishing) {
+            _ if names.has_power => None,
+            (Role::Force, Some(TermMistake::Potential(order))) => Some(TermMistake::Work(order)),
+            (_, Some(mistake)) => Some(mistake),
+            // Unless it is there to be cancelled.
+            (Role::Lagrangian, None) => {
+                let is_constant = along.is_zero() && at_rest.is_zero() && names.has_increment;
+                (is_constant && is_low(value) && is_low(whole.value)).then_some(TermMistake::Constant)
+            }
+            (Role::Force, None) => None,
+        };
+        self.found.extend(mistake.map(|mistake| (tree.clone(), mistake)));
+    }
+}
+
+/// What a term is written with.
+#[derive(Default)]
+struct Names {
+    has_increment: bool,
+    has_advected: bool,
+    /// `h.powi(n)` with a positive `n`: its author knows that it is small.
+    has_power: bool,
+}
+
+impl Names {
+    fn of(tree: &Rc<Tree>) -> Self {
+        let mut names = Self::default();
+        visit(tree, &mut |tree| match &tree.kind {
+            Kind::Name(Name::Increment) => names.has_increment = true,
+            Kind::Name(Name::Advected(_)) => names.has_advected = true,
+            Kind::Power(a, exponent) if *exponent > 1 && is_step(a) => names.has_power = true,
+            _ => {}
+        });
+        names
+    }
+}
+
+fn is_step(tree: &Tree) -> bool {
+    match &tree.kind {
+        Kind::Name(Name::Step) => true,
+        Kind::Bound(_, inner) => is_step(inner),
+        _ => false,
+    }
+}
+
+/// Every part of a tree once, the inner ones first.
+fn visit(tree: &Rc<Tree>, at: &mut dyn FnMut(&Rc<Tree>)) {
+    fn inside(tree: &Rc<Tree>, seen: &mut std::collections::BTreeSet<*const Tree>, at: &mut dyn FnMut(&Rc<Tree>)) {
+        if seen.insert(Rc::as_ptr(tree)) {
+            tree.kind.operands().into_iter().flatten().for_each(|operand| inside(operand, seen, at));
+            at(tree);
+        }
+    }
+    inside(tree, &mut std::collections::BTreeSet::new(), at);
+}
+
+/// The two terms of a sum, with the scalars that the sum is multiplied or divided by; each has the place of its own.
+fn split(tree: &Rc<Tree>) -> Option<[Rc<Tree>; 2]> {
+    let each = |parts: [Rc<Tree>; 2], kind: &dyn Fn(Rc<Tree>) -> Kind| {
+        parts.map(|part| Tree::in_place_of(&part.clone(), kind(part)))
+    };
+    match &tree.kind {
+        Kind::Bound(_, inner) => split(inner),
+        Kind::Add(a, b) => Some([a.clone(), b.clone()]),
+        Kind::Subtract(a, b) => Some([a.clone(), Tree::in_place_of(b, Kind::Negate(b.clone()))]),
+        Kind::Negate(a) => Some(each(split(a)?, &Kind::Negate)),
+        Kind::Divide(a, b) => Some(each(split(a)?, &|part| Kind::Divide(part, b.clone()))),
+        Kind::Multiply(a, b) if a.shape == Shape::Scalar && b.shape == Shape::Scalar => match split(a) {
+            Some(parts) => Some(each(parts, &|part| Kind::Multiply(part, b.clone()))),
+            None => Some(each(split(b)?, &|part| Kind::Multiply(a.clone(), part))),
+        },
+        _ => None,
+    }
+}
+
+/// The first place where zero is divided by or is under a root or a logarithm.
+fn singular(tree: &Rc<Tree>, values: &Values) -> Option<(Rc<Tree>, TermMistake)> {
+    let mut evaluation = Evaluation::new(values);
+    let mut found = None;
+    visit(tree, &mut |tree| {
+        let mut is_zero = |tree: &Rc<Tree>| found.is_none() && evaluation.of(tree).first().is_zero();
+        let mistake = match &tree.kind {
+            Kind::Divide(_, divisor) if is_zero(divisor) => (divisor.clone(), TermMistake::ZeroDivisor),
+            Kind::Power(base, exponent) if *exponent < 0 && is_zero(base) => (base.clone(), TermMistake::ZeroDivisor),
+            Kind::Apply(Function::Sqrt | Function::Ln, inner) if is_zero(inner) => {
+                (tree.clone(), TermMistake::FunctionOfZero)
+            }
+            _ => return,
+        };
+        found = Some(mistake);
+    });
+    found
+}

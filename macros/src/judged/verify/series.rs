@@ -1,0 +1,296 @@
+//! Power series in `h` with numbers for coefficients: how a declared expression goes as `h → 0`.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::number::Number;
+use crate::mathematics::symbolic::{Function, Rational};
+
+/// As many coefficients are known from the first on.
+const LENGTH: usize = 8;
+const LENGTH_I32: i32 = 8;
+/// From here on nothing is known of a number that is exact.
+const NEVER: i32 = 1_000;
+/// What rounding leaves where two numbers cancel.
+const ROUNDING: f64 = 1e-13;
+
+/// `Σ c_i hⁱ + O(hᵉ)`, from the first power whose coefficient isn't zero; undefined where that is NaN.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Series {
+    first: i32,
+    /// The power `e` from which on nothing is known.
+    end: i32,
+    coefficients: [f64; LENGTH],
+}
+
+impl Series {
+    /// `h`.
+    pub(super) const STEP: Self = Self::from_one_coefficient(1, 1.0);
+
+    const fn from_one_coefficient(first: i32, value: f64) -> Self {
+        let mut coefficients = [0.0; LENGTH];
+        coefficients[0] = value;
+        Self { first, end: first + LENGTH_I32, coefficients }
+    }
+
+    pub(super) fn constant(value: f64) -> Self {
+        if value == 0.0 { Self::ZERO } else { Self::from_one_coefficient(0, value) }
+    }
+
+    /// With the coefficients from the power `first` on.
+    fn new(first: i32, end: i32, coefficients: [f64; LENGTH]) -> Self {
+        let end = end.min(first.saturating_add(LENGTH_I32));
+        let known = usize::try_from(end.saturating_sub(first)).unwrap_or(0);
+        let Some(zeros) = coefficients[..known].iter().position(|c| *c != 0.0) else {
+            return Self { first: end, end, coefficients: [0.0; LENGTH] };
+        };
+        let mut shifted = [0.0; LENGTH];
+        shifted[..known - zeros].copy_from_slice(&coefficients[zeros..known]);
+        Self { first: first + i32::try_from(zeros).unwrap_or(0), end, coefficients: shifted }
+    }
+
+    /// The lowest power of `h`; none where all coefficients that are known are zero.
+    pub(super) fn order(&self) -> Option<i32> {
+        (!self.is_zero()).then_some(self.first)
+    }
+
+    pub(super) fn is_defined(&self) -> bool {
+        self.coefficients.iter().all(|c| c.is_finite())
+    }
+
+    pub(super) fn is_zero(&self) -> bool {
+        self.coefficients.iter().all(|c| *c == 0.0)
+    }
+
+    pub(super) fn at(&self, power: i32) -> f64 {
+        let index = usize::try_from(power - self.first).ok();
+        index.and_then(|index| self.coefficients.get(index)).copied().unwrap_or(0.0)
+    }
+
+    fn reciprocal(self) -> Self {
+        if self.is_zero() || !self.is_defined() {
+            return Self::UNDEFINED;
+        }
+        let mut coefficients = [0.0; LENGTH];
+        coefficients[0] = 1.0 / self.coefficients[0];
+        for n in 1..LENGTH {
+            let sum = (1..=n).fold(0.0, |sum, i| cancelled(sum, self.coefficients[i] * coefficients[n - i]));
+            coefficients[n] = -sum * coefficients[0];
+        }
+        let length = self.end - self.first;
+        Self::new(-self.first, length - self.first, coefficients)
+    }
+
+    /// `f(a + x)` with `x` the rest without the constant `a`, from the coefficients of Taylor's series about `a`.
+    fn composed(self, taylor: &[f64; LENGTH]) -> Self {
+        let rest = self - Self::constant(self.at(0));
+        let mut sum = Self::ZERO;
+        for coefficient in taylor.iter().rev() {
+            sum = sum * rest + Self::constant(*coefficient);
+        }
+        sum
+    }
+
+    /// Of an even power of `h` times a positive number.
+    fn root(self) -> Self {
+        let positive = self.coefficients[0] > 0.0;
+        if self.is_zero() || !positive || self.first % 2 != 0 {
+            return if self.is_zero() { self } else { Self::UNDEFINED };
+        }
+        let half = self.first / 2;
+        let unit = Self { first: 0, end: self.end - self.first, ..self };
+        let first = unit.at(0).sqrt();
+        let mut taylor = [first; LENGTH];
+        for n in 1..LENGTH {
+            taylor[n] = taylor[n - 1] * (0.5 - small(n - 1)) / (small(n) * unit.at(0));
+        }
+        let root = unit.composed(&taylor);
+        Self { first: root.first + half, end: root.end + half, ..root }
+    }
+}
+
+/// `x + y`, zero where only rounding is left.
+fn cancelled(x: f64, y: f64) -> f64 {
+    let sum = x + y;
+    if sum.abs() <= ROUNDING * (x.abs() + y.abs()) { 0.0 } else { sum }
+}
+
+#[allow(clippy::cast_precision_loss)] // below a hundred
+fn small(n: usize) -> f64 {
+    n as f64
+}
+
+/// `f⁽ⁿ⁾(a)/n!`.
+fn taylor(function: Function, a: f64) -> [f64; LENGTH] {
+    let mut factorial = 1.0;
+    std::array::from_fn(|n| {
+        factorial *= small(n.max(1));
+        match function {
+            Function::Exp => a.exp() / factorial,
+            Function::Sin => [a.sin(), a.cos(), -a.sin(), -a.cos()][n % 4] / factorial,
+            Function::Cos => [a.cos(), -a.sin(), -a.cos(), a.sin()][n % 4] / factorial,
+            Function::Ln if n == 0 => a.ln(),
+            Function::Ln => -(-1.0 / a).powi(i32::try_from(n).unwrap_or(0)) / small(n),
+            // Not asked for.
+            Function::Sqrt => f64::NAN,
+            Function::LogRatio(k) => {
+                Function::LogRatio(k.saturating_add(u8::try_from(n).unwrap_or(u8::MAX))).apply(a) / factorial
+            }
+            Function::Stumpff(k) => stumpff(k, n, a),
+        }
+    })
+}
+
+/// `Σ_{i ≥ n} C(i, n) (−1)ⁱ a^(i − n)/(2i + k)!`.
+fn stumpff(k: u8, n: usize, a: f64) -> f64 {
+    let first = (1..=2 * n + usize::from(k)).fold(1.0, |product, i| product / small(i));
+    let (mut sum, mut term) = (0.0, if n.is_multiple_of(2) { first } else { -first });
+    for i in n..n + 100 {
+        sum += term;
+        let next = 2 * i + usize::from(k);
+        term *= -a * small(i + 1) / (small(i + 1 - n) * small(next + 1) * small(next + 2));
+    }
+    sum
+}
+
+impl Add for Series {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        if !self.is_defined() || !other.is_defined() {
+            return Self::UNDEFINED;
+        }
+        let (first, end) = (self.first.min(other.first), self.end.min(other.end));
+        let mut coefficients = [0.0; LENGTH];
+        for (power, sum) in (first..end).zip(&mut coefficients) {
+            *sum = cancelled(self.at(power), other.at(power));
+        }
+        Self::new(first, end, coefficients)
+    }
+}
+
+impl Neg for Series {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { coefficients: self.coefficients.map(|c| -c), ..self }
+    }
+}
+
+impl Sub for Series {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Series {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        if !self.is_defined() || !other.is_defined() {
+            return Self::UNDEFINED;
+        }
+        let first = self.first.saturating_add(other.first).min(NEVER);
+        let end = self.end.saturating_add(other.first).min(other.end.saturating_add(self.first)).min(NEVER);
+        let mut coefficients = [0.0; LENGTH];
+        for (n, sum) in coefficients.iter_mut().enumerate() {
+            *sum = (0..=n).fold(0.0, |sum, i| cancelled(sum, self.coefficients[i] * other.coefficients[n - i]));
+        }
+        Self::new(first, end, coefficients)
+    }
+}
+
+impl Div for Series {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        self * other.reciprocal()
+    }
+}
+
+impl Number for Series {
+    const ZERO: Self = Self { first: NEVER, end: NEVER, coefficients: [0.0; LENGTH] };
+    const ONE: Self = Self::from_one_coefficient(0, 1.0);
+    const UNDEFINED: Self = Self::from_one_coefficient(0, f64::NAN);
+
+    fn of(value: Rational) -> Self {
+        Self::constant(value.to_f64())
+    }
+
+    fn power(self, exponent: i32) -> Self {
+        let factor = if exponent < 0 { self.reciprocal() } else { self };
+        let (mut product, mut square, mut rest) = (Self::ONE, factor, exponent.unsigned_abs());
+        while rest > 0 {
+            if rest % 2 == 1 {
+                product = product * square;
+            }
+            rest /= 2;
+            if rest > 0 {
+                square = square * square;
+            }
+        }
+        product
+    }
+
+    fn apply(self, function: Function) -> Self {
+        match function {
+            _ if !self.is_defined() => Self::UNDEFINED,
+            Function::Sqrt => self.root(),
+            _ if self.first < 0 => Self::UNDEFINED,
+            _ => self.composed(&taylor(function, self.at(0))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LENGTH_I32, Series};
+    use crate::judged::verify::number::Number as _;
+    use crate::mathematics::symbolic::Function;
+
+    const H: f64 = 1e-2;
+
+    /// The sum of what is known.
+    fn value(series: Series) -> f64 {
+        (series.first..series.end).map(|power| series.at(power) * H.powi(power)).sum()
+    }
+
+    fn assert_is(series: Series, order: i32, expected: f64) {
+        assert_eq!(series.order(), Some(order), "{series:?}");
+        let error = (value(series) - expected).abs();
+        assert!(error <= 1e-13 * expected.abs() + H.powi(LENGTH_I32 - 1), "{series:?}: {} {expected}", value(series));
+    }
+
+    #[test]
+    fn series_against_values() {
+        let h = Series::STEP;
+        let x = Series::constant(0.7) + h * Series::constant(0.3);
+        let number = 0.7 + 0.3 * H;
+        assert_is(x * x - Series::constant(0.49), 1, number * number - 0.49);
+        assert_is(Series::ONE / (h * h * x), -2, 1.0 / (H * H * number));
+        assert_is(x.power(-3), 0, number.powi(-3));
+        assert_is((h * h * x).apply(Function::Sqrt), 1, H * number.sqrt());
+        assert_is(h.apply(Function::Sin), 1, H.sin());
+        assert_is(h.apply(Function::Cos) - Series::ONE, 2, H.cos() - 1.0);
+        for function in [Function::Ln, Function::Exp, Function::Sin, Function::Cos, Function::Sqrt] {
+            assert_is(x.apply(function), 0, function.apply(number));
+        }
+        for k in 0..4 {
+            assert_is(x.apply(Function::Stumpff(k)), 0, Function::Stumpff(k).apply(number));
+            assert_is(h.apply(Function::LogRatio(k)), 0, Function::LogRatio(k).apply(H));
+        }
+    }
+
+    #[test]
+    fn what_has_no_value() {
+        let (h, zero) = (Series::STEP, Series::ONE - Series::ONE);
+        assert!(zero.is_zero() && (zero * h).is_zero() && zero.order().is_none());
+        for undefined in
+            [Series::ONE / zero, zero.power(-1), h.apply(Function::Sqrt), (-Series::ONE).apply(Function::Ln)]
+        {
+            assert!(!undefined.is_defined() && !(undefined * zero + h).is_defined(), "{undefined:?}");
+        }
+        assert!(!(Series::ONE / h).apply(Function::Exp).is_defined());
+    }
+}

@@ -1,0 +1,19 @@
+use liestep::{NonstandardInertia, SO3, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let kinetic = ((F - I) * J_d * (F - I).transpose()).trace() / 2.0;
+        kinetic - 0.5 * h * m * w.dot(&(rho + F * rho))
+    },
+)]
+struct Top {
+    J_d: NonstandardInertia,
+    m: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+fn main() {}

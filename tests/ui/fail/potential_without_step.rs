@@ -1,0 +1,16 @@
+use liestep::{NonstandardInertia, SO3, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * m * w.dot(&(rho + F * rho)),
+)]
+struct Top {
+    J_d: NonstandardInertia,
+    m: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+fn main() {}
