@@ -9,6 +9,7 @@ use std::process::ExitCode;
 use lexopt::Arg;
 
 use crate::output::print;
+use crate::table::short;
 
 /// What is wrong, in words.
 pub type Failure = Box<dyn Error>;
@@ -186,6 +187,7 @@ impl fmt::Display for NoSchedule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Empty { step, time } => {
+                let (time, step) = (short(*time), short(*step));
                 write!(f, "--time {time} is shorter than one --step {step}; nothing would happen")
             }
             Self::Endless { steps } => {

@@ -102,7 +102,7 @@ fn stages_follow_from_the_virtual_work() {
     group = SL2,
     advected(w = line),
     given(K = k),
-    work = h * w.dot(&(hat(eta) * (F * w))) - (A * hat(eta_next) * F).trace() + h * s.dot(&(K * (eta + eta_next))),
+    work = h * w.dot(&(hat(eta) * (F * w))) - h * (A * hat(eta_next) * F).trace() + h * s.dot(&(K * (eta + eta_next))),
 )]
 struct Shear {
     k: Matrix3<f64>,

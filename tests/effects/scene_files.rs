@@ -74,6 +74,22 @@ fn table(csv: &str) -> Vec<Vec<f64>> {
     csv.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
 }
 
+/// A terminal isn't told to do anything, and the picture stays XML.
+#[test]
+fn control_characters_are_written_out() {
+    let folder = folder("control-characters");
+    let text = TOP.replace("A heavy top", r"A \u0000 \u001b[31mred\r\n top");
+    fs::write(folder.join("top.toml"), text).unwrap();
+    let output = simulate(&folder, &["top.toml"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let drawn = fs::read_to_string(folder.join("top.svg")).unwrap();
+    for text in [&printed, &drawn] {
+        assert!(text.contains(r"\u{0} \u{1b}[31mred\r\n top"), "{text}");
+        assert!(!text.chars().any(|character| character.is_control() && character != '\n'));
+    }
+}
+
 #[test]
 fn mistakes_have_places() {
     let folder = folder("mistakes");
@@ -100,6 +116,7 @@ fn mistakes_have_places() {
         ("velocity", "euler_rates = [0, 0, 1]\nvelocity"),
         ("step = \"10 ms\"", "step = \"10 min\""),
         ("step = \"10 ms\"", "step = 1e-9"),
+        ("step = \"10 ms\"", "step = 1e308"),
         ("step = \"10 ms\"", "step = \"10 ms\"\naccuracy = 1e-6"),
         ("step = \"10 ms\"\n", ""),
         ("step = \"10 ms\"", "accuracy = 1e-6"),
@@ -149,6 +166,7 @@ fn mistakes_have_places() {
         error: top.toml:18:12: a velocity is given by either `velocity` or `euler_rates`
         error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 600 s
         error: top.toml:19:1: `duration` makes 2.0e9 steps, more than 1e8; take a larger `step`
+        error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 1e308 s
         error: top.toml:21:12: a run has either a `step` or an `accuracy`
         error: top.toml:19:1: a run has either a `step` or an `accuracy`
         error: top.toml:20:12: an accuracy can be asked for in conservative scenes; drag does work, so give a `step`

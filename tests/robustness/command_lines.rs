@@ -42,9 +42,16 @@ fn steps_and_times() {
         for (value, message) in nonsense {
             refused(example, &[&format!("--step={value}")], message);
             refused(example, &[&format!("--time={value}")], message);
+            // Behind a space, too: no number looks like an option.
+            refused(example, &["--step", value], message);
         }
         refused(example, &["--step", "1e-300", "--time", "1"], "take a larger step");
-        refused(example, &["--step", "10", "--time", "1"], "nothing would happen");
+        refused(
+            example,
+            &["--step", "10", "--time", "1"],
+            "--time 1 is shorter than one --step 10; nothing would happen",
+        );
+        refused(example, &["--step", "1e300"], "--time 200 is shorter than one --step 1e300;");
         // No body turns by so much in a step.
         refused(example, &["--step", "5", "--time", "10", "--out", "steps"], "no solution at the step");
     }
@@ -64,6 +71,19 @@ fn folders() {
         refused(example, &["--out", &format!("{file}/out")], "cannot write to");
         refused(example, &["--out="], "a value is required");
     }
+}
+
+/// What can't be printed is a message and an exit code.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk() {
+    run("derive", &[]);
+    let program = &examples::built(&["derive"])["derive"];
+    let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = Command::new(program).arg("heavy-top").stdout(full).output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.starts_with("error: ") && text.contains("No space left on device"), "{text}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::ops::Range;
 use liestep::effects::PrincipalBody;
 use serde::Deserialize;
 use toml::Spanned;
+use workbench::table::short;
 
 use super::effects::{
     Body, DipoleTable, DragTable, GravityGradientTable, GravityTable, MagneticDampingTable, RotorTable, SpringTable,
@@ -18,6 +19,7 @@ use super::start::Start;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SceneFile {
+    #[serde(deserialize_with = "title")]
     pub(super) title: String,
     body: Body,
     pub(super) gravity: Option<GravityTable>,
@@ -32,6 +34,17 @@ pub(crate) struct SceneFile {
     pub(super) run: Schedule,
     #[serde(default)]
     pub(super) picture: Picture,
+}
+
+/// A title with its control characters written out: a terminal would obey them, and SVG has no room for them.
+fn title<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+    let title = String::deserialize(deserializer)?;
+    let visible = |character: char| {
+        let escaped: Vec<char> =
+            if character.is_control() { character.escape_default().collect() } else { vec![character] };
+        escaped
+    };
+    Ok(title.chars().flat_map(visible).collect())
 }
 
 /// How long, and by which steps.
@@ -86,6 +99,7 @@ impl TryFrom<ScheduleTable> for Schedule {
 fn equal_steps(step: f64, duration: f64) -> Result<Pace, String> {
     let steps = (duration / step).round();
     if steps < 1.0 {
+        let (duration, step) = (short(duration), short(step));
         return Err(format!("`duration` is {duration} s, shorter than one `step` of {step} s"));
     }
     if steps > MOST_STEPS {
