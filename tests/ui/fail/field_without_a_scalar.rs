@@ -28,4 +28,13 @@ struct Whole {
     rho: Vector3<u32>,
 }
 
+#[lagrangian(
+    group = SO3,
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * rho.dot(&(F * rho)),
+)]
+struct Nested {
+    J_d: NonstandardInertia,
+    rho: Vector3<NonstandardInertia>,
+}
+
 fn main() {}

@@ -93,7 +93,7 @@ fn scalar_of(ty: &Type) -> Option<Ident> {
     let segment = last_segment(ty)?;
     match &segment.arguments {
         PathArguments::AngleBracketed(arguments) if !arguments.args.is_empty() => match arguments.args.first()? {
-            GenericArgument::Type(inner) => scalar_of(inner),
+            GenericArgument::Type(inner) => last_segment(inner).map(|segment| segment.ident.clone()),
             _ => None,
         },
         _ if segment.ident.to_string().ends_with("Inertia") => Some(Ident::new("f64", segment.ident.span())),
