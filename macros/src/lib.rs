@@ -44,7 +44,7 @@ mod program;
 /// group moves points, stands for its homogeneous coordinates, `(x, y, z, 1)` on SE(3). An advected vector is a
 /// covector, moved by `ρ(f)ᵀ`; a point is moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`,
 /// `CovariantTensor` and `MixedTensor` are the other kinds.
-/// At most six are advected, and no parameter is called `F`, `I`, `h`, `vee`, `log` or `exp`.
+/// At most six are advected or given, and no parameter is called `F`, `I`, `h`, `hat`, `vee`, `log` or `exp`.
 ///
 /// What changes with time is given: `Stepper::step_with` makes a step with other values of what is advected and of what
 /// `given(…)` names, a scalar, a vector or a matrix that the group doesn't move.

@@ -10,7 +10,7 @@ struct Body {
     J_d: NonstandardInertia,
 }
 
-#[force(group = liestep::SO3, generators = 5.0, work = h * tau.dot(&eta))]
+#[force(group = liestep::SO3, generators = [[[0.0, -1.0], [1.0, 0.0]]], work = h * tau.dot(&eta))]
 struct Push {
     tau: Vector3<f64>,
 }

@@ -58,10 +58,13 @@ mod of_a_known_name {
         }
     }
 
+    /// With its scalar.
+    type Vector2 = nalgebra::Vector2<f64>;
+
     #[liestep::lagrangian(group = R1!, l_d = m * (F - I).norm_squared() / h - h * (v.x + v.y) * (F * v).y)]
     pub struct Squeezed {
         pub m: f64,
-        pub v: nalgebra::Vector2<f64>,
+        pub v: Vector2,
     }
 }
 

@@ -24,7 +24,7 @@ impl Checker<'_> {
         match name {
             "w" => "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned(),
             "t" | "time" => format!(
-                "; {noun} has no time: force a step with `step_forced`, or go on with other parameters by `adopt`"
+                "; {noun} has no time: declare what changes with it by `given(u = field)`, and go on by `step_with`"
             ),
             "omega" | "Omega" | "xi" | "velocity" => {
                 let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
@@ -164,7 +164,7 @@ fn instead_of(function: &str) -> Option<&'static str> {
         "magnitude" => "write `v.norm()`",
         "magnitude_squared" => "write `v.norm_squared()`",
         "normalize" | "normalized" => "write `v / v.norm()`",
-        "hat" | "skew" | "skew_symmetric" | "wedge" => "write `v.cross_matrix()`",
+        "skew" | "skew_symmetric" | "wedge" => "write `v.cross_matrix()`",
         "tr" => "write `A.trace()`",
         "tr_mul" | "tr_dot" => "write `.transpose()` and `*`",
         "adjoint" | "t" | "T" => "write `A.transpose()`",

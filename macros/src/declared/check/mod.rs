@@ -6,7 +6,7 @@ mod methods;
 mod operators;
 mod usage;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use proc_macro2::{Span, TokenStream};
@@ -25,8 +25,15 @@ const DEEPEST: usize = 250;
 /// The declared expression as a tree; `None` after a mistake, be it one in the attribute or in the struct.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
     let expression = declaration.expression.as_ref()?;
-    let mut checker =
-        Checker { declaration, errors, scopes: vec![BTreeMap::new()], used: Vec::new(), depth: 0, is_too_deep: false };
+    let mut checker = Checker {
+        declaration,
+        errors,
+        scopes: vec![BTreeMap::new()],
+        used: Vec::new(),
+        unknown: BTreeSet::new(),
+        depth: 0,
+        is_too_deep: false,
+    };
     let tree = checker.expression(expression);
     let used = checker.used;
     let tree = tree?;
@@ -97,6 +104,7 @@ struct Checker<'a> {
     errors: &'a mut Errors,
     scopes: Vec<BTreeMap<Spelling, Binding>>,
     used: Vec<Name>,
+    unknown: BTreeSet<String>,
     depth: usize,
     /// Both operands of an operation may be too deep, and one message says it.
     is_too_deep: bool,
@@ -329,7 +337,8 @@ impl Checker<'_> {
                     }
                     (self.declaration.fields[index].kind.shape(), Name::Field(index))
                 } else {
-                    if !self.declaration.unreadable.contains(&name) {
+                    // Once is enough, however often it is used.
+                    if !self.declaration.unreadable.contains(&name) && self.unknown.insert(name.clone()) {
                         let advice = self.advice_on_name(&name);
                         self.errors.push(span, format!("`{name}` isn't known here{advice}"));
                     }

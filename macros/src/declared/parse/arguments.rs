@@ -1,0 +1,157 @@
+//! The attribute's arguments, read as far as they can be.
+
+use proc_macro2::{TokenStream, TokenTree};
+use syn::ext::IdentExt as _;
+use syn::parse::ParseStream;
+use syn::{Expr, ExprArray, Ident, Path, Token, parenthesized};
+
+use super::group;
+use crate::declared::Role;
+use crate::declared::errors::{Errors, suggestion};
+
+/// The arguments as written.
+#[derive(Default)]
+pub(super) struct Arguments {
+    pub(super) group: Option<group::Named>,
+    /// Name, field, and whether it is given for each step.
+    pub(super) advected: Vec<(Ident, Ident, bool)>,
+    pub(super) expression: Option<Expr>,
+    pub(super) root: Option<Path>,
+    /// With its key.
+    pub(super) generators: Option<(Ident, ExprArray)>,
+    /// Whether an argument has come without a name, which one message says.
+    has_nameless: bool,
+}
+
+/// Reads `key = value` pairs; after a syntax error it goes on behind the next comma.
+pub(super) fn arguments_from(role: Role, input: ParseStream, errors: &mut Errors) -> Arguments {
+    let mut arguments = Arguments::default();
+    while !input.is_empty() {
+        if let Err(error) = argument(role, input, &mut arguments, errors) {
+            errors.extend(error);
+            skip_argument(input);
+        }
+    }
+    arguments
+}
+
+fn skip_argument(input: ParseStream) {
+    while !input.is_empty() && !input.peek(Token![,]) {
+        let _ = input.parse::<TokenTree>();
+    }
+    let _ = input.parse::<Token![,]>();
+}
+
+fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
+    let known = ["group", "advected", "given", role.key(), "generators", "crate"];
+    let Some(key) = key(input, &known) else {
+        if !arguments.has_nameless {
+            errors.push(input.span(), format!("arguments have names: write `group = SO3`, `{} = …`", role.key()));
+        }
+        arguments.has_nameless = true;
+        skip_argument(input);
+        return Ok(());
+    };
+    let mut once = |taken: bool| {
+        if taken {
+            errors.push(key.span(), format!("`{key}` is given twice: remove one"));
+        }
+    };
+    match key.to_string().as_str() {
+        "group" => {
+            once(arguments.group.is_some());
+            equals(&key, input)?;
+            without_quotes(&key, input)?;
+            arguments.group = Some(group::named(input, errors)?);
+        }
+        "crate" => {
+            once(arguments.root.is_some());
+            equals(&key, input)?;
+            without_quotes(&key, input)?;
+            arguments.root = Some(input.call(Path::parse_mod_style)?);
+        }
+        expression if expression == role.key() => {
+            once(arguments.expression.is_some());
+            equals(&key, input)?;
+            arguments.expression = Some(input.parse()?);
+        }
+        "generators" => {
+            once(arguments.generators.is_some());
+            equals(&key, input)?;
+            arguments.generators = Some((key, group::array(input)?));
+        }
+        pairs @ ("advected" | "given") => {
+            let is_given = pairs == "given";
+            if !input.peek(syn::token::Paren) {
+                let example = if is_given { "given(u = torque)" } else { "advected(w = up)" };
+                let message = format!("write `{example}`: a name for the expression, then the field");
+                return Err(syn::Error::new(key.span(), message));
+            }
+            let content;
+            parenthesized!(content in input);
+            let pairs = content.parse_terminated(advected_pair, Token![,]);
+            // What is left after a mistake would be reported as unexpected.
+            content.parse::<TokenStream>()?;
+            arguments.advected.extend(pairs?.into_iter().map(|(name, field)| (name, field, is_given)));
+        }
+        other => {
+            let near = suggestion(other, known);
+            let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
+            let attribute = role.attribute();
+            return Err(syn::Error::new(
+                key.span(),
+                format!("`{other}` isn't an argument of `{attribute}`{near}{list}"),
+            ));
+        }
+    }
+    if !input.is_empty() {
+        input.parse::<Token![,]>()?;
+    }
+    Ok(())
+}
+
+/// The name of an argument, known or followed by what it would be given.
+fn key(input: ParseStream, known: &[&str]) -> Option<Ident> {
+    let ahead = input.fork();
+    let key = ahead.call(Ident::parse_any).ok()?;
+    let is_given = ahead.peek(Token![=]) || ahead.peek(syn::token::Paren);
+    (is_given || known.iter().any(|name| key == name)).then(|| input.call(Ident::parse_any).ok())?
+}
+
+fn equals(key: &Ident, input: ParseStream) -> syn::Result<()> {
+    if !input.peek(Token![=]) {
+        return Err(syn::Error::new(input.span(), format!("write `{key} = …`")));
+    }
+    input.parse::<Token![=]>().map(|_| ())
+}
+
+/// A mistake where there is text in the place of a name.
+fn without_quotes(key: &Ident, input: ParseStream) -> syn::Result<()> {
+    match input.fork().parse::<syn::LitStr>() {
+        Ok(text) => {
+            let name = text.value();
+            Err(syn::Error::new(text.span(), format!("write the name without quotes: `{key} = {name}`")))
+        }
+        Err(_) => Ok(()),
+    }
+}
+
+fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
+    if !input.peek(Ident::peek_any) {
+        return Err(input.error("write `w = up`: a name for the expression, then the field"));
+    }
+    let name: Ident = input.parse()?;
+    if !input.peek(Token![=]) {
+        let message = format!("write `{name} = field`: the field holds the spatial value of `{name}`");
+        return Err(syn::Error::new(name.span(), message));
+    }
+    input.parse::<Token![=]>()?;
+    without_quotes(&name, input)?;
+    let span = input.span();
+    let message = format!("write `{name} = field` with the name of a field and nothing else");
+    let field = input.parse().map_err(|_| syn::Error::new(span, &message))?;
+    if !input.is_empty() && !input.peek(Token![,]) {
+        return Err(input.error(message));
+    }
+    Ok((name, field))
+}

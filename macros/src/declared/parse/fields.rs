@@ -1,0 +1,159 @@
+//! The struct's fields: what their types promise, and the scalar that they share.
+
+use proc_macro2::Span;
+use syn::ext::IdentExt as _;
+use syn::spanned::Spanned as _;
+use syn::{Expr, Fields, GenericArgument, Ident, ItemStruct, PathArguments, Type};
+
+use super::check_free;
+use crate::declared::errors::Errors;
+use crate::declared::{Field, FieldKind, Role, Scalar};
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::Variance;
+
+/// The fields, and the names of those whose type has no meaning.
+pub(super) fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec<Field>, Vec<String>) {
+    let Fields::Named(named) = &item.fields else {
+        let what = match role {
+            Role::Lagrangian => "a Lagrangian",
+            Role::Force => "a force",
+        };
+        errors.push(item.ident.span(), format!("{what} is a struct with named fields: its parameters"));
+        return Default::default();
+    };
+    let (mut fields, mut unreadable) = (Vec::new(), Vec::new());
+    for field in &named.named {
+        let Some(name) = field.ident.clone() else { continue };
+        check_free(role, &name, errors);
+        if let Some(kind) = field_kind(&field.ty, item) {
+            fields.push(Field { name, kind, at: field.ty.span() });
+        } else {
+            unreadable.push(name.unraw().to_string());
+            errors.push_over(
+                &field.ty,
+                format!(
+                    "this type has no meaning in {}: use f64, Vector3<f64>, Point3<f64>, Matrix3<f64>, \
+                     NonstandardInertia, DiagonalNonstandardInertia or Inertia (or the same with the struct's type \
+                     parameter)",
+                    role.noun()
+                ),
+            );
+        }
+    }
+    (fields, unreadable)
+}
+
+fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {
+    match ty {
+        Type::Path(path) if path.qself.is_none() => path.path.segments.last(),
+        // A type that a `macro_rules!` fragment passed on comes in an invisible group.
+        Type::Group(group) => last_segment(&group.elem),
+        Type::Paren(paren) => last_segment(&paren.elem),
+        _ => None,
+    }
+}
+
+fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
+    let name = last_segment(ty)?.ident.to_string();
+    Some(match name.as_str() {
+        "f64" | "f32" => FieldKind::Scalar,
+        "Vector2" | "Vector3" | "Vector4" | "Vector5" | "Vector6" => FieldKind::Vector(digit(&name)?),
+        "Point1" | "Point2" | "Point3" => FieldKind::Point(digit(&name)? + 1),
+        "Matrix2" | "Matrix3" | "Matrix4" | "Matrix5" | "Matrix6" => FieldKind::Matrix(digit(&name)?),
+        "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
+        "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
+        "CovariantTensor" => FieldKind::Advected(Variance::Covariant, length(ty)?),
+        "MixedTensor" => FieldKind::Advected(Variance::Mixed, length(ty)?),
+        "NonstandardInertia" | "Inertia" => FieldKind::SymmetricInertia,
+        "DiagonalNonstandardInertia" => FieldKind::DiagonalInertia,
+        _ if item.generics.type_params().any(|parameter| parameter.ident == name) => FieldKind::Scalar,
+        _ => return None,
+    })
+}
+
+/// The number in a type's arguments, `3` in `MixedTensor<f64, 3>`.
+fn length(ty: &Type) -> Option<usize> {
+    let PathArguments::AngleBracketed(arguments) = &last_segment(ty)?.arguments else { return None };
+    match arguments.args.last()? {
+        GenericArgument::Const(Expr::Lit(literal)) => match &literal.lit {
+            syn::Lit::Int(integer) => integer.base10_parse().ok(),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The number that a type's name ends with.
+fn digit(name: &str) -> Option<usize> {
+    usize::try_from(name.chars().last()?.to_digit(10)?).ok()
+}
+
+/// The scalar that a type is made of; an inertia without arguments has `f64`.
+fn scalar_of(ty: &Type) -> Option<Ident> {
+    let segment = last_segment(ty)?;
+    match &segment.arguments {
+        PathArguments::AngleBracketed(arguments) if !arguments.args.is_empty() => match arguments.args.first()? {
+            GenericArgument::Type(inner) => last_segment(inner).map(|segment| segment.ident.clone()),
+            _ => None,
+        },
+        _ if segment.ident.to_string().ends_with("Inertia") => Some(Ident::new("f64", segment.ident.span())),
+        _ => Some(segment.ident.clone()),
+    }
+}
+
+pub(super) fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
+    let mut common: Option<Ident> = None;
+    for field in &item.fields {
+        if field_kind(&field.ty, item).is_none() {
+            continue;
+        }
+        let Some(scalar) = scalar_of(&field.ty) else { continue };
+        let is_parameter = item.generics.type_params().any(|parameter| parameter.ident == scalar);
+        if !is_parameter && scalar != "f64" && scalar != "f32" {
+            // A vector without a scalar is an alias, or the compiler tells what is missing.
+            if last_segment(&field.ty).is_none_or(|segment| segment.ident != scalar) {
+                errors.push(scalar.span(), "a scalar is `f64`, `f32` or a type parameter of the struct");
+            }
+            continue;
+        }
+        match &common {
+            None => common = Some(scalar),
+            Some(first) if *first != scalar => {
+                errors.push(
+                    scalar.span(),
+                    format!("all parameters share one scalar: write `{first}` here, or `{scalar}` everywhere"),
+                );
+            }
+            Some(_) => {}
+        }
+    }
+    let scalar = common.unwrap_or_else(|| Ident::new("f64", Span::call_site()));
+    if item.generics.type_params().any(|parameter| parameter.ident == scalar) {
+        Scalar::Parameter(scalar)
+    } else {
+        Scalar::Primitive(Ident::new(&scalar.to_string(), Span::call_site()))
+    }
+}
+
+/// Points belong to the space that the group acts on; after a mistake they are taken for vectors of that space.
+pub(super) fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
+    for field in fields {
+        let FieldKind::Point(rows) = field.kind else { continue };
+        let (name, size) = (field.plain_name(), group.size);
+        let message = if !group.is_affine() {
+            format!(
+                "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{size}<f64>"
+            )
+        } else if rows != size {
+            let (found, wanted) = (rows - 1, size - 1);
+            format!(
+                "`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: use \
+                 Point{wanted}<f64>"
+            )
+        } else {
+            continue;
+        };
+        errors.push(field.at, message);
+        field.kind = FieldKind::Vector(size);
+    }
+}
