@@ -137,7 +137,10 @@ of_type_and_path!(OfTypeAndPath, liestep::NonstandardInertia<f64>, liestep::SO3)
 /// The `m` of the fragment is the field, and that of the definition the `let`: 5 K · 7.
 macro_rules! hygienic_let {
     ($name:ident, $e:expr) => {
-        with_fragment!($name, { let m = 7.0; $e * m });
+        with_fragment!($name, {
+            let m = 7.0;
+            $e * m
+        });
     };
 }
 hygienic_let!(HygienicLet, m * ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h));
@@ -159,12 +162,18 @@ macro_rules! let_of_the_call {
         with_fragment!($name, ($e + m) * ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h));
     };
 }
-let_of_the_call!(LetOfTheCall, { let m = 7.0; m });
+let_of_the_call!(LetOfTheCall, {
+    let m = 7.0;
+    m
+});
 
 // Each name is that of the nearest `let` around it: ((5 + 1) · 2 + (5 + 1)) K.
 with_fragment!(Nested, {
     let m = m + 1.0;
-    let twice = { let m = 2.0 * m; m };
+    let twice = {
+        let m = 2.0 * m;
+        m
+    };
     (twice + m) * ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
 });
 

@@ -286,7 +286,9 @@ mod tests {
     fn what_has_no_value() {
         let (h, zero) = (Series::STEP, Series::ONE - Series::ONE);
         assert!(zero.is_zero() && (zero * h).is_zero() && zero.order().is_none());
-        for undefined in [Series::ONE / zero, zero.power(-1), h.apply(Function::Sqrt), (-Series::ONE).apply(Function::Ln)] {
+        for undefined in
+            [Series::ONE / zero, zero.power(-1), h.apply(Function::Sqrt), (-Series::ONE).apply(Function::Ln)]
+        {
             assert!(!undefined.is_defined() && !(undefined * zero + h).is_defined(), "{undefined:?}");
         }
         assert!(!(Series::ONE / h).apply(Function::Exp).is_defined());
