@@ -23,6 +23,13 @@ pub enum SetupError {
         /// The determinant of the inertia of the continuous limit.
         determinant: f64,
     },
+    /// The kinetic energy is negative along a direction.
+    NegativeKinetic {
+        /// The smallest pivot of the inertia of the continuous limit, relative to its entry of the diagonal.
+        pivot: f64,
+    },
+    /// A constant of the scene isn't finite, whatever the step.
+    NonFiniteConstant,
     /// A part of the initial state isn't finite.
     NonFinite {
         /// Which part.
@@ -64,6 +71,14 @@ impl fmt::Display for SetupError {
             Self::SingularKinetic { determinant } => write!(
                 f,
                 "the kinetic part is singular at the identity (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia"
+            ),
+            Self::NegativeKinetic { pivot } => write!(
+                f,
+                "the kinetic part is negative along a direction (pivot {pivot:e}, relative to the inertia there); check its sign, the `.transpose()` in it, and the signs of its parameters"
+            ),
+            Self::NonFiniteConstant => write!(
+                f,
+                "a constant of the scene is not finite: a divisor is zero, or a root or a logarithm has no value; give the parameters other values"
             ),
             Self::NonFinite { what } => write!(f, "the initial {what} is not finite; give finite numbers"),
             Self::NotInGroup { defect } => {

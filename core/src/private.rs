@@ -61,6 +61,11 @@ pub trait Parameter {
     }
 }
 
+/// Whether all of these are finite.
+pub fn are_finite<T: Real, const N: usize>(constants: &[T; N]) -> bool {
+    constants.iter().all(|constant| crate::numbers::is_finite(*constant))
+}
+
 /// As [`Parameter::validate`], for a scalar.
 ///
 /// # Errors

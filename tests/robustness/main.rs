@@ -11,6 +11,7 @@ mod policies;
 mod random_inputs;
 mod secants;
 mod secants_long_run;
+mod setup;
 mod simplified;
 mod solvability;
 mod solve;

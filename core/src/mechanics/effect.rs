@@ -150,6 +150,12 @@ pub trait Effect {
     /// Folds the parameters and the step into the constants of the stages below.
     fn constants(&self, h: Self::Scalar) -> Self::Constants;
 
+    /// Whether all constants are numbers, as a stepper needs them. What is derived looks at each; an effect that is
+    /// written by hand may leave it.
+    fn are_finite(_: &Self::Constants) -> bool {
+        true
+    }
+
     /// The part of the diamond that doesn't depend on `F`.
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self>;
 

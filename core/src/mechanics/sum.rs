@@ -148,6 +148,10 @@ where
         (self.first.constants(h), self.second.constants(h))
     }
 
+    fn are_finite(constants: &Self::Constants) -> bool {
+        A::are_finite(&constants.0) && B::are_finite(&constants.1)
+    }
+
     #[inline(always)]
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
         match (A::PARTS.kick_before, B::PARTS.kick_before) {

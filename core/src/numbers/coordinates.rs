@@ -68,6 +68,11 @@ pub trait Coordinates<T: Real>:
 
     /// The trace of a square matrix.
     fn trace(matrix: &Self::Square) -> T;
+
+    /// The smallest pivot of a symmetric matrix in the order of the basis, relative to its entry of the diagonal, up to
+    /// the first that isn't positive: above zero where the matrix is positive definite, below where it is negative along
+    /// some direction, and there of the order of rounding where it is singular.
+    fn least_pivot(matrix: &Self::Square) -> T;
 }
 
 impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
@@ -131,6 +136,16 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     #[inline(always)]
     fn trace(matrix: &SMatrix<T, D, D>) -> T {
         sum::<T, D>(|k| matrix[(k, k)])
+    }
+
+    fn least_pivot(matrix: &SMatrix<T, D, D>) -> T {
+        let (factors, _) = eliminate(*matrix);
+        let relative = |k: usize| factors[(k, k)] / matrix[(k, k)].simd_abs();
+        (1..D).fold(relative(0), |least, k| {
+            let pivot = relative(k);
+            // Behind a pivot that isn't positive the others tell nothing.
+            pivot.select(least.simd_gt(T::zero()) & pivot.simd_lt(least), least)
+        })
     }
 }
 

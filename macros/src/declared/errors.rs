@@ -1,7 +1,7 @@
 //! Errors accumulate, so that one compilation reports all mistakes of a declaration.
 
-use proc_macro2::{Ident, Span};
-use quote::{ToTokens, quote};
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
+use quote::ToTokens;
 
 /// The mistakes found so far.
 #[derive(Debug, Default)]
@@ -25,8 +25,8 @@ impl Errors {
 
     /// A mistake from one token to another.
     pub(crate) fn push_between(&mut self, [first, last]: [Span; 2], message: impl std::fmt::Display) {
-        let ends = [first, last].map(|span| Ident::new("_", span));
-        self.push_over(quote!(#(#ends)*), message);
+        let ends = [first, last].map(|span| TokenTree::Ident(Ident::new("_", span)));
+        self.push_over(TokenStream::from_iter(ends), message);
     }
 
     /// A mistake that a whole expression or type makes.

@@ -86,6 +86,10 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
             #constants_body
         }
 
+        fn are_finite(constants: &Self::Constants) -> #private::core::primitive::bool {
+            #private::are_finite(constants)
+        }
+
         #[doc = #before]
         #[inline(always)]
         fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> #vector { #kick_before }

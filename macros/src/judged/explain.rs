@@ -5,7 +5,8 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use super::verify::{self, KineticPart, TermMistake};
+use super::choose::Chosen;
+use super::verify::{self, KineticPart, TermMistake, Unconfirmed};
 use crate::declared::check;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Kind, Name, Tree};
@@ -124,6 +125,9 @@ pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, error
                                    as a square of `F - I`, without a root"
                 .to_owned()
         }
+        KineticPart::Negative => {
+            "the kinetic part is negative: check its sign, and the `.transpose()` in the square of `F - I`".to_owned()
+        }
         KineticPart::Singular(idle) => {
             let which = if idle.is_empty() {
                 String::new()
@@ -141,10 +145,63 @@ pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, error
     None
 }
 
-/// Reports a derived term that the self-check doesn't confirm.
-pub(super) fn disagreement(term: &str, tree: &Tree, errors: &mut Errors) {
-    errors
-        .push(tree.span, format!("the derived {term} disagrees with what is declared: please report this declaration"));
+/// Reports a kinetic part that isn't the same for all values of the advected parameters.
+pub(super) fn advected_in_kinetic_part(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    chosen: &Chosen,
+    errors: &mut Errors,
+) -> Option<()> {
+    let mut advected = declaration.advected.iter().enumerate();
+    let found = advected.find(|(index, _)| {
+        let symbol = chosen.lowered.names.get(&Name::Advected(*index));
+        symbol.is_some_and(|&id| chosen.derived.limit.inertia.contains(id))
+    });
+    let Some(w) = found.map(|(_, w)| w.plain_name()) else { return Some(()) };
+    let message = format!(
+        "the kinetic part depends on `{w}` here: the inertia has to be the same wherever the body is; write it with \
+         fields of the body"
+    );
+    let terms = verify::kinetic_with_advected(declaration, tree);
+    for term in &terms {
+        errors.push_between([term.span, term.end], &message);
+    }
+    if terms.is_empty() {
+        errors.push_over(declaration.expression.as_ref().map(check::value), message);
+    }
+    None
+}
+
+/// Reports what the self-check doesn't confirm.
+pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
+    let message = match unconfirmed {
+        Unconfirmed::Disagrees(term) => {
+            format!("the derived {term} disagrees with what is declared: please report this declaration")
+        }
+        Unconfirmed::NoValue => "this has no value at the points where it was tried: what is under a root or a \
+                                 logarithm has to be positive for parameters of some size and sign"
+            .to_owned(),
+        Unconfirmed::Rough => "this is too steep at the points where it was tried for its derivatives to be checked: \
+                               write it with lower powers, or in units in which its numbers are nearer to one"
+            .to_owned(),
+        Unconfirmed::NotSmooth => {
+            let place = verify::not_smooth_at_identity(declaration, tree);
+            let (message, ends) = not_smooth(place, tree);
+            return errors.push_between(ends, message);
+        }
+    };
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+}
+
+/// What has no derivative where a step begins, and where that stands.
+fn not_smooth(place: Option<(Rc<Tree>, TermMistake)>, tree: &Tree) -> (String, [Span; 2]) {
+    let what = match place {
+        Some((_, TermMistake::ZeroDivisor)) => "this divisor is zero at `F = I`",
+        Some(_) => "this is the root or the logarithm of what is zero at `F = I`",
+        None => "this has no derivative at `F = I`",
+    };
+    let ends = place.map_or([tree.span, tree.end], |(place, _)| [place.span, place.end]);
+    (format!("{what}, where a step is small: write it so that it has two derivatives there"), ends)
 }
 
 fn not_stationary(asymmetric: &[usize], declaration: &Declaration) -> String {

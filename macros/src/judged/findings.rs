@@ -25,7 +25,8 @@ pub(crate) fn findings(
     let Chosen { lowered, derived, kernel } = chosen;
     // What has no kinetic part at all is a term of a scene.
     if derived.limit.has_kinetic {
-        explain::kinetic_part(&verify::kinetic_part(declaration, lowered, derived), declaration, errors)?;
+        explain::advected_in_kinetic_part(declaration, tree, chosen, errors)?;
+        explain::kinetic_part(&verify::kinetic_part(declaration, tree, lowered, derived), declaration, errors)?;
     }
     let verified = match declaration.role {
         Role::Lagrangian => verify::verify(declaration, tree, lowered, derived, kernel),
@@ -39,8 +40,8 @@ pub(crate) fn findings(
             };
             Some(Findings { self_adjointness, hypotheses })
         }
-        Err(term) => {
-            explain::disagreement(term, tree, errors);
+        Err(unconfirmed) => {
+            explain::unconfirmed(unconfirmed, declaration, tree, errors);
             None
         }
     }

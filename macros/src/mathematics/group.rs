@@ -60,7 +60,7 @@ impl Group {
     /// What keeps the generators from being a basis of a Lie algebra, in exact arithmetic; nothing where that doesn't
     /// reach.
     pub(crate) fn defect(&self) -> Option<Defect> {
-        let mut basis = Span::default();
+        let mut basis = Subspace::default();
         for (k, generator) in self.generators.iter().enumerate() {
             if generator.iter().all(|entry| entry.is_zero()) {
                 return Some(Defect::Zero(k));
@@ -99,9 +99,9 @@ pub(crate) enum Defect {
 
 /// A vector space by a basis in echelon form: the place of each vector's first entry that isn't zero, which is one.
 #[derive(Default)]
-struct Span(Vec<(usize, Vec<Rational>)>);
+struct Subspace(Vec<(usize, Vec<Rational>)>);
 
-impl Span {
+impl Subspace {
     /// What is left of a vector once the basis is taken away.
     fn rest(&self, mut vector: Vec<Rational>) -> Vec<Rational> {
         for (at, basis) in &self.0 {

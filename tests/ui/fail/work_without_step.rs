@@ -1,4 +1,4 @@
-use liestep::force;
+use liestep::{SO3, force};
 use nalgebra::Vector3;
 
 #[force(group = SO3, work = 0.5 * tau.dot(&(eta + eta_next)) - c * vee(F).dot(&eta))]

@@ -45,11 +45,20 @@ impl<S: Effect> Declared<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        let (unit, determinant) = Vector::<S>::solve(&scene.inertia(), &Vector::<S>::zero());
-        if !unit.is_finite() || !determinant.simd_gt(real(0.0)).all() {
+        let inertia = scene.inertia();
+        let (unit, determinant) = Vector::<S>::solve(&inertia, &Vector::<S>::zero());
+        let pivot = Vector::<S>::least_pivot(&inertia);
+        // Less than this is what rounding leaves of a zero.
+        if pivot.simd_lt(-Scalar::<S>::simd_default_epsilon() * real(1e6)).any() {
+            return Err(SetupError::NegativeKinetic { pivot: reported(pivot) });
+        }
+        if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & pivot.simd_gt(real(0.0))).all() {
             return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
         }
         let constants = scene.constants(h);
+        if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
+            return Err(SetupError::NonFiniteConstant);
+        }
         let (at_rest, trace) = jacobian_at_rest(scene, &constants);
         let safe = safe(at_rest);
         // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.

@@ -207,7 +207,7 @@ const RICH: &str = "group = SO3, advected(w = up, b = field), crate = ::liestep,
     let d = F - I; let tip = F * rho;
     (d * J_d * d.transpose()).trace() / (2.0 * h) - h * k * (w.dot(&tip).powi(2) / 3.0 + (3.0 + b.dot(&tip)).ln())
         + h * vee(F * A).dot(&w.cross(&b)) - h * tip[2] * F[(0, 1)] * w.x + h * (A - F).norm_squared()
-        + k * (w.component_mul(&b).dot(&tip) - w.dot(&rho)).sin()
+        + h * k * (w.component_mul(&b).dot(&tip) - w.dot(&rho)).sin()
 }";
 const RICH_ITEM: &str = "pub struct Rich<T: Real> { J_d: NonstandardInertia<T>, A: Matrix3<T>, k: T,
     pub rho: Vector3<T>, up: Vector3<T>, field: Vector3<T> }";

@@ -5,6 +5,7 @@ mod determinism;
 mod fuzz;
 mod higher_order;
 mod own_group;
+mod right;
 mod rooms;
 mod sizes;
 mod time;

@@ -94,7 +94,7 @@ fn expansions_name_the_private_module_alone() {
     let emitted = sources().into_iter().filter(|(file, _)| room(file) == "emit").map(|(_, code)| code);
     let roots = emitted.flat_map(|code| code.split("#root").skip(1).map(str::to_owned).collect::<Vec<_>>());
     assert!(roots.map(|rest| assert!(rest.starts_with("::__private"), "{rest}")).count() > 0);
-    let work = "group = SO3, work = h * exp(a).trace() * log(F).dot(&(inverse(J) * eta))";
+    let work = "group = SO3, work = exp(a).trace() * log(F).dot(&(inverse(J) * eta))";
     let force =
         crate::expand::expand(Role::Force, tokens(work), &tokens("struct Push { a: Vector3<f64>, J: Inertia }"));
     let generic =

@@ -1,54 +1,66 @@
 //! The self-check of a force: its share in the momentum equation against the declared virtual work.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{Evaluation, Sample, TOLERANCE, Value, evaluated, slope, turn};
+use super::{Evaluation, Fault, Sample, TOLERANCE, Unconfirmed, Value, compare, confirmed, evaluated, turn};
 use crate::declared::{Declaration, Name, Tree};
 use crate::judged::choose::Chosen;
 use crate::mathematics::derive::Derived;
 use crate::program::{Graph, components, square};
 
-/// The error is the first derived term of a force that disagrees with the declaration.
-pub(crate) fn force(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen) -> Result<(), &'static str> {
+/// Checks the derived terms of a force. The error is the first that disagrees.
+pub(crate) fn force(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Chosen) -> Result<(), Unconfirmed> {
     let Chosen { lowered, derived, .. } = chosen;
     let (mut graph, none) = (Graph::default(), BTreeMap::new());
     let momentum = components(&mut graph, derived, &none, &derived.momentum);
     let jacobian = square(&mut graph, derived, &none, &derived.jacobian);
-    let found = (1..=3).find_map(|seed| {
-        let sample = Sample::new(declaration, lowered, derived, seed);
-        let inputs = sample.inputs(&sample.increment);
-        let values = [&momentum, &jacobian].map(|outputs| evaluated(&graph, outputs, &inputs));
-        disagreement(tree, derived, &sample, &values)
+    let values = |sample: &Sample, f: &Value| {
+        let inputs = sample.inputs(f);
+        [&momentum, &jacobian].map(|outputs| evaluated(&graph, outputs, &inputs))
+    };
+    let draws = Sample::draws(declaration, lowered, derived, tree);
+    let samples = confirmed(draws, |sample| check(tree, derived, sample, &values(sample, &sample.increment)))?;
+    let is_smooth = samples.iter().any(|sample| {
+        let identity = Value::identity(derived.group.size);
+        values(sample, &identity).iter().flatten().all(|entry| entry.is_finite())
     });
-    found.map_or(Ok(()), Err)
+    if is_smooth { Ok(()) } else { Err(Unconfirmed::NotSmooth) }
 }
 
-fn disagreement(
+fn check(
     tree: &Rc<Tree>,
     derived: &Derived,
     sample: &Sample,
     [momentum, jacobian]: &[Vec<f64>; 2],
-) -> Option<&'static str> {
+) -> Result<(), Fault> {
     let dimension = derived.group.dimension();
     // −f⁻_k at exp(tE_j) F.
     let expected = |k: usize, j: usize, t: f64| {
         let mut values = sample.values.clone();
         values.insert(Name::Increment, turn(&derived.group, j, t).times(&sample.increment));
-        values.insert(Name::DisplacementBefore, Value::new(dimension, 1, |row, _| f64::from(u8::from(row == k))));
-        values.insert(Name::DisplacementAfter, Value::new(dimension, 1, |_, _| 0.0));
+        values.extend(displacements(dimension, k));
         -Evaluation::new(&values).of(tree).first()
     };
-    let size: f64 = jacobian.iter().chain(momentum).map(|x| x.abs()).sum();
-    let differs = |found: Option<&f64>, expected: f64| {
-        let agrees = found.is_some_and(|found| (found - expected).abs() <= TOLERANCE * (1.0 + size));
-        expected.is_finite() && !agrees
-    };
-    (0..dimension).find_map(|k| {
-        if differs(momentum.get(k), expected(k, 0, 0.0)) {
-            return Some("force");
+    let size = 1.0 + jacobian.iter().chain(momentum).map(|x| x.abs()).sum::<f64>();
+    for k in 0..dimension {
+        let (found, declared) = (momentum[k], expected(k, 0, 0.0));
+        if !declared.is_finite() {
+            return Err(Fault::Untold);
         }
-        let is_wrong = |j| differs(jacobian.get(dimension * k + j), slope(&|t| expected(k, j, t)));
-        (0..dimension).any(is_wrong).then_some("Newton Jacobian")
-    })
+        if (found - declared).abs().partial_cmp(&(TOLERANCE * size)) != Some(Ordering::Less) {
+            return Err(Fault::Disagrees("force"));
+        }
+        for j in 0..dimension {
+            compare("Newton Jacobian", jacobian[dimension * k + j], &|t| expected(k, j, t), size)?;
+        }
+    }
+    Ok(())
+}
+
+/// One along the axis `k` at the beginning of a step, and nothing at its end.
+pub(super) fn displacements(dimension: usize, k: usize) -> [(Name, Value); 2] {
+    let axis = |k: Option<usize>| Value::new(dimension, 1, |row, _| f64::from(u8::from(Some(row) == k)));
+    [(Name::DisplacementBefore, axis(Some(k))), (Name::DisplacementAfter, axis(None))]
 }

@@ -1,10 +1,11 @@
 //! The kinetic part at the identity, at sample values of the parameters: stationary, smooth, and not singular.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
-use super::{Sample, Value, evaluated, linear};
+use super::{SAMPLES, Sample, Value, evaluated, linear};
 use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, FieldKind, Name};
+use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::Derived;
 use crate::program::{Graph, NodeId, components, square};
 
@@ -22,11 +23,22 @@ pub(crate) enum KineticPart {
     Singular(Vec<usize>),
     /// `J` isn't a number for any: the kinetic part has no second derivative.
     NotSmooth,
+    /// `J` is negative for all.
+    Negative,
 }
 
 /// Looks at the first and the second derivative at several values of the parameters.
-pub(crate) fn kinetic_part(declaration: &Declaration, lowered: &Lowered, derived: &Derived) -> KineticPart {
-    let samples: Vec<Sample> = (1..=3).map(|seed| Sample::new(declaration, lowered, derived, seed)).collect();
+pub(crate) fn kinetic_part(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    lowered: &Lowered,
+    derived: &Derived,
+) -> KineticPart {
+    let samples: Vec<Sample> = Sample::draws(declaration, lowered, derived, tree).take(SAMPLES).collect();
+    // What has no value is said when the terms are checked.
+    if samples.is_empty() {
+        return KineticPart::Regular;
+    }
     let (mut graph, none) = (Graph::default(), BTreeMap::new());
     let slope = components(&mut graph, derived, &none, &derived.limit.slope);
     let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
@@ -53,6 +65,8 @@ pub(crate) fn kinetic_part(declaration: &Declaration, lowered: &Lowered, derived
     let identity = Value::identity(dimension);
     if inertias.is_empty() {
         KineticPart::NotSmooth
+    } else if has_a_sign(declaration, lowered, derived) && inertias.iter().all(|j| is_positive(&j.map(|x| -x))) {
+        KineticPart::Negative
     } else if inertias.iter().any(|inertia| linear::solve(inertia, &identity).is_some()) {
         KineticPart::Regular
     } else {
@@ -62,6 +76,30 @@ pub(crate) fn kinetic_part(declaration: &Declaration, lowered: &Lowered, derived
         };
         KineticPart::Singular((0..dimension).filter(|&k| inertias.iter().all(|inertia| is_idle(k, inertia))).collect())
     }
+}
+
+/// Whether all that the kinetic part depends on is one field whose type promises a positive matrix.
+fn has_a_sign(declaration: &Declaration, lowered: &Lowered, derived: &Derived) -> bool {
+    let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
+    let used: Vec<_> = (0..declaration.fields.len()).filter(|&index| is_used(Name::Field(index))).collect();
+    match used.as_slice() {
+        [] => true,
+        [one] => declaration
+            .fields
+            .get(*one)
+            .is_some_and(|field| matches!(field.kind, FieldKind::SymmetricInertia | FieldKind::DiagonalInertia)),
+        _ => false,
+    }
+}
+
+/// Whether a symmetric matrix is positive definite: whether elimination meets positive pivots alone.
+fn is_positive(matrix: &Value) -> bool {
+    let (size, mut rest) = (matrix.rows, matrix.clone());
+    (0..size).all(|k| {
+        let pivot = rest.at(k, k);
+        rest = Value::new(size, size, |i, j| rest.at(i, j) - rest.at(i, k) * rest.at(k, j) / pivot);
+        pivot > 0.0
+    })
 }
 
 fn largest(entries: &[f64]) -> f64 {

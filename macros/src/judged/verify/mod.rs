@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, FieldKind, Name, Shape, Tree};
+use crate::declared::{Declaration, FieldKind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{Derived, SelfAdjointness};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
@@ -43,6 +43,31 @@ use value::Value;
 const SPACING: f64 = 1e-5;
 /// What they leave, relative to the size of the terms.
 const TOLERANCE: f64 = 1e-5;
+/// So many points are compared, of so many that are tried.
+const SAMPLES: usize = 3;
+const DRAWS: u64 = 60;
+
+/// What is wrong with a derivation, or with the expression that it is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unconfirmed {
+    /// A derived term disagrees with the declaration.
+    Disagrees(&'static str),
+    /// The declaration has no value at any point that was tried.
+    NoValue,
+    /// Its differences tell nothing at any point that was tried.
+    Rough,
+    /// It isn't smooth where `F = I`.
+    NotSmooth,
+}
+
+/// What is found at one point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fault {
+    /// The declaration has no value there, or differences that tell nothing.
+    Untold,
+    /// A derived term disagrees with the declaration.
+    Disagrees(&'static str),
+}
 
 /// Checks all that was derived. The error is the first term that disagrees.
 pub(super) fn verify(
@@ -51,22 +76,64 @@ pub(super) fn verify(
     lowered: &Lowered,
     derived: &Derived,
     kernel: &Kernel,
-) -> Result<SelfAdjointness, &'static str> {
+) -> Result<SelfAdjointness, Unconfirmed> {
     let (terms, step) = (Terms::new(derived), Step { derived, kernel });
-    let samples: Vec<Sample> = (1..=3).map(|seed| Sample::new(declaration, lowered, derived, seed)).collect();
-    for sample in &samples {
-        let found = terms.disagreement(sample, tree).or_else(|| step.disagreement(sample, &terms));
-        if let Some(term) = found {
-            return Err(term);
-        }
+    let samples = confirmed(Sample::draws(declaration, lowered, derived, tree), |sample| {
+        terms.check(sample, tree).and_then(|()| step.check(sample, &terms))
+    })?;
+    if !samples.iter().any(|sample| terms.are_finite_at_identity(sample)) {
+        return Err(Unconfirmed::NotSmooth);
     }
     let exact = || exact::is_self_adjoint(declaration, tree, lowered, derived);
-    reversal::self_adjointness(&samples, tree, &derived.adjoint_defect, exact)
+    reversal::self_adjointness(&samples, tree, &derived.adjoint_defect, exact).map_err(Unconfirmed::Disagrees)
+}
+
+/// The first points at which what was derived agrees with the declaration.
+fn confirmed<'a>(
+    draws: impl Iterator<Item = Sample<'a>>,
+    check: impl Fn(&Sample) -> Result<(), Fault>,
+) -> Result<Vec<Sample<'a>>, Unconfirmed> {
+    let (mut samples, mut nothing) = (Vec::new(), Unconfirmed::NoValue);
+    for sample in draws {
+        match check(&sample) {
+            Ok(()) => samples.push(sample),
+            Err(Fault::Untold) => nothing = Unconfirmed::Rough,
+            Err(Fault::Disagrees(term)) => return Err(Unconfirmed::Disagrees(term)),
+        }
+        if samples.len() == SAMPLES {
+            break;
+        }
+    }
+    if samples.is_empty() { Err(nothing) } else { Ok(samples) }
 }
 
 /// The slope of a function at zero.
-fn slope(function: &dyn Fn(f64) -> f64) -> f64 {
-    (function(SPACING) - function(-SPACING)) / (2.0 * SPACING)
+fn slope(function: &dyn Fn(f64) -> f64, spacing: f64) -> f64 {
+    (function(spacing) - function(-spacing)) / (2.0 * spacing)
+}
+
+/// Whether a derivative is that of a function at zero, whose terms have that size.
+///
+/// Where another spacing gives another slope, neither is right: near a pole, or where a function is so steep that its
+/// differences lose their digits.
+fn compare(term: &'static str, found: f64, function: &dyn Fn(f64) -> f64, size: f64) -> Result<(), Fault> {
+    let allowed = TOLERANCE * size;
+    let expected = slope(function, SPACING);
+    if (found - expected).abs() <= allowed {
+        return Ok(());
+    }
+    let finer = slope(function, 0.1 * SPACING);
+    if (found - finer).abs() <= allowed {
+        return Ok(());
+    }
+    let is_told = (finer - expected).abs() <= 0.5 * allowed;
+    Err(if is_told { Fault::Disagrees(term) } else { Fault::Untold })
+}
+
+/// A function of one number whose values are asked for more than once.
+fn remembered<T: Clone>(function: impl Fn(f64) -> T) -> impl Fn(f64) -> T {
+    let known = std::cell::RefCell::new(BTreeMap::new());
+    move |t| known.borrow_mut().entry(t.to_bits()).or_insert_with(|| function(t)).clone()
 }
 
 fn evaluated(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value>) -> Vec<f64> {
@@ -114,6 +181,17 @@ struct Sample<'a, T = f64> {
 }
 
 impl<'a> Sample<'a> {
+    /// The points at which the declaration has a value. The later ones are farther away, and may be anywhere.
+    fn draws(
+        declaration: &'a Declaration,
+        lowered: &'a Lowered,
+        derived: &'a Derived,
+        tree: &'a Rc<Tree>,
+    ) -> impl Iterator<Item = Self> {
+        let samples = (1..=DRAWS).map(|seed| Self::new(declaration, lowered, derived, seed));
+        samples.filter(|sample| sample.declared(tree).is_finite())
+    }
+
     fn new(declaration: &Declaration, lowered: &Lowered, derived: &'a Derived, seed: u64) -> Self {
         let mut number = stream(seed);
         let group = &declaration.group;
@@ -123,7 +201,23 @@ impl<'a> Sample<'a> {
             increment = increment.times(&turn(group, k, angle));
             inverse = turn(group, k, -angle).times(&inverse);
         }
-        Self::with_numbers(declaration, lowered, derived, (increment, inverse), number)
+        let mut sample = Self::with_numbers(declaration, lowered, derived, (increment, inverse), &mut number);
+        // From one draw in five on, another scale for each parameter, and another sign for scalars.
+        let reach = seed / (DRAWS / 5);
+        for (name, value) in sample.values.iter_mut().filter(|_| reach > 0) {
+            let (scale, sign) = ((8.0 * number() - 2.0).exp2().powf(reach as f64 / 4.0), number() < 0.5);
+            let kind = match name {
+                Name::Field(index) => declaration.fields.get(*index).map(|field| field.kind),
+                Name::Advected(index) => Some(declaration.advected_kind(*index)),
+                _ => None,
+            };
+            *value = match kind {
+                None | Some(FieldKind::Point(_)) => continue,
+                Some(FieldKind::Scalar) if sign => value.map(|x| -scale * x),
+                Some(_) => value.map(|x| scale * x),
+            };
+        }
+        sample
     }
 
     /// `F` turned by `exp(s E_k)` from the left.
@@ -174,6 +268,11 @@ impl<'a, T: Number> Sample<'a, T> {
         values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
         for (index, field) in declaration.fields.iter().enumerate() {
             values.insert(Name::Field(index), parameter(field.kind, &mut number));
+        }
+        if declaration.role == Role::Force {
+            for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
+                values.insert(name, parameter(FieldKind::Vector(declaration.group.dimension()), &mut number));
+            }
         }
         let mut advected = Vec::new();
         for index in 0..declaration.advected.len() {

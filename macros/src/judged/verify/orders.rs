@@ -11,8 +11,14 @@ use super::number::Number as _;
 use super::series::Series;
 use super::value::Value;
 use super::{parameter, stream};
-use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
+use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::{Function, Rational};
+
+/// A sum may be taken apart as often; what is shared by `let`s is written down more often than a person would.
+const MOST_SPLITS: usize = 200;
+
+/// A sum isn't looked for below more factors than these.
+const MOST_FACTORS: usize = 10;
 
 /// What is wrong with a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +53,7 @@ pub(crate) fn term_mistakes(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<(
         at_rest: Evaluation::new(&points.at_rest),
         elsewhere: Evaluation::new(&points.elsewhere),
         kept: Vec::new(),
+        splits: MOST_SPLITS,
         found: Vec::new(),
     };
     let whole = search.behaviour(tree);
@@ -77,9 +84,9 @@ pub(crate) fn kinetic_with_advected(declaration: &Declaration, tree: &Rc<Tree>) 
         })
     });
     let rest = [&points.at_rest, &points.elsewhere];
-    let (mut open, mut found) = (vec![tree.clone()], Vec::new());
+    let (mut open, mut found, mut splits) = (vec![tree.clone()], Vec::new(), 0..MOST_SPLITS);
     while let Some(tree) = open.pop() {
-        if let Some(parts) = split(&tree) {
+        if let Some(parts) = splits.next().and_then(|_| split(&tree)) {
             open.extend(parts.into_iter().rev());
             continue;
         }
@@ -126,10 +133,8 @@ impl Points {
             let speed = number() + Series::constant(0.5);
             velocity = Value::square(group.size, entries).map(|entry: Series| entry * speed).plus(&velocity);
         }
-        let dimension = group.dimension();
         for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
-            let entries = (0..dimension).map(|_| number()).collect();
-            at_rest.insert(name, Value { rows: dimension, columns: 1, entries });
+            at_rest.insert(name, parameter(FieldKind::Vector(group.dimension()), &mut number));
         }
         let with_advected = |values: &Values, seed: u64| {
             let (mut values, mut number) = (values.clone(), numbers(seed));
@@ -201,10 +206,18 @@ struct Search<'a> {
     elsewhere: Evaluation<'a, Series>,
     /// What has been evaluated stays, as its place says what it is.
     kept: Vec<Rc<Tree>>,
+    /// How many sums may still be taken apart.
+    splits: usize,
     found: Vec<(Rc<Tree>, TermMistake)>,
 }
 
 impl Search<'_> {
+    /// As [`split`], while there aren't too many.
+    fn split(&mut self, tree: &Rc<Tree>) -> Option<[Rc<Tree>; 2]> {
+        self.splits = self.splits.checked_sub(1)?;
+        split(tree)
+    }
+
     fn behaviour(&mut self, tree: &Rc<Tree>) -> Behaviour {
         self.kept.push(tree.clone());
         let [moving, value] = [&mut self.moving, &mut self.at_rest].map(|at| at.of(tree).first());
@@ -244,7 +257,7 @@ impl Search<'_> {
     fn report_too_large(&mut self, tree: &Rc<Tree>) {
         let Some(mistake) = self.too_large(tree) else { return };
         let before = self.found.len();
-        for part in split(tree).into_iter().flatten() {
+        for part in self.split(tree).into_iter().flatten() {
             self.report_too_large(&part);
         }
         if self.found.len() == before {
@@ -254,7 +267,7 @@ impl Search<'_> {
 
     /// At the terms that a smaller step makes ever less important, or that never do anything.
     fn report_vanishing(&mut self, tree: &Rc<Tree>, whole: &Behaviour) {
-        if let Some(parts) = split(tree) {
+        if let Some(parts) = self.split(tree) {
             parts.iter().for_each(|part| self.report_vanishing(part, whole));
             return;
         }
@@ -335,18 +348,23 @@ fn visit(tree: &Rc<Tree>, at: &mut dyn FnMut(&Rc<Tree>)) {
 
 /// The two terms of a sum, with the scalars that the sum is multiplied or divided by; each has the place of its own.
 fn split(tree: &Rc<Tree>) -> Option<[Rc<Tree>; 2]> {
+    split_within(tree, MOST_FACTORS)
+}
+
+fn split_within(tree: &Rc<Tree>, depth: usize) -> Option<[Rc<Tree>; 2]> {
+    let depth = depth.checked_sub(1)?;
     let each = |parts: [Rc<Tree>; 2], kind: &dyn Fn(Rc<Tree>) -> Kind| {
         parts.map(|part| Tree::in_place_of(&part.clone(), kind(part)))
     };
     match &tree.kind {
-        Kind::Bound(_, inner) => split(inner),
+        Kind::Bound(_, inner) => split_within(inner, depth),
         Kind::Add(a, b) => Some([a.clone(), b.clone()]),
         Kind::Subtract(a, b) => Some([a.clone(), Tree::in_place_of(b, Kind::Negate(b.clone()))]),
-        Kind::Negate(a) => Some(each(split(a)?, &Kind::Negate)),
-        Kind::Divide(a, b) => Some(each(split(a)?, &|part| Kind::Divide(part, b.clone()))),
-        Kind::Multiply(a, b) if a.shape == Shape::Scalar && b.shape == Shape::Scalar => match split(a) {
+        Kind::Negate(a) => Some(each(split_within(a, depth)?, &Kind::Negate)),
+        Kind::Divide(a, b) => Some(each(split_within(a, depth)?, &|part| Kind::Divide(part, b.clone()))),
+        Kind::Multiply(a, b) if a.shape == Shape::Scalar && b.shape == Shape::Scalar => match split_within(a, depth) {
             Some(parts) => Some(each(parts, &|part| Kind::Multiply(part, b.clone()))),
-            None => Some(each(split(b)?, &|part| Kind::Multiply(a.clone(), part))),
+            None => Some(each(split_within(b, depth)?, &|part| Kind::Multiply(a.clone(), part))),
         },
         _ => None,
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::terms::Terms;
-use super::{SPACING, Sample, TOLERANCE, Value, evaluated, linear, turn};
+use super::{Fault, SPACING, Sample, Value, compare, evaluated, linear, remembered, turn};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::SymbolId;
@@ -19,45 +19,44 @@ pub(super) struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// The first part of the step that disagrees with the terms.
-    pub(super) fn disagreement(&self, sample: &Sample, terms: &Terms) -> Option<&'static str> {
+    /// Whether all parts of the step agree with the terms.
+    pub(super) fn check(&self, sample: &Sample, terms: &Terms) -> Result<(), Fault> {
         let inputs = self.inputs(sample, &sample.increment);
         let momentum = terms.momentum(&inputs);
         let before = evaluated(&self.kernel.graph, &self.kernel.kick_before, &inputs);
         let target: Vec<f64> = momentum.iter().zip(&before).map(|(mu, kick)| mu + kick).collect();
         if target.iter().any(|entry| !entry.is_finite()) {
-            return None;
+            return Err(Fault::Untold);
         }
-        self.newton_disagreement(sample, &inputs, &target)
-            .or_else(|| {
-                self.transport_disagrees(sample, &inputs, &target, &terms.left(&inputs))
-                    .then_some("transported momentum")
-            })
-            .or_else(|| self.kick_derivative_disagrees(sample, &inputs).then_some("derivative of the kick"))
+        self.check_newton(sample, &inputs, &target)?;
+        if self.transport_disagrees(sample, &inputs, &target, &terms.left(&inputs)) {
+            return Err(Fault::Disagrees("transported momentum"));
+        }
+        self.check_kick_derivative(sample, &inputs)
     }
 
     /// Along each generator, against the kicks at `exp(∓t E_j)·w`.
-    fn kick_derivative_disagrees(&self, sample: &Sample, inputs: &BTreeMap<SymbolId, Value>) -> bool {
+    fn check_kick_derivative(&self, sample: &Sample, inputs: &BTreeMap<SymbolId, Value>) -> Result<(), Fault> {
         let (graph, group, along) = (&self.kernel.graph, &self.derived.group, self.derived.directions.along);
-        let Some(outputs) = &self.kernel.kick_derivative else { return false };
-        (0..group.dimension()).any(|j| {
-            let kick = |t: f64| {
+        let Some(outputs) = &self.kernel.kick_derivative else { return Ok(()) };
+        for j in 0..group.dimension() {
+            let kick = remembered(|t: f64| {
                 let values = sample.moved_values(&sample.increment, (&turn(group, j, -t), &turn(group, j, t)));
                 let mut inputs = inputs.clone();
                 for (symbol, name) in &sample.symbols {
                     inputs.extend(values.get(name).map(|value| (*symbol, value.clone())));
                 }
                 evaluated(graph, &self.kernel.kick_before, &inputs)
-            };
-            let (after, before) = (kick(SPACING), kick(-SPACING));
+            });
             let mut inputs = inputs.clone();
             inputs.insert(along, Value::new(group.dimension(), 1, |row, _| if row == j { 1.0 } else { 0.0 }));
             let found = evaluated(graph, outputs, &inputs);
-            let size = 1.0 + found.iter().chain(&after).map(|x| x.abs()).sum::<f64>();
-            let expected = after.iter().zip(&before).map(|(x, y)| (x - y) / (2.0 * SPACING));
-            let defect: Vec<f64> = found.iter().zip(expected).map(|(x, y)| x - y).collect();
-            defect.iter().any(|entry| entry.is_finite()) && !is_small(&defect, TOLERANCE * size)
-        })
+            let size = 1.0 + found.iter().chain(&kick(SPACING)).map(|x| x.abs()).sum::<f64>();
+            for (k, found) in found.into_iter().enumerate() {
+                compare("derivative of the kick", found, &|t| kick(t)[k], size)?;
+            }
+        }
+        Ok(())
     }
 
     fn inputs(&self, sample: &Sample, f: &Value) -> BTreeMap<SymbolId, Value> {
@@ -69,12 +68,7 @@ impl Step<'_> {
     }
 
     /// The residual is a multiple of `U(F, w) − a`, positive as the sample's step is, and the Jacobian its derivative.
-    fn newton_disagreement(
-        &self,
-        sample: &Sample,
-        inputs: &BTreeMap<SymbolId, Value>,
-        target: &[f64],
-    ) -> Option<&'static str> {
+    fn check_newton(&self, sample: &Sample, inputs: &BTreeMap<SymbolId, Value>, target: &[f64]) -> Result<(), Fault> {
         let (graph, directions, dimension) = (&self.kernel.graph, &self.derived.directions, target.len());
         let with_target = |mut inputs: BTreeMap<SymbolId, Value>, target: &[f64]| {
             inputs.insert(directions.target, column(target));
@@ -86,7 +80,7 @@ impl Step<'_> {
         let (solved, jacobian_there) = (residual(&at_solution), jacobian(&at_solution));
         let size = 1.0 + jacobian_there.iter().chain(target).map(|x| x.abs()).sum::<f64>();
         if !is_small(&solved, ROUNDING * size) {
-            return Some("Newton residual at the solution");
+            return Err(Fault::Disagrees("Newton residual at the solution"));
         }
         let offset: Vec<f64> = (0..dimension).map(|k| if k % 2 == 0 { 0.7 } else { -0.4 } * size).collect();
         let shifted: Vec<f64> = target.iter().zip(&offset).map(|(a, d)| a + d).collect();
@@ -97,19 +91,15 @@ impl Step<'_> {
         let size = 1.0 + found.iter().chain(&jacobian).map(|x| x.abs()).sum::<f64>();
         // A factor that isn't a number isn't positive.
         if factor.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) || !is_small(&rest, ROUNDING * size) {
-            return Some("Newton residual");
+            return Err(Fault::Disagrees("Newton residual"));
         }
         for j in 0..dimension {
-            let [after, before] =
-                [SPACING, -SPACING].map(|t| residual(&with_target(self.displaced(sample, inputs, j, t), &shifted)));
+            let residual = remembered(|t| residual(&with_target(self.displaced(sample, inputs, j, t), &shifted)));
             for k in 0..dimension {
-                let expected = (after[k] - before[k]) / (2.0 * SPACING);
-                if !is_small(&[jacobian[dimension * k + j] - expected], TOLERANCE * size) {
-                    return Some("Newton Jacobian of the step");
-                }
+                compare("Newton Jacobian of the step", jacobian[dimension * k + j], &|t| residual(t)[k], size)?;
             }
         }
-        None
+        Ok(())
     }
 
     /// The point displaced in the coordinates of the Newton system: `y` on SO(3), elsewhere `F ↦ exp(t E_j) F`.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{SPACING, Sample, TOLERANCE, Value, evaluated, slope, turn};
+use super::{Fault, Sample, Value, compare, evaluated, remembered, turn};
 use crate::declared::{Name, Tree};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::symbolic::SymbolId;
@@ -42,8 +42,15 @@ impl Terms {
         evaluated(&self.graph, &self.left, inputs)
     }
 
-    /// The first term that disagrees with the declaration.
-    pub(super) fn disagreement(&self, sample: &Sample, tree: &Rc<Tree>) -> Option<&'static str> {
+    /// Whether the momentum and its Jacobian are numbers where a step begins.
+    pub(super) fn are_finite_at_identity(&self, sample: &Sample) -> bool {
+        let inputs = sample.inputs(&Value::identity(sample.increment.rows));
+        let outputs = [self.momentum.as_slice(), &self.jacobian].concat();
+        evaluated(&self.graph, &outputs, &inputs).iter().all(|entry| entry.is_finite())
+    }
+
+    /// Whether all terms agree with the declaration.
+    pub(super) fn check(&self, sample: &Sample, tree: &Rc<Tree>) -> Result<(), Fault> {
         let group = &sample.derived.group;
         let dimension = group.dimension();
         let (f, identity) = (&sample.increment, Value::identity(group.size));
@@ -55,50 +62,39 @@ impl Terms {
             .collect();
         let found = evaluated(&self.graph, &outputs, &inputs);
         let (covectors, jacobian) = found.split_at(4 * dimension);
-        let size: f64 = jacobian.iter().map(|x| x.abs()).sum::<f64>() + sample.declared(tree).abs();
-        let differs = |found: f64, expected: f64| differs(found, expected, 1.0 + size);
+        let size = 1.0 + jacobian.iter().map(|x| x.abs()).sum::<f64>() + sample.declared(tree).abs();
         let still = (&identity, &identity);
         for k in 0..dimension {
             let turn = |s: f64| (turn(group, k, s), turn(group, k, -s));
             let on_the_left = |s: f64| sample.moved(tree, &sample.turned(k, s), still);
             let on_the_right = |s: f64| sample.moved(tree, &f.times(&turn(s).0), still);
-            let advected = |s: f64| sample.moved(tree, f, (&turn(s).0, &turn(s).1));
+            let advected = |s: f64| -sample.moved(tree, f, (&turn(s).0, &turn(s).1));
             let jointly = |s: f64| sample.moved(tree, &sample.turned(k, s), (&turn(s).0, &turn(s).1));
-            let checks = [
-                ("right momentum map", slope(&on_the_left)),
-                ("left momentum map", slope(&on_the_right)),
-                ("diamond term", -slope(&advected)),
-                ("momentum equation", slope(&jointly)),
+            let checks: [(&'static str, &dyn Fn(f64) -> f64); 4] = [
+                ("right momentum map", &on_the_left),
+                ("left momentum map", &on_the_right),
+                ("diamond term", &advected),
+                ("momentum equation", &jointly),
             ];
-            for (index, (name, expected)) in checks.into_iter().enumerate() {
-                if differs(covectors[dimension * index + k], expected) {
-                    return Some(name);
-                }
+            for (index, (name, function)) in checks.into_iter().enumerate() {
+                compare(name, covectors[dimension * index + k], function, size)?;
             }
         }
         // The momentum agrees with the declaration, so its differences are those of the declaration.
         for j in 0..dimension {
-            let [after, before] = [SPACING, -SPACING].map(|t| self.momentum(&sample.inputs(&sample.turned(j, t))));
+            let momentum = remembered(|t| self.momentum(&sample.inputs(&sample.turned(j, t))));
             for k in 0..dimension {
-                if differs(jacobian[dimension * k + j], (after[k] - before[k]) / (2.0 * SPACING)) {
-                    return Some("Newton Jacobian");
-                }
+                compare("Newton Jacobian", jacobian[dimension * k + j], &|t| momentum(t)[k], size)?;
             }
         }
-        self.energy_disagrees(sample, tree, &inputs).then_some("discrete energy")
+        self.check_energy(sample, tree, &inputs)
     }
 
-    fn energy_disagrees(&self, sample: &Sample, tree: &Rc<Tree>, inputs: &BTreeMap<SymbolId, Value>) -> bool {
-        let Some(h) = sample.values.get(&Name::Step).map(Value::first) else { return false };
+    fn check_energy(&self, sample: &Sample, tree: &Rc<Tree>, inputs: &BTreeMap<SymbolId, Value>) -> Result<(), Fault> {
+        let Some(h) = sample.values.get(&Name::Step).map(Value::first) else { return Ok(()) };
         let found = evaluated(&self.graph, &[self.energy], inputs).first().copied().unwrap_or(f64::NAN);
         // A power of h has a second derivative of the order of the energy over h².
-        let expected = -slope(&|s| sample.at_step(tree, h * (1.0 + s))) / h;
-        differs(found, expected, 1.0 + found.abs() + sample.declared(tree).abs() / h)
+        let size = 1.0 + found.abs() + sample.declared(tree).abs() / h;
+        compare("discrete energy", found, &|s| -sample.at_step(tree, h * (1.0 + s)) / h, size)
     }
-}
-
-/// Where the declaration has a value, so have its derivatives; elsewhere (a logarithm of a negative number) none.
-fn differs(found: f64, expected: f64, size: f64) -> bool {
-    let agrees = (found - expected).abs() <= TOLERANCE * size;
-    expected.is_finite() && !agrees
 }

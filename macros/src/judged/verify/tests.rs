@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::{KineticPart, degree, kinetic_part, verify};
+use super::{KineticPart, Unconfirmed, degree, kinetic_part, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
 use crate::declared::{Declaration, Role, Tree, check, parse};
@@ -39,7 +39,10 @@ impl Declared {
     }
 
     fn found(&self, derived: &Derived, kernel: &Kernel) -> Result<SelfAdjointness, &'static str> {
-        verify(&self.declaration, &self.tree, &self.lowered, derived, kernel)
+        verify(&self.declaration, &self.tree, &self.lowered, derived, kernel).map_err(|unconfirmed| match unconfirmed {
+            Unconfirmed::Disagrees(term) => term,
+            other => panic!("{other:?}"),
+        })
     }
 
     fn verified(&self) -> Result<SelfAdjointness, &'static str> {
@@ -61,7 +64,7 @@ impl Declared {
     }
 
     fn kinetic_part(&self) -> KineticPart {
-        kinetic_part(&self.declaration, &self.lowered, &self.derived)
+        kinetic_part(&self.declaration, &self.tree, &self.lowered, &self.derived)
     }
 }
 
