@@ -26,7 +26,7 @@ impl Group {
     pub(crate) fn dual(&self) -> Vec<(usize, usize, usize, Rational)> {
         let (places, dimension) = (self.size * self.size, self.dimension());
         // With a unit vector behind each generator, so that what is taken away of a matrix is counted there.
-        let mut basis = Span::default();
+        let mut basis = Subspace::default();
         for (k, generator) in self.generators.iter().enumerate() {
             basis.extend([generator.clone(), unit(k, dimension)].concat());
         }
