@@ -78,7 +78,7 @@ impl fmt::Display for SetupError {
             ),
             Self::NonFiniteConstant => write!(
                 f,
-                "a constant of the scene is not finite: a divisor is zero, or a root or a logarithm has no value; give the parameters other values"
+                "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values"
             ),
             Self::NonFinite { what } => write!(f, "the initial {what} is not finite; give finite numbers"),
             Self::NotInGroup { defect } => {

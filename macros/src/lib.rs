@@ -49,8 +49,15 @@ mod program;
 /// What changes with time is given: `Stepper::step_with` makes a step with other values of what is advected and of what
 /// `given(…)` names, a scalar, a vector or a matrix that the group doesn't move.
 ///
+/// As `h → 0`, with `F = exp(hξ̂)`, a Lagrangian goes like `h`: a kinetic part is a square of `F - I` over `h`, and a
+/// potential has a factor `h`. A term that goes otherwise is an error, as is one that is the same for all `F`, a kinetic
+/// part that depends on an advected name, and one that isn't smooth at `F = I`. A correction that vanishes with a higher
+/// power says so by `h.powi(n)`: `h.powi(3) * w.dot(&rho).powi(2)`.
+///
 /// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
 /// `body + potential`.
+///
+/// In a `macro_rules!` macro, fragments keep their precedence, and a `let` of the macro hides no name of its caller.
 ///
 /// Every mistake is reported at the token that it is about. See `DiscreteLagrangian` for what is derived.
 #[proc_macro_attribute]
@@ -76,8 +83,9 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 /// step, each in the body's axes then: the discrete Lagrange–d'Alembert principle. They have a component for each
 /// generator of the group; on SO(3) they are small rotations (rad), on SE(3) these and three small translations (m), and
 /// `hat(eta) * p` is how far the body's point `p` goes. A torque `τ(F, w)` that acts half at either end is
-/// `0.5 * h * tau.dot(&(eta + eta_next))`. What `eta` is multiplied with enters the momentum
-/// equation, and its derivative the Newton Jacobian.
+/// `0.5 * h * tau.dot(&(eta + eta_next))`. Work goes like `h` as `h → 0`, and `F - I` and `vee(F)` count as `h`: drag is
+/// `-c * vee(F).dot(&eta)`; work that vanishes faster says so by `h.powi(n)`. What `eta` is multiplied with enters the
+/// momentum equation, and its derivative the Newton Jacobian.
 #[proc_macro_attribute]
 pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
     expand::expand(declared::Role::Force, arguments.into(), &item.into()).into()

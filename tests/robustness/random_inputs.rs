@@ -158,6 +158,12 @@ fn check_setup_error(top: &HeavyTop, h: f64, error: &SetupError) -> &'static str
             assert!(!h.is_finite() || !(1e-90..1e90).contains(&size), "{h:e} for {top:?}");
             "setup: invalid step"
         }
+        SetupError::NonFiniteConstant => {
+            // A product of all of them is a constant.
+            let numbers = [&[top.m, top.g], top.rho.as_slice()].concat();
+            assert!(extremes(&numbers).0 > 1e90, "{top:?}");
+            "setup: constant not finite"
+        }
         ref other => panic!("{other:?} for {top:?} and {h:e}"),
     }
 }

@@ -1,5 +1,8 @@
 //! Scalar operations with equal ones shared.
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use super::index::Index;
 use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
 
@@ -45,7 +48,13 @@ pub(crate) struct Graph {
     index: Index,
     /// Zero and one, where they are nodes already: no other node is looked up so often.
     units: [Option<NodeId>; 2],
+    /// The products of matrices so far, by the inner dimension and the entries of both. The components of a covector,
+    /// and more so the entries of a Jacobian, are made of the same ones.
+    pub(super) products: BTreeMap<(usize, Matrix, Matrix), Matrix>,
 }
+
+/// The entries of a matrix, row by row.
+pub(super) type Matrix = Rc<[NodeId]>;
 
 impl Graph {
     pub(crate) fn node(&self, id: NodeId) -> Node {

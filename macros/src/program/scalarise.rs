@@ -5,8 +5,9 @@
 //! product is the same node in the residual and in its Jacobian.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
-use super::graph::{Graph, Input, NodeId};
+use super::graph::{Graph, Input, Matrix, NodeId};
 use crate::mathematics::symbolic::{Atom, Expression, Factor, Monomial, Stage, Structure, SymbolId, Symbols};
 
 /// A matrix of nodes.
@@ -14,7 +15,8 @@ use crate::mathematics::symbolic::{Atom, Expression, Factor, Monomial, Stage, St
 pub(crate) struct Entries {
     pub(crate) rows: usize,
     pub(crate) columns: usize,
-    nodes: Vec<NodeId>,
+    /// Shared, as factors are handed on far more often than made.
+    nodes: Matrix,
 }
 
 impl Entries {
@@ -190,7 +192,7 @@ impl Scalariser<'_> {
             let right = factors.remove(at + 1);
             factors[at] = self.multiply(&factors[at].clone(), &right);
         }
-        factors.pop().unwrap_or_else(|| Entries { rows: 0, columns: 0, nodes: Vec::new() })
+        factors.pop().unwrap_or_else(|| Entries { rows: 0, columns: 0, nodes: Rc::new([]) })
     }
 
     /// The trace of a closed word, or the value of a bilinear form, times a scale.
@@ -249,7 +251,13 @@ impl Scalariser<'_> {
     }
 
     fn multiply(&mut self, left: &Entries, right: &Entries) -> Entries {
-        Entries::new(left.rows, right.columns, |row, column| self.inner(left, row, right, column))
+        let key = (left.columns, left.nodes.clone(), right.nodes.clone());
+        if let Some(nodes) = self.graph.products.get(&key) {
+            return Entries { rows: left.rows, columns: right.columns, nodes: nodes.clone() };
+        }
+        let product = Entries::new(left.rows, right.columns, |row, column| self.inner(left, row, right, column));
+        self.graph.products.insert(key, product.nodes.clone());
+        product
     }
 
     fn inner(&mut self, left: &Entries, row: usize, right: &Entries, column: usize) -> NodeId {
@@ -258,26 +266,35 @@ impl Scalariser<'_> {
         self.graph.sum(&terms)
     }
 
+    /// How many nodes there are of each stage, without constants.
+    fn stages(&self, nodes: impl Iterator<Item = NodeId>) -> [usize; 3] {
+        let mut counts = [0; 3];
+        for node in nodes.filter(|&node| self.graph.value(node).is_none()) {
+            counts[match self.graph.stage(node) {
+                Stage::Construction => 0,
+                Stage::Step => 1,
+                Stage::Iteration => 2,
+            }] += 1;
+        }
+        counts
+    }
+
     /// What a product of two factors costs, to be compared: whether it is one with a generator, which the other
     /// components of a covector don't share; its multiplications, which count more at a later stage; the size of the
     /// result.
     fn pair_cost(&self, left: &Entries, right: &Entries) -> (bool, usize, usize) {
         let is_own = self.is_constant(left) != self.is_constant(right);
-        let mut cost = 0;
-        for row in 0..left.rows {
-            for column in 0..right.columns {
-                for k in 0..left.columns {
-                    let (a, b) = (left.at(row, k), right.at(k, column));
-                    if self.graph.value(a).is_none() && self.graph.value(b).is_none() {
-                        cost += match self.graph.stage(a).max(self.graph.stage(b)) {
-                            Stage::Construction => 1,
-                            Stage::Step => 100,
-                            Stage::Iteration => 10_000,
-                        };
-                    }
-                }
-            }
-        }
+        // For each inner index, how many entries of each stage meet.
+        let cost = (0..left.columns).map(|k| {
+            let above = self.stages((0..left.rows).map(|row| left.at(row, k)));
+            let below = self.stages((0..right.columns).map(|column| right.at(k, column)));
+            let [construction, step, iteration] = [0, 1, 2].map(|latest| {
+                let up_to = |counts: &[usize; 3]| counts.iter().take(latest + 1).sum::<usize>();
+                up_to(&above) * up_to(&below)
+            });
+            construction + 100 * (step - construction) + 10_000 * (iteration - step)
+        });
+        let cost: usize = cost.sum();
         (is_own, cost, left.rows * right.columns)
     }
 }

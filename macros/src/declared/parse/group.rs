@@ -156,7 +156,7 @@ pub(super) fn generators(array: &ExprArray) -> syn::Result<Group> {
 
 /// At the generator that is too many, or at all of them where one is missing.
 fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
-    let at = |k: usize| array.elems.get(k).map_or_else(|| array.span(), |matrix| matrix.span());
+    let at = |k: usize| array.elems.get(k).map_or_else(|| array.span(), syn::spanned::Spanned::span);
     match defect {
         Defect::Zero(k) => syn::Error::new(at(k), "this generator is zero, and moves nothing: leave it out"),
         Defect::Dependent(k) => {

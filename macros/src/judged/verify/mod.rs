@@ -203,9 +203,9 @@ impl<'a> Sample<'a> {
         }
         let mut sample = Self::with_numbers(declaration, lowered, derived, (increment, inverse), &mut number);
         // From one draw in five on, another scale for each parameter, and another sign for scalars.
-        let reach = seed / (DRAWS / 5);
-        for (name, value) in sample.values.iter_mut().filter(|_| reach > 0) {
-            let (scale, sign) = ((8.0 * number() - 2.0).exp2().powf(reach as f64 / 4.0), number() < 0.5);
+        let reach = f64::from(u32::try_from(seed / (DRAWS / 5)).unwrap_or(0));
+        for (name, value) in sample.values.iter_mut().filter(|_| reach > 0.0) {
+            let (scale, sign) = ((8.0 * number() - 2.0).exp2().powf(reach / 4.0), number() < 0.5);
             let kind = match name {
                 Name::Field(index) => declaration.fields.get(*index).map(|field| field.kind),
                 Name::Advected(index) => Some(declaration.advected_kind(*index)),

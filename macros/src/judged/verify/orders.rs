@@ -268,7 +268,9 @@ impl Search<'_> {
     /// At the terms that a smaller step makes ever less important, or that never do anything.
     fn report_vanishing(&mut self, tree: &Rc<Tree>, whole: &Behaviour) {
         if let Some(parts) = self.split(tree) {
-            parts.iter().for_each(|part| self.report_vanishing(part, whole));
+            for part in &parts {
+                self.report_vanishing(part, whole);
+            }
             return;
         }
         let Behaviour { along, at_rest, value, fixed } = self.behaviour(tree);

@@ -204,6 +204,7 @@ impl Mul for Series {
 impl Div for Series {
     type Output = Self;
 
+    #[allow(clippy::suspicious_arithmetic_impl)] // by the reciprocal
     fn div(self, other: Self) -> Self {
         self * other.reciprocal()
     }
