@@ -1,12 +1,11 @@
 //! The free motion of an asymmetric body as rotations about body axes: nothing to solve, and Poisson at any step.
 
-mod axes;
 mod rotor;
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
-use self::axes::Axes;
 use self::rotor::Rotor;
+use super::axes::Axes;
 use super::kinetic_flow::{KineticFlow, Turn};
 use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
