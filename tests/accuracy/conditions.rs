@@ -206,7 +206,9 @@ fn logarithm(series: &Series<f64>) -> Series<f64> {
     for n in (2_u32..).take(longest) {
         last = product(&last, &rest);
         let sign = if n % 2 == 0 { -1.0 } else { 1.0 };
-        sum.iter_mut().for_each(|(word, x)| *x += sign * last[word] / f64::from(n));
+        for (word, x) in &mut sum {
+            *x += sign * last[word] / f64::from(n);
+        }
     }
     sum
 }

@@ -202,7 +202,7 @@ impl<T: Real> ExactDrift<T> {
         let along_a = (self.a * base) * (a * den + a_end);
         let along_b = (self.b * base) * (b * den + b_end);
         let more = -(self.c_squared * self.difference(u)) * integral;
-        Turned::of(rotor([a + a * more, b + b * more, c + c * more]), [real_part, along_a, along_b])
+        Turned::of(rotor_and_more(u, more), [real_part, along_a, along_b])
     }
 
     /// Where a lane is beyond the polynomials, or some need the longer ones and some don't.
@@ -220,6 +220,20 @@ impl<T: Real> ExactDrift<T> {
         }
         chosen
     }
+}
+
+/// `exp(2 (1 + I) û)` as a quaternion, where `I` is small: `I |u|` is less than a third of the invariants' size to the
+/// power of 3/2, so that few terms of its sine and cosine do, and those of `|u|` needn't wait for it.
+#[inline(always)]
+fn rotor_and_more<T: Real>([a, b, c]: [T; 3], more: T) -> Quaternion<T> {
+    let q = (a * a + b * b) + c * c;
+    let (sinc, versine) = rotation_coefficients(q);
+    let cosine = T::one() - q * versine;
+    let (sinc_q, square) = (sinc * q, (more * more) * q);
+    let less = square * (real::<T>(0.5) - square * real(1.0 / 24.0));
+    let more = more - (more * square) * real(1.0 / 6.0);
+    let f = sinc + (cosine * more - sinc * less);
+    [cosine - (cosine * less + sinc_q * more), f * a, f * b, f * c]
 }
 
 /// `exp(2v̂)` as a quaternion.
@@ -250,7 +264,9 @@ impl<T: Real> Turned<T> {
         // What roundings do to the one is divided out, too: the rotation may be the same in each step.
         let excess = ((w * w - T::one()) + x * x) + (y * y + z * z);
         let square = (along_a * along_a + along_b * along_b) + real_part * real_part;
-        Self { quaternion: product_across(about, across), inverse_square: (T::one() - excess) / square }
+        // The division needn't wait for the excess.
+        let inverse = T::one() / square;
+        Self { quaternion: product_across(about, across), inverse_square: inverse - inverse * excess }
     }
 
     fn select(&self, mask: Mask<T>, other: &Self) -> Self {

@@ -106,6 +106,12 @@ struct Part {
     gradient: [f64; 2],
 }
 
+impl Part {
+    fn has_gradient(&self) -> bool {
+        self.gradient.iter().any(|gradient| gradient.abs() > 0.0)
+    }
+}
+
 /// The way out: to the end of the kernel's step, and on through the processor. Neighbours of one kind are one.
 fn way_out(scheme: &ProcessedScheme) -> Vec<Part> {
     let kernel = scheme.kernel();
@@ -117,7 +123,9 @@ fn way_out(scheme: &ProcessedScheme) -> Vec<Part> {
     let processor =
         scheme.processor().map(|(flow, share, gradient)| Part { flow, time: [0.0, share], gradient: [0.0, gradient] });
     let mut parts: Vec<Part> = Vec::new();
-    for part in back.chain(processor).filter(|part| part.time != [0.0; 2] || part.gradient != [0.0; 2]) {
+    for part in
+        back.chain(processor).filter(|part| part.has_gradient() || part.time.iter().any(|time| time.abs() > 0.0))
+    {
         match parts.last_mut().filter(|last| last.flow == part.flow) {
             Some(last) => {
                 for k in 0..2 {
@@ -139,7 +147,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
             let time = h * real(sign * part.time[0]) + length * real(sign * part.time[1]);
             let cubes = [h, length].map(|h| h * h * h);
             let gradient = cubes[0] * real(sign * part.gradient[0]) + cubes[1] * real(sign * part.gradient[1]);
-            kernel.share(part.flow, time, (part.gradient != [0.0; 2]).then_some(gradient))
+            kernel.share(part.flow, time, part.has_gradient().then_some(gradient))
         };
         let leave = out.iter().map(|part| folded(part, 1.0)).collect::<Result<_, _>>()?;
         let enter = out.iter().rev().map(|part| folded(part, -1.0)).collect::<Result<_, _>>()?;
