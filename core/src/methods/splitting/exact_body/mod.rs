@@ -76,7 +76,7 @@ use crate::numbers::{Mask, Real, is_finite, real, reported};
 /// let flow = ExactBody::new(&Inertia::from_principal_moments(moments)?);
 /// let stepper = Stepper::split(body, 60.0, flow, SplittingScheme::STRANG)?;
 /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
-/// let (energy, momentum) = (stepper.energy(&state), stepper.spatial_momentum(&state));
+/// let (energy, momentum): (f64, _) = (stepper.energy(&state), stepper.spatial_momentum(&state));
 /// stepper.step(&mut state)?;
 /// assert!((stepper.energy(&state) / energy - 1.0).abs() < 1e-14);
 /// assert!((stepper.spatial_momentum(&state) - momentum).norm() < 1e-13);

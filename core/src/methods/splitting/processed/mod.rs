@@ -55,7 +55,7 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 /// let stepper = Stepper::processed(body + gravity, 0.05, flow, ProcessedScheme::SIX_A)?;
 /// let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
 /// let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 3.0))?;
-/// let energy = stepper.energy(&state);
+/// let energy: f64 = stepper.energy(&state);
 /// stepper.run(&mut state, 200)?;
 /// assert!((stepper.energy(&state) - energy).abs() < 1e-8);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
