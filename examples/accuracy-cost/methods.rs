@@ -3,7 +3,8 @@
 use declarations::motions::End;
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::methods::{
-    CompositionScheme, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody,
+    CompositionScheme, ExactBody, KineticFlow, PreprocessedFlow, PreprocessedOrder, ProcessedScheme, SplitBody,
+    SplittingScheme, SymmetricBody,
 };
 use liestep::motion::Plan;
 use liestep::prelude::*;
@@ -98,13 +99,19 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
         methods.extend(declared("L6", Scene::sixth_order_top, 6));
     }
     match scene.kind {
-        Kind::Free => methods.extend(preprocessed()),
+        Kind::Free => {
+            methods.extend(preprocessed());
+            methods.push(exact_alone());
+        }
         Kind::SymmetricTop => {
             methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
                 SymmetricBody::new(&scene.inertia()).ok()
             }));
         }
         Kind::Top => {
+            methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
+                Some(ExactBody::new(&scene.inertia()))
+            }));
             methods.extend(splittings("preprocessed", Family::NearlyPoisson, Scene::top, |scene| {
                 Some(PreprocessedFlow::new(scene.nonstandard(), PreprocessedOrder::Ten))
             }));
@@ -156,6 +163,14 @@ fn preprocessed() -> [Method; 4] {
     })
 }
 
+/// The exact motion of the free body: its kicks are none, so that any splitting is it.
+fn exact_alone() -> Method {
+    stepped("exact", Family::Poisson, 100.0, |scene, h| {
+        let flow = ExactBody::new(&scene.inertia());
+        Stepper::split(scene.free_body(), h, flow, SplittingScheme::STRANG).ok()
+    })
+}
+
 /// Splittings with a kinetic flow.
 pub fn splittings<L, K>(
     name: &'static str,
@@ -172,7 +187,12 @@ where
             Stepper::split(lagrangian(scene), h, kinetic(scene)?, scheme).ok()
         })
     };
-    SplittingScheme::ALL.map(method).into()
+    let processed = |scheme: ProcessedScheme| {
+        stepped(format!("{name}, {}", scheme.name()), family, 5.0, move |scene, h| {
+            Stepper::processed(lagrangian(scene), h, kinetic(scene)?, scheme).ok()
+        })
+    };
+    SplittingScheme::ALL.map(method).into_iter().chain(ProcessedScheme::ALL.map(processed)).collect()
 }
 
 /// The step of a declared Lagrangian of this order, and its compositions.

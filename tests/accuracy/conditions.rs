@@ -13,7 +13,8 @@
 use core::ops::{Add, Div, Mul, Sub};
 use std::collections::BTreeMap;
 
-use liestep::methods::{CompositionScheme, Flow, SplittingScheme};
+use liestep::methods::{CompositionScheme, Flow, ProcessedScheme, SplittingScheme};
+use nalgebra::{DMatrix, DVector};
 
 /// What coefficients are computed in.
 pub(crate) trait Number:
@@ -119,13 +120,16 @@ fn a_wrong_digit_is_found() {
 const A: u32 = 0;
 const B: u32 = 1;
 
-/// How far a splitting is from `exp(A + B)` in the words of so many letters at most, by their number of `B`.
-fn splitting_deviation(scheme: &SplittingScheme, longest: [usize; 3]) -> f64 {
-    let one: Series<f64> = one(&[A, B], |word| match word.iter().filter(|letter| **letter == B).count() {
-        0 => word.len() <= longest[0],
-        kicks => word.len() <= longest[kicks.min(3) - 1],
-    });
-    let composed = scheme.shares().zip(scheme.gradients()).fold(one.clone(), |composed, ((flow, part), gradient)| {
+/// A flow, its share and that of the force gradient.
+type Part = (Flow, f64, f64);
+
+fn shares(scheme: &SplittingScheme) -> impl Iterator<Item = Part> {
+    scheme.shares().zip(scheme.gradients()).map(|((flow, share), gradient)| (flow, share, gradient))
+}
+
+/// The series times the exponentials of these.
+fn times_shares(series: &Series<f64>, shares: impl Iterator<Item = Part>) -> Series<f64> {
+    shares.fold(series.clone(), |composed, (flow, part, gradient)| {
         let of_flow = if flow == Flow::Drift { A } else { B };
         if gradient == 0.0 {
             return times_exponential(&composed, |letter| if letter == of_flow { part } else { 0.0 });
@@ -134,7 +138,16 @@ fn splitting_deviation(scheme: &SplittingScheme, longest: [usize; 3]) -> f64 {
         let half = -0.5 * gradient;
         let words = [(vec![B], part), (vec![B, A, B], gradient), (vec![A, B, B], half), (vec![B, B, A], half)];
         times_exponential_of(&composed, &words)
+    })
+}
+
+/// How far a splitting is from `exp(A + B)` in the words of so many letters at most, by their number of `B`.
+fn splitting_deviation(scheme: &SplittingScheme, longest: [usize; 3]) -> f64 {
+    let one: Series<f64> = one(&[A, B], |word| match word.iter().filter(|letter| **letter == B).count() {
+        0 => word.len() <= longest[0],
+        kicks => word.len() <= longest[kicks.min(3) - 1],
     });
+    let composed = times_shares(&one, shares(scheme));
     let exact = times_exponential(&one, |_| 1.0);
     composed.iter().map(|(word, x)| (x - exact[word]).abs()).fold(0.0, f64::max)
 }
@@ -174,5 +187,117 @@ fn nystrom_splittings_satisfy_the_common_order_conditions() {
         println!("{}: {within:.1e}", scheme.name());
         // Fifteen digits were published.
         assert!(within < 1e-13, "{}: {within:e}", scheme.name());
+    }
+}
+
+/// The product of two series, in the words of the first.
+fn product(a: &Series<f64>, b: &Series<f64>) -> Series<f64> {
+    let of = |series: &Series<f64>, word: &[u32]| series.get(word).copied().unwrap_or(0.0);
+    let coefficient = |word: &Vec<u32>| (0..=word.len()).map(|cut| of(a, &word[..cut]) * of(b, &word[cut..])).sum();
+    a.keys().map(|word| (word.clone(), coefficient(word))).collect()
+}
+
+/// The logarithm of a series whose coefficient of the empty word is one.
+fn logarithm(series: &Series<f64>) -> Series<f64> {
+    let rest: Series<f64> =
+        series.iter().map(|(word, x)| (word.clone(), if word.is_empty() { 0.0 } else { *x })).collect();
+    let longest = series.keys().map(Vec::len).max().unwrap_or(0);
+    let (mut sum, mut last) = (rest.clone(), rest.clone());
+    for n in (2_u32..).take(longest) {
+        last = product(&last, &rest);
+        let sign = if n % 2 == 0 { -1.0 } else { 1.0 };
+        for (word, x) in &mut sum {
+            *x += sign * last[word] / f64::from(n);
+        }
+    }
+    sum
+}
+
+/// What vanishes because the kinetic energy is quadratic in the momentum, in words of this length: `[B, [B, [B, A]]]`
+/// and all commutators with it. A column each.
+fn vanishing(length: usize) -> DMatrix<f64> {
+    let commutator = |letter: u32, series: &Series<f64>| {
+        let mut sum = Series::new();
+        for (word, x) in series {
+            *sum.entry([&[letter], word.as_slice()].concat()).or_insert(0.0) += x;
+            *sum.entry([word.as_slice(), &[letter]].concat()).or_insert(0.0) -= x;
+        }
+        sum
+    };
+    let mut elements = vec![[B, B, B].iter().fold(Series::from([(vec![A], 1.0)]), |of, b| commutator(*b, &of))];
+    for _ in 4..length {
+        elements = elements.iter().flat_map(|element| [A, B].map(|letter| commutator(letter, element))).collect();
+    }
+    let column = |element: &Series<f64>| {
+        DVector::from_iterator(1 << length, words(length).map(|word| element.get(&word).copied().unwrap_or(0.0)))
+    };
+    DMatrix::from_columns(&elements.iter().map(column).collect::<Vec<_>>())
+}
+
+/// All words of this length.
+fn words(length: usize) -> impl Iterator<Item = Vec<u32>> {
+    (0_u32..1 << length).map(move |bits| (0..length).map(|place| (bits >> place) & 1).collect())
+}
+
+/// How far the logarithm of a product of flows is from `A + B`, in the words of each length from 1 on, but for what
+/// vanishes.
+fn by_length(parts: &[Part], longest: usize) -> Vec<f64> {
+    let one: Series<f64> = one(&[A, B], |word| word.len() <= longest);
+    let logarithm = logarithm(&times_shares(&one, parts.iter().copied()));
+    let of_length = |length: usize| {
+        let wanted = if length == 1 { 1.0 } else { 0.0 };
+        let missed = DVector::from_iterator(1 << length, words(length).map(|word| logarithm[&word] - wanted));
+        if length < 4 {
+            return missed.amax();
+        }
+        let vanishing = vanishing(length);
+        let inverse = vanishing.clone().pseudo_inverse(1e-9).expect("a matrix");
+        (&missed - &vanishing * (inverse * &missed)).amax()
+    };
+    (1..=longest).map(of_length).collect()
+}
+
+/// Out of the processor, through the kernel, and back.
+fn processed(scheme: &ProcessedScheme) -> Vec<Part> {
+    let out: Vec<Part> = scheme.processor().collect();
+    let back = out.iter().rev().map(|&(flow, share, gradient)| (flow, -share, -gradient));
+    back.chain(shares(&scheme.kernel())).chain(out.iter().copied()).collect()
+}
+
+/// Those of the order of the whole, and that the kernel alone has 2; the next order is missed.
+#[test]
+fn processed_splittings_satisfy_their_order_conditions() {
+    for scheme in ProcessedScheme::ALL {
+        let order = usize::try_from(scheme.order()).unwrap();
+        let missed = by_length(&processed(&scheme), order + 1);
+        let (beyond, within) = missed.split_last().unwrap();
+        let worst = within.iter().copied().fold(0.0, f64::max);
+        let alone = by_length(&shares(&scheme.kernel()).collect::<Vec<_>>(), 3);
+        println!("{}: {worst:.1e}, then {beyond:.1e}; the kernel alone {:.1e}", scheme.name(), alone[2]);
+        assert!(worst < 1e-14, "{}: {worst:e}", scheme.name());
+        assert!(*beyond > 1e-6, "{}: {beyond:e}", scheme.name());
+        assert!(alone[0].max(alone[1]) < 1e-14 && alone[2] > 1e-4, "{}: {alone:?}", scheme.name());
+    }
+}
+
+#[test]
+fn a_wrong_digit_of_a_processor_is_found() {
+    let mut parts = processed(&ProcessedScheme::SIX_A);
+    parts[3].1 += 1e-9;
+    assert!(by_length(&parts, 6).into_iter().fold(0.0, f64::max) > 1e-10);
+}
+
+/// All conditions of the schemes that use that the kinetic energy is quadratic.
+#[test]
+fn nystrom_splittings_satisfy_all_their_order_conditions() {
+    use SplittingScheme as Scheme;
+    for scheme in [Scheme::NYSTROM_6, Scheme::NYSTROM_11, Scheme::NYSTROM_14, Scheme::FORCE_GRADIENT_5] {
+        let order = usize::try_from(scheme.order()).unwrap();
+        let missed = by_length(&shares(&scheme).collect::<Vec<_>>(), order + 1);
+        let (beyond, within) = missed.split_last().unwrap();
+        let worst = within.iter().copied().fold(0.0, f64::max);
+        println!("{}: {worst:.1e}, then {beyond:.1e}", scheme.name());
+        // Fifteen digits were published.
+        assert!(worst < 1e-13 && *beyond > 1e-8, "{}: {worst:e}, {beyond:e}", scheme.name());
     }
 }

@@ -8,11 +8,13 @@
 mod composition;
 mod conditions;
 mod convergence;
+mod exact_body;
 mod for_accuracy;
 mod gauss;
 mod higher_order;
 mod many_digits;
 mod poisson;
 mod preprocessed;
+mod processed;
 mod split_body;
 mod splitting;

@@ -5,7 +5,9 @@
 use checks::random::Random;
 use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
 use liestep::mechanics::{DiscreteLagrangian, Effect};
-use liestep::methods::{CompositionScheme, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody};
+use liestep::methods::{
+    CompositionScheme, ExactBody, PreprocessedOrder, ProcessedScheme, SplitBody, SplittingScheme, SymmetricBody,
+};
 use liestep::motion::{Plan, Remedy};
 use liestep::prelude::*;
 use liestep::with::{Checkpoint, CheckpointError, Compensable};
@@ -223,6 +225,12 @@ fn every_method_goes_with_every_addition() {
     let flow = SplitBody::<9>::new(&top.ordinary_inertia()).unwrap();
     for scheme in [SplittingScheme::STRANG, SplittingScheme::FORCE_GRADIENT_4] {
         assert_everything(scheme.name(), &Stepper::split(top.clone(), h, flow, scheme).unwrap(), &mut own);
+    }
+    let flow = ExactBody::new(&top.ordinary_inertia());
+    let split = Stepper::split(top.clone(), h, flow, SplittingScheme::FORCE_GRADIENT_5).unwrap();
+    assert_everything("exact, of any body", &split, &mut own);
+    for scheme in ProcessedScheme::ALL {
+        assert_everything(scheme.name(), &Stepper::processed(top.clone(), h, flow, scheme).unwrap(), &mut own);
     }
     let symmetric = HeavyTop::thesis();
     let flow = SymmetricBody::new(&symmetric.ordinary_inertia()).unwrap();

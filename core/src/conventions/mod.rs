@@ -146,6 +146,9 @@
 //! | \[LR01\] | J. Laskar, P. Robutel, *High order symplectic integrators for perturbed Hamiltonian systems*, Celestial Mechanics and Dynamical Astronomy 80, 2001 |
 //! | \[OMF02\] | I. P. Omelyan, I. M. Mryglod, R. Folk, *Construction of high-order force-gradient algorithms for integration of motion in classical and quantum systems*, Physical Review E 66, 2002 |
 //! | \[BCF13\] | S. Blanes, F. Casas, A. Farrés, J. Laskar, J. Makazaga, A. Murua, *New families of symplectic splitting methods for numerical integration in dynamical astronomy*, Applied Numerical Mathematics 68, 2013 |
+//! | \[BCR99\] | S. Blanes, F. Casas, J. Ros, *Symplectic integration with processing: a general study*, SIAM Journal on Scientific Computing 21, 1999 |
+//! | \[BCM06\] | S. Blanes, F. Casas, A. Murua, *Composition methods for differential equations with processing*, SIAM Journal on Scientific Computing 27, 2006 |
+//! | \[AS64\] | M. Abramowitz, I. A. Stegun (editors), *Handbook of Mathematical Functions*, National Bureau of Standards, 1964 |
 //! | \[HLW06\] | E. Hairer, C. Lubich, G. Wanner, *Geometric Numerical Integration*, 2nd edition, Springer, 2006 |
 //! | \[HW96\] | E. Hairer, G. Wanner, *Solving Ordinary Differential Equations II*, 2nd edition, Springer, 1996 |
 //! | \[AMM17\] | M. Antoñana, J. Makazaga, A. Murua, *Reducing and monitoring round-off error propagation for symplectic implicit Runge–Kutta schemes*, Numerical Algorithms 76, 2017 |

@@ -5,6 +5,7 @@
 //! | [`Declared`](crate::motion::Declared), by [`Stepper::new`](crate::Stepper::new) | the declaration's, mostly 2 | a kinetic part | Poisson structure, momentum maps |
 //! | [`Composed`], by [`Stepper::composed`](crate::Stepper::composed) | 4 to 10 | a self-adjoint Lagrangian | the same |
 //! | [`Split`], by [`Stepper::split`](crate::Stepper::split) | 2 to 10 | SO(3), a potential apart | the same; nothing is solved with a closed [`KineticFlow`] |
+//! | [`Processed`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
 //! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a potential apart, `f64` | the same |
 //! | [`Preprocessed`], by [`Stepper::preprocessed`](crate::Stepper::preprocessed) | 4 to 10 | a free body | energy, momentum maps |
 
@@ -17,4 +18,7 @@ pub use composition::{Composed, CompositionScheme};
 pub use gauss::{Collocated, Gauss};
 pub use preprocessed::{Preprocessed, PreprocessedOrder};
 pub(crate) use splitting::has_force_gradient;
-pub use splitting::{Flow, KineticFlow, PreprocessedFlow, Split, SplitBody, SplittingScheme, SymmetricBody, Turn};
+pub use splitting::{
+    ExactBody, Flow, Inside, KineticFlow, PreprocessedFlow, Processed, ProcessedScheme, Split, SplitBody,
+    SplittingScheme, SymmetricBody, Turn,
+};

@@ -108,6 +108,9 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     /// Another motion in the place of this one; nothing is carried over.
     fn replace(&mut self, motion: Motion<G, A>);
 
+    /// Another motion in the place of this one, as rounded as it is; what is carried stays.
+    fn show(&mut self, motion: Motion<G, A>);
+
     /// Counts a step, and now and then [restores](Self::restore).
     #[inline(always)]
     fn finish(&mut self, spatial: impl FnOnce() -> A) {
@@ -179,6 +182,11 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     }
 
     fn replace(&mut self, motion: Motion<G, A>) {
+        *self = motion;
+    }
+
+    #[inline(always)]
+    fn show(&mut self, motion: Motion<G, A>) {
         *self = motion;
     }
 }

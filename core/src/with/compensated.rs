@@ -8,7 +8,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::methods::{Composed, KineticFlow, Preprocessed, Split};
+use crate::methods::{Composed, KineticFlow, Preprocessed, Processed, Split};
 use crate::motion::{
     Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
 };
@@ -80,6 +80,7 @@ pub trait Compensable {}
 impl<S: Effect> Compensable for Declared<S> {}
 impl<S: Effect> Compensable for Composed<S> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
 impl<T: Real> Compensable for Preprocessed<T> {}
 impl<P: Compensable, R> Compensable for OrElse<P, R> {}
 
@@ -157,6 +158,8 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
 
     fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, impulse: &Vector<S>) {
         let mut sums = Sums { motion: *motion, carry: kept.carry };
+        // What the plan keeps may depend on the momentum.
+        self.0.push(&mut { *motion }, &mut kept.kept, impulse);
         Summation::push(&mut sums, impulse);
         (*motion, kept.carry) = (sums.motion, sums.carry);
     }
@@ -264,5 +267,10 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Sums<G, A> {
 
     fn replace(&mut self, motion: Motion<G, A>) {
         *self = Self { motion, carry: Carry::nothing() };
+    }
+
+    #[inline(always)]
+    fn show(&mut self, motion: Motion<G, A>) {
+        self.motion = motion;
     }
 }

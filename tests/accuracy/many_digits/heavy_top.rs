@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use num_traits::{One as _, Zero as _};
 
 use super::motion::Motion;
-use super::{DoubleDouble, Matrix, Vector, hat, long};
+use super::{DoubleDouble, Matrix, Vector, free_body, hat, long};
 
 /// A top on its way.
 #[derive(Clone)]
@@ -38,6 +38,20 @@ impl<'a> Top<'a> {
     /// The potential's flow.
     pub(crate) fn kick(&mut self, time: DoubleDouble) {
         self.momentum += self.motion.torque(&self.w) * time;
+    }
+
+    /// With the flow of `U = −½ τ·J⁻¹τ`: as `τ = w × l`, its gradient is `J⁻¹τ × l`, and its torque `w ×` that.
+    pub(crate) fn kick_with_gradient(&mut self, time: DoubleDouble, gradient: DoubleDouble) {
+        let velocity = self.motion.velocity_of(&self.motion.torque(&self.w));
+        self.momentum += self.w.cross(&velocity.cross(&self.motion.lever)) * gradient;
+        self.kick(time);
+    }
+
+    /// The free body's flow by the series of its equations.
+    pub(crate) fn drift_by_series(&mut self, time: DoubleDouble) {
+        let inverse_moments = self.motion.moments.map(|moment| DoubleDouble::one() / moment);
+        let (increment, _) = free_body::turn(&inverse_moments, &self.momentum, time);
+        self.move_by(&(increment + Matrix::identity()));
     }
 
     /// The free body's flow where it is symmetric, `F = exp(h p/J_1) exp(−h (1/J_1 − 1/J_3) p_3 E_3)`.

@@ -1,17 +1,23 @@
 //! Kinetic-potential splittings: the free body's motion and the potential's kicks by turns.
 
+mod axes;
 mod bias;
+mod exact_body;
 mod kick;
 mod kinetic_flow;
 mod preprocessed_flow;
+mod processed;
+mod quaternion;
 mod scheme;
 mod spin;
 mod split_body;
 
+pub use exact_body::ExactBody;
 pub(crate) use kick::{has_force_gradient, torque};
 pub(crate) use kinetic_flow::inverse_inertia;
 pub use kinetic_flow::{KineticFlow, SymmetricBody, Turn};
 pub use preprocessed_flow::PreprocessedFlow;
+pub use processed::{Inside, Processed, ProcessedScheme};
 pub use scheme::{Flow, SplittingScheme};
 pub use split_body::SplitBody;
 
@@ -21,7 +27,7 @@ use crate::mechanics::{DiscreteLagrangian, Effect, Operations, Regular, RigidSce
 use crate::motion::{
     Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
 };
-use crate::numbers::{Coordinates, real, reported};
+use crate::numbers::{Coordinates, Real, real, reported};
 use nalgebra::{Matrix3, SimdBool as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
 
 /// The plan of [`Stepper::split`](crate::Stepper::split), for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
@@ -131,6 +137,17 @@ impl<S: Effect> Stepper<S> {
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
+        let mut splitting = Self::folded(scene, h, kinetic, scheme)?;
+        // A turn for itself costs about what three others save.
+        let drifts = scheme.shares().filter(|(flow, _)| *flow == Flow::Drift).count();
+        if drifts > 3 && splitting.is_without_torque(scene) {
+            splitting.take_spin();
+        }
+        Ok(splitting)
+    }
+
+    /// All shares apart.
+    fn folded(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
         let inertia = scene.inertia();
         let differences = (inertia - K::inertia(&kinetic)).map(nalgebra::SimdComplexField::simd_abs);
         let difference = differences.fold(real(0.0), nalgebra::SimdPartialOrd::simd_max);
@@ -145,26 +162,24 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         if scheme.has_gradients() && !has_force_gradient(scene) {
             return Err(SetupError::NoForceGradient);
         }
-        let share = |((flow, part), gradient): ((Flow, f64), f64)| -> Result<_, SetupError> {
-            let time = h * real(part);
-            Ok(match flow {
-                Flow::Drift => Share::Drift(kinetic.drift(time)?),
-                Flow::Kick if gradient == 0.0 => Share::Kick(time),
-                Flow::Kick => Share::GradientKick(time, inverse_inertia * (h * h * h * real(gradient))),
-            })
-        };
         let all: Vec<_> = scheme.shares().zip(scheme.gradients()).collect();
-        let ((flow, part), gradient) = all[0];
-        let outer = share(((flow, part), gradient))?;
-        let joint = share(((flow, 2.0 * part), 2.0 * gradient))?;
-        let inner = all[1..all.len() - 1].iter().copied().map(share).collect::<Result<_, _>>()?;
-        let mut splitting = Self { scheme, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None };
-        // A turn for itself costs about what three others save.
-        let drifts = splitting.scheme.shares().filter(|(flow, _)| *flow == Flow::Drift).count();
-        if drifts > 3 && splitting.is_without_torque(scene) {
-            splitting.take_spin();
-        }
-        Ok(splitting)
+        let share = |times: f64, ((flow, part), gradient): ((Flow, f64), f64)| {
+            let of_gradient = (gradient != 0.0).then(|| h * h * h * real(times * gradient));
+            share_of(&kinetic, &inverse_inertia, flow, h * real(times * part), of_gradient)
+        };
+        let (outer, joint) = (share(1.0, all[0])?, share(2.0, all[0])?);
+        let inner = all[1..all.len() - 1].iter().map(|&inner| share(1.0, inner)).collect::<Result<_, _>>()?;
+        Ok(Self { scheme, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None })
+    }
+
+    /// A share of this length, s, and if it is a kick with a gradient, s³.
+    fn share(
+        &self,
+        flow: Flow,
+        time: Scalar<S>,
+        gradient: Option<Scalar<S>>,
+    ) -> Result<Share<K::Drift, Scalar<S>>, SetupError> {
+        share_of(&self.kinetic, &self.inverse_inertia, flow, time, gradient)
     }
 
     /// Whether no kick has a third component, to the last bit: then a rotation about the third axis doesn't change the
@@ -206,6 +221,16 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     }
 
     #[inline(always)]
+    fn make_all<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        shares: &[Share<K::Drift, Scalar<S>>],
+        motion: &mut M,
+        iterations: &mut u32,
+    ) -> Result<(), StepError> {
+        shares.iter().try_for_each(|share| self.make(share, motion, iterations))
+    }
+
+    #[inline(always)]
     fn make<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         share: &Share<K::Drift, Scalar<S>>,
@@ -233,6 +258,20 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 }
 
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
+
+fn share_of<T: Real, K: KineticFlow<T>>(
+    kinetic: &K,
+    inverse_inertia: &Matrix3<T>,
+    flow: Flow,
+    time: T,
+    gradient: Option<T>,
+) -> Result<Share<K::Drift, T>, SetupError> {
+    Ok(match (flow, gradient) {
+        (Flow::Drift, _) => Share::Drift(kinetic.drift(time)?),
+        (Flow::Kick, None) => Share::Kick(time),
+        (Flow::Kick, Some(gradient)) => Share::GradientKick(time, inverse_inertia * gradient),
+    })
+}
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     type Kept = ();

@@ -1,13 +1,13 @@
 //! The free motion of an asymmetric body as rotations about body axes: nothing to solve, and Poisson at any step.
 
-mod axes;
 mod rotor;
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
-use self::axes::Axes;
 use self::rotor::Rotor;
+use super::axes::Axes;
 use super::kinetic_flow::{KineticFlow, Turn};
+use super::quaternion::{Quaternion, scaled_increment};
 use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
@@ -184,9 +184,6 @@ fn far<const ROTATIONS: usize, T: Real>(
     quaternion
 }
 
-/// A real part and the parts along three axes.
-type Quaternion<T> = [T; 4];
-
 /// The product of all rotations, that about the momentum first, for the momentum `(a, b, c)` in units of `J_c/h`.
 ///
 /// What takes the time is that each angle waits for the rotation before; the quaternion is multiplied meanwhile. That
@@ -247,17 +244,7 @@ fn increment<T: Real>([w, x, y, z]: Quaternion<T>) -> Matrix3<T> {
     let (xx, yy, zz) = (x * x, y * y, z * z);
     // 1/(1 + ε), which the products beside it don't wait for.
     let factor = T::one() - (((w * w - T::one()) + xx) + (yy + zz));
-    let (tx, ty, tz) = (x + x, y + y, z + z);
-    let (wx, wy, wz) = (w * tx, w * ty, w * tz);
-    let (xy, xz, yz) = (x * ty, x * tz, y * tz);
-    let (sx, sy, sz) = (x * tx, y * ty, z * tz);
-    #[rustfmt::skip]
-    let increment = Matrix3::new(
-        -(sy + sz), xy - wz,    xz + wy,
-        xy + wz,    -(sx + sz), yz - wx,
-        xz - wy,    yz + wx,    -(sx + sy),
-    );
-    increment * factor
+    scaled_increment([w, x, y, z]) * factor
 }
 
 #[cfg(test)]

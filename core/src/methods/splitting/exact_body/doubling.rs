@@ -1,0 +1,175 @@
+//! Drifts of any length: the functions over a short part of them, doubled.
+//!
+//! With `s = 1/√n`, `c = √(1 − K_b s²)` and `d = √(1 − K_a s²)`, which change their signs as sine and cosine do,
+//!
+//! ```text
+//! Q = 1 − K_a K_b s⁴      s⁺ = 2 s c d/Q      c⁺ = (c² − K_b s² d²)/Q      d⁺ = (d² − K_a s² c²)/Q
+//! ```
+//!
+//! are those of twice the time, of which `N`, `C`, `D` and `μ` at half of it are multiples. The turn about the momentum
+//! is twice that of half the time and once more, by the tangent to the curve at the point,
+//!
+//! ```text
+//! (1 − K_a K_b s⁴ − ν s² (3 − 2 (K_a + K_b) s² + K_a K_b s⁴),  2 AB (A a² + B b²) s³ c d u)        ν = −AB |u|²
+//! ```
+//!
+//! as a quaternion of any length. Written with `K_a − ν = B (A a² + B b²)` and `K_b − ν = A (A a² + B b²)`, so that
+//! nothing cancels where a motion passes the middle axis and all are small.
+
+use nalgebra::SimdBool as _;
+
+use super::series::{Functions, Invariants, LONG, long};
+use super::{ExactDrift, Turned, rotor};
+use crate::methods::splitting::quaternion::product;
+use crate::numbers::{Mask, Real, real};
+
+/// Enough for any angle of a double that has a digit of its direction left.
+const MOST_DOUBLINGS: u32 = 60;
+
+/// The functions at a time, `s` in units of half the drift.
+#[derive(Clone, Copy, Debug)]
+struct Point<T> {
+    s: T,
+    c: T,
+    d: T,
+}
+
+/// A quaternion `(w, f u)` along the momentum.
+#[derive(Clone, Copy, Debug)]
+struct About<T> {
+    w: T,
+    f: T,
+}
+
+/// What is doubled with.
+struct Curve<T: Real> {
+    a: T,
+    b: T,
+    ka: T,
+    kb: T,
+    /// `A a² + B b²`, zero if that is less than what is clamped to.
+    h: T,
+    /// `AB (A a² + B b²)`.
+    bend: T,
+    /// `|u|²`
+    square: T,
+    /// The roots `K_a ≥ K_b`, where `c` can't be less than zero.
+    c_is_larger: Mask<T>,
+    /// On the separatrix `c = d`, and both go to zero.
+    is_separatrix: Mask<T>,
+}
+
+impl<T: Real> ExactDrift<T> {
+    /// By the functions over a part of the drift that is short enough, doubled as often as it takes.
+    pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
+        let (one, half, quarter) = (T::one(), real::<T>(0.5), real::<T>(0.25));
+        let (size, [a, b, c]) = (invariants.size(), u);
+        // Of half the drift, and the square of that; lanes that are short enough wait.
+        let (mut root, mut part, mut doublings) = (half, quarter, 1);
+        while doublings < MOST_DOUBLINGS && (size * part).simd_gt(real(LONG)).any() {
+            let is_far = (size * part).simd_gt(real(LONG));
+            (root, part) = ((root * half).select(is_far, root), (part * quarter).select(is_far, part));
+            doublings += 1;
+        }
+        let reduced = invariants.scaled(part);
+        let Functions { n, integral, .. } = long(&reduced);
+        let square = one / n;
+        let [of_c, of_d] = [reduced.kb, reduced.ka].map(|k| (one - k * square).simd_sqrt());
+        let mut point = Point { s: root * square.simd_sqrt(), c: of_c, d: of_d };
+        let mut about = About { w: one, f: T::zero() };
+        let curve = self.curve(u, invariants);
+        let mut reached = part;
+        for _ in 0..doublings {
+            let is_behind = reached.simd_lt(one);
+            about = curve.turned_on(&about, &point).select(is_behind, &about);
+            point = curve.doubled(&point).select(is_behind, &point);
+            reached = (reached * real(4.0)).select(is_behind, reached);
+        }
+        let end = curve.doubled(&point);
+        let (ss, sc, sd, cd) = (end.s * end.s, end.s * end.c, end.s * end.d, end.c * end.d);
+        // 1 + AB c² s², of two terms of one sign.
+        let of_c = end.c * end.c + self.a_squared * (a * a) * ss;
+        let of_d = end.d * end.d + self.b_squared * (b * b) * ss;
+        let den = of_c.select(curve.c_is_larger, of_d);
+        let a_end = (a * end.d - self.b * (b * c) * sc) / den;
+        let b_end = (b * end.c + self.a * (a * c) * sd) / den;
+        let c_end = (c * cd + self.b_less_a * (a * b) * end.s) / den;
+        let Point { s, c: of_c, d: of_d } = point;
+        let real_part = (one + self.c_squared * (c * c_end) * (s * s)) * (of_c * of_d * real(2.0)) / curve.base(&point);
+        let across = [real_part, s * self.a * (a + a_end), s * self.b * (b + b_end)];
+        let more = curve.bend * part * integral;
+        let turn = rotor([a + a * more, b + b * more, c + c * more]);
+        Turned::of(product(turn, [about.w, about.f * a, about.f * b, about.f * c]), across)
+    }
+
+    fn curve(&self, u: [T; 3], invariants: &Invariants<T>) -> Curve<T> {
+        let [a, b, c] = u;
+        let Invariants { ka, kb, .. } = *invariants;
+        let h = self.difference(u);
+        let is_separatrix = (h * self.b_less_a).simd_abs().simd_le(invariants.size() * least::<T>() * least());
+        let h = T::zero().select(is_separatrix, h);
+        let (bend, square) = (-(self.c_squared * h), a * a + (b * b + c * c));
+        Curve { a: self.a, b: self.b, ka, kb, h, bend, square, c_is_larger: kb.simd_le(ka), is_separatrix }
+    }
+}
+
+/// What `c` and `d` are clamped to on the separatrix, where they go to zero and their ratio doesn't: the square of a
+/// rounding, whose square a single has, too.
+fn least<T: Real>() -> T {
+    T::simd_default_epsilon() * T::simd_default_epsilon()
+}
+
+impl<T: Real> Curve<T> {
+    /// `1 − K_a K_b s⁴`.
+    fn base(&self, Point { s, c, d }: &Point<T>) -> T {
+        let (ss, cc, dd) = (*s * *s, *c * *c, *d * *d);
+        (cc + self.kb * ss * dd).select(self.c_is_larger, dd + self.ka * ss * cc)
+    }
+
+    fn doubled(&self, point: &Point<T>) -> Point<T> {
+        let (Point { s, c, d }, base) = (*point, self.base(point));
+        // c² − K_b s² d² = c² d² + (K_a − K_b) s², and the other with the other sign.
+        let (both, apart) = ((c * d) * (c * d), (self.b - self.a) * self.h * (s * s));
+        let (of_c, of_d) = ((both + apart) / base, (both - apart) / base);
+        let clamped = |x: T, is_clamped: Mask<T>| x.simd_max(least()).select(is_clamped, x);
+        let is_on = self.is_separatrix;
+        Point {
+            s: (s + s) * (c * d) / base,
+            c: clamped(of_c, self.c_is_larger | is_on),
+            d: clamped(of_d, !self.c_is_larger | is_on),
+        }
+    }
+
+    /// Twice the rotation, and that by the tangent.
+    fn turned_on(&self, about: &About<T>, point: &Point<T>) -> About<T> {
+        let (Point { s, c, d }, About { w, f }, square) = (*point, *about, self.square);
+        let (ss, cc, dd) = (s * s, c * c, d * d);
+        // 1 − ν s², of two terms of one sign.
+        let (of_a, of_b) = (self.a * self.h, self.b * self.h);
+        let from_pole = (cc + of_a * ss).select(of_a.simd_ge(T::zero()), dd + of_b * ss);
+        let tangent = About {
+            w: cc * dd * from_pole + ss * (of_b * cc + of_a * dd),
+            f: (self.bend + self.bend) * (ss * s) * (c * d),
+        };
+        let twice = About { w: w * w - f * f * square, f: (w + w) * f };
+        let w = twice.w * tangent.w - twice.f * tangent.f * square;
+        let f = twice.w * tangent.f + twice.f * tangent.w;
+        let length = (w * w + f * f * square).simd_sqrt();
+        // Where both vanish the body stays at its middle axis.
+        let next = About { w: w / length, f: f / length };
+        next.select(length.simd_gt(T::zero()), &About { w: T::one(), f: T::zero() })
+    }
+}
+
+impl<T: Real> Point<T> {
+    fn select(&self, mask: Mask<T>, other: &Self) -> Self {
+        let Self { s, c, d } = *self;
+        Self { s: s.select(mask, other.s), c: c.select(mask, other.c), d: d.select(mask, other.d) }
+    }
+}
+
+impl<T: Real> About<T> {
+    fn select(&self, mask: Mask<T>, other: &Self) -> Self {
+        Self { w: self.w.select(mask, other.w), f: self.f.select(mask, other.f) }
+    }
+}

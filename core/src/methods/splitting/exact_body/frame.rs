@@ -1,0 +1,105 @@
+//! The principal axes of a body, the middle moment last.
+
+use nalgebra::{Matrix3, SimdBool as _, Vector3};
+
+use super::super::axes::Axes;
+use super::super::quaternion::Quaternion;
+use crate::numbers::Real;
+
+/// How the principal axes lie in the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Frame<T> {
+    /// They are the body's.
+    Along(Axes),
+    /// They are the columns of a rotation.
+    Turned(Matrix3<T>),
+}
+
+impl<T: Real> Frame<T> {
+    /// The moments about three right-handed axes, the last the middle one, and these.
+    pub(super) fn of(inertia: &Matrix3<T>) -> ([T; 3], Self) {
+        let diagonal = inertia.diagonal();
+        let beside = inertia - Matrix3::from_diagonal(&diagonal);
+        if beside.iter().all(|entry| entry.simd_eq(T::zero()).all()) {
+            let is_between = |axes: &Axes| {
+                let [a, b, c] = axes.moments(&diagonal);
+                ((c - a) * (c - b)).simd_le(T::zero()).all()
+            };
+            if let Some(axes) = [Axes::Xyz, Axes::Yzx, Axes::Zxy].into_iter().find(is_between) {
+                return (axes.moments(&diagonal), Self::Along(axes));
+            }
+        }
+        let (moments, axes) = principal_axes(inertia);
+        (moments, Self::Turned(axes))
+    }
+
+    /// The components of a body's vector along the axes.
+    #[inline(always)]
+    pub(super) fn within(&self, v: &Vector3<T>) -> [T; 3] {
+        match self {
+            Self::Along(axes) => axes.of(v),
+            Self::Turned(axes) => {
+                let along = |k: usize| axes[(0, k)] * v.x + axes[(1, k)] * v.y + axes[(2, k)] * v.z;
+                [along(0), along(1), along(2)]
+            }
+        }
+    }
+
+    /// A quaternion with those components in the body's.
+    #[inline(always)]
+    pub(super) fn back(&self, quaternion: Quaternion<T>) -> Quaternion<T> {
+        match self {
+            Self::Along(axes) => axes.back(quaternion),
+            Self::Turned(axes) => {
+                let [w, a, b, c] = quaternion;
+                let along = |i: usize| axes[(i, 0)] * a + axes[(i, 1)] * b + axes[(i, 2)] * c;
+                [w, along(0), along(1), along(2)]
+            }
+        }
+    }
+}
+
+/// Sweeps of Jacobi's iteration: it converges quadratically, and four or five leave nothing beside the diagonal.
+const SWEEPS: usize = 6;
+
+/// The principal moments and axes of a symmetric matrix, the middle moment last and the axes right-handed.
+///
+/// By Jacobi's iteration, which needs no pivots and keeps lanes together.
+fn principal_axes<T: Real>(inertia: &Matrix3<T>) -> ([T; 3], Matrix3<T>) {
+    let (mut a, mut axes) = (*inertia, Matrix3::<T>::identity());
+    for _ in 0..SWEEPS {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            let (rest, off) = (a[(q, q)] - a[(p, p)], a[(p, q)] + a[(p, q)]);
+            // tan θ = ± off/(|rest| + √(rest² + off²)), the smaller of the two rotations.
+            let length = rest.simd_abs() + (rest * rest + off * off).simd_sqrt();
+            let signed = off.select(rest.simd_ge(T::zero()), -off);
+            let tangent = (signed / length).select(length.simd_gt(T::zero()), T::zero());
+            let cosine = T::one() / (T::one() + tangent * tangent).simd_sqrt();
+            let sine = tangent * cosine;
+            for k in 0..3 {
+                let (x, y) = (a[(k, p)], a[(k, q)]);
+                (a[(k, p)], a[(k, q)]) = (cosine * x - sine * y, sine * x + cosine * y);
+            }
+            for k in 0..3 {
+                let (x, y) = (a[(p, k)], a[(q, k)]);
+                (a[(p, k)], a[(q, k)]) = (cosine * x - sine * y, sine * x + cosine * y);
+                let (x, y) = (axes[(k, p)], axes[(k, q)]);
+                (axes[(k, p)], axes[(k, q)]) = (cosine * x - sine * y, sine * x + cosine * y);
+            }
+        }
+    }
+    let mut moments = [a[(0, 0)], a[(1, 1)], a[(2, 2)]];
+    // Into the order of their sizes. An axis that changes places changes its direction, too, so that they stay
+    // right-handed.
+    for (p, q) in [(0, 1), (1, 2), (0, 1)] {
+        let is_swapped = moments[p].simd_gt(moments[q]);
+        let (x, y) = (moments[p], moments[q]);
+        (moments[p], moments[q]) = (y.select(is_swapped, x), x.select(is_swapped, y));
+        for k in 0..3 {
+            let (x, y) = (axes[(k, p)], axes[(k, q)]);
+            (axes[(k, p)], axes[(k, q)]) = (y.select(is_swapped, x), (-x).select(is_swapped, y));
+        }
+    }
+    let places = [2, 0, 1];
+    (places.map(|k| moments[k]), Matrix3::from_fn(|i, j| axes[(i, places[j])]))
+}

@@ -1,0 +1,111 @@
+//! The elliptic functions of a free body over a short time, as polynomials.
+
+use crate::numbers::{Real, real};
+
+/// What a motion keeps, in units of half the drift: none is negative, and all are zero where the drift is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Invariants<T> {
+    pub(super) kb: T,
+    pub(super) ka: T,
+    /// `ν = −AB |u|²`, where the integral has its pole; it lies between the two.
+    pub(super) pole: T,
+}
+
+impl<T: Real> Invariants<T> {
+    /// What tells how short the drift is.
+    #[inline(always)]
+    pub(super) fn size(&self) -> T {
+        self.kb.simd_max(self.ka)
+    }
+
+    /// Over another time, by the square of the ratio.
+    pub(super) fn scaled(&self, part: T) -> Self {
+        Self { kb: self.kb * part, ka: self.ka * part, pole: self.pole * part }
+    }
+}
+
+/// `n`, `μ` and the integral at half the drift.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Functions<T> {
+    pub(super) n: T,
+    pub(super) mu: T,
+    pub(super) integral: T,
+}
+
+/// Up to this size the polynomials of [`short`] are exact to a rounding.
+///
+/// What they leave out is the largest for a symmetric body's spin, where `n = K/sin² √K`, with the next coefficient of
+/// `μ` `220 K⁶/π¹²`, and the integral that of `tan² √K/K`, with `10 (4/π²)⁶ K⁶ · K/15`: both below 10⁻¹⁶.
+pub(super) const SHORT: f64 = 0.0075;
+
+/// And up to here those of [`long`], whose next ones are `38 · 18 K¹⁰/π²⁰` and `13 (4/π²)⁹ K⁹ · K/21`.
+pub(super) const LONG: f64 = 0.05;
+
+/// With `℘` to its fifth coefficient and the integral to its fifth.
+#[inline(always)]
+pub(super) fn short<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
+    let k = real::<T>;
+    let Start { e, x, y, c } = start(invariants);
+    let (w4, w5) = (x * x * k(1.0 / 3.0), x * y * k(3.0 / 11.0));
+    let n = ((T::one() + e) + (x + y)) + (w4 + w5);
+    let mu = (T::one() - (x + (y + y))) - (w4 * k(3.0) + w5 * k(4.0));
+    let (cc, xx) = (c * c, x * x);
+    let of_0 = (k(-1.0 / 7.0) * x - k(1.0 / 9.0) * y) + (k(2.0 / 33.0) * xx + k(19.0 / 143.0) * (x * y));
+    let of_1 = (k(2.0 / 9.0) * x - k(0.2)) + (k(2.0 / 11.0) * y - k(7.0 / 39.0) * xx);
+    let of_2 = k(1.0 / 7.0) - (k(3.0 / 11.0) * x + k(3.0 / 13.0) * y);
+    let of_3 = k(4.0 / 13.0) * x - k(1.0 / 9.0);
+    let of_4 = k(1.0 / 11.0) - k(1.0 / 13.0) * c;
+    let integral = (of_0 + of_1 * c) + cc * ((of_2 + of_3 * c) + cc * of_4);
+    Functions { n, mu: mu + mu, integral: integral + k(1.0 / 3.0) }
+}
+
+/// With `℘` to its ninth coefficient and the integral to its eighth; terms that are far below a rounding are left out.
+#[inline(always)]
+pub(super) fn long<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
+    let k = real::<T>;
+    let Start { e, x, y, c } = start(invariants);
+    let (xx, yy, xy) = (x * x, y * y, x * y);
+    let (w4, w5) = (xx * k(1.0 / 3.0), xy * k(3.0 / 11.0));
+    let (w6, w7) = (x * xx * k(2.0 / 39.0) + yy * k(1.0 / 13.0), x * xy * k(2.0 / 33.0));
+    let w8 = xx * xx * k(5.0 / 663.0) + y * xy * k(60.0 / 2431.0);
+    let w9 = y * (xx * x * k(29.0 / 2717.0) + yy * k(1.0 / 247.0));
+    let n = ((T::one() + e) + (x + y)) + ((w4 + w5) + ((w6 + w7) + (w8 + w9)));
+    let far = (w6 * k(5.0) + w7 * k(6.0)) + (w8 * k(7.0) + w9 * k(8.0));
+    let mu = (T::one() - (x + (y + y))) - ((w4 * k(3.0) + w5 * k(4.0)) + far);
+    let (cc, xxx) = (c * c, xx * x);
+    let of_0 = (k(-1.0 / 7.0) * x - k(1.0 / 9.0) * y)
+        + (k(2.0 / 33.0) * xx + k(19.0 / 143.0) * xy)
+        + ((k(4.0 / 65.0) * yy - k(1.0 / 39.0) * xxx) - k(61.0 / 561.0) * (x * xy));
+    let of_1 = (k(2.0 / 9.0) * x - k(0.2))
+        + (k(2.0 / 11.0) * y - k(7.0 / 39.0) * xx)
+        + ((k(82.0 / 663.0) * xxx - k(37.0 / 221.0) * yy) - k(4.0 / 11.0) * xy);
+    let of_2 = (k(1.0 / 7.0) - (k(3.0 / 11.0) * x + k(3.0 / 13.0) * y))
+        + (k(1.0 / 3.0) * xx + k(123.0 / 187.0) * xy - k(80.0 / 247.0) * xxx);
+    let of_3 = (k(4.0 / 13.0) * x - k(1.0 / 9.0)) + (k(4.0 / 15.0) * y - (k(26.0 / 51.0) * xx + k(208.0 / 209.0) * xy));
+    let of_4 = k(1.0 / 11.0) - (k(1.0 / 3.0) * x + (k(5.0 / 17.0) * y - k(40.0 / 57.0) * xx));
+    let of_5 = k(6.0 / 17.0) * x - (k(1.0 / 13.0) - k(6.0 / 19.0) * y);
+    let of_6 = k(1.0 / 15.0) - k(7.0 / 19.0) * x;
+    let of_7 = k(1.0 / 19.0) * c - k(1.0 / 17.0);
+    let near = (of_0 + of_1 * c) + cc * (of_2 + of_3 * c);
+    let integral = near + (cc * cc) * ((of_4 + of_5 * c) + cc * (of_6 + of_7 * c));
+    Functions { n, mu: mu + mu, integral: integral + k(1.0 / 3.0) }
+}
+
+/// What the polynomials are in: the mean `e` of the three roots, and the first coefficients `x` and `y` of `℘` and `c` of
+/// the integral.
+struct Start<T> {
+    e: T,
+    x: T,
+    y: T,
+    c: T,
+}
+
+#[inline(always)]
+fn start<T: Real>(invariants: &Invariants<T>) -> Start<T> {
+    let (k, first, second) = (real::<T>, invariants.kb, invariants.ka);
+    let e = (first + second) * k(1.0 / 3.0);
+    let apart = first - second;
+    let x = (apart * apart + first * second) * k(1.0 / 15.0);
+    let y = (e * k(-1.0 / 7.0)) * ((first - e) * (second - e));
+    Start { e, x, y, c: e - invariants.pole }
+}

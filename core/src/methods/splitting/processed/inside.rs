@@ -1,0 +1,92 @@
+//! What a processed splitting keeps: the motion that is stepped, which isn't the one that is read.
+
+use crate::groups::{Advected, LieGroup as _, SO3};
+use crate::motion::{Kept, Motion, count, counted};
+use crate::numbers::{Entries, Real, real, zero};
+use nalgebra::SimdBool as _;
+
+/// Where a run is inside of its processor, by [`Processed`](super::Processed), or that it isn't yet: at the start, after a
+/// push and after another method's steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inside<T: Real, A>(pub(super) Option<Stepped<T, A>>);
+
+/// Without the number of steps, which is that of the motion that is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stepped<T: Real, A> {
+    attitude: SO3<T>,
+    momentum: nalgebra::Vector3<T>,
+    advected: A,
+}
+
+impl<T: Real, A: Advected<SO3<T>>> Stepped<T, A> {
+    pub(super) fn of(motion: &Motion<SO3<T>, A>) -> Self {
+        Self { attitude: motion.attitude, momentum: motion.momentum, advected: motion.advected }
+    }
+
+    pub(super) fn after(self, steps: u64) -> Motion<SO3<T>, A> {
+        let Self { attitude, momentum, advected } = self;
+        Motion { attitude, momentum, advected, steps }
+    }
+}
+
+impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
+    fn each(&self, mut visit: &mut dyn FnMut(T)) {
+        visit(count(usize::from(self.0.is_some())));
+        let nothing = || Stepped {
+            attitude: SO3::from_matrix_unchecked(zero()),
+            momentum: zero::<T, nalgebra::Vector3<T>>(),
+            advected: zero::<T, A>(),
+        };
+        let Stepped { attitude, momentum, advected } = self.0.unwrap_or_else(nothing);
+        Entries::each(attitude.as_matrix(), &mut visit);
+        Entries::each(&momentum, &mut visit);
+        advected.each(&mut visit);
+    }
+
+    fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
+        let is_inside = match counted(next())? {
+            0 => false,
+            1 => true,
+            _ => return None,
+        };
+        let attitude = SO3::from_matrix_unchecked(Entries::from_entries(&mut next));
+        let (momentum, advected) = (Entries::from_entries(&mut next), Entries::from_entries(&mut next));
+        if !is_inside {
+            return Some(Self(None));
+        }
+        let is_rotation = attitude.defect().simd_le(T::simd_default_epsilon() * real(1e4)).all();
+        is_rotation.then_some(Self(Some(Stepped { attitude, momentum, advected })))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Inside;
+    use crate::motion::Kept as _;
+    use nalgebra::Vector3;
+
+    /// Whether it is inside, an attitude, a momentum and a vector.
+    fn read(flag: f64, corner: f64) -> Option<Inside<f64, Vector3<f64>>> {
+        let attitude = [corner, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0];
+        let mut numbers = [flag].into_iter().chain(attitude).chain([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        Inside::from_numbers(&mut || numbers.next().unwrap())
+    }
+
+    #[test]
+    fn a_memory_is_its_numbers() {
+        for flag in [0.0, 1.0] {
+            let (mut numbers, inside) = (Vec::new(), read(flag, 1.0).unwrap());
+            inside.each(&mut |number| numbers.push(number));
+            let mut again = numbers.iter().copied();
+            assert_eq!(Inside::from_numbers(&mut || again.next().unwrap()), Some(inside));
+            assert_eq!((numbers.len(), again.next()), (16, None));
+        }
+    }
+
+    #[test]
+    fn what_is_none_is_refused() {
+        assert_eq!(read(2.0, 1.0), None);
+        assert_eq!(read(f64::NAN, 1.0), None);
+        assert_eq!(read(1.0, 1.001), None);
+    }
+}

@@ -1,0 +1,251 @@
+//! Processed splittings: a kernel step by step, between the two ends of a processor.
+
+mod inside;
+mod scheme;
+
+pub use inside::Inside;
+pub use scheme::ProcessedScheme;
+
+use inside::Stepped;
+
+use super::scheme::Flow;
+use super::{KineticFlow, Share, Split};
+use crate::error::{SetupError, StepError};
+use crate::groups::{Advected, SO3};
+use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor};
+use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation};
+use crate::numbers::{Coordinates, real};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
+
+/// The plan of [`Stepper::processed`](crate::Stepper::processed): a kinetic-potential splitting whose steps are made inside of a processor, so that three drifts give order 6.
+///
+/// With the kernel `K_h` and the processor `χ_h` of a [`ProcessedScheme`] the motion after `n` steps is
+///
+/// ```text
+/// χ_h K_hⁿ χ_h⁻¹
+/// ```
+///
+/// The kernel's steps go on from one to the next inside; what is read is made of a copy, by `χ_h`, and what is inside
+/// isn't changed by that. So a run of many steps ([`Stepper::run`](crate::Stepper::run)) costs the kernel's, and the
+/// processor once; single steps make the end of the processor each time, which costs as much as one to two steps.
+///
+/// # What is kept
+///
+/// The same as by [`Split`]: every stage is a Poisson map that keeps the momentum maps, those of the processor, too. A
+/// step of `−h` undoes one of `h`: the processor of both is that of `|h|`.
+///
+/// # Contract
+///
+/// As [`Stepper`](crate::Stepper)'s. Steps one by one and at once give the same bits. A control force acts on what is
+/// read, and the next step goes inside from there.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::effects::{Gravity, PrincipalBody};
+/// use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+/// use liestep::methods::{ExactBody, ProcessedScheme};
+/// use liestep::{SO3, Stepper};
+/// use nalgebra::{UnitQuaternion, Vector3};
+///
+/// let moments = Vector3::new(1.6, 2.6, 3.0);
+/// let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
+/// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.1, 0.2, 0.3), up: Vector3::z() };
+/// let flow = ExactBody::new(&Inertia::from_principal_moments(moments)?);
+/// let stepper = Stepper::processed(body + gravity, 0.05, flow, ProcessedScheme::SIX_A)?;
+/// let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+/// let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 3.0))?;
+/// let energy: f64 = stepper.energy(&state);
+/// stepper.run(&mut state, 200)?;
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Source
+///
+/// \[BCR99\], \[BCM06\]; see [`conventions`](crate::conventions).
+#[derive(Clone, Debug)]
+pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
+    scheme: ProcessedScheme,
+    /// Its steps go from the middle of a joint to the middle of the next, so that they are all the same.
+    kernel: Split<S, K>,
+    /// From what is read to the middle of a joint.
+    enter: Vec<Share<K::Drift, Scalar<S>>>,
+    /// And back.
+    leave: Vec<Share<K::Drift, Scalar<S>>>,
+}
+
+impl<S: Effect> Stepper<S> {
+    /// A processed kinetic-potential splitting with this flow of the free body; see [`Processed`].
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::split`].
+    pub fn processed<K>(
+        scene: S,
+        h: Scalar<S>,
+        flow: K,
+        scheme: ProcessedScheme,
+    ) -> Result<Stepper<S, Processed<S, K>>, SetupError>
+    where
+        S: DiscreteLagrangian<Group = SO3<<S as Effect>::Scalar>> + Regular,
+        K: KineticFlow<Scalar<S>>,
+    {
+        // For its checks of the scene and the step.
+        Declared::new(&scene, h)?;
+        let plan = Processed::new(&scene, h, flow, scheme)?;
+        Ok(Stepper { scene, plan })
+    }
+}
+
+/// A drift or a kick, as a part of the kernel's step and of the processor's, which has no sign, and so the gradient.
+#[derive(Clone, Copy)]
+struct Part {
+    flow: Flow,
+    time: [f64; 2],
+    gradient: [f64; 2],
+}
+
+impl Part {
+    fn has_gradient(&self) -> bool {
+        self.gradient.iter().any(|gradient| gradient.abs() > 0.0)
+    }
+}
+
+/// The way out: to the end of the kernel's step, and on through the processor. Neighbours of one kind are one.
+fn way_out(scheme: &ProcessedScheme) -> Vec<Part> {
+    let kernel = scheme.kernel();
+    let back = kernel.shares().zip(kernel.gradients()).take(1).map(|((flow, share), gradient)| Part {
+        flow,
+        time: [-share, 0.0],
+        gradient: [-gradient, 0.0],
+    });
+    let processor =
+        scheme.processor().map(|(flow, share, gradient)| Part { flow, time: [0.0, share], gradient: [0.0, gradient] });
+    let mut parts: Vec<Part> = Vec::new();
+    for part in
+        back.chain(processor).filter(|part| part.has_gradient() || part.time.iter().any(|time| time.abs() > 0.0))
+    {
+        match parts.last_mut().filter(|last| last.flow == part.flow) {
+            Some(last) => {
+                for k in 0..2 {
+                    last.time[k] += part.time[k];
+                    last.gradient[k] += part.gradient[k];
+                }
+            }
+            None => parts.push(part),
+        }
+    }
+    parts
+}
+
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
+    fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: ProcessedScheme) -> Result<Self, SetupError> {
+        let kernel = Split::folded(scene, h, kinetic, scheme.kernel())?;
+        let (length, out) = (h.simd_abs(), way_out(&scheme));
+        let folded = |part: &Part, sign: f64| {
+            let time = h * real(sign * part.time[0]) + length * real(sign * part.time[1]);
+            let cubes = [h, length].map(|h| h * h * h);
+            let gradient = cubes[0] * real(sign * part.gradient[0]) + cubes[1] * real(sign * part.gradient[1]);
+            kernel.share(part.flow, time, part.has_gradient().then_some(gradient))
+        };
+        let leave = out.iter().map(|part| folded(part, 1.0)).collect::<Result<_, _>>()?;
+        let enter = out.iter().rev().map(|part| folded(part, -1.0)).collect::<Result<_, _>>()?;
+        Ok(Self { scheme, kernel, enter, leave })
+    }
+
+    /// The coefficients.
+    #[must_use]
+    pub fn scheme(&self) -> &ProcessedScheme {
+        &self.scheme
+    }
+}
+
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
+    type Kept = Inside<Scalar<S>, S::Advected>;
+
+    fn step_size(&self) -> Scalar<S> {
+        self.kernel.h
+    }
+
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        Self::new(scene, h, self.kernel.kinetic.clone(), self.scheme)
+    }
+
+    /// Nothing is known of the inside before the first step.
+    fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) -> Self::Kept {
+        Inside(None)
+    }
+
+    #[inline(always)]
+    fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        let iterations = self.run(scene, motion, kept, 1)?;
+        Ok(StepReport::of(u32::try_from(iterations).unwrap_or(u32::MAX)))
+    }
+
+    #[inline(always)]
+    fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        if steps == 0 {
+            return Ok(0);
+        }
+        let (mut next, mut all, mut iterations) = (*motion, 0, 0);
+        match kept.0 {
+            Some(inside) => next.show(inside.after(next.now().steps)),
+            None => self.kernel.make_all(&self.enter, &mut next, &mut iterations)?,
+        }
+        for _ in 0..steps {
+            self.kernel.make_all(&self.kernel.inner, &mut next, &mut iterations)?;
+            self.kernel.make(&self.kernel.joint, &mut next, &mut iterations)?;
+            next.finish(|| scene.advected());
+            all += u64::from(core::mem::take(&mut iterations));
+        }
+        // A copy, without what is carried: that is of the sums inside.
+        let inside = *next.now();
+        let mut read = inside;
+        self.kernel.make_all(&self.leave, &mut read, &mut iterations)?;
+        if !(Coordinates::is_finite(&read.momentum) && Advected::is_finite(&read.advected)) {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        next.show(read);
+        (*motion, kept.0) = (next, Some(Stepped::of(&inside)));
+        Ok(all + u64::from(iterations))
+    }
+
+    /// What is inside belongs to the momentum before.
+    fn push(
+        &self,
+        motion: &mut Motion<SO3<Scalar<S>>, S::Advected>,
+        kept: &mut Self::Kept,
+        impulse: &Vector3<Scalar<S>>,
+    ) {
+        Summation::push(motion, impulse);
+        if !impulse.iter().all(|part| part.simd_eq(real(0.0)).all()) {
+            kept.0 = None;
+        }
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
+        visitor.term(self.scheme.name());
+        for (_, share, gradient) in self.scheme.processor() {
+            visitor.parameter("processor", real(share));
+            visitor.parameter("gradient", real(gradient));
+        }
+        self.kernel.describe(visitor);
+    }
+
+    /// Without the processor, as in a run of many steps.
+    fn cost(&self) -> Cost {
+        self.kernel.cost()
+    }
+}

@@ -1,0 +1,180 @@
+//! The coefficients of processed splittings.
+//!
+//! All were found for this library: kernels and processors by Levenberg and Marquardt's method on the conditions in the
+//! Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, what is left at the next order made small, chosen by
+//! their errors on random asymmetric tops and springs, and polished to 30 digits.
+
+// All digits that were found, whatever a double keeps of them.
+#![allow(clippy::excessive_precision, clippy::unreadable_literal)]
+
+use super::super::scheme::{Flow, SplittingScheme};
+
+/// The coefficients of a processed splitting: a kernel that is stepped, and a processor that is made at both ends of a
+/// run only.
+///
+/// With the kernel `K_h` and the processor `χ_h` a run of `n` steps is `χ_h ∘ K_hⁿ ∘ χ_h⁻¹`, which has the order of the
+/// scheme though the kernel alone has but 2: its error is mostly that of coordinates, which the processor makes good.
+/// So a kernel of the same number of drifts and kicks has fewer conditions to satisfy, 3 in place of 6 for order 6, and
+/// its error is smaller. Both are made of drifts and kicks, some with [force gradients](SplittingScheme), so that all of
+/// it is Poisson and keeps the momentum maps.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::methods::ProcessedScheme;
+/// let scheme = ProcessedScheme::SIX_A;
+/// assert_eq!((scheme.order(), scheme.kernel().drifts(), scheme.kernel().gradient_kicks()), (6, 3, 1));
+/// ```
+///
+/// # Source
+///
+/// \[BCR99\], \[BCM06\] for processing, \[Ch97\] for the force gradient; see [`conventions`](crate::conventions). The
+/// coefficients were found for this library.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProcessedScheme {
+    name: &'static str,
+    order: u32,
+    kernel: SplittingScheme,
+    /// Drift, kick and force gradient by turns.
+    processor: &'static [[f64; 3]],
+    /// The last drift.
+    last: f64,
+}
+
+impl ProcessedScheme {
+    /// Order 6 with three drifts and one force gradient a step; the best on other problems than those of its search.
+    pub const SIX_A: Self = Self::new(
+        "processed 3-6 a",
+        6,
+        THREE_DRIFTS,
+        &[
+            [-0.0703026373535961342390651631159, 0.20665604926098297350745841313, 0.0286456827611767065874012365132],
+            [-0.111704528879860710158274407152, -0.034640489261471661869693869713, -0.0118430410009511916400804816644],
+            [0.554008729214240650588112644763, 0.190187950956113773204912119634, 0.0185118699025337784886053945875],
+            [
+                -0.456202211436371128197410636322,
+                0.000116279800890681322342555109914,
+                0.00520723290185722637308192844025,
+            ],
+            [0.321382297940377449531439929904, 0.092738754781874447784048152174, -0.0328529951970588503886503665355],
+        ],
+        0.217876896053600086424265002259,
+    );
+
+    /// The same steps with another processor, the best for the chaotic top.
+    pub const SIX_B: Self = Self::new(
+        "processed 3-6 b",
+        6,
+        THREE_DRIFTS,
+        &[
+            [0.0, -0.0753837272678498780127182547603, -0.024616012733644205316884684561],
+            [-0.480437027036673811053472743691, -0.280916135925670772797257748164, 0.137598234836117268532228451324],
+            [-0.0141783879163624734235258095302, 0.248576404673639870927110522567, -0.127792499363947432350360452806],
+            [0.34237870613551988388933899794, 0.188911554438579190948875386659, 0.0421709043461003411446997962927],
+            [
+                -0.0964081844136876834211755873155,
+                -0.00309426120493107782719806408365,
+                -0.0267192366951326938516235246487,
+            ],
+        ],
+        0.326738727944971417247646984815,
+    );
+
+    /// Order 4 with two drifts and two force gradients a step, for few digits.
+    pub const FOUR_A: Self = Self::new(
+        "processed 2-4 a",
+        4,
+        TWO_DRIFTS,
+        &[
+            [0.0, 0.1037567817473591791555719186, -0.00119642846777136052003310969941],
+            [-0.277154059845793467558282630705, 0.00202243534277590415038351679294, 0.00539013931637204767996689030059],
+            [0.32760645783074108212932442421, -0.210221055067421363064861438076, -0.00482158382246573022003310969941],
+        ],
+        -0.154894235962233894329947796187,
+    );
+
+    /// The same with another kernel.
+    pub const FOUR_B: Self = Self::new(
+        "processed 2-4 b",
+        4,
+        OTHER_TWO_DRIFTS,
+        &[
+            [0.108747341864335639838158465321, -0.212769547452841184020360402899, 0.00271191666087527843437997569787],
+            [0.160853475914733953407698986988, 0.14153890479160099979925851758, 0.0182482077750180722343799756979],
+            [-0.264705925479093689235625081075, 0.357012349828013705227340805194, 0.000139103223083609794379975697874],
+        ],
+        0.280886814866797616996006548641,
+    );
+
+    /// All of these.
+    pub const ALL: [Self; 4] = [Self::SIX_A, Self::SIX_B, Self::FOUR_A, Self::FOUR_B];
+
+    /// Other coefficients: of the processor `χ`, by which a run ends, drift, kick and force gradient by turns, and the
+    /// last drift. The order is that of the whole.
+    #[must_use]
+    pub const fn new(
+        name: &'static str,
+        order: u32,
+        kernel: SplittingScheme,
+        processor: &'static [[f64; 3]],
+        last: f64,
+    ) -> Self {
+        Self { name, order, kernel, processor, last }
+    }
+
+    /// What it is called in tables.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The order in the step, of the whole.
+    #[must_use]
+    pub fn order(&self) -> u32 {
+        self.order
+    }
+
+    /// What is stepped.
+    #[must_use]
+    pub fn kernel(&self) -> SplittingScheme {
+        self.kernel
+    }
+
+    /// The shares of the processor `χ` by which a run ends, each of the step and of the force gradient.
+    pub fn processor(&self) -> impl Iterator<Item = (Flow, f64, f64)> + use<> {
+        let stage = |&[drift, kick, gradient]: &[f64; 3]| [(Flow::Drift, drift, 0.0), (Flow::Kick, kick, gradient)];
+        self.processor.iter().flat_map(stage).chain([(Flow::Drift, self.last, 0.0)])
+    }
+}
+
+/// Three conditions of effective order 6, three drifts, the gradient in one kick.
+const THREE_DRIFTS: SplittingScheme = SplittingScheme::new(
+    "kernel 3-6",
+    2,
+    Flow::Kick,
+    &[
+        0.23788706474829719456562710991,
+        0.56826103839186301271453174471,
+        0.26211293525170280543437289009,
+        -0.13652207678372602542906348942,
+    ],
+)
+.with_gradients(&[0.0164011128160783278247123891002, 0.0, 0.0, 0.0]);
+
+/// One condition of effective order 4, and the least of what is left at order 5.
+const TWO_DRIFTS: SplittingScheme = SplittingScheme::new(
+    "kernel 2-4",
+    2,
+    Flow::Kick,
+    &[0.233149591711226471352693488039, 0.5, 0.533700816577547057294613023921],
+)
+.with_gradients(&[0.0107620534858024267078342724616, 0.0, -0.00040683737877315244433145508716]);
+
+/// Likewise.
+const OTHER_TWO_DRIFTS: SplittingScheme = SplittingScheme::new(
+    "kernel 2-4",
+    2,
+    Flow::Kick,
+    &[0.262935359903518271907729598992, 0.5, 0.474129280192963456184540802016],
+)
+.with_gradients(&[-0.00195607940665287845748730058811, 0.0, 0.0249128156824726384850253966564]);
