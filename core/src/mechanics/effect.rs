@@ -152,6 +152,7 @@ pub trait Effect {
 
     /// Whether all constants are numbers, as a stepper needs them. What is derived looks at each; an effect that is
     /// written by hand may leave it.
+    #[must_use]
     fn are_finite(_: &Self::Constants) -> bool {
         true
     }
