@@ -132,6 +132,13 @@ pub enum StepError {
         step: f64,
         /// The largest step that this state allows, s.
         largest: f64,
+        /// How far the body would turn at the velocity that it has, on SO(3) in rad.
+        turn: f64,
+    },
+    /// The body would turn by an angle of which the scalar has no digit left.
+    AngleWithoutDigits {
+        /// The angle, rad.
+        turn: f64,
     },
     /// The iteration didn't settle: Newton's, or the fixed-point iteration of [`Gauss`](crate::methods::Gauss).
     NotConverged {
@@ -156,10 +163,14 @@ impl fmt::Display for StepError {
             Self::NonFinite { what } => {
                 write!(f, "the {what} is not finite; choose units in which the numbers are nearer to one")
             }
-            Self::BeyondSolvable { step, largest } => write!(
+            Self::BeyondSolvable { step, largest, turn } => write!(
                 f,
-                "no solution at the step {step:e} s: the body would turn too far; the largest step from this state is {largest:e} s; take a smaller one"
+                "no solution at the step {step:e} s: the body would turn by about {turn:.2e} rad, and {:.2e} rad is the most from this state; take steps of at most {largest:e} s, let `or_substeps` divide such steps, or choose a kinetic part without that limit, as that of `CayleyBody`",
+                turn * (largest / step)
             ),
+            Self::AngleWithoutDigits { turn } => {
+                write!(f, "the body would turn by {turn:.2e} rad, of which no digit is left; take a smaller step")
+            }
             Self::NotConverged { iterations, residual } => write!(
                 f,
                 "the iteration did not settle in {iterations} iterations (last relative update {residual:e}); try a smaller step"

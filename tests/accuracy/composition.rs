@@ -193,7 +193,7 @@ fn a_substep_that_is_too_long_is_an_error() {
         let before = state;
         let error = composed.step(&mut state).unwrap_err();
         assert_eq!(state, before);
-        let StepError::BeyondSolvable { step, largest } = error else { panic!("{error}") };
+        let StepError::BeyondSolvable { step, largest, .. } = error else { panic!("{error}") };
         println!("{}: {step} s, largest {largest} s, estimated {limit}", scheme.name());
         assert!((step - 1.2 * limit).abs() < 1e-15 && largest < step);
         assert!((largest / limit - 1.0).abs() < 0.1, "{}: {largest}, {limit}", scheme.name());

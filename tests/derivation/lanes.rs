@@ -212,7 +212,7 @@ fn an_unsolvable_lane_leaves_all_as_they_were() {
     let before = state;
     let refused = stepper.step(&mut state);
     assert!(
-        matches!(refused, Err(StepError::BeyondSolvable { step, largest }) if largest > 0.0 && largest < step),
+        matches!(refused, Err(StepError::BeyondSolvable { step, largest, .. }) if largest > 0.0 && largest < step),
         "{refused:?}"
     );
     assert_eq!(state, before);

@@ -7,6 +7,7 @@ mod any_method;
 mod checkpoints;
 mod command_lines;
 mod compensated;
+mod long_drifts;
 mod policies;
 mod random_inputs;
 mod secants;

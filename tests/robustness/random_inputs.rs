@@ -212,7 +212,7 @@ fn check_step_error(
     let (momentum, w) = (state.momentum(), state.advected());
     let turn = (momentum + w.cross(&top.rho) * (0.5 * h * top.m * top.g)) * h;
     match *error {
-        StepError::BeyondSolvable { step, largest } => {
+        StepError::BeyondSolvable { step, largest, .. } => {
             let smallest = inertia.symmetric_eigenvalues().min();
             assert!(step.to_bits() == h.to_bits() && largest.abs() < h.abs() && largest * h >= 0.0);
             let is_small = turn.norm() < smallest * (1.0 - 1e-9);

@@ -59,7 +59,8 @@ fn setup_errors() {
 fn step_errors() {
     let errors = [
         StepError::NonFinite { what: "momentum" },
-        StepError::BeyondSolvable { step: 0.125, largest: 0.0815 },
+        StepError::BeyondSolvable { step: 0.125, largest: 0.0815, turn: 2.5 },
+        StepError::AngleWithoutDigits { turn: 5e15 },
         StepError::NotConverged { iterations: 60, residual: 0.5 },
         StepError::WrongBranch { determinant: -0.25 },
         StepError::Singular,
@@ -67,7 +68,16 @@ fn step_errors() {
     for error in errors {
         let parts: &[&str] = match error {
             StepError::NonFinite { .. } => &["momentum", "not finite"],
-            StepError::BeyondSolvable { .. } => &["no solution", "1.25e-1 s", "largest step", "8.15e-2 s"],
+            StepError::BeyondSolvable { .. } => &[
+                "no solution",
+                "1.25e-1 s",
+                "2.50e0 rad",
+                "1.63e0 rad",
+                "at most 8.15e-2 s",
+                "or_substeps",
+                "CayleyBody",
+            ],
+            StepError::AngleWithoutDigits { .. } => &["5.00e15 rad", "no digit"],
             StepError::NotConverged { .. } => &["the iteration", "60 iterations", "5e-1"],
             StepError::WrongBranch { .. } => &["continue the identity", "-2.5e-1", "sign"],
             StepError::Singular => &["Jacobian", "singular"],

@@ -18,7 +18,7 @@ mod summation;
 
 pub use any::{AnyKept, AnyState, AnyStepper};
 pub use declared::Declared;
-pub(crate) use declared::half_coordinates;
+pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use kept::Kept;

@@ -75,7 +75,7 @@ pub(crate) fn s1(_: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     for factor in [1.000_01, 1.001, 1.006, 1.01, 1.1, 1.5, 2.0, 3.0, 10.0, 100.0, 1e6] {
         let h = factor * closed;
         named = match first_step(&motion, h)? {
-            Err(error @ StepError::BeyondSolvable { step, largest }) => {
+            Err(error @ StepError::BeyondSolvable { step, largest, .. }) => {
                 told &= step.to_bits() == h.to_bits() && error.to_string().contains(&format!("{largest:e} s"));
                 greater(named, (largest / closed - 1.0).abs())
             }
@@ -112,7 +112,7 @@ pub(crate) fn s2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     // The text of a float has all its digits and the sign of zero.
     let same = format!("{before:?}") == format!("{state:?}");
     let fold = fold_of_symmetric_top(&motion)?;
-    let is_typed = matches!(refused, Err(StepError::BeyondSolvable { step, largest })
+    let is_typed = matches!(refused, Err(StepError::BeyondSolvable { step, largest, .. })
         if (step - h).abs() < f64::EPSILON && (largest / fold - 1.0).abs() < 1e-5);
     let answer = refused.map_or_else(|error| error.to_string(), |report| format!("{report:?}"));
 

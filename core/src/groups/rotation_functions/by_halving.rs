@@ -11,13 +11,17 @@ use crate::numbers::{Real, real};
 const SMALL: f64 = 0.5;
 
 /// Enough for any angle of a double that has a digit of its direction left.
-const MOST_DOUBLINGS: u32 = 30;
+const MOST_DOUBLINGS: u32 = 53;
+
+/// Beyond this square of an angle the roundings of the doublings show in `sin² + cos² = 1`.
+const FAR: f64 = 100.0;
 
 /// `sin θ/θ` and `(1 − cos θ)/θ²` as functions of `q = θ²`.
 ///
 /// Up to `q = 0.5` these are Taylor polynomials. A larger angle is halved until it is that small; doubling it again is
 /// two products and doesn't cancel: with `S` and `V` at `q/4`, `S(q) = S (1 − q V/4)` and `V(q) = S²/2`. Each doubles
-/// the absolute error, as the angle's own rounding does.
+/// the absolute error, as the angle's own rounding does. What that adds to the length of `(cos θ, sin θ)` is taken out
+/// again, so that large angles are those of rotations, too; one without a digit left gives NaN.
 #[inline(always)]
 pub(crate) fn rotation_coefficients<T: Real>(q: T) -> (T, T) {
     if q.simd_le(real(SMALL)).all() { small(q) } else { large(q) }
@@ -47,6 +51,17 @@ fn large<T: Real>(q: T) -> (T, T) {
         sinc = next.0.select(behind, sinc);
         versine = next.1.select(behind, versine);
         reduced = (reduced * real(4.0)).select(behind, reduced);
+    }
+    let far = q.simd_gt(real(FAR));
+    if far.any() {
+        let cosine = T::one() - q * versine;
+        let length = (q * sinc * sinc + cosine * cosine).simd_sqrt();
+        sinc = (sinc / length).select(far, sinc);
+        versine = ((T::one() - cosine / length) / q).select(far, versine);
+        let epsilon = T::simd_default_epsilon();
+        let is_known = (q * epsilon * epsilon).simd_lt(T::one());
+        sinc = sinc.select(is_known, real(f64::NAN));
+        versine = versine.select(is_known, real(f64::NAN));
     }
     (sinc, versine)
 }
@@ -87,6 +102,24 @@ mod tests {
             assert!((versine - 2.0 * half * half).abs() < 4e-16, "{q}: {versine}");
         }
         assert_eq!(rotation_coefficients(0.0), (1.0, 0.5));
+    }
+
+    /// To the rounding of the angle, and on the unit circle.
+    #[test]
+    fn large_angles_are_angles() {
+        for angle in [11.0, 1e2, 1.3e3, 1e4, 7e5, 1e6, 1e9, 3e9, 1e12, 1e15_f64] {
+            let (sinc, versine) = rotation_coefficients(angle * angle);
+            let (sine, cosine) = (angle * sinc, 1.0 - angle * angle * versine);
+            assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15, "{angle:e}");
+            assert!((sine - angle.sin()).abs() < 8e-16 * angle, "{angle:e}");
+            assert!((cosine - angle.cos()).abs() < 8e-16 * angle, "{angle:e}");
+        }
+        for angle in [5e15, 1e20, 1e150_f64] {
+            assert!(rotation_coefficients(angle * angle).0.is_nan());
+        }
+        let (sinc, versine) = rotation_coefficients(1e10_f32);
+        assert!((1e10 * sinc * sinc + (1.0 - 1e10 * versine).powi(2) - 1.0).abs() < 1e-6);
+        assert!(rotation_coefficients(1e16_f32).0.is_nan());
     }
 
     #[test]

@@ -7,10 +7,10 @@ pub use scheme::CompositionScheme;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector};
 use crate::motion::{
-    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, half_coordinates,
+    Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
 };
-use crate::numbers::{Coordinates, Mask, Real, real, reported};
-use crate::solving::{Guess, six_digits};
+use crate::numbers::{Coordinates, Mask, Real, real};
+use crate::solving::Guess;
 use nalgebra::SimdBool as _;
 
 /// The plan of [`Stepper::composed`](crate::Stepper::composed): a step is `Φ_{γ_s h} ∘ … ∘ Φ_{γ_1 h}`, where `Φ_h` is the step of a self-adjoint Lagrangian.
@@ -193,8 +193,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
         kept: &Self::Kept,
     ) -> StepError {
         let StepError::BeyondSolvable { .. } = error else { return error };
-        let largest = six_digits(reported(self.max_step(scene, motion, kept)));
-        StepError::BeyondSolvable { step: reported(self.h), largest }
+        beyond_solvable(scene, self.h, &motion.momentum, &motion.advected, self.max_step(scene, motion, kept))
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {

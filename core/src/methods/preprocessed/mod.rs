@@ -11,9 +11,9 @@ use crate::effects::PrincipalBody;
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation, half_coordinates};
-use crate::numbers::{Coordinates, Real, reported};
-use crate::solving::{Guess, six_digits};
+use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation, beyond_solvable, half_coordinates};
+use crate::numbers::{Coordinates, Real};
+use crate::solving::Guess;
 
 /// The order of a [`Preprocessed`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -179,7 +179,7 @@ impl<T: Real> Plan<PrincipalBody<T>> for Preprocessed<T> {
         if largest == T::zero() {
             return error;
         }
-        StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(reported(largest)) }
+        beyond_solvable(scene, self.h, &motion.momentum, &motion.advected, largest)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<T>) {

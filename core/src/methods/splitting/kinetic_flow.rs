@@ -143,15 +143,16 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         if drift.about_axis.simd_eq(T::zero()).all() {
             let [(a11, a21, a31), (a12, a22, a32), (a13, a23, a33)] = rotation(p, drift.about_momentum);
             let increment = Matrix3::new(a11, a12, a13, a21, a22, a23, a31, a32, a33);
-            return Ok(Turn { increment, change: Vector3::repeat(T::zero()), iterations: 0 });
+            // Not a number where the angle has no digit left.
+            return Ok(Turn { increment, change: Vector3::repeat(a33 * T::zero()), iterations: 0 });
         }
         let angle = drift.about_axis * p.z;
         let (sinc, versine) = rotation_coefficients(angle * angle);
         // sin θ and cos θ − 1, without cancellation.
         let (s, v) = (angle * sinc, -(angle * angle * versine));
-        let change = Vector3::new(v * p.x - s * p.y, v * p.y + s * p.x, T::zero());
-
         let [a1, a2, a3] = rotation(p, drift.about_momentum);
+        // The last is zero, or not a number where the angle has no digit left.
+        let change = Vector3::new(v * p.x - s * p.y, v * p.y + s * p.x, a3.2 * T::zero());
         // D = A + B + A B, where B turns by −θ about the third axis: B_11 = B_22 = v, B_12 = −B_21 = s.
         let turned_1 = (a1.0 * v - a2.0 * s, a1.1 * v - a2.1 * s, a1.2 * v - a2.2 * s);
         let turned_2 = (a1.0 * s + a2.0 * v, a1.1 * s + a2.1 * v, a1.2 * s + a2.2 * v);

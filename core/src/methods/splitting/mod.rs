@@ -208,6 +208,16 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         (self.outer, self.joint, self.inner, self.spin) = (outer, joint, inner, Some(spin));
     }
 
+    /// Why a step that began with this momentum didn't end with one.
+    #[cold]
+    fn why_not_finite(&self, momentum: &Vector3<Scalar<S>>) -> StepError {
+        let turn = reported((self.inverse_inertia * momentum).norm() * self.h).abs();
+        if turn.is_finite() && turn * reported(Scalar::<S>::simd_default_epsilon()) > 0.125 {
+            return StepError::AngleWithoutDigits { turn };
+        }
+        StepError::NonFinite { what: "momentum after the step" }
+    }
+
     /// The coefficients.
     #[must_use]
     pub fn scheme(&self) -> &SplittingScheme {
@@ -328,7 +338,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
         }
         let end = next.now();
         if !(Coordinates::is_finite(&end.momentum) && Advected::is_finite(&end.advected)) {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
+            return Err(self.why_not_finite(&motion.now().momentum));
         }
         *motion = next;
         Ok(all)

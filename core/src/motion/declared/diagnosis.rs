@@ -4,7 +4,7 @@ use super::{Declared, kicked};
 use crate::error::StepError;
 use crate::groups::Advected as _;
 use crate::groups::Retraction as _;
-use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::mechanics::{Effect, Group, Scalar, Vector, velocity_of_momentum};
 use crate::numbers::{Coordinates as _, real, reported};
 use crate::solving::{Problem, Root, Solvability, TurningLimits, largest_fraction, six_digits, turning_limits};
 use nalgebra::SimdComplexField as _;
@@ -22,8 +22,8 @@ impl<S: Effect> Declared<S> {
     ) -> Result<Root<S>, StepError> {
         let is_finite = momentum.is_finite() && advected.is_finite();
         if is_finite && self.solvability(scene, momentum, advected) == Solvability::Impossible {
-            let largest = reported(self.largest_solvable(scene, momentum, advected));
-            return Err(StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(largest) });
+            let largest = self.largest_solvable(scene, momentum, advected);
+            return Err(beyond_solvable(scene, self.h, momentum, advected, largest));
         }
         self.problem(scene, momentum, advected)
             .solve(half_guess)
@@ -42,7 +42,7 @@ impl<S: Effect> Declared<S> {
         if largest == real(0.0) {
             return error;
         }
-        StepError::BeyondSolvable { step: reported(self.h), largest: six_digits(reported(largest)) }
+        beyond_solvable(scene, self.h, momentum, advected, largest)
     }
 
     /// Whether the step from `(μ, w)` surely has a solution or surely has none, where bounds are known: for the kinetic
@@ -108,5 +108,21 @@ impl<S: Effect> Declared<S> {
             problem.attempt(&terms, &Vector::<S>::zero()).is_ok()
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))
+    }
+}
+
+/// The error that names the largest step and how far the body would turn.
+pub(crate) fn beyond_solvable<S: Effect>(
+    scene: &S,
+    h: Scalar<S>,
+    momentum: &Vector<S>,
+    advected: &S::Advected,
+    largest: Scalar<S>,
+) -> StepError {
+    let turn = velocity_of_momentum(scene, momentum, advected) * h;
+    StepError::BeyondSolvable {
+        step: reported(h),
+        largest: six_digits(reported(largest)),
+        turn: reported(turn.dot(&turn).simd_sqrt()),
     }
 }

@@ -2,6 +2,8 @@
 
 mod diagnosis;
 
+pub(crate) use diagnosis::beyond_solvable;
+
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, velocity_of_momentum};
