@@ -9,6 +9,7 @@ mod right;
 mod rooms;
 mod sizes;
 mod time;
+mod tour;
 
 use proc_macro2::TokenStream;
 
