@@ -25,8 +25,8 @@ fn exact(top: &HeavyTop) -> ExactBody {
     ExactBody::new(&top.ordinary_inertia())
 }
 
-/// On tops with and without symmetry. What the ends leave is of the next order, and as large as the rest where steps are
-/// long.
+/// On tops with and without symmetry. What the ends leave is as large as the kernel's error, and on the chaotic top they
+/// cancel in part.
 #[test]
 fn processed_splittings_have_their_orders() {
     for (scheme, coarsest) in [
@@ -49,7 +49,7 @@ fn processed_splittings_have_their_orders() {
             let order = order(&errors, 2e-13);
             let listed: Vec<_> = errors.iter().map(|(_, error)| format!("{error:.1e}")).collect();
             println!("{}, {name}: order {order:.2}, errors {}", scheme.name(), listed.join(" "));
-            assert!((order - f64::from(scheme.order())).abs() < 0.3, "{}, {name}: {order}", scheme.name());
+            assert!((order - f64::from(scheme.order())).abs() < 0.35, "{}, {name}: {order}", scheme.name());
         }
     }
 }

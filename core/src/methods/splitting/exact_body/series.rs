@@ -41,7 +41,7 @@ pub(super) const SHORT: f64 = 0.0075;
 /// And up to here those of [`long`], whose next ones are `38 · 18 K¹⁰/π²⁰` and `13 (4/π²)⁹ K⁹ · K/21`.
 pub(super) const LONG: f64 = 0.05;
 
-/// With `℘` to its fifth coefficient and the integral to its fifth.
+/// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
 #[inline(always)]
 pub(super) fn short<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
     let k = real::<T>;
@@ -50,7 +50,7 @@ pub(super) fn short<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
     let n = ((T::one() + e) + (x + y)) + (w4 + w5);
     let mu = (T::one() - (x + (y + y))) - (w4 * k(3.0) + w5 * k(4.0));
     let (cc, xx) = (c * c, x * x);
-    let of_0 = (k(-1.0 / 7.0) * x - k(1.0 / 9.0) * y) + (k(2.0 / 33.0) * xx + k(19.0 / 143.0) * (x * y));
+    let of_0 = k(2.0 / 33.0) * xx - (k(1.0 / 7.0) * x + k(1.0 / 9.0) * y);
     let of_1 = (k(2.0 / 9.0) * x - k(0.2)) + (k(2.0 / 11.0) * y - k(7.0 / 39.0) * xx);
     let of_2 = k(1.0 / 7.0) - (k(3.0 / 11.0) * x + k(3.0 / 13.0) * y);
     let of_3 = k(4.0 / 13.0) * x - k(1.0 / 9.0);
@@ -59,7 +59,7 @@ pub(super) fn short<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
     Functions { n, mu: mu + mu, integral: integral + k(1.0 / 3.0) }
 }
 
-/// With `℘` to its ninth coefficient and the integral to its eighth; terms that are far below a rounding are left out.
+/// With `℘` to its ninth coefficient and the integral to its eighth, likewise.
 #[inline(always)]
 pub(super) fn long<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
     let k = real::<T>;
