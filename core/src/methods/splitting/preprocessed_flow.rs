@@ -13,8 +13,8 @@ use crate::numbers::{Real, real};
 
 /// The free motion of an asymmetric body by [`Preprocessed`]'s map.
 ///
-/// For many digits it is the cheapest for such a body, but it isn't symplectic: between kicks the Poisson structure is
-/// kept as well as the flow is approximated. Where a share of the step turns the body by less than a tenth of a radian,
+/// It solves one equation, where [`ExactBody`](crate::methods::ExactBody) solves none, and it isn't symplectic: between
+/// kicks the Poisson structure is kept as well as the flow is approximated. Where a share of the step turns the body by less than a tenth of a radian,
 /// order 10 does both to rounding; at coarse steps energy drifts. [`SplitBody`](crate::methods::SplitBody) and declared kinetic
 /// flows, such as that of a Lagrangian of order 6, are Poisson at any step.
 #[derive(Clone, Copy, Debug)]

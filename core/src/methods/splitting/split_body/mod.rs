@@ -36,6 +36,8 @@ use crate::numbers::{Mask, Real, is_finite, real, reported};
 /// - `SplitBody::<9>` also is of order 6 in the smaller of the two coefficients, and pays for more digits than that and
 ///   for bodies that are nearly symmetric.
 ///
+/// [`ExactBody`](crate::methods::ExactBody) takes less time than either, and has no error but rounding.
+///
 /// Of a symmetric body one term is zero, and the flow is that of [`SymmetricBody`](crate::methods::SymmetricBody), at a higher
 /// price.
 ///
