@@ -5,7 +5,7 @@ use core::fmt::Debug;
 
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Matrix, Parts, Scalar, SceneVisitor, Square, Vector, WithKinetic,
+    DiscreteLagrangian, Effect, Group, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Vector, WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
@@ -121,8 +121,8 @@ impl<L: Effect> Effect for WithJacobian<L> {
         constants: &Self::Constants,
         terms: &Self::StepTerms,
         half: &Vector<Self>,
-    ) -> (Vector<Self>, Option<Vector<Self>>) {
-        (L::newton_residual(constants, terms, half).0, None)
+    ) -> Residual<Vector<Self>> {
+        Residual { moving_kick: None, ..L::newton_residual(constants, terms, half) }
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
@@ -201,19 +201,21 @@ where
         SYSTEMS.set(SYSTEMS.get() + 1);
         let f = L::Retraction::retract(&(half + half)).matrix();
         let jacobian = constants.1.momentum_jacobian(&f, &terms.1, constants.2) * L::Retraction::tangent_of_half(half);
-        (Self::newton_residual(constants, terms, half).0, jacobian * (constants.2 * nalgebra::convert::<f64, T>(0.5)))
+        let residual = Self::newton_residual(constants, terms, half).momentum_defect;
+        (residual, jacobian * (constants.2 * nalgebra::convert::<f64, T>(0.5)))
     }
 
     fn newton_residual(
         (constants, lagrangian, h): &Self::Constants,
         (a, w): &Self::StepTerms,
         half: &Vector3<T>,
-    ) -> (Vector3<T>, Option<Vector3<T>>) {
+    ) -> Residual<Vector3<T>> {
         let f = L::Retraction::retract(&(half + half)).matrix();
         let kick_before = L::kick_before(constants, w);
         let residual = lagrangian.legendre_minus(&f, w, *h) + kick_before - *a;
         let moved = lagrangian.diamond(&f, w, *h) - kick_before;
-        (residual * (*h * nalgebra::convert::<f64, T>(0.5)), Some(moved))
+        let momentum_defect = residual * (*h * nalgebra::convert::<f64, T>(0.5));
+        Residual { momentum_defect, moving_kick: Some(moved) }
     }
 
     fn kick_after((constants, ..): &Self::Constants, increment: &Matrix3<T>, next: &Self::Advected) -> Vector3<T> {

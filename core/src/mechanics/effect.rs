@@ -49,6 +49,16 @@ impl Parts {
     }
 }
 
+/// What an effect says of an increment without a Jacobian, by [`Effect::newton_residual`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual<V> {
+    /// The residual of [`newton_system`](Effect::newton_system), by how much the momentum equation (2.7) is missed.
+    pub momentum_defect: V,
+    /// Where one gradient of `l_d` gives both, the part `k` of the diamond that depends on `F`. It stands for
+    /// [`kick_after`](Effect::kick_after) then: `Ad*_F k = kick_after(F, w⁺)`.
+    pub moving_kick: Option<V>,
+}
+
 /// One term of a scene, with all that a stepper needs of it: a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), or a
 /// sum.
 ///
@@ -184,20 +194,18 @@ pub trait Effect {
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
 
-    /// The residual of [`newton_system`](Self::newton_system) alone; with it, where one gradient of `l_d` gives both,
-    /// the part `k` of the diamond that depends on `F`, which stands for [`kick_after`](Self::kick_after) then:
-    /// `Ad*_F k = kick_after(F, w⁺)`.
+    /// The residual of [`newton_system`](Self::newton_system) without its Jacobian.
     #[inline(always)]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
         half: &Vector<Self>,
-    ) -> (Vector<Self>, Option<Vector<Self>>) {
-        (Self::newton_system(constants, terms, half).0, None)
+    ) -> Residual<Vector<Self>> {
+        Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
     }
 
-    /// What of [`kick_after`](Self::kick_after) isn't in the `k` of [`newton_residual`](Self::newton_residual): that of
-    /// the other terms of a sum.
+    /// What of [`kick_after`](Self::kick_after) isn't in the [`moving_kick`](Residual::moving_kick) of
+    /// [`newton_residual`](Self::newton_residual): that of the other terms of a sum.
     #[inline(always)]
     #[must_use]
     fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {

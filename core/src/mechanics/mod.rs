@@ -14,7 +14,7 @@ mod sum;
 mod symmetry;
 
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Matrix, Moves, Parts, Regular, Scalar, Square, Vector};
+pub use effect::{Effect, Group, Matrix, Moves, Parts, Regular, Residual, Scalar, Square, Vector};
 pub(crate) use effect::{energy, momentum_of_velocity, velocity_of_momentum};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};

@@ -5,7 +5,7 @@ use core::ops::Add;
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Matrix, Parts, Square, Vector};
+use crate::mechanics::effect::{Effect, Matrix, Parts, Residual, Square, Vector};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
@@ -208,9 +208,11 @@ where
         constants: &Self::Constants,
         terms: &Self::StepTerms,
         half: &Vector<Self>,
-    ) -> (Vector<Self>, Option<Vector<Self>>) {
+    ) -> Residual<Vector<Self>> {
         match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) => (Self::newton_system(constants, terms, half).0, None),
+            (true, true) => {
+                Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
+            }
             (true, false) => A::newton_residual(&constants.0, &terms.0, half),
             (false, _) => B::newton_residual(&constants.1, &terms.1, half),
         }

@@ -39,7 +39,7 @@ pub(crate) struct Root<L: Effect> {
     pub(crate) kick: Kick<L>,
 }
 
-/// The `k` of [`newton_residual`](Effect::newton_residual) that a solve has come by.
+/// The [`moving_kick`](crate::mechanics::Residual::moving_kick) that a solve has come by.
 #[derive(Clone, Copy)]
 pub(crate) struct Kick<L: Effect> {
     pub(crate) value: Vector<L>,

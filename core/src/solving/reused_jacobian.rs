@@ -76,7 +76,7 @@ impl<L: Effect> Problem<'_, L> {
     /// The update from there by the Jacobian that another was made with.
     #[inline(always)]
     pub(super) fn simplified(&self, terms: &L::StepTerms, half: &Vector<L>, made: &Iteration<L>) -> Vector<L> {
-        let (residual, _) = L::newton_residual(self.constants, terms, half);
+        let residual = L::newton_residual(self.constants, terms, half).momentum_defect;
         Vector::<L>::solve_again(&made.factors, made.det, &residual)
     }
 

@@ -39,7 +39,7 @@
 use super::problem::{Lanes, Problem};
 use super::reused_jacobian::has_no_derivatives;
 use crate::groups::Retraction as _;
-use crate::mechanics::{Effect, Scalar, Vector};
+use crate::mechanics::{Effect, Residual, Scalar, Vector};
 use crate::numbers::{Coordinates as _, Mask, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
@@ -145,11 +145,11 @@ impl<L: Effect> Problem<'_, L> {
         let mut doubtful = !in_ball(guess);
         let mut iterations = 0;
         while updates.count < MAX_UPDATES && !(lanes.settled | doubtful).all() {
-            let (residual, kick) = L::newton_residual(self.constants, terms, &lanes.half);
-            let update = updates.corrected(Vector::<L>::solve(&model, &(residual * real(-1.0))).0);
+            let Residual { momentum_defect, moving_kick } = L::newton_residual(self.constants, terms, &lanes.half);
+            let update = updates.corrected(Vector::<L>::solve(&model, &(momentum_defect * real(-1.0))).0);
             let next = lanes.half + update;
             let resting = lanes.settled | doubtful;
-            if let Some(kick) = kick {
+            if let Some(kick) = moving_kick {
                 let found = self.kick_has_settled(&(kick - lanes.kick.value), &update, &mut updates);
                 lanes.kick.value = lanes.kick.value.select(resting, kick);
                 lanes.kick.found = (lanes.kick.found & resting) | (found & !resting);

@@ -190,7 +190,6 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
     let (residual, moved) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Vector, moved));
     let when = "an iteration without the Jacobian";
     let documentation = super::docs::stage(&kernel.graph, &gradient, Stage::Iteration, when);
-    let option = quote_spanned!(span=> #private::core::option::Option);
     quote_spanned! {span=>
         const JACOBIAN_IS_EXPENSIVE: #private::core::primitive::bool = true;
 
@@ -200,9 +199,9 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
             constants: &Self::Constants,
             terms: &Self::StepTerms,
             half: &#vector,
-        ) -> (#vector, #option<#vector>) {
+        ) -> #private::Residual<#vector> {
             #lets
-            (#residual, #option::Some(#moved))
+            #private::Residual { momentum_defect: #residual, moving_kick: #private::core::option::Option::Some(#moved) }
         }
     }
 }
