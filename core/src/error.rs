@@ -132,7 +132,8 @@ pub enum StepError {
         step: f64,
         /// The largest step that this state allows, s.
         largest: f64,
-        /// How far the body would turn at the velocity that it has, on SO(3) in rad.
+        /// How far the body would turn at the velocity that it has after the first kick, on SO(3) in rad; of several lanes
+        /// the largest.
         turn: f64,
     },
     /// The body would turn by an angle of which the scalar has no digit left.
@@ -163,9 +164,14 @@ impl fmt::Display for StepError {
             Self::NonFinite { what } => {
                 write!(f, "the {what} is not finite; choose units in which the numbers are nearer to one")
             }
+            // In lanes that differ the largest step isn't one number.
+            Self::BeyondSolvable { step, largest, turn } if largest.is_nan() => write!(
+                f,
+                "no solution at the step {step:e} s: a body would turn by about {turn:.2e} rad, which is too far; take smaller steps, or let `or_substeps` divide such steps"
+            ),
             Self::BeyondSolvable { step, largest, turn } => write!(
                 f,
-                "no solution at the step {step:e} s: the body would turn by about {turn:.2e} rad, and {:.2e} rad is the most from this state; take steps of at most {largest:e} s, let `or_substeps` divide such steps, or choose a kinetic part without that limit, as that of `CayleyBody`",
+                "no solution at the step {step:e} s: the body would turn by about {turn:.2e} rad, and {:.2e} rad is the most from this state; take steps of at most {largest:e} s, or let `or_substeps` divide such steps. On SO(3) the kinetic part of `CayleyBody` has no such limit",
                 turn * (largest / step)
             ),
             Self::AngleWithoutDigits { turn } => {

@@ -71,9 +71,10 @@ fn figure(
     })
 }
 
-/// A circular orbit: radius vector's rate, rad/s, and where the planet is seen at a time.
+/// The orbital rate, rad/s.
 const RATE: f64 = 0.001;
 
+/// The direction of the planet in space at a time in s, of length one.
 fn planet(t: f64) -> Vector3<f64> {
     -Vector3::new((RATE * t).cos(), (RATE * t).sin(), 0.0)
 }

@@ -60,6 +60,7 @@ fn step_errors() {
     let errors = [
         StepError::NonFinite { what: "momentum" },
         StepError::BeyondSolvable { step: 0.125, largest: 0.0815, turn: 2.5 },
+        StepError::BeyondSolvable { step: 0.125, largest: f64::NAN, turn: 2.5 },
         StepError::AngleWithoutDigits { turn: 5e15 },
         StepError::NotConverged { iterations: 60, residual: 0.5 },
         StepError::WrongBranch { determinant: -0.25 },
@@ -68,6 +69,9 @@ fn step_errors() {
     for error in errors {
         let parts: &[&str] = match error {
             StepError::NonFinite { .. } => &["momentum", "not finite"],
+            StepError::BeyondSolvable { largest, .. } if largest.is_nan() => {
+                &["1.25e-1 s", "2.50e0 rad", "or_substeps"]
+            }
             StepError::BeyondSolvable { .. } => &[
                 "no solution",
                 "1.25e-1 s",

@@ -14,6 +14,6 @@ pub(crate) use entries::{sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
 pub use scalar::real;
 pub use scalar::{Mask, Real};
-pub(crate) use scalar::{gathered, is_finite, nowhere, reported};
+pub(crate) use scalar::{gathered, is_finite, largest_lane, nowhere, reported};
 
 pub(crate) use simd::{Kernel, dispatch};

@@ -71,3 +71,8 @@ pub(crate) fn is_finite<T: Real>(value: T) -> bool {
 pub(crate) fn reported<T: Real>(value: T) -> f64 {
     nalgebra::try_convert(value).unwrap_or(f64::NAN)
 }
+
+/// The largest of the lanes, for a message.
+pub(crate) fn largest_lane<T: Real>(value: T) -> f64 {
+    (0..T::LANES).map(|lane| reported(T::splat(value.extract(lane)))).fold(0.0, f64::max)
+}

@@ -6,9 +6,11 @@ use super::Advected;
 use crate::groups::LieGroup;
 use crate::numbers::{Entries, Real, is_finite};
 
-/// A value that a step may be [given](crate::Stepper::step_with) anew: a scalar, a vector in body axes or a matrix.
+/// A value that a step may be [given](crate::Stepper::step_with) anew: what `given(u = torque)` makes of the field
+/// `torque`, a scalar as a 1 × 1 matrix, a vector or a matrix.
 ///
-/// It is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero.
+/// It is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero. What is given as it is seen
+/// from the body, as most torques are, has components in the body's axes; units are those of the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given<T, const R: usize = 1, const C: usize = 1>(pub SMatrix<T, R, C>);
 

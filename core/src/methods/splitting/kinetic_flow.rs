@@ -11,8 +11,8 @@ use crate::numbers::{Coordinates as _, Real, real, reported};
 
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
 ///
-/// What it says of the body are functions and no methods: a declared Lagrangian is a flow, too, and its own
-/// [`inertia`](Effect::inertia) stays the only method of that name.
+/// What it says of the body are associated functions. A declared Lagrangian is a flow, too, and has a method
+/// [`inertia`](Effect::inertia) already.
 pub trait KineticFlow<T: Real>: Clone {
     /// The flow over one share of the step, its constants folded.
     type Drift: Clone;

@@ -10,12 +10,12 @@ use crate::groups::rotation_coefficients;
 use crate::groups::{Advected, CayleyRetraction, LieGroup, Retraction as _, SO3};
 use crate::mechanics::DiscreteLagrangian;
 use crate::motion::Summation;
-use crate::numbers::{Real, real, two_square, two_sum};
+use crate::numbers::{Entries as _, Real, real, two_square, two_sum};
 
 /// Attitudes without anything special about them.
 const SAMPLES: [[f64; 3]; 4] = [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5], [1.3, 0.8, -0.2], [-0.6, -1.2, 0.9]];
 
-/// Whether something is so from wherever the scene is seen.
+/// Whether something is so from wherever the scene is seen, and whatever values a step is given for what is advected.
 pub(super) fn all_samples<T, L>(lagrangian: &L, is_so: impl Fn(&L::Advected) -> bool) -> bool
 where
     T: Real,
@@ -23,7 +23,13 @@ where
 {
     SAMPLES.iter().all(|xi| {
         let attitude = CayleyRetraction::retract(&Vector3::from(*xi).map(real::<T>));
-        is_so(&lagrangian.advected().seen_from(&attitude))
+        // No two of the values are parallel.
+        let mut entries = xi.iter().cycle().scan(1.0, |factor, entry| {
+            *factor += 0.37;
+            Some(*factor * entry)
+        });
+        let given = L::Advected::from_entries(&mut || real(entries.next().unwrap_or(1.0)));
+        is_so(&lagrangian.advected().seen_from(&attitude)) && is_so(&given)
     })
 }
 

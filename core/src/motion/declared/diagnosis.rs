@@ -5,7 +5,7 @@ use crate::error::StepError;
 use crate::groups::Advected as _;
 use crate::groups::Retraction as _;
 use crate::mechanics::{Effect, Group, Scalar, Vector, velocity_of_momentum};
-use crate::numbers::{Coordinates as _, real, reported};
+use crate::numbers::{Coordinates as _, largest_lane, real, reported};
 use crate::solving::{Problem, Root, Solvability, TurningLimits, largest_fraction, six_digits, turning_limits};
 use nalgebra::SimdComplexField as _;
 
@@ -119,10 +119,12 @@ pub(crate) fn beyond_solvable<S: Effect>(
     advected: &S::Advected,
     largest: Scalar<S>,
 ) -> StepError {
-    let turn = velocity_of_momentum(scene, momentum, advected) * h;
+    // With the kick at the beginning of the step.
+    let kicked = kicked::<S>(&scene.constants(h), momentum, advected);
+    let turn = velocity_of_momentum(scene, &kicked, advected) * h;
     StepError::BeyondSolvable {
         step: reported(h),
         largest: six_digits(reported(largest)),
-        turn: reported(turn.dot(&turn).simd_sqrt()),
+        turn: largest_lane(turn.dot(&turn).simd_sqrt()),
     }
 }

@@ -142,7 +142,7 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
     }
     let name: Ident = input.parse()?;
     if !input.peek(Token![=]) {
-        let message = format!("write `{name} = field`: the field holds the spatial value of `{name}`");
+        let message = format!("write `{name} = field`, the field that holds its value");
         return Err(syn::Error::new(name.span(), message));
     }
     input.parse::<Token![=]>()?;

@@ -76,7 +76,7 @@ fn length(ty: &Type) -> Option<usize> {
     let PathArguments::AngleBracketed(arguments) = &last_segment(ty)?.arguments else { return None };
     match arguments.args.last()? {
         GenericArgument::Const(Expr::Lit(literal)) => match &literal.lit {
-            syn::Lit::Int(integer) => integer.base10_parse().ok(),
+            syn::Lit::Int(integer) => integer.base10_parse().ok().filter(|&length| length > 0),
             _ => None,
         },
         _ => None,

@@ -46,7 +46,7 @@ use crate::numbers::{Mask, Real, is_finite, real, reported};
 
 /// The free motion of a body with any three moments, exactly: to rounding, over any time.
 ///
-/// There is nothing to solve, no square root and one rotation's sine and cosine, the same for symmetric and asymmetric
+/// There is nothing to solve, up to a radian no square root, and one rotation's sine and cosine, the same for symmetric and asymmetric
 /// bodies. Between kicks it leaves no error but that of the scheme; with a scene that has no potential a step of any
 /// length is the motion itself, and a longer one costs no more than the logarithm of its length.
 ///

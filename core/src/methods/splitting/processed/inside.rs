@@ -5,8 +5,8 @@ use crate::motion::{Kept, Motion, count, counted};
 use crate::numbers::{Entries, Real, real, zero};
 use nalgebra::SimdBool as _;
 
-/// Where a run is inside of its processor, by [`Processed`](super::Processed), or that it isn't yet: at the start, after a
-/// push and after another method's steps.
+/// Where a run is inside of its processor, by [`Processed`](super::Processed), and by which step; or that it isn't there:
+/// at the start, after a push and after another method's steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inside<T: Real, A>(pub(super) Option<Stepped<T, A>>);
 
@@ -16,15 +16,17 @@ pub(super) struct Stepped<T: Real, A> {
     attitude: SO3<T>,
     momentum: nalgebra::Vector3<T>,
     advected: A,
+    /// The step whose processor it is inside of.
+    pub(super) h: T,
 }
 
 impl<T: Real, A: Advected<SO3<T>>> Stepped<T, A> {
-    pub(super) fn of(motion: &Motion<SO3<T>, A>) -> Self {
-        Self { attitude: motion.attitude, momentum: motion.momentum, advected: motion.advected }
+    pub(super) fn of(motion: &Motion<SO3<T>, A>, h: T) -> Self {
+        Self { attitude: motion.attitude, momentum: motion.momentum, advected: motion.advected, h }
     }
 
     pub(super) fn after(self, steps: u64) -> Motion<SO3<T>, A> {
-        let Self { attitude, momentum, advected } = self;
+        let Self { attitude, momentum, advected, .. } = self;
         Motion { attitude, momentum, advected, steps }
     }
 }
@@ -36,11 +38,13 @@ impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
             attitude: SO3::from_matrix_unchecked(zero()),
             momentum: zero::<T, nalgebra::Vector3<T>>(),
             advected: zero::<T, A>(),
+            h: T::zero(),
         };
-        let Stepped { attitude, momentum, advected } = self.0.unwrap_or_else(nothing);
+        let Stepped { attitude, momentum, advected, h } = self.0.unwrap_or_else(nothing);
         Entries::each(attitude.as_matrix(), &mut visit);
         Entries::each(&momentum, &mut visit);
         advected.each(&mut visit);
+        visit(h);
     }
 
     fn from_numbers(mut next: &mut dyn FnMut() -> T) -> Option<Self> {
@@ -51,11 +55,12 @@ impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
         };
         let attitude = SO3::from_matrix_unchecked(Entries::from_entries(&mut next));
         let (momentum, advected) = (Entries::from_entries(&mut next), Entries::from_entries(&mut next));
+        let h = next();
         if !is_inside {
             return Some(Self(None));
         }
         let is_rotation = attitude.defect().simd_le(T::simd_default_epsilon() * real(1e4)).all();
-        is_rotation.then_some(Self(Some(Stepped { attitude, momentum, advected })))
+        is_rotation.then_some(Self(Some(Stepped { attitude, momentum, advected, h })))
     }
 }
 
@@ -65,10 +70,10 @@ mod tests {
     use crate::motion::Kept as _;
     use nalgebra::Vector3;
 
-    /// Whether it is inside, an attitude, a momentum and a vector.
+    /// Whether it is inside, an attitude, a momentum, a vector and the step.
     fn read(flag: f64, corner: f64) -> Option<Inside<f64, Vector3<f64>>> {
         let attitude = [corner, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0];
-        let mut numbers = [flag].into_iter().chain(attitude).chain([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let mut numbers = [flag].into_iter().chain(attitude).chain([1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 0.1]);
         Inside::from_numbers(&mut || numbers.next().unwrap())
     }
 
@@ -79,7 +84,7 @@ mod tests {
             inside.each(&mut |number| numbers.push(number));
             let mut again = numbers.iter().copied();
             assert_eq!(Inside::from_numbers(&mut || again.next().unwrap()), Some(inside));
-            assert_eq!((numbers.len(), again.next()), (16, None));
+            assert_eq!((numbers.len(), again.next()), (17, None));
         }
     }
 

@@ -9,11 +9,11 @@ pub use scheme::ProcessedScheme;
 use inside::Stepped;
 
 use super::scheme::Flow;
-use super::{KineticFlow, Share, Split};
+use super::{KineticFlow, Share, Split, has_force_gradient};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor};
-use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation};
+use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Coordinates, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
@@ -37,7 +37,7 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 /// # Contract
 ///
 /// As [`Stepper`](crate::Stepper)'s. Steps one by one and at once give the same bits. A control force acts on what is
-/// read, and the next step goes inside from there.
+/// read, and the next step goes inside from there; of several lanes all do, where one was pushed.
 ///
 /// # Examples
 ///
@@ -67,11 +67,11 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 #[derive(Clone, Debug)]
 pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
     scheme: ProcessedScheme,
-    /// Its steps go from the middle of a joint to the middle of the next, so that they are all the same.
+    /// Its steps go from the end of a joint to the end of the next, so that they are all the same.
     kernel: Split<S, K>,
-    /// From what is read to the middle of a joint.
+    /// From what is read to the end of a joint.
     enter: Vec<Share<K::Drift, Scalar<S>>>,
-    /// And back.
+    /// From there to what is read.
     leave: Vec<Share<K::Drift, Scalar<S>>>,
 }
 
@@ -143,6 +143,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: ProcessedScheme) -> Result<Self, SetupError> {
         let kernel = Split::folded(scene, h, kinetic, scheme.kernel())?;
         let (length, out) = (h.simd_abs(), way_out(&scheme));
+        // The kernel's own were asked for with the kernel.
+        if out.iter().any(Part::has_gradient) && !has_force_gradient(scene) {
+            return Err(SetupError::NoForceGradient);
+        }
         let folded = |part: &Part, sign: f64| {
             let time = h * real(sign * part.time[0]) + length * real(sign * part.time[1]);
             let cubes = [h, length].map(|h| h * h * h);
@@ -160,6 +164,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
         &self.scheme
     }
 }
+
+/// A step that is given values goes in and out of the processor with them.
+impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Processed<S, K> {}
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     type Kept = Inside<Scalar<S>, S::Advected>;
@@ -200,7 +207,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
             return Ok(0);
         }
         let (mut next, mut all, mut iterations) = (*motion, 0, 0);
-        match kept.0 {
+        match kept.0.filter(|inside| inside.h == self.kernel.h) {
             Some(inside) => next.show(inside.after(next.now().steps)),
             None => self.kernel.make_all(&self.enter, &mut next, &mut iterations)?,
         }
@@ -215,10 +222,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         let mut read = inside;
         self.kernel.make_all(&self.leave, &mut read, &mut iterations)?;
         if !(Coordinates::is_finite(&read.momentum) && Advected::is_finite(&read.advected)) {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
+            return Err(self.kernel.why_not_finite(&motion.now().momentum));
         }
         next.show(read);
-        (*motion, kept.0) = (next, Some(Stepped::of(&inside)));
+        (*motion, kept.0) = (next, Some(Stepped::of(&inside, self.kernel.h)));
         Ok(all + u64::from(iterations))
     }
 
@@ -233,6 +240,12 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         if !impulse.iter().all(|part| part.simd_eq(real(0.0)).all()) {
             kept.0 = None;
         }
+    }
+
+    /// What is inside has seen the values before.
+    fn see(&self, motion: &mut Motion<SO3<Scalar<S>>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+        *kept = Inside(None);
+        motion.advected = advected;
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
