@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 const SCHEMES: [SplittingScheme; 2] = [SplittingScheme::NYSTROM_14, SplittingScheme::KAHAN_LI_8];
 
-/// Steps of a second at a rate, with gravity and without its size mattering.
+/// Steps of a second in gravity, at rates up to where no digit of the angle is left.
 fn assert_rotations<K: KineticFlow<f64>>(moments: Vector3<f64>, flow: &K) {
     let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(moments).unwrap() };
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
@@ -51,7 +51,8 @@ fn of_rotations_about_the_axes() {
 
 #[test]
 fn of_any_body_exactly() {
-    for moments in [Vector3::new(2.0, 2.0, 3.0), Vector3::new(2.0, 2.5, 3.0)] {
+    // The last is a needle.
+    for moments in [Vector3::new(2.0, 2.0, 3.0), Vector3::new(2.0, 2.5, 3.0), Vector3::new(1e-6, 1.0, 1.0)] {
         assert_rotations(moments, &ExactBody::new(&Inertia::from_principal_moments(moments).unwrap()));
     }
 }

@@ -71,6 +71,9 @@ impl<T: Real> ExactDrift<T> {
             (root, part) = ((root * half).select(is_far, root), (part * quarter).select(is_far, part));
             doublings += 1;
         }
+        // An angle without a digit left is none.
+        let epsilon = T::simd_default_epsilon();
+        let part = part.select((size * epsilon * epsilon).simd_lt(one), real(f64::NAN));
         let reduced = invariants.scaled(part);
         let Functions { n, integral, .. } = long(&reduced);
         let square = one / n;
