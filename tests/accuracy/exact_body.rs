@@ -120,7 +120,7 @@ fn it_is_the_solution_to_the_last_digits() {
     println!("{near:.1} units in the last place up to a radian, {far:.1} times the growth beyond");
 }
 
-/// The body of the chaotic top, moved to the same place by steps and by one step, and a spherical one.
+/// Each body is moved to the same place by steps and by one step.
 #[test]
 fn it_is_a_group() {
     let mut random = Random::new(62);

@@ -197,7 +197,7 @@ fn a_push_acts_on_what_is_read() {
     assert!(relative(&states.0.momentum(), &states.1.momentum()) < 1e-10);
 }
 
-/// The force gradient is needed, and the free body has none but moves.
+/// A processed free body moves as by one exact drift: kicks and their gradients are none.
 #[test]
 fn a_free_body_is_processed_exactly() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.6, 2.6, 3.0)).unwrap();

@@ -7,7 +7,8 @@ use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::sum::Sum;
 use crate::numbers::Real;
 
-/// A Lagrangian that advects nothing, whatever it is given: it is the same for all attitudes, and the spatial momentum is conserved exactly.
+/// A Lagrangian that advects nothing, whatever it is given: it is the same for all attitudes, and the spatial momentum is
+/// conserved exactly.
 ///
 /// A sum is left-invariant if both terms are. The attribute implements it; so does a hand-written Lagrangian without
 /// advected parameters, with an empty body.

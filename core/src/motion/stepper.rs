@@ -28,7 +28,7 @@ pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as P
 /// Stepper::processed(scene, h, flow, scheme)      the same between the ends of a processor, for fewer flows a step
 /// Stepper::collocated::<PAIRS>(scene, h)          Gauss collocation, to any order
 /// Stepper::preprocessed(body, h, order)           a free body, to order 10 in one solve
-/// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of them for an error
+/// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of its own step and its compositions
 /// ```
 ///
 /// Whatever the method `P`, a motion is [started](Self::start), [stepped](Self::step) and read in the same way, and
@@ -420,7 +420,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         Ok(Self { scene: self.scene.clone(), plan })
     }
 
-    /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected.
+    /// The spatial momentum, `R Π` on SO(3), in a scene that conserves it: nothing is advected, though values may be given.
     #[must_use]
     pub fn spatial_momentum(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S>
     where

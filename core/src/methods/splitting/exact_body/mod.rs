@@ -46,15 +46,15 @@ use crate::numbers::{Mask, Real, is_finite, real, reported};
 
 /// The free motion of a body with any three moments, exactly: to rounding, over any time.
 ///
-/// There is nothing to solve, up to a radian no square root, and one rotation's sine and cosine, the same for symmetric and asymmetric
-/// bodies. Between kicks it leaves no error but that of the scheme; with a scene that has no potential a step of any
+/// There is nothing to solve. Up to a radian it takes no square root, and the sine and cosine of one rotation, the same
+/// for symmetric and asymmetric bodies. Between kicks it leaves no error but that of the scheme; with a scene that has no potential a step of any
 /// length is the motion itself, and a longer one costs no more than the logarithm of its length.
 ///
 /// # Rounding
 ///
-/// `F − I` and the momentum are within 8 units in the last place of their largest entry up to a radian, and for each
-/// radian more within 8 units more, as the rounding of the angle itself grows. Near the separatrix a motion stays at the
-/// middle axis for a time, and what is rounded there grows exponentially, as in any computation with such a momentum.
+/// Over an angle `θ` of up to a radian `F − I` and the momentum are within `8 (1 + θ)` units in the last place of their
+/// largest entry. Beyond, the units are multiplied by what the motion itself makes of a change of the momentum: some `θ`,
+/// and near the separatrix, where a motion stays at the middle axis for a time, exponentially more.
 ///
 /// # Frame and units
 ///

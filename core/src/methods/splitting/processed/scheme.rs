@@ -1,8 +1,8 @@
 //! The coefficients of processed splittings.
 //!
 //! All were found for this library: kernels and processors by Levenberg and Marquardt's method on the conditions in the
-//! Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, what is left at the next order made small, chosen by
-//! their errors on random asymmetric tops and springs, and polished to 30 digits.
+//! Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, what is left at the next order made small, and polished
+//! to 30 digits. `tests/accuracy/conditions.rs` has the conditions.
 
 // All digits that were found, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
@@ -42,7 +42,7 @@ pub struct ProcessedScheme {
 }
 
 impl ProcessedScheme {
-    /// Order 6 with three drifts and one force gradient a step; the best on other problems than those of its search.
+    /// Order 6 with three drifts and one force gradient a step.
     pub const SIX_A: Self = Self::new(
         "processed 3-6 a",
         6,
@@ -61,7 +61,7 @@ impl ProcessedScheme {
         0.217876896053600086424265002259,
     );
 
-    /// The same steps with another processor, the best for the chaotic top.
+    /// The same steps with another processor.
     pub const SIX_B: Self = Self::new(
         "processed 3-6 b",
         6,
