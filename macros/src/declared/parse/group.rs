@@ -102,12 +102,9 @@ pub(super) fn group(
 
 /// The generators, to be read when the group is known.
 pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
-    let plain = |expression| match expression {
-        Expr::Group(inner) => *inner.expr,
-        other => other,
-    };
-    match plain(input.parse()?) {
-        Expr::Array(array) => Ok(array),
+    let expression: Expr = input.parse()?;
+    match plain(&expression) {
+        Expr::Array(array) => Ok(array.clone()),
         other => {
             let message = "write the generators as an array of matrices, each by its rows: \
                            `[[[0.0, -1.0], [1.0, 0.0]]]`";
@@ -116,9 +113,18 @@ pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
     }
 }
 
+/// Without the brackets around it, and those that a `macro_rules!` fragment comes in.
+fn plain(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Group(inner) => plain(&inner.expr),
+        Expr::Paren(inner) => plain(&inner.expr),
+        other => other,
+    }
+}
+
 /// `[[[0.0, -1.0], [1.0, 0.0]], …]`: for each generator its rows. They are a basis of a Lie algebra.
 pub(super) fn generators(array: &ExprArray) -> syn::Result<Group> {
-    let rows = |expression: &Expr| match expression {
+    let rows = |expression: &Expr| match plain(expression) {
         Expr::Array(array) => Ok(array.elems.clone()),
         other => Err(syn::Error::new(other.span(), "write a matrix as an array of rows: `[[0.0, -1.0], [1.0, 0.0]]`")),
     };
@@ -179,7 +185,7 @@ const MOST_ROWS: usize = 4;
 
 fn decimal(expression: &Expr) -> syn::Result<Rational> {
     let message = "write the entry of a generator as a decimal number: `-1.0`";
-    let value = match expression {
+    let value = match plain(expression) {
         Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
         Expr::Lit(literal) => match &literal.lit {
             syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),

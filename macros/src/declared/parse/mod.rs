@@ -27,7 +27,7 @@ pub(crate) fn declaration(
     errors: &mut Errors,
 ) -> Option<Declaration> {
     let item = annotated(role, item, errors)?;
-    size::check(role, arguments, errors)?;
+    size::check(role.definite(), arguments, errors)?;
     Some(as_far_as_readable(role, arguments.clone(), item, errors))
 }
 

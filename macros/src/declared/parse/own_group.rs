@@ -5,6 +5,7 @@ use syn::parse::{Parse, ParseStream, Parser as _};
 use syn::{Attribute, ExprArray, Ident, ImplItem, Path, Token, Visibility};
 
 use super::group::generators;
+use super::size;
 use crate::declared::errors::Errors;
 
 /// What `matrix_group!` declares.
@@ -49,6 +50,7 @@ impl Parse for OwnGroup {
 
 /// The group that `matrix_group!` declares.
 pub(crate) fn own_group(tokens: TokenStream, errors: &mut Errors) -> Option<OwnGroup> {
+    size::check("the group", &tokens, errors)?;
     syn::parse2(tokens).map_err(|error| errors.extend(error)).ok()
 }
 

@@ -2,7 +2,6 @@
 
 use proc_macro2::{TokenStream, TokenTree};
 
-use crate::declared::Role;
 use crate::declared::errors::Errors;
 
 /// More tokens than this, or deeper nesting, are no Lagrangian that a person wrote, and parsing them recursively could
@@ -55,14 +54,13 @@ impl Open {
 }
 
 /// `None` where the arguments are too large to be parsed, which has been reported.
-pub(super) fn check(role: Role, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
+pub(super) fn check(the: &str, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![Open::new(arguments.clone(), 0)];
     let mut count = 0;
     while let Some(mut innermost) = open.pop() {
         let Some(token) = innermost.tokens.next() else { continue };
         count += 1;
         if count > MOST_TOKENS {
-            let the = role.definite();
             let message = format!(
                 "{the} has more than {MOST_TOKENS} tokens: declare parts as terms of their own, and add them, `a + b`"
             );

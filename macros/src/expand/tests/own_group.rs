@@ -27,6 +27,18 @@ fn its_mistakes() {
     for wrong in ["", "pub type A", "type A = [];", "type A = [[[1, 0.0], [0.0, 0.0]]];", "type A = [[[1.0, 0.0]]];"] {
         assert!(is_refused(&matrix_group(tokens(wrong))), "{wrong}");
     }
+    // Neither is read by recursion without end.
+    let [signs, brackets] = [["-".repeat(5000), String::new()], ["[".repeat(200), "]".repeat(200)]];
+    for [before, after] in [signs, brackets] {
+        assert!(is_refused(&matrix_group(tokens(&format!("type A = [[[{before} 1.0 {after}]]]; {RELATION}")))));
+    }
+}
+
+/// Brackets around an entry, or those of a fragment, change nothing.
+#[test]
+fn entries_in_brackets() {
+    let group = format!("type Affine = [[[(1.0), 0.0], [0.0, (-0.0)]], ([[0.0, 1.0], [0.0, 0.0]])]; {RELATION}");
+    assert!(!is_refused(&matrix_group(tokens(&group))));
 }
 
 #[test]

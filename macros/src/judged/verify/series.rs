@@ -10,8 +10,8 @@ const LENGTH: usize = 8;
 const LENGTH_I32: i32 = 8;
 /// From here on nothing is known of a number that is exact.
 const NEVER: i32 = 1_000;
-/// What rounding leaves where two numbers cancel.
-const ROUNDING: f64 = 1e-13;
+/// What rounding leaves where numbers cancel, with some digits to spare: what is taken for nothing is no mistake.
+const ROUNDING: f64 = 1e-11;
 
 /// `Σ c_i hⁱ + O(hᵉ)`, from the first power whose coefficient isn't zero; undefined where that is NaN.
 #[derive(Clone, Copy, Debug)]
@@ -93,8 +93,13 @@ impl Series {
     /// Of an even power of `h` times a positive number.
     fn root(self) -> Self {
         let positive = self.coefficients[0] > 0.0;
-        if self.is_zero() || !positive || self.first % 2 != 0 {
-            return if self.is_zero() { self } else { Self::UNDEFINED };
+        if self.is_zero() {
+            // The root of O(hᵉ) is O(h^(e/2)), that of an exact zero exactly zero.
+            let end = if self.end >= NEVER { self.end } else { self.end / 2 };
+            return Self { first: end, end, ..self };
+        }
+        if !positive || self.first % 2 != 0 {
+            return Self::UNDEFINED;
         }
         let half = self.first / 2;
         let unit = Self { first: 0, end: self.end - self.first, ..self };
