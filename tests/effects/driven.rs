@@ -18,7 +18,7 @@ fn body() -> RigidBody {
     RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.5)).unwrap() }
 }
 
-fn torquer((): (), (field, Given(moment)): (Vector3<f64>, Given<f64, 3>)) -> Torquer {
+fn torquer((field, Given(moment)): (Vector3<f64>, Given<f64, 3>)) -> Torquer {
     Torquer { moment, field }
 }
 
@@ -45,7 +45,7 @@ where
     let mut remedied = 0;
     for _ in 0..20 {
         let values: Values = ((), (random.sample(), Given(random.sample())));
-        let such = make(torquer(values.0, values.1));
+        let such = make(torquer(values.1));
         let mut expected = such.adopt(&state);
         such.step(&mut expected).unwrap();
         remedied += usize::from(driven.step_with(&mut state, &values).unwrap().remedy.is_some());
