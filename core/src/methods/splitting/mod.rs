@@ -172,16 +172,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         Ok(Self { scheme, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None })
     }
 
-    /// A share of this length, s, and if it is a kick with a gradient, s³.
-    fn share(
-        &self,
-        flow: Flow,
-        time: Scalar<S>,
-        gradient: Option<Scalar<S>>,
-    ) -> Result<Share<K::Drift, Scalar<S>>, SetupError> {
-        share_of(&self.kinetic, &self.inverse_inertia, flow, time, gradient)
-    }
-
     /// Whether no kick has a third component, to the last bit: then a rotation about the third axis doesn't change the
     /// potential.
     fn is_without_torque(&self, scene: &S) -> bool {
@@ -272,6 +262,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
 
+/// A share of this length, s, and if it is a kick with a gradient, s³.
 fn share_of<T: Real, K: KineticFlow<T>>(
     kinetic: &K,
     inverse_inertia: &Matrix3<T>,

@@ -163,7 +163,7 @@ impl Checker<'_> {
     }
 }
 
-fn integer(expression: &Expr) -> Option<i32> {
+pub(super) fn integer(expression: &Expr) -> Option<i32> {
     match expression {
         Expr::Lit(literal) => match &literal.lit {
             Lit::Int(integer) => integer.base10_parse().ok(),

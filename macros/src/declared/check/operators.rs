@@ -4,11 +4,11 @@ use std::rc::Rc;
 
 use syn::ext::IdentExt as _;
 use syn::spanned::Spanned as _;
-use syn::{BinOp, Expr, ExprBinary, ExprField, ExprIndex, Lit, Member};
+use syn::{BinOp, Expr, ExprBinary, ExprField, ExprIndex, Member};
 
 use super::Checker;
 use super::advice::called;
-use super::methods::METHODS;
+use super::methods::{METHODS, integer};
 use crate::declared::{Kind, Shape, Tree};
 
 impl Checker<'_> {
@@ -194,13 +194,5 @@ fn entry_of(member: &str) -> Option<(u32, u32)> {
 }
 
 fn number(expression: &Expr) -> Option<usize> {
-    match expression {
-        Expr::Lit(literal) => match &literal.lit {
-            Lit::Int(integer) => integer.base10_parse().ok(),
-            _ => None,
-        },
-        Expr::Paren(inner) => number(&inner.expr),
-        Expr::Group(inner) => number(&inner.expr),
-        _ => None,
-    }
+    integer(expression)?.try_into().ok()
 }

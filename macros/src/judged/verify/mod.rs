@@ -153,17 +153,18 @@ fn stream(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// `exp(s E_k)`, by its series: `s` is small.
+/// `exp(s E_k)`, where `s` is small.
 fn turn(group: &Group, k: usize, s: f64) -> Value {
-    let size = group.size;
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
-    let step = Value::square(size, entries).map(|entry: f64| s * entry);
-    let (mut sum, mut power) = (Value::identity(size), Value::identity(size));
+    exponential(&Value::square(group.size, entries).map(|entry: f64| s * entry))
+}
+
+/// The matrix exponential, by its series, of what is small or a power of `h`.
+fn exponential<T: Number>(exponent: &Value<T>) -> Value<T> {
+    let mut power = Value::identity(exponent.rows);
+    let mut sum = power.clone();
     for order in 1..20 {
-        power = power.times(&step).map(|x| x / f64::from(order));
-        if power.entries.iter().all(|entry| entry.abs() < f64::EPSILON * f64::EPSILON) {
-            break;
-        }
+        power = power.times(exponent).map(|x| x * T::of(Rational::new(1, order)));
         sum = sum.zip(&power, |x, y| x + y);
     }
     sum

@@ -10,7 +10,7 @@ use super::evaluation::Evaluation;
 use super::number::Number as _;
 use super::series::Series;
 use super::value::Value;
-use super::{parameter, stream};
+use super::{exponential, parameter, stream};
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::{Function, Rational};
 
@@ -79,7 +79,7 @@ pub(crate) fn kinetic_with_advected(declaration: &Declaration, tree: &Rc<Tree>) 
     let [there, back] = [Rational::ONE, -Rational::ONE].map(|sign| {
         [&points.at_rest, &points.elsewhere].map(|values| {
             let mut values = values.clone();
-            values.insert(Name::Increment, motion(declaration, &points.velocity, sign));
+            values.insert(Name::Increment, motion(&points.velocity, sign));
             values
         })
     });
@@ -157,11 +157,11 @@ impl Points {
             values
         };
         // At h = 0.3 and at h = 0.2.
-        let turn = |h: f64| exponential(group.size, &velocity.map(|entry| entry * Series::constant(h)));
+        let turn = |h: f64| exponential(&velocity.map(|entry| entry * Series::constant(h)));
         Self {
             turned: with_increment(turn(0.3)),
             turned_further: with_increment(turn(0.2)),
-            moving: with_increment(motion(declaration, &velocity, Rational::ONE)),
+            moving: with_increment(motion(&velocity, Rational::ONE)),
             elsewhere,
             velocity,
             at_rest: at_rest.clone(),
@@ -170,19 +170,9 @@ impl Points {
 }
 
 /// `exp(± h ξ̂)`.
-fn motion(declaration: &Declaration, velocity: &Value<Series>, sign: Rational) -> Value<Series> {
+fn motion(velocity: &Value<Series>, sign: Rational) -> Value<Series> {
     let step = Series::STEP * Series::of(sign);
-    exponential(declaration.group.size, &velocity.map(|entry| entry * step))
-}
-
-/// The matrix exponential of what is small, or of a power of `h`.
-fn exponential(size: usize, exponent: &Value<Series>) -> Value<Series> {
-    let (mut sum, mut power) = (Value::identity(size), Value::identity(size));
-    for order in 1..20 {
-        power = power.times(exponent).map(|x| x * Series::of(Rational::new(1, order)));
-        sum = sum.plus(&power);
-    }
-    sum
+    exponential(&velocity.map(|entry| entry * step))
 }
 
 /// How a term goes.

@@ -9,7 +9,7 @@ pub use scheme::ProcessedScheme;
 use inside::Stepped;
 
 use super::scheme::Flow;
-use super::{KineticFlow, Share, Split, has_force_gradient};
+use super::{KineticFlow, Share, Split, has_force_gradient, share_of};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor};
@@ -151,7 +151,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
             let time = h * real(sign * part.time[0]) + length * real(sign * part.time[1]);
             let cubes = [h, length].map(|h| h * h * h);
             let gradient = cubes[0] * real(sign * part.gradient[0]) + cubes[1] * real(sign * part.gradient[1]);
-            kernel.share(part.flow, time, part.has_gradient().then_some(gradient))
+            let gradient = part.has_gradient().then_some(gradient);
+            share_of(&kernel.kinetic, &kernel.inverse_inertia, part.flow, time, gradient)
         };
         let leave = out.iter().map(|part| folded(part, 1.0)).collect::<Result<_, _>>()?;
         let enter = out.iter().rev().map(|part| folded(part, -1.0)).collect::<Result<_, _>>()?;
