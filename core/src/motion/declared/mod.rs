@@ -12,7 +12,7 @@ use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
-use crate::solving::{Continued, Kick, Problem, Root, Warm, safe, trusted_radius};
+use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -89,7 +89,7 @@ impl<S: Effect> Declared<S> {
             return Ok(Group::<S>::identity());
         }
         let problem = self.problem(scene, momentum, advected);
-        let terms = S::step_terms(&self.constants, &problem.a, advected);
+        let terms = step_terms::<S>(&self.constants, &problem.a, advected);
         problem.attempt(&terms, &(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
     }
 
@@ -353,7 +353,7 @@ const RATIO: f64 = 1.0 / 4096.0;
 /// Determinant and trace of the Newton system for a body at rest.
 fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S>, Scalar<S>) {
     let zero = Vector::<S>::zero();
-    let terms = S::step_terms(constants, &zero, &scene.advected());
-    let (_, jacobian) = S::newton_system(constants, &terms, &zero);
+    let terms = step_terms::<S>(constants, &zero, &scene.advected());
+    let (_, jacobian) = newton_system::<S>(constants, &terms, &zero);
     (Vector::<S>::solve(&jacobian, &zero).1, Vector::<S>::trace(&jacobian))
 }
