@@ -32,7 +32,10 @@ impl Checker<'_> {
             self.errors.push(at, format!("`{function}` takes one {wanted}"));
             return None;
         };
-        let argument = self.expression(argument)?;
+        let (passed, argument) = (argument, self.expression(argument)?);
+        if !self.is_passed_right(&function, passed, 0) {
+            return None;
+        }
         match (function.as_str(), argument.shape) {
             ("hat", shape) if shape == Shape::Matrix(self.declaration.group.dimension(), 1) => {
                 let Group { size, generators, .. } = &self.declaration.group;
