@@ -4,6 +4,7 @@ mod derivation;
 mod determinism;
 mod fuzz;
 mod higher_order;
+mod mutants;
 mod own_group;
 mod right;
 mod rooms;
