@@ -3,7 +3,9 @@
 pub mod cases;
 pub mod continuous;
 pub mod declaration;
+pub mod euler_angles;
 pub mod figures;
 pub mod overview;
+pub mod precession;
 pub mod quantities;
 pub mod rk4;
