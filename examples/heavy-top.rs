@@ -16,19 +16,15 @@
 
 use std::process::ExitCode;
 
-use liestep::Stepper;
-use workbench::args::{Common, Failure, Schedule, example};
+use workbench::args::{Common, Failure, example};
 use workbench::common_help;
 use workbench::heavy_top::cases::{Case, Reading};
 use workbench::heavy_top::figures::Figures;
 use workbench::heavy_top::overview::overview;
 use workbench::heavy_top::quantities::Series;
-use workbench::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
+use workbench::heavy_top::runs::all_methods;
 use workbench::output::{Output, print};
-use workbench::plot::{BLUE, GREEN, ORANGE};
-use workbench::run::run;
 use workbench::table::{aligned, number, short};
-use workbench::variational::Variational;
 
 const HELP: &str = concat!(
     "Simulates the heavy top of the thesis and draws its figures 3.4 to 3.10 again
@@ -91,23 +87,6 @@ fn simulate(arguments: &Arguments) -> Result<(), Failure> {
         summary(&series),
     ))?;
     Ok(())
-}
-
-/// The variational run of a case and its two rivals.
-fn all_methods(case: Case, reading: Reading, schedule: &Schedule) -> Result<[Series; 3], Failure> {
-    let stepper = Stepper::new(reading.top()?, schedule.step)?;
-    let (attitude, velocity) = case.start();
-    let state = stepper.start(attitude, velocity)?;
-    let body = Body::of(stepper.scene());
-    let (h, momentum) = (schedule.step, state.momentum());
-    let ours = run("variational", Variational { stepper: &stepper, state }, schedule)?;
-    let quaternion = run("RK4, quaternion", OnQuaternion::new(body, h, &attitude, momentum), schedule)?;
-    let matrix = run("RK4, nine entries of R", OnMatrix::new(body, h, &attitude, momentum), schedule)?;
-    Ok([
-        Series::new("variational", "variational.csv", BLUE, &body, &ours),
-        Series::new("RK4, quaternion renormalised", "rk4-quaternion.csv", GREEN, &body, &quaternion),
-        Series::new("RK4, nine entries of R", "rk4-matrix.csv", ORANGE, &body, &matrix),
-    ])
 }
 
 /// The greatest deviations over the run, and what a step costs.

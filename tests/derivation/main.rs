@@ -4,6 +4,7 @@
 #![allow(non_snake_case)]
 
 mod by_hand;
+mod exact_lagrangian;
 mod golden_steps;
 mod kinetic_terms;
 mod lanes;
@@ -11,3 +12,4 @@ mod other_groups;
 mod self_adjoint;
 mod sensitivities;
 mod terms;
+mod thesis;

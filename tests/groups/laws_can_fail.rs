@@ -23,6 +23,7 @@ const CANCELLATION: usize = 9;
 const DEFECT: usize = 10;
 const NOTHING: usize = 11;
 const BRACKET_SCALE: usize = 12;
+const POISSON: usize = 13;
 
 /// Another sign of the last component, for one of the defects.
 fn turned<const WHAT: usize>(v: Vector3<f64>, what: usize) -> Vector3<f64> {
@@ -81,6 +82,11 @@ impl<const WHAT: usize> LieGroup for Broken<WHAT> {
         turned::<WHAT>(SE2::lie_bracket_transpose(xi, momentum), BRACKET_TRANSPOSE)
     }
 
+    fn lie_poisson_bracket(momentum: &Vector3<f64>, df: &Vector3<f64>, dk: &Vector3<f64>) -> f64 {
+        let dk = turned::<WHAT>(*dk, POISSON);
+        -momentum.dot(&Self::lie_bracket(df, &dk))
+    }
+
     fn from_increment(increment: &Matrix3<f64>) -> Self {
         Self(SE2::from_increment(increment))
     }
@@ -108,13 +114,15 @@ impl<const WHAT: usize> LieGroup for Broken<WHAT> {
 /// The laws of groups that refuse what is broken.
 fn refused<const WHAT: usize>() -> Vec<&'static str> {
     type G<const WHAT: usize> = Broken<WHAT>;
-    let laws: [(&str, fn()); 8] = [
+    let laws: [(&str, fn()); 10] = [
         ("group_axioms", group::group_axioms::<G<WHAT>, _, _>),
         ("hat_and_vee", group::hat_and_vee::<G<WHAT>, _, _>),
         ("brackets", group::brackets::<G<WHAT>, _, _>),
         ("adjoint_action", group::adjoint_action::<G<WHAT>, _, _>),
         ("pairings", group::pairings::<G<WHAT>, _, _>),
         ("brackets_are_derivatives", group::brackets_are_derivatives::<G<WHAT>, _, _>),
+        ("variations", group::variations::<G<WHAT>, _, _>),
+        ("lie_poisson_brackets", group::lie_poisson_brackets::<G<WHAT>, _, _>),
         ("increments", group::increments::<G<WHAT>, _, _>),
         ("the_relation_tells", group::the_relation_tells::<G<WHAT>, _, _>),
     ];
@@ -128,7 +136,9 @@ fn laws_of_groups() {
     assert!(refused::<PRODUCT>().contains(&"adjoint_action"));
     assert_eq!(refused::<INVERSE>(), ["group_axioms"]);
     assert!(refused::<HAT>().contains(&"hat_and_vee"));
-    for law in ["brackets", "adjoint_action", "pairings", "brackets_are_derivatives"] {
+    for law in
+        ["brackets", "adjoint_action", "pairings", "brackets_are_derivatives", "variations", "lie_poisson_brackets"]
+    {
         assert!(refused::<BRACKET>().contains(&law), "{law}");
         assert!(refused::<BRACKET_SCALE>().contains(&law) || law == "adjoint_action", "{law}");
     }
@@ -136,6 +146,7 @@ fn laws_of_groups() {
     assert!(refused::<ADJOINT>().contains(&"pairings"));
     assert!(refused::<ADJOINT_TRANSPOSE>().contains(&"pairings"));
     assert!(refused::<BRACKET_TRANSPOSE>().contains(&"brackets_are_derivatives"));
+    assert_eq!(refused::<POISSON>(), ["lie_poisson_brackets"]);
     assert_eq!(refused::<ADVANCE>(), ["increments"]);
     assert_eq!(refused::<ADJOINT_INCREMENT>(), ["increments"]);
     assert_eq!(refused::<CANCELLATION>(), ["increments"]);

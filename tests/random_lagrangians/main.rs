@@ -1,11 +1,11 @@
-//! P1 to P3 for random Lagrangians on every group, with every kind of advected parameter.
+//! P1 to P3, and P5, for random Lagrangians on every group, with every kind of advected parameter.
 //!
 //! A Lagrangian is known when this is compiled, its terms are not: each is multiplied by a random coefficient, which is
 //! zero for about a third of them.
 
 mod family;
 
-use checks::structure::{System, momenta, poisson, stages, symmetry};
+use checks::structure::{System, momenta, poisson, stages, symmetry, two_flows};
 use liestep::laws::samples::{Random, along};
 use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Coordinates;
@@ -51,7 +51,10 @@ macro_rules! on_every_group {
 
                 #[test]
                 fn vectors(seed: u64) {
-                    assert_structure(&family::$group::Vectors::random(&mut Random::new(seed)), seed);
+                    let lagrangian = family::$group::Vectors::random(&mut Random::new(seed));
+                    assert_structure(&lagrangian, seed);
+                    let parting = two_flows::parting(&lagrangian, 0.01, 30, seed);
+                    assert!(parting < ROUNDING, "the flows (2.5) and (2.8) part by {parting:e}");
                 }
 
                 #[test]

@@ -5,6 +5,7 @@
 mod composition;
 mod continuous;
 mod energy;
+mod limit;
 mod momenta;
 mod one_sided;
 mod order;
@@ -12,3 +13,4 @@ mod poisson;
 mod reversal;
 mod samples;
 mod symmetry;
+mod unreduced;

@@ -8,6 +8,7 @@
 //! | `⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩` | [`adjoint_transpose`](LieGroup::adjoint_transpose) |
 //! | `ad_ξ η = (ξ̂ η̂ − η̂ ξ̂)^∨` | [`lie_bracket`](LieGroup::lie_bracket) |
 //! | `⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩` | [`lie_bracket_transpose`](LieGroup::lie_bracket_transpose) |
+//! | `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩` | [`lie_poisson_bracket`](LieGroup::lie_poisson_bracket) |
 //!
 //! The groups, and what declares each:
 //!
@@ -113,6 +114,13 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// `ad*_ξ μ`, the transpose of [`lie_bracket`](Self::lie_bracket), \[RDAE, (1.17)\].
     fn lie_bracket_transpose(xi: &Self::Vector, momentum: &Self::Vector) -> Self::Vector;
+
+    /// `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩`, the Lie–Poisson bracket of two functions with these derivatives at `μ`,
+    /// \[RDAE, (1.11)\]. For axes of the basis it is an entry of the Poisson tensor.
+    #[must_use]
+    fn lie_poisson_bracket(momentum: &Self::Vector, df: &Self::Vector, dk: &Self::Vector) -> Self::Scalar {
+        -momentum.dot(&Self::lie_bracket(df, dk))
+    }
 
     /// The element `I + D`, for an increment `D = F − I` that a retraction has formed.
     fn from_increment(increment: &Self::Matrix) -> Self;

@@ -3,8 +3,8 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::samples::{
-    DIFFERENCE, MatrixLieGroup, ROUNDING, Random, along, assert_close, assert_small, condition, derivative,
-    eliminated_inverse,
+    DIFFERENCE, MatrixLieGroup, NESTED_DIFFERENCE, ROUNDING, Random, along, assert_close, assert_small, condition,
+    derivative, eliminated_inverse,
 };
 
 /// Closure, associativity, neutral and inverse elements.
@@ -96,6 +96,66 @@ pub fn brackets_are_derivatives<G: MatrixLieGroup<N, D>, const N: usize, const D
         let rate = derivative(|t| along::<G, N, D>(&xi, t).adjoint_transpose(&eta));
         assert_close(&rate, &G::lie_bracket_transpose(&xi, &eta), DIFFERENCE, "ad* is the derivative of Ad*");
     }
+}
+
+/// `δξ = η' + ad_ξ η` for `g(ε, t) = g(t) exp(ε η(t))`, \[RDAE, (1.3), (1.6)\].
+pub fn variations<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(9);
+    for _ in 0..20 {
+        let (xi, rate): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
+        let (eta, eta_rate): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
+        // Its velocity at t = 0 is ξ.
+        let path = |t: f64| along::<G, N, D>(&(xi + rate * (0.5 * t)), t).matrix();
+        let varied = |epsilon: f64, t: f64| path(t) * along::<G, N, D>(&(eta + eta_rate * t), epsilon).matrix();
+        let velocity = |epsilon: f64| {
+            let here = eliminated_inverse(&G::from_matrix_unchecked(varied(epsilon, 0.0)));
+            G::vee(&(here * derivative(|t| varied(epsilon, t))))
+        };
+        assert_close(&velocity(0.0), &xi, DIFFERENCE, "ξ = g⁻¹ g'");
+        let expected = eta_rate + G::lie_bracket(&xi, &eta);
+        assert_close(&derivative(velocity), &expected, NESTED_DIFFERENCE, "δξ = η' + ad_ξ η");
+    }
+}
+
+/// `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩`, \[RDAE, (1.11)\], is a Poisson bracket, and `Ad*_F` keeps it.
+pub fn lie_poisson_brackets<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
+    let mut random = Random::new(10);
+    for f in random.elements::<G, N, D>() {
+        // Three functions `½ μ·Aμ + a·μ`, by their derivatives.
+        let functions: [(SMatrix<f64, D, D>, SVector<f64, D>); 3] = core::array::from_fn(|_| {
+            let matrix: SMatrix<f64, D, D> = random.sample();
+            (matrix + matrix.transpose(), random.sample())
+        });
+        let slope = |i: usize, momentum: &SVector<f64, D>| functions[i].0 * momentum + functions[i].1;
+        let bracket = |momentum: &SVector<f64, D>, i: usize, j: usize| {
+            G::lie_poisson_bracket(momentum, &slope(i, momentum), &slope(j, momentum))
+        };
+        let momentum: SVector<f64, D> = random.sample();
+        let antisymmetry = bracket(&momentum, 0, 1) + bracket(&momentum, 1, 0);
+        assert_small(antisymmetry.abs(), ROUNDING, "{f, k} = −{k, f}");
+        let by_rate = slope(0, &momentum).dot(&G::lie_bracket_transpose(&slope(1, &momentum), &momentum));
+        assert_small((bracket(&momentum, 0, 1) - by_rate).abs(), ROUNDING, "{f, h} = ⟨δf/δμ, ad*_{δh/δμ} μ⟩, (1.12)");
+
+        let jacobi = |i: usize, j: usize, k: usize| {
+            // Cubic in μ, so that six points leave rounding alone.
+            let inner = SVector::from_fn(|axis, _| derivative(|t| bracket(&(momentum + unit(axis) * t), j, k)));
+            G::lie_poisson_bracket(&momentum, &slope(i, &momentum), &inner)
+        };
+        let sum: f64 = jacobi(0, 1, 2) + jacobi(1, 2, 0) + jacobi(2, 0, 1);
+        let allowed = DIFFERENCE * 100.0;
+        assert_small(sum.abs(), allowed, "{f, {k, l}} + {k, {l, f}} + {l, {f, k}} = 0");
+
+        // The derivative of k(Ad*_F μ) is Ad_F of that of k.
+        let moved = f.adjoint_transpose(&momentum);
+        let pulled = |i: usize| f.adjoint(&slope(i, &moved));
+        let difference = G::lie_poisson_bracket(&momentum, &pulled(0), &pulled(1)) - bracket(&moved, 0, 1);
+        let allowed = ROUNDING * condition(&f).powi(4) * moved.norm().max(1.0).powi(3);
+        assert_small(difference.abs(), allowed, "{f∘Ad*, k∘Ad*} = {f, k}∘Ad*");
+    }
+}
+
+fn unit<const D: usize>(axis: usize) -> SVector<f64, D> {
+    SVector::from_fn(|i, _| if i == axis { 1.0 } else { 0.0 })
 }
 
 /// `D` stands for `F = I + D`.

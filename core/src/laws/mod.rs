@@ -20,6 +20,8 @@ pub use crate::{advected_laws, lie_group_laws, retraction_laws};
 /// | `adjoint_action` | `Ad_F ξ = (F ξ̂ F⁻¹)^∨`, `Ad_{FG} = Ad_F Ad_G`, an automorphism of the bracket |
 /// | `pairings` | `⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩`, `⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩` |
 /// | `brackets_are_derivatives` | `ad` and `ad*` are the derivatives of `Ad` and `Ad*` at the identity |
+/// | `variations` | `δξ = η' + ad_ξ η` for `g exp(εη)` |
+/// | `lie_poisson_brackets` | antisymmetry, Jacobi, `{f, h} = ⟨δf, ad*_{δh} μ⟩`, `Ad*_F` is a Poisson map |
 /// | `increments` | `g + gD = gF`, `Ad*_F μ − μ` from `D`, to all digits for a small `D` |
 /// | `the_relation_tells` | a matrix off the group has a defect |
 ///
@@ -38,8 +40,8 @@ pub use crate::{advected_laws, lie_group_laws, retraction_laws};
 macro_rules! lie_group_laws {
     ($group:ty) => {
         $crate::__law_tests! {
-            group::<$group>: group_axioms hat_and_vee brackets adjoint_action pairings brackets_are_derivatives increments
-            the_relation_tells
+            group::<$group>: group_axioms hat_and_vee brackets adjoint_action pairings brackets_are_derivatives variations
+            lie_poisson_brackets increments the_relation_tells
         }
     };
 }

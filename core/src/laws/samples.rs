@@ -101,6 +101,8 @@ pub fn derivative<V: Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>>(f
 pub const ROUNDING: f64 = 2e-14;
 /// What [`derivative`] leaves, for a scale of one.
 pub const DIFFERENCE: f64 = 1e-11;
+/// What a [`derivative`] of a [`derivative`] leaves, for a scale of one.
+pub const NESTED_DIFFERENCE: f64 = 1e-8;
 
 /// `‖a − b‖ ≤ allowed`; a NaN fails it.
 ///

@@ -27,16 +27,9 @@ const HEADER: u32 = 62;
 impl Figures<'_> {
     /// Writes all but the overview.
     pub fn write(&self, output: &mut Output) -> Drawn {
-        let whole = |panel: Panel<'_>, figure: &str, title: &str| self.single(&panel, figure, title);
-        let end = self.schedule.end();
-        let beginning = SHORT.min(end);
-        output.write("geometry.svg", &whole(self.geometry(""), "3.4", "How far R leaves the rotations")?)?;
-        let title = "Angular momentum about the vertical";
-        output.write("vertical-momentum.svg", &whole(self.vertical_momentum(""), "3.5", title)?)?;
-        let title = format!("Energy, the first {} s", short(beginning));
-        output.write("energy-short.svg", &whole(self.energy_short(""), "3.6 (a)", &title)?)?;
-        let title = format!("Energy, all {} s", short(end));
-        output.write("energy-long.svg", &whole(self.energy_long(""), "3.6 (b)", &title)?)?;
+        output.write("geometry.svg", &self.rigidity()?)?;
+        output.write("vertical-momentum.svg", &self.momentum()?)?;
+        output.write("energy.svg", &self.energy()?)?;
         output.write("body-rates.svg", &self.body_rates()?)?;
         self.write_tip(output)
     }
@@ -120,16 +113,38 @@ impl Figures<'_> {
         lines.collect()
     }
 
-    fn single(&self, panel: &Panel<'_>, figure: &str, title: &str) -> Drawn<String> {
-        render((900, 460), |area| {
-            let (header, body) = area.split_vertically(px(HEADER + 8));
+    /// Figure 3.4.
+    pub fn rigidity(&self) -> Drawn<String> {
+        self.single(&[self.geometry("")], "3.4", "How far R leaves the rotations")
+    }
+
+    /// Figure 3.5.
+    pub fn momentum(&self) -> Drawn<String> {
+        self.single(&[self.vertical_momentum("")], "3.5", "Angular momentum about the vertical")
+    }
+
+    /// Figure 3.6, (a) and (b).
+    pub fn energy(&self) -> Drawn<String> {
+        let end = self.schedule.end();
+        let [short, long] = [format!("(a) the first {} s", short(SHORT.min(end))), format!("(b) all {} s", short(end))];
+        self.single(&[self.energy_short(&short), self.energy_long(&long)], "3.6", "Energy")
+    }
+
+    fn single(&self, panels: &[Panel<'_>], figure: &str, title: &str) -> Drawn<String> {
+        let height = u32::try_from(panels.len()).unwrap_or(1) * 390 + HEADER + 16;
+        render((900, height), |area| {
+            let (header, body) = area.split_vertically(px(HEADER + 16));
             heading(&header, title, &format!("{}; after figure {figure} of the thesis", self.setting()))?;
             self.legend(&header, (16, HEADER + 4))?;
-            panel.draw(&body)
+            for (place, panel) in body.split_evenly((panels.len(), 1)).iter().zip(panels) {
+                panel.draw(place)?;
+            }
+            Ok(())
         })
     }
 
-    fn body_rates(&self) -> Drawn<String> {
+    /// Figure 3.7.
+    pub fn body_rates(&self) -> Drawn<String> {
         let end = SHORT.min(self.schedule.end());
         let axes = [("Ω_X, rad/s", BLUE), ("Ω_Y, rad/s", PURPLE), ("Ω_Z, rad/s", GREEN)];
         let name = self.series.first().map_or("", |s| s.name);
@@ -148,8 +163,8 @@ impl Figures<'_> {
         })
     }
 
-    /// The variational run beside the thesis' Runge–Kutta, which is the last of the series.
-    fn tip(&self) -> Drawn<String> {
+    /// Figure 3.8, 3.9 or 3.10: the variational run beside the thesis' Runge–Kutta, which is the last of the series.
+    pub fn tip(&self) -> Drawn<String> {
         let (start, end) = self.late();
         let (Some(ours), Some(theirs)) = (self.series.first(), self.series.last()) else {
             return Err("no runs to draw".into());
@@ -177,6 +192,21 @@ impl Figures<'_> {
             Ok(())
         })
     }
+}
+
+/// Figure 3.3: the variational paths of some runs, side by side, with a name for each.
+pub fn precessions(runs: &[(&str, &Series)], end: f64) -> Drawn<String> {
+    render((1140, 460), |area| {
+        let (header, body) = area.split_vertically(px(HEADER));
+        let subtitle = format!("the path of the tip, the first {} s; after figure 3.3 of the thesis", short(end));
+        heading(&header, "Three kinds of precession", &subtitle)?;
+        for (place, (title, series)) in body.split_evenly((1, runs.len())).iter().zip(runs) {
+            let points: Vec<_> = series.between(0.0, end).iter().map(|q| q.tip).collect();
+            let axis = (Vector3::z(), "e₃");
+            sphere(place, &Path { title, colour: series.colour, width: 2, points: &points, axis })?;
+        }
+        Ok(())
+    })
 }
 
 /// Azimuth and tilt in degrees, the azimuth without jumps.

@@ -3,7 +3,11 @@
 pub mod cases;
 pub mod continuous;
 pub mod declaration;
+pub mod drawings;
+pub mod euler_angles;
 pub mod figures;
 pub mod overview;
+pub mod precession;
 pub mod quantities;
 pub mod rk4;
+pub mod runs;

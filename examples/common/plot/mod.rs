@@ -5,11 +5,13 @@
 mod canvas;
 mod envelope;
 mod panel;
+mod sketch;
 mod sphere;
 mod style;
 mod thin;
 
 pub use canvas::{Area, Drawn, render};
 pub use panel::{Line, Panel, Vertical};
+pub use sketch::{Sketch, arc};
 pub use sphere::{Path, sphere};
-pub use style::{BLUE, GREEN, ORANGE, PURPLE, heading, legend, px};
+pub use style::{BLUE, GREEN, INK, ORANGE, PURPLE, heading, legend, px};

@@ -11,7 +11,7 @@ pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
 pub const GREEN: RGBColor = RGBColor(0, 158, 115);
 pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
 
-pub(super) const INK: RGBColor = RGBColor(45, 45, 45);
+pub const INK: RGBColor = RGBColor(45, 45, 45);
 pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
 
 /// The back end draws on whole units, so a pixel is made of two of them: lines stay smooth.

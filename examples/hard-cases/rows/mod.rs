@@ -4,6 +4,7 @@ mod boxes;
 mod chaos;
 mod closed_forms;
 mod damping;
+mod euler_angles;
 mod flips;
 mod flows;
 mod folds;
@@ -13,6 +14,7 @@ mod momenta;
 mod newton_tolerance;
 mod orders;
 mod passage;
+mod precession;
 mod refused;
 mod rest;
 mod reversal;
@@ -35,7 +37,7 @@ use crate::row::{Effort, Failure, Row};
 pub type Measure = fn(Effort, &mut Curves) -> Result<Row, Failure>;
 
 /// All of them in the order of the table: where a step has no solution or several, bodies, tops, structure, round-off.
-pub const ALL: [(&str, Measure); 35] = [
+pub const ALL: [(&str, Measure); 38] = [
     ("S1", folds::s1),
     ("S2", folds::s2),
     ("S3", traps::s3),
@@ -59,6 +61,9 @@ pub const ALL: [(&str, Measure); 35] = [
     ("T7", chaos::t7),
     ("T8", weightless::t8),
     ("T9", units::t9),
+    ("T10", euler_angles::t10),
+    ("T11", precession::t11),
+    ("T12", precession::t12),
     ("P1", structure::p1),
     ("P2", momenta::p2),
     ("P3", momenta::p3),

@@ -1,7 +1,7 @@
 //! T6: straight up and straight down, where Euler angles are undefined.
 
 use declarations::HeavyTop;
-use liestep::Stepper;
+use liestep::{SO3, State, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::continuous::{phase, solution};
 use workbench::measure::{four_halvings, greater, order, relative, steps_in};
@@ -10,8 +10,9 @@ use crate::curves::Curves;
 use crate::row::{Effort, Failure, Row};
 
 /// How near to the vertical the axis comes, rad.
-const MISS: f64 = 5e-7;
+pub(super) const MISS: f64 = 5e-7;
 const VELOCITY: Vector3<f64> = Vector3::new(1.0, 0.3, 2.0);
+
 /// What is left of a passage at `t = 0`, from `t = −1` to `t = 1`.
 struct Passage {
     /// The distance from the vertical, rad.
@@ -25,15 +26,26 @@ struct Passage {
     error: f64,
 }
 
+/// Where the passage is nearest: turned from straight up by `down`, and off by `miss` across the motion, rad.
+fn nearest(stepper: &Stepper<HeavyTop>, down: f64, miss: f64) -> Result<State<SO3, Vector3<f64>>, Failure> {
+    let across = VELOCITY.xy().normalize();
+    let miss = UnitQuaternion::from_scaled_axis(Vector3::new(-across.y, across.x, 0.0) * miss);
+    Ok(stepper.start(UnitQuaternion::from_scaled_axis(Vector3::x() * down) * miss, VELOCITY)?)
+}
+
+/// The state from which steps come there in a second.
+pub(super) fn before(stepper: &Stepper<HeavyTop>, down: f64, miss: f64) -> Result<State<SO3, Vector3<f64>>, Failure> {
+    let mut state = nearest(stepper, down, miss)?;
+    stepper.inverse()?.run(&mut state, steps_in(1.0, stepper.step_size()))?;
+    Ok(state)
+}
+
 /// By steps of `h`, past straight up or straight down.
 fn pass(down: f64, h: f64) -> Result<Passage, Failure> {
     let top = HeavyTop::thesis();
     let forth = Stepper::new(top.clone(), h)?;
     let back = forth.inverse()?;
-    // The miss is across the motion.
-    let across = VELOCITY.xy().normalize();
-    let miss = UnitQuaternion::from_scaled_axis(Vector3::new(-across.y, across.x, 0.0) * MISS);
-    let mut state = forth.start(UnitQuaternion::from_scaled_axis(Vector3::x() * down) * miss, VELOCITY)?;
+    let mut state = nearest(&forth, down, MISS)?;
     let exact = solution(&top, phase(&state.momentum(), &state.advected()), 1.0, 4000);
     let steps = steps_in(1.0, h);
     for _ in 0..steps {

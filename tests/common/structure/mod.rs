@@ -6,6 +6,7 @@ pub mod poisson;
 pub mod reversal;
 pub mod stages;
 pub mod symmetry;
+pub mod two_flows;
 
 use liestep::groups::Advected as _;
 use liestep::laws::samples::{MatrixLieGroup, Random, along};

@@ -22,7 +22,7 @@ pub fn tensor<L: System<N, D>, const N: usize, const D: usize>(
     let mut tensor = DMatrix::zeros(D + numbers.len(), D + numbers.len());
     for k in 0..D {
         for l in 0..D {
-            tensor[(k, l)] = -momentum.dot(&L::Group::lie_bracket(&axis(k, 1.0), &axis(l, 1.0)));
+            tensor[(k, l)] = L::Group::lie_poisson_bracket(momentum, &axis(k, 1.0), &axis(l, 1.0));
         }
         // What an attitude g sees is g⁻¹ · w.
         let moved = derivative(|s| DVector::from_vec(w.seen_from(&turn::<L, N, D>(k, -s)).numbers()));

@@ -1,4 +1,5 @@
 mod body_axes;
 mod closed_forms;
+mod euler_angles;
 mod inertia;
 mod order;

@@ -1,0 +1,61 @@
+//! The continuous limit of every declared system, from its `l_d` alone: `l(ξ, w) = lim l_d(exp hξ, w)/h`, its momentum
+//! (1.14), and its energy (1.16), whose derivative is the velocity.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use checks::structure::{System, axis};
+use liestep::Stepper;
+use liestep::effects::{RigidBody, Rotor};
+use liestep::groups::LieGroup as _;
+use liestep::laws::samples::{Random, along, derivative};
+use nalgebra::SVector;
+
+use crate::samples::{self, every_system};
+
+/// What is left of the limit, and the same over a spacing of 10⁻³.
+const LIMIT: f64 = 1e-9;
+const DIFFERENCES: f64 = 1e-6;
+
+/// The value at zero of a polynomial through values at `h`, `h/2`, `h/4`, … (Neville).
+fn limit(value: impl Fn(f64) -> f64) -> f64 {
+    let mut table: Vec<f64> = (0..6).map(|k| value(0.04 / f64::from(1 << k))).collect();
+    for level in 1..table.len() {
+        for i in (level..table.len()).rev() {
+            table[i] += (table[i] - table[i - 1]) / f64::from((1 << level) - 1);
+        }
+    }
+    table[table.len() - 1]
+}
+
+fn assert_limit<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L, name: &str) {
+    let mut random = Random::new(16);
+    let stepper = Stepper::new(system.clone(), 0.01).unwrap();
+    let attitude = along::<L::Group, N, D>(&random.sample(), 0.3);
+    let velocity: SVector<f64, D> = random.sample();
+    let state = stepper.start(attitude, velocity).unwrap();
+    let (momentum, w) = (state.momentum(), state.advected());
+    let l = |xi: &SVector<f64, D>| limit(|h| system.l_d(&along::<L::Group, N, D>(xi, h).matrix(), &w, h) / h);
+    let scale = system.inertia().norm() + system.potential(&w).abs() + momentum.norm();
+
+    let slope = SVector::<f64, D>::from_fn(|k, _| derivative(|t| l(&(velocity + axis(k, t)))));
+    let missed = (slope - momentum).norm() / scale;
+    let legendre = (stepper.energy(&state) - (momentum.dot(&velocity) - l(&velocity))).abs() / scale;
+    println!("{name}: (1.14) {missed:.1e}, (1.16) {legendre:.1e}");
+    assert!(missed < DIFFERENCES, "{name}: μ = δl/δξ, (1.14): off by {missed:e}");
+    assert!(legendre < LIMIT, "{name}: h = μ·ξ − l, (1.16): off by {legendre:e}");
+
+    let h = |momentum: SVector<f64, D>| stepper.energy(&stepper.start_with_momentum(attitude, momentum).unwrap());
+    let slope = SVector::<f64, D>::from_fn(|k, _| derivative(|t| h(momentum + axis(k, t))));
+    let missed = (slope - stepper.velocity(&state)).norm();
+    assert!(missed < LIMIT * scale, "{name}: δh/δμ = ξ: off by {missed:e}");
+}
+
+every_system!(assert_limit);
+
+/// A momentum that isn't zero at rest.
+#[test]
+fn body_with_a_rotor() {
+    let J_d = samples::free_body().J_d;
+    assert_limit(&(RigidBody { J_d } + Rotor { spin: nalgebra::Vector3::new(0.4, -1.0, 2.0) }), "rotor");
+}
