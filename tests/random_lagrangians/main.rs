@@ -3,6 +3,7 @@
 //! A Lagrangian is known when this is compiled, its terms are not: each is multiplied by a random coefficient, which is
 //! zero for about a third of them.
 
+mod continuous;
 mod family;
 
 use checks::structure::{System, momenta, poisson, stages, symmetry};
@@ -52,6 +53,16 @@ macro_rules! on_every_group {
                 #[test]
                 fn vectors(seed: u64) {
                     assert_structure(&family::$group::Vectors::random(&mut Random::new(seed)), seed);
+                }
+
+                #[test]
+                fn continuous(seed: u64) {
+                    continuous::assert_equations(
+                        &family::$group::Continuous::<f64>::random(seed),
+                        &family::$group::Continuous::random(seed),
+                        &family::$group::Continuous::random(seed),
+                        seed,
+                    );
                 }
 
                 #[test]

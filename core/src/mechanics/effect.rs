@@ -85,7 +85,8 @@ pub struct Residual<V> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` isn't an effect, so it can't be in a scene",
     label = "not an effect",
-    note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums"
+    note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
+    note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps"
 )]
 pub trait Effect {
     /// The scalar.

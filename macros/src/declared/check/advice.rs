@@ -34,9 +34,12 @@ impl Checker<'_> {
             }
             "omega" | "Omega" | "xi" | "velocity" => {
                 let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
-                format!(
-                    "; the velocity of a step is in `F`: write {velocity}, or declare `l = …` with `velocity = {name}`"
-                )
+                let continuous = if self.is_force() {
+                    String::new()
+                } else {
+                    format!(", or declare `l = …` with `velocity = {name}`")
+                };
+                format!("; the velocity of a step is in `F`: write {velocity}{continuous}")
             }
             "R" | "rotation" | "attitude" | "orientation" => format!(
                 "; {noun} is reduced, and sees no `{name}`: what is fixed in space is declared with `advected(w = field)`"

@@ -39,8 +39,8 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
         paired("momentum", "μ", &derived.momentum, "∂l/∂ξ, (1.14)"),
     ];
     list.push(match matrix_text(&derived.hessian, derived.directions, &derived.symbols) {
-        Some(text) if text.len() <= LONGEST => Equation::new("velocity_hessian", "M", text, "∂²l/∂ξ², the inertia"),
-        _ => Equation::new("velocity_hessian", "⟨Mη, ζ⟩", scalar(&derived.hessian), "∂²l/∂ξ², the inertia"),
+        Some(text) if text.len() <= LONGEST => Equation::new("velocity_hessian", "𝕀", text, "∂²l/∂ξ², the inertia"),
+        _ => Equation::new("velocity_hessian", "⟨𝕀η, ζ⟩", scalar(&derived.hessian), "∂²l/∂ξ², the inertia"),
     });
     let has_moved = derived.advected.iter().any(|(_, variance)| *variance != Variance::Fixed);
     if has_moved {
@@ -89,7 +89,7 @@ fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
     };
     let source = if has_moved { "(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w" } else { "(1.4): ad*_ξ μ" };
     let left = if derived.inverse == Inverse::Constant && derived.advection.is_zero() && derived.has_kinetic() {
-        "dμ/dt = M dξ/dt"
+        "dμ/dt = 𝕀 dξ/dt"
     } else {
         "dμ/dt"
     };
@@ -129,8 +129,8 @@ fn inverse(derived: &Continuous) -> Equation {
     let difference = if difference == "μ" { difference } else { format!("({difference})") };
     let (right, source) = match derived.inverse {
         _ if !derived.has_kinetic() => ("not determined by μ: add a kinetic part".to_owned(), ""),
-        Inverse::Constant => (format!("M⁻¹ {difference}"), "(1.14) inverted, M⁻¹ once for all"),
-        Inverse::Varying => (format!("M(w)⁻¹ {difference}"), "(1.14) inverted"),
+        Inverse::Constant => (format!("𝕀⁻¹ {difference}"), "(1.14) inverted, 𝕀⁻¹ once for all"),
+        Inverse::Varying => (format!("𝕀(w)⁻¹ {difference}"), "(1.14) inverted"),
         Inverse::Nonlinear => ("the solution of ∂l/∂ξ = μ".to_owned(), "(1.14) inverted by Newton's iteration"),
     };
     Equation::new("velocity", xi, right, source)
@@ -143,10 +143,10 @@ fn hamiltonian(derived: &Continuous, w: &[String]) -> Equation {
     let right = match derived.inverse {
         Inverse::Nonlinear => format!("⟨μ, {0}⟩ − l at {0} = ∂h/∂μ", velocity(derived)),
         _ if !derived.has_kinetic() => potential,
-        Inverse::Varying if difference == "μ" => sum(&["½ ⟨μ, M(w)⁻¹ μ⟩".to_owned(), potential]),
-        Inverse::Varying => sum(&[format!("½ ⟨{difference}, M(w)⁻¹ ({difference})⟩"), potential]),
-        _ if difference == "μ" => sum(&["½ ⟨μ, M⁻¹ μ⟩".to_owned(), potential]),
-        _ => sum(&[format!("½ ⟨{difference}, M⁻¹ ({difference})⟩"), potential]),
+        Inverse::Varying if difference == "μ" => sum(&["½ ⟨μ, 𝕀(w)⁻¹ μ⟩".to_owned(), potential]),
+        Inverse::Varying => sum(&[format!("½ ⟨{difference}, 𝕀(w)⁻¹ ({difference})⟩"), potential]),
+        _ if difference == "μ" => sum(&["½ ⟨μ, 𝕀⁻¹ μ⟩".to_owned(), potential]),
+        _ => sum(&[format!("½ ⟨{difference}, 𝕀⁻¹ ({difference})⟩"), potential]),
     };
     Equation::new("hamiltonian", &format!("h({at})"), right, "(1.16)")
 }

@@ -87,12 +87,12 @@ fn of_the_heavy_top() {
             pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
             l(Omega, w) = −m g ⟨rho, w⟩ + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
             μ = J Omega    [∂l/∂ξ, (1.14)]
-            M = J    [∂²l/∂ξ², the inertia]
+            𝕀 = J    [∂²l/∂ξ², the inertia]
             ∂l/∂w ⋄ w = m g w × rho    [(2.1)]
-            dμ/dt = M dOmega/dt = (J Omega) × Omega + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dμ/dt = 𝕀 dOmega/dt = (J Omega) × Omega + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
             dw/dt = w × Omega    [(2.2): −ξ·w]
-            Omega = M⁻¹ μ    [(1.14) inverted, M⁻¹ once for all]
-            h(μ, w) = ½ ⟨μ, M⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+            Omega = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
     "#]].assert_eq(&continuous_derivation(TOP, PARAMETERS));
     expect![[r#"
@@ -105,12 +105,12 @@ fn of_the_heavy_top() {
             pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
             l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
             μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
-            M = tr(J_d) I − J_d    [∂²l/∂ξ², the inertia]
+            𝕀 = tr(J_d) I − J_d    [∂²l/∂ξ², the inertia]
             ∂l/∂w ⋄ w = m g w × rho    [(2.1)]
-            dμ/dt = M dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dμ/dt = 𝕀 dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
             dw/dt = w × Ω    [(2.2): −ξ·w]
-            Ω = M⁻¹ μ    [(1.14) inverted, M⁻¹ once for all]
-            h(μ, w) = ½ ⟨μ, M⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+            Ω = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
     "#]].assert_eq(&continuous_derivation(HEAVY_TOP, &top("NonstandardInertia")));
     expect![[r#"
@@ -121,9 +121,9 @@ fn of_the_heavy_top() {
         ```text
         l(Omega, w) = −m g ⟨rho, w⟩ + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
         μ = J Omega    [∂l/∂ξ, (1.14)]
-        dμ/dt = M dOmega/dt = (J Omega) × Omega + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+        dμ/dt = 𝕀 dOmega/dt = (J Omega) × Omega + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
         dw/dt = w × Omega    [(2.2): −ξ·w]
-        h(μ, w) = ½ ⟨μ, M⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+        h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
         ```
 
         All equations are in `CONTINUOUS_DERIVATION` and in the documentation of the methods. An ODE solver integrates what `RightHandSide` makes of them."#]].assert_eq(&page(TOP, PARAMETERS));
@@ -145,13 +145,13 @@ fn of_others() {
             pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
             l(Omega, w) = k ⟨s, Omega⟩ + (k/2) ⟨w, Omega⟩² + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
             μ = k s + k ⟨w, Omega⟩ w + J Omega    [∂l/∂ξ, (1.14)]
-            M = k w wᵀ + J    [∂²l/∂ξ², the inertia]
+            𝕀 = k w wᵀ + J    [∂²l/∂ξ², the inertia]
             ∂l/∂w ⋄ w = k ⟨w, Omega⟩ Omega × w    [(2.1)]
             (∂²l/∂w∂ξ)(ξ·w) = k ⟨w, Omega⟩ Omega × w    [by which μ of a fixed ξ falls]
             dμ/dt = (k s + k ⟨w, Omega⟩ w + J Omega) × Omega + k ⟨w, Omega⟩ Omega × w    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
             dw/dt = w × Omega    [(2.2): −ξ·w]
-            Omega = M(w)⁻¹ (μ − k s)    [(1.14) inverted]
-            h(μ, w) = ½ ⟨μ − k s, M(w)⁻¹ (μ − k s)⟩    [(1.16)]
+            Omega = 𝕀(w)⁻¹ (μ − k s)    [(1.14) inverted]
+            h(μ, w) = ½ ⟨μ − k s, 𝕀(w)⁻¹ (μ − k s)⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
     "#]].assert_eq(&continuous_derivation(varying, item));
     let relativistic = "group = R1, velocity = v, l = -m * c * c * (1.0 - v.norm_squared() / (c * c)).sqrt()";
@@ -163,7 +163,7 @@ fn of_others() {
             pairing: μ_k = ⟨μ, E_k⟩, with the generators E_k of the declaration
             l(v) = −m c² sqrt(1 − (v²/c²))    [as declared, in normal form]
             μ = (m v/sqrt(1 − (v²/c²)))    [∂l/∂ξ, (1.14)]
-            M = (m v²/(c² sqrt(1 − (v²/c²))³)) + (m/sqrt(1 − (v²/c²)))    [∂²l/∂ξ², the inertia]
+            𝕀 = (m v²/(c² sqrt(1 − (v²/c²))³)) + (m/sqrt(1 − (v²/c²)))    [∂²l/∂ξ², the inertia]
             dμ/dt = ad*_v μ    [(1.4): ad*_ξ μ]
             v = the solution of ∂l/∂ξ = μ    [(1.14) inverted by Newton's iteration]
             h(μ) = ⟨μ, v⟩ − l at v = ∂h/∂μ    [(1.16)]
@@ -182,12 +182,12 @@ fn of_others() {
             pairing: μ_k = ⟨μ, E_k⟩, with the generators E_k of the declaration
             l(xi, a) = −(k/2) ⟨p, p⟩ + k ⟨p, a⟩ − (k/2) ⟨a, a⟩ + (1/2) ⟨xi, M xi⟩    [as declared, in normal form]
             μ = (1/2) Mᵀ xi + (1/2) M xi    [∂l/∂ξ, (1.14)]
-            M = (1/2) M + (1/2) Mᵀ    [∂²l/∂ξ², the inertia]
+            𝕀 = (1/2) M + (1/2) Mᵀ    [∂²l/∂ξ², the inertia]
             ⟨∂l/∂w ⋄ w, η⟩ = −k ⟨p, hat(η) a⟩ + k ⟨a, hat(η) a⟩    [(2.1)]
-            dμ/dt = M dxi/dt = ad*_xi μ + ∂l/∂w ⋄ w    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dμ/dt = 𝕀 dxi/dt = ad*_xi μ + ∂l/∂w ⋄ w    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
             da/dt = −hat(xi) a    [(2.2): −ξ·w]
-            xi = M⁻¹ μ    [(1.14) inverted, M⁻¹ once for all]
-            h(μ, a) = ½ ⟨μ, M⁻¹ μ⟩ + (k/2) ⟨p, p⟩ − k ⟨p, a⟩ + (k/2) ⟨a, a⟩    [(1.16)]
+            xi = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, a) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + (k/2) ⟨p, p⟩ − k ⟨p, a⟩ + (k/2) ⟨a, a⟩    [(1.16)]
             kept = h(μ, w); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
     "#]]
     .assert_eq(&continuous_derivation(planar, item));

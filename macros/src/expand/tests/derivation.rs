@@ -100,9 +100,9 @@ fn on_the_struct() {
         ```text
         l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
         μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
-        dμ/dt = M dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+        dμ/dt = 𝕀 dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
         dw/dt = w × Ω    [(2.2): −ξ·w]
-        h(μ, w) = ½ ⟨μ, M⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+        h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
         ```
 
         All equations are in `DERIVATION` and in the documentation of the methods."#]].assert_eq(&page(HEAVY_TOP, &item));
@@ -190,12 +190,12 @@ fn of_the_heavy_top() {
             pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
             l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
             μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
-            M = tr(J_d) I − J_d    [∂²l/∂ξ², the inertia]
+            𝕀 = tr(J_d) I − J_d    [∂²l/∂ξ², the inertia]
             ∂l/∂w ⋄ w = m g w × rho    [(2.1)]
-            dμ/dt = M dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dμ/dt = 𝕀 dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
             dw/dt = w × Ω    [(2.2): −ξ·w]
-            Ω = M⁻¹ μ    [(1.14) inverted, M⁻¹ once for all]
-            h(μ, w) = ½ ⟨μ, M⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+            Ω = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
             kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
         hypotheses used
             FᵀF = I, J_dᵀ = J_d
