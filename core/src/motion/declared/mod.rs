@@ -6,7 +6,9 @@ pub(crate) use diagnosis::beyond_solvable;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, velocity_of_momentum};
+use crate::mechanics::{
+    Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, velocity_of_momentum,
+};
 use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
@@ -47,16 +49,7 @@ impl<S: Effect> Declared<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        let inertia = scene.inertia();
-        let (unit, determinant) = Vector::<S>::solve(&inertia, &Vector::<S>::zero());
-        let pivot = Vector::<S>::least_pivot(&inertia);
-        // Less than this is what rounding leaves of a zero.
-        if pivot.simd_lt(-Scalar::<S>::simd_default_epsilon() * real(1e6)).any() {
-            return Err(SetupError::NegativeKinetic { pivot: reported(pivot) });
-        }
-        if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & pivot.simd_gt(real(0.0))).all() {
-            return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
-        }
+        check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia())?;
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
             return Err(SetupError::NonFiniteConstant);

@@ -351,8 +351,12 @@ impl Checker<'_> {
         let square = Shape::Matrix(size, size);
         let (shape, found) = match name.as_str() {
             "I" => return Some(Tree::new(span, square, Kind::Identity)),
+            "F" | "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
             "F" => (square, Name::Increment),
             "h" => (Shape::Scalar, Name::Step),
+            _ if self.declaration.velocity().is_some_and(|velocity| velocity.unraw() == name) => {
+                (self.displacement(), Name::Velocity)
+            }
             "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
             "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
             _ => {
@@ -386,10 +390,29 @@ impl Checker<'_> {
         Some(Tree::new(span, shape, Kind::Name(found)))
     }
 
+    /// A continuous Lagrangian knows no step.
+    fn of_a_step(&mut self, name: &str, span: Span) -> Option<Rc<Tree>> {
+        if self.unknown.insert(name.to_owned()) {
+            let velocity = match self.declaration.velocity() {
+                Some(velocity) => format!("`{}`", velocity.unraw()),
+                None => "`Omega`, named by `velocity = Omega`".to_owned(),
+            };
+            let what = if name == "F" {
+                format!("`F` is the increment of a step, and `l` has no steps: write it in the velocity {velocity}")
+            } else {
+                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
+                    .to_owned()
+            };
+            self.errors.push(span, format!("{what}, or declare `l_d = …`"));
+        }
+        None
+    }
+
     fn is_force(&self) -> bool {
         self.declaration.role == Role::Force
     }
 
+    /// A vector with a component for each generator.
     fn displacement(&self) -> Shape {
         Shape::Matrix(self.declaration.group.dimension(), 1)
     }

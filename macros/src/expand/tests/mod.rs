@@ -1,5 +1,6 @@
 //! Whole expansions.
 
+mod continuous;
 mod derivation;
 mod determinism;
 mod fuzz;
