@@ -13,21 +13,57 @@ pub use crate::groups::{CayleyRetraction, Retraction, inverse_increment};
 pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor};
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
-    DiscreteLagrangian, Effect, Force, LeftInvariant, Operations, Parts, Residual, SceneVisitor, SharedBy, Sum,
-    WithKinetic, WithoutKinetic,
+    ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Operations, Parts, Residual,
+    SceneVisitor, SharedBy, Sum, WithKinetic, WithoutKinetic,
 };
 pub use crate::numbers::{Real, real};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
-use crate::groups::homogeneous;
+use crate::groups::{Advected, homogeneous};
 use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
-use crate::numbers::Entries as _;
+use crate::numbers::{Coordinates, Entries};
 
 /// `F⁻¹` of a group element.
 #[inline]
 pub fn inverse_of<G: LieGroup>(element: G::Matrix) -> G::Matrix {
     G::from_matrix_unchecked(element).inverse().matrix()
+}
+
+/// The velocity of a step with increment `F`, and `F⁻¹·w`; NaN where the retraction's coordinates don't reach `F`.
+fn at_the_end<L: ContinuousLagrangian, R: Retraction<L::Group>>(
+    f: &<L::Group as LieGroup>::Matrix,
+    w: &L::Advected,
+    h: L::Scalar,
+) -> (<L::Group as LieGroup>::Vector, L::Advected) {
+    let element = L::Group::from_matrix_unchecked(*f);
+    let coordinates = R::local_coordinates(&element);
+    let nowhere = || <L::Group as LieGroup>::Vector::zero() * real(f64::NAN);
+    let velocity = coordinates.unwrap_or_else(nowhere) * (real::<L::Scalar>(1.0) / h);
+    (velocity, w.seen_from(&element))
+}
+
+/// `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
+pub fn trapezoid<L: ContinuousLagrangian, R: Retraction<L::Group>>(
+    lagrangian: &L,
+    f: &<L::Group as LieGroup>::Matrix,
+    w: &L::Advected,
+    h: L::Scalar,
+) -> L::Scalar {
+    let (velocity, next) = at_the_end::<L, R>(f, w, h);
+    (lagrangian.l(&velocity, w) + lagrangian.l(&velocity, &next)) * (h * real(0.5))
+}
+
+/// `h l(ξ, (w + F⁻¹·w)/2)`.
+pub fn chord<L: ContinuousLagrangian, R: Retraction<L::Group>>(
+    lagrangian: &L,
+    f: &<L::Group as LieGroup>::Matrix,
+    w: &L::Advected,
+    h: L::Scalar,
+) -> L::Scalar {
+    let (velocity, next) = at_the_end::<L, R>(f, w, h);
+    let middle = Entries::<L::Scalar>::zip(w, &next, &mut |a, b| (a + b) * real(0.5));
+    lagrangian.l(&velocity, &middle) * h
 }
 
 /// A field of a declared Lagrangian: its value for the declared expression, and whether it can be used.

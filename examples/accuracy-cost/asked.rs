@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use liestep::SO3;
 use liestep::accuracy::{Accuracy, AccurateStepper, Candidates};
-use liestep::methods::{PreprocessedFlow, PreprocessedOrder, SplitBody, SymmetricBody};
+use liestep::methods::{ExactBody, PreprocessedFlow, PreprocessedOrder, SplitBody, SymmetricBody};
 use nalgebra::Vector3;
 use workbench::table::{aligned, number};
 
@@ -73,7 +73,9 @@ impl Question {
             let candidates = Candidates::of(scene.free_body(), 2)
                 .and_declared("K4", scene.fourth_order_body(), 4)
                 .and_declared("K6", scene.sixth_order_body(), 6)
-                .and_preprocessed(scene.nonstandard());
+                .and_preprocessed(scene.nonstandard())
+                .and_splittings("exact", scene.free_body(), ExactBody::new(&scene.inertia()))
+                .and_gauss(scene.free_body());
             return Self { ask: asking(candidates, start, velocity), fixed };
         }
         let candidates = Candidates::of(scene.top(), 2).and_declared("L4", scene.fourth_order_top(), 4).and_declared(
@@ -82,8 +84,9 @@ impl Question {
             6,
         );
         let candidates = match SymmetricBody::new(&scene.inertia()) {
-            Ok(body) => candidates.and_splittings("exact", scene.top(), body),
+            Ok(body) => candidates.and_splittings("exact", scene.top(), body).and_gauss(scene.top()),
             Err(_) => split(candidates, scene)
+                .and_splittings("exact", scene.top(), ExactBody::new(&scene.inertia()))
                 .and_gauss(scene.top())
                 .and_splittings("K6", scene.top(), scene.sixth_order_body())
                 .and_splittings(

@@ -133,7 +133,7 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
 }
 
 /// Gauss collocation with several numbers of stages.
-fn gauss<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> [Method; 4]
+pub fn gauss<L>(lagrangian: impl Fn(&Scene) -> L + Copy + 'static) -> [Method; 4]
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
 {

@@ -9,7 +9,7 @@ use declarations::motions::End;
 use liestep::accuracy::Candidates;
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, Spring};
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Regular};
-use liestep::methods::{CompositionScheme, PreprocessedFlow, PreprocessedOrder, SymmetricBody};
+use liestep::methods::{CompositionScheme, ExactBody, SymmetricBody};
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -55,16 +55,17 @@ where
     let states: Result<Vec<_>, Box<dyn Error>> =
         [10.0, 100.0].iter().map(|t| Ok((*t, reference(scene, attitude, velocity, *t)?))).collect();
     let J_d = body.J_d;
+    let inertia = NonstandardInertia::from(J_d).to_inertia();
     let mut fixed = methods::declared("(3.13)", move |_| scene, 2);
-    let candidates = Candidates::of(scene, 2);
-    let candidates = if let Ok(symmetric) = SymmetricBody::new(&NonstandardInertia::from(J_d).to_inertia()) {
-        fixed.extend(methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(symmetric)));
-        candidates.and_splittings("exact", scene, symmetric)
-    } else {
-        let flow = PreprocessedFlow::new(J_d, PreprocessedOrder::Ten);
-        fixed.extend(methods::splittings("preprocessed", Family::NearlyPoisson, move |_| scene, move |_| Some(flow)));
-        candidates.and_splittings("preprocessed", scene, flow)
-    };
+    fixed.extend(match SymmetricBody::new(&inertia) {
+        Ok(body) => methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(body)),
+        Err(_) => {
+            let body = ExactBody::new(&inertia);
+            methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(body))
+        }
+    });
+    fixed.extend(methods::gauss(move |_| scene));
+    let candidates = Candidates::of_body(scene, 2);
     let question = Question { ask: asking(candidates, attitude, velocity), fixed };
     Ok((Scene::bare(name, J_d, *attitude.as_matrix(), velocity, states?), question))
 }

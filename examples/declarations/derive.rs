@@ -10,7 +10,7 @@
 
 use std::process::ExitCode;
 
-use liestep::mechanics::DiscreteLagrangian;
+use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian};
 use workbench::args::{Failure, Word, example};
 use workbench::output::print;
 
@@ -19,16 +19,22 @@ struct Shown {
     name: &'static str,
     about: &'static str,
     derivation: &'static str,
-    is_self_adjoint: bool,
+    /// Of one with steps, whether it is its own adjoint.
+    is_self_adjoint: Option<bool>,
 }
 
 const fn shown<L: DiscreteLagrangian>(name: &'static str, about: &'static str) -> Shown {
-    Shown { name, about, derivation: L::DERIVATION, is_self_adjoint: L::SELF_ADJOINT }
+    Shown { name, about, derivation: L::DERIVATION, is_self_adjoint: Some(L::SELF_ADJOINT) }
+}
+
+const fn continuous<L: ContinuousLagrangian>(name: &'static str, about: &'static str) -> Shown {
+    Shown { name, about, derivation: L::CONTINUOUS_DERIVATION, is_self_adjoint: None }
 }
 
 /// All of them; a new one is one line.
-const LAGRANGIANS: [Shown; 17] = [
+const LAGRANGIANS: [Shown; 19] = [
     shown::<declarations::HeavyTop>("heavy-top", "(3.13) in principal axes: μ is (3.17), (L_F)* δl_d/δF is (3.18)"),
+    shown::<declarations::ContinuousTop>("continuous-top", "l(Ω, w) of section 3.2, of which (3.13) is made"),
     shown::<declarations::FullTop>("full-top", "(3.13) with a full inertia tensor"),
     shown::<declarations::FreeBody>("free-body", "the kinetic part of (3.13) alone"),
     shown::<declarations::CayleyTop>("cayley-top", "a kinetic term that is solvable for every h"),
@@ -45,6 +51,7 @@ const LAGRANGIANS: [Shown; 17] = [
     shown::<declarations::UnderwaterBody>("underwater-body", "Kirchhoff's body on SE(3) with added mass"),
     shown::<declarations::TetheredPlate>("tethered-plate", "a plate on a spring, SE(2)"),
     shown::<declarations::ElasticFlow>("elastic-flow", "an affine flow of an elastic drop, SL(2, R)"),
+    continuous::<declarations::RelativisticParticle>("relativistic-particle", "continuous only, not quadratic in v"),
 ];
 
 const HELP: &str = "Prints what is derived from a declared Lagrangian
@@ -70,7 +77,11 @@ fn main() -> ExitCode {
 
 fn list() -> String {
     let line = |Shown { name, about, is_self_adjoint, .. }: &Shown| {
-        let adjoint = if *is_self_adjoint { "self-adjoint" } else { "–" };
+        let adjoint = match is_self_adjoint {
+            Some(true) => "self-adjoint",
+            Some(false) => "–",
+            None => "continuous",
+        };
         format!("{name:<20} {adjoint:<14} {about}\n")
     };
     LAGRANGIANS.iter().map(line).collect()

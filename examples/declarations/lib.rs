@@ -7,6 +7,7 @@
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
 mod cayley_top;
+mod continuous_top;
 mod elastic_flow;
 mod flyer;
 mod fourth_order_top;
@@ -17,6 +18,7 @@ mod log_trace_top;
 mod magnet;
 pub mod motions;
 mod orbiting_body;
+mod relativistic_particle;
 mod satellite;
 mod sixth_order_top;
 mod spring;
@@ -26,6 +28,7 @@ mod torquer;
 mod underwater_body;
 
 pub use cayley_top::CayleyTop;
+pub use continuous_top::ContinuousTop;
 pub use elastic_flow::ElasticFlow;
 pub use flyer::{FluidDrag, Flyer, Thruster};
 pub use fourth_order_top::FourthOrderTop;
@@ -36,6 +39,7 @@ pub use log_trace_top::LogTraceTop;
 pub use magnet::Magnet;
 pub use motions::Motion;
 pub use orbiting_body::OrbitingBody;
+pub use relativistic_particle::RelativisticParticle;
 pub use satellite::Satellite;
 pub use sixth_order_top::SixthOrderTop;
 pub use spring::Spring;

@@ -30,12 +30,17 @@ pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
     let tree = check::check(&declaration, errors)?;
-    judged::terms(&declaration, &tree, errors)?;
-    let readings = lower::readings(&declaration, &tree, errors)?;
+    let declared = judged::of_declared(&declaration, &tree, errors)?;
+    let Some(discrete) = judged::discretised(&declaration, &tree, errors)? else {
+        return declared.map(|equations| emit::continuous(item, &declaration, &equations));
+    };
+    judged::terms(&declaration, &discrete, errors)?;
+    let readings = lower::readings(&declaration, &discrete, errors)?;
     // Handed over, as a long reading is derived only if no short one can be.
-    let chosen = judged::cheapest(readings, derive::derive, &declaration, &tree, errors)?;
-    let findings = judged::findings(&declaration, &tree, &chosen, errors)?;
-    Some(emit::implementation(item, &declaration, &chosen, &findings))
+    let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, errors)?;
+    let findings = judged::findings(&declaration, &discrete, &chosen, errors)?;
+    let equations = judged::continuous(declared, &declaration, &tree, &chosen, errors)?;
+    Some(emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings))
 }
 
 #[cfg(test)]

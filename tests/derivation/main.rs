@@ -4,6 +4,7 @@
 #![allow(non_snake_case)]
 
 mod by_hand;
+mod continuous;
 mod equations;
 mod exact_lagrangian;
 mod golden_steps;

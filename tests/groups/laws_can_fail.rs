@@ -227,6 +227,10 @@ impl Advected<SE2> for Backwards {
         Self(increment * self.0)
     }
 
+    fn rate(&self, velocity: &Matrix3<f64>) -> Self {
+        Self(velocity * self.0)
+    }
+
     fn is_finite(&self) -> bool {
         self.0.iter().all(|entry| entry.is_finite())
     }
@@ -246,8 +250,45 @@ impl Entries<f64> for Backwards {
     }
 }
 
+/// A covector whose rate has the other sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct TurnedRate(Vector3<f64>);
+
+impl Advected<SE2> for TurnedRate {
+    fn seen_from(&self, attitude: &SE2) -> Self {
+        Self(attitude.matrix().transpose() * self.0)
+    }
+
+    fn change(&self, increment: &Matrix3<f64>) -> Self {
+        Self(increment.transpose() * self.0)
+    }
+
+    fn rate(&self, velocity: &Matrix3<f64>) -> Self {
+        Self(-(velocity.transpose() * self.0))
+    }
+
+    fn is_finite(&self) -> bool {
+        self.0.iter().all(|entry| entry.is_finite())
+    }
+}
+
+impl Entries<f64> for TurnedRate {
+    fn from_entries(next: &mut impl FnMut() -> f64) -> Self {
+        Self(Entries::from_entries(next))
+    }
+
+    fn each(&self, visit: &mut impl FnMut(f64)) {
+        self.0.each(visit);
+    }
+
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(f64, f64) -> f64) -> Self {
+        Self(self.0.zip(&other.0, combine))
+    }
+}
+
 #[test]
 fn laws_of_advected_parameters() {
+    assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, TurnedRate, _, _>).is_err());
     assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Backwards, _, _>).is_err());
     // With a wrong inverse the contravariant kinds are wrong; the group's own laws alone would blame `inverse`.
     assert!(catch_unwind(advected::kinds_move_as_declared::<Broken<INVERSE>, _, _>).is_err());

@@ -57,6 +57,10 @@ impl Advected<Affine> for Density {
         Self(self.0 * increment.m11)
     }
 
+    fn rate(&self, velocity: &Matrix2<f64>) -> Self {
+        Self(self.0 * velocity.m11)
+    }
+
     fn is_finite(&self) -> bool {
         self.0.is_finite()
     }

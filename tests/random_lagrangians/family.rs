@@ -36,6 +36,55 @@ fn metric<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
 
 macro_rules! family {
     ($group:ident, $n:literal, $vector:ident, $matrix:ident, [$($own:tt)*]) => {
+        // A kinetic energy that depends on what is advected, and one that isn't quadratic.
+        #[lagrangian(
+            group = $group,
+            $($own)*
+            velocity = xi,
+            advected(w = covector, v = vector, B = form),
+            l = {
+                let x = hat(xi);
+                let quadratic = (x * J * x.transpose()).trace();
+                let kinetic = 0.5 * quadratic + 0.5 * a[0] * a[0] * w.dot(&(x * r)).powi(2);
+                let bent = a[1] * a[1] * (1.0 + (x * J * x.transpose()).trace() * (1.0 + w.dot(&r).powi(2))).sqrt();
+                let linear = a[2] * w.dot(&(x * v)) + a[3] * (A * x * B).trace();
+                let potential = b[0] * w.dot(&r).sin() + b[1] * v.dot(&(B * v)) + b[2] * w.dot(&v) * (A * B).trace();
+                kinetic + bent + linear - potential - b[3] * (0.3 * w.dot(&r)).exp()
+            },
+        )]
+        #[derive(Clone, Debug)]
+        pub struct Continuous<T: RealField + Copy> {
+            pub J: $matrix<T>,
+            pub A: $matrix<T>,
+            pub r: $vector<T>,
+            pub a: Vector4<T>,
+            pub b: Vector4<T>,
+            pub covector: $vector<T>,
+            pub vector: ContravariantVector<T, $n>,
+            pub form: CovariantTensor<T, $n>,
+        }
+
+        impl<T: RealField + Copy> Continuous<T> {
+            /// The numbers of the seed, in any scalar.
+            pub fn random(seed: u64) -> Self {
+                let mut random = Random::new(seed);
+                let (metric, matrix, form): (SMatrix<f64, $n, $n>, SMatrix<f64, $n, $n>, SMatrix<f64, $n, $n>) =
+                    (metric(&mut random), random.sample(), random.sample());
+                let mut vector = || -> SMatrix<T, $n, 1> { random.sample::<SMatrix<f64, $n, 1>>().map(nalgebra::convert) };
+                let (r, covector, advected) = (vector(), vector(), vector());
+                Self {
+                    J: metric.map(nalgebra::convert),
+                    A: matrix.map(nalgebra::convert),
+                    r,
+                    a: coefficients(&mut random).map(nalgebra::convert),
+                    b: coefficients(&mut random).map(nalgebra::convert),
+                    covector,
+                    vector: ContravariantVector(advected),
+                    form: CovariantTensor(form.map(nalgebra::convert)),
+                }
+            }
+        }
+
         #[lagrangian(
             group = $group,
             $($own)*

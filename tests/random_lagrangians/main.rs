@@ -3,6 +3,7 @@
 //! A Lagrangian is known when this is compiled, its terms are not: each is multiplied by a random coefficient, which is
 //! zero for about a third of them.
 
+mod continuous;
 mod family;
 
 use checks::structure::{System, momenta, poisson, stages, symmetry, two_flows};
@@ -55,6 +56,16 @@ macro_rules! on_every_group {
                     assert_structure(&lagrangian, seed);
                     let parting = two_flows::parting(&lagrangian, 0.01, 30, seed);
                     assert!(parting < ROUNDING, "the flows (2.5) and (2.8) part by {parting:e}");
+                }
+
+                #[test]
+                fn continuous(seed: u64) {
+                    continuous::assert_equations(
+                        &family::$group::Continuous::<f64>::random(seed),
+                        &family::$group::Continuous::random(seed),
+                        &family::$group::Continuous::random(seed),
+                        seed,
+                    );
                 }
 
                 #[test]

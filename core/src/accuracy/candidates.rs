@@ -1,15 +1,16 @@
 //! The methods to choose from.
 
 use super::error::AccuracyError;
-use super::ladder::Start;
-use super::search::search;
-use super::{Accuracy, AccurateStepper, Choice};
+use super::search::{Found, again, search};
+use super::trials::Start;
+use super::{Accuracy, AccurateStepper, Choice, SavedChoice};
 use crate::effects::PrincipalBody;
 use crate::error::SetupError;
 use crate::groups::{Advected, LieGroup, Retraction as _, SO3};
-use crate::mechanics::{DiagonalNonstandardInertia, Effect, Group, Operations, Scalar, Scene, Vector};
+use crate::mechanics::{DiagonalNonstandardInertia, Effect, Group, Inertia, Operations, Scalar, Scene, Vector};
 use crate::methods::{
-    CompositionScheme, Gauss, KineticFlow, Preprocessed, PreprocessedOrder, SplittingScheme, has_force_gradient,
+    CompositionScheme, ExactBody, Gauss, KineticFlow, Preprocessed, PreprocessedOrder, ProcessedScheme,
+    SplittingScheme, SymmetricBody, has_force_gradient,
 };
 use crate::motion::{AnyStepper, Cost, Plan, Stepper};
 
@@ -19,6 +20,8 @@ pub(super) struct Candidate<G: LieGroup, A> {
     pub(super) order: u32,
     /// Solves or flows in a step.
     pub(super) stages: u32,
+    /// Whether it has no error but rounding.
+    pub(super) is_exact: bool,
     /// Operations that a step makes at least.
     pub(super) least: f64,
     pub(super) make: Make<G, A>,
@@ -59,6 +62,7 @@ pub struct Candidates<G: LieGroup, A: Advected<G>> {
     inertia: Vec<f64>,
     seen: Vec<Seen>,
     mistake: Option<SetupError>,
+    saved: Option<SavedChoice>,
 }
 
 impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
@@ -72,7 +76,8 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     where
         S: Scene<Scalar = f64, Group = G, Advected = A>,
     {
-        let empty = Self { methods: Vec::new(), inertia: inertia(&scene), seen: seen(&scene), mistake: None };
+        let empty =
+            Self { methods: Vec::new(), inertia: inertia(&scene), seen: seen(&scene), mistake: None, saved: None };
         empty.and_steps_of("", &scene, order)
     }
 
@@ -115,7 +120,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         P: Plan<S, Kept: 'static> + 'static,
     {
         let make = Box::new(move |h| make(h).map(Stepper::into_any));
-        self.methods.push(Candidate { name, order, stages, least, make });
+        self.methods.push(Candidate { name, order, stages, is_exact: false, least, make });
     }
 
     fn compare<L>(&mut self, scene: &L)
@@ -143,6 +148,14 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
         }
     }
 
+    /// A choice to be taken where it still holds, which one more run by shorter steps tells; otherwise the search is made
+    /// as without. It may be that of another start, horizon or tolerance.
+    #[must_use]
+    pub fn with_saved(mut self, choice: SavedChoice) -> Self {
+        self.saved = Some(choice);
+        self
+    }
+
     /// The cheapest of these methods that comes within the accuracy, with its step, for the motion from an attitude
     /// (body to space) and a body velocity; see [`Stepper::for_accuracy`].
     ///
@@ -165,16 +178,53 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
             let stepper = (candidate.make)(accuracy.horizon / 1024.0)?;
             stepper.start(start.attitude, start.velocity)?;
         }
-        let found = search(&self.methods, accuracy, &start)?;
-        let stepper = (self.methods[found.run.index].make)(accuracy.horizon / found.run.steps)?;
+        let found = match self.looked_at_again(accuracy, &start) {
+            Some(found) => found,
+            None => search(&self.methods, accuracy, &start)?,
+        };
+        let stepper = (self.methods[found.index].make)(accuracy.horizon / found.steps)?;
         let state = stepper.start(start.attitude, start.velocity)?;
         let choice = Choice::new(&self.methods, accuracy, &found);
         Ok(AccurateStepper { stepper, start: state, choice })
     }
+
+    fn looked_at_again(&self, accuracy: Accuracy, start: &Start<G>) -> Option<Found> {
+        let SavedChoice { method, step } = self.saved.as_ref()?;
+        let index = self.methods.iter().position(|candidate| candidate.name == *method)?;
+        // A step that divides another horizon.
+        let steps = (accuracy.horizon / step * (1.0 - f64::EPSILON.sqrt())).ceil();
+        let is_usable = *step > 0.0 && steps >= 1.0;
+        is_usable.then(|| again(&self.methods, (index, steps), accuracy, start)).flatten()
+    }
 }
 
 impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
-    /// The kinetic-potential splittings of a declaration of the same scene, with this flow of its body.
+    /// The step of a scene that is a method of this order, its symmetric compositions, and what else a body can be
+    /// stepped by: where its potential can be split off, splittings, processed ones among them, with the exact motion of
+    /// the free body, and Gauss collocation.
+    ///
+    /// A scene that isn't self-adjoint is refused as by [`of`](Self::of).
+    #[must_use]
+    pub fn of_body<S>(scene: S, order: u32) -> Self
+    where
+        S: Scene<Scalar = f64, Group = SO3, Advected = A>,
+    {
+        let candidates = Self::of(scene.clone(), order);
+        // What these methods ask of a scene.
+        let Ok(inertia) = Inertia::new(scene.inertia()) else { return candidates };
+        let body = ExactBody::new(&inertia);
+        if Stepper::split(scene.clone(), 1.0, body, SplittingScheme::STRANG).is_err() {
+            return candidates;
+        }
+        match SymmetricBody::new(&inertia) {
+            Ok(symmetric) => candidates.and_splittings("exact", scene.clone(), symmetric),
+            Err(_) => candidates.and_splittings("exact", scene.clone(), body),
+        }
+        .and_gauss(scene)
+    }
+
+    /// The kinetic-potential splittings of a declaration of the same scene, processed ones among them, with this flow of
+    /// its body; of a free body that flow alone.
     #[must_use]
     #[allow(clippy::needless_pass_by_value)] // as `Stepper::split`
     pub fn and_splittings<S, K>(mut self, name: &str, scene: S, kinetic: K) -> Self
@@ -183,6 +233,16 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
         K: KineticFlow<f64> + 'static,
     {
         self.compare(&scene);
+        // Nothing is kicked: any splitting is the flow, which this one makes once a step.
+        if !S::PARTS.kick_before {
+            let make = move |h| Stepper::split(scene.clone(), h, kinetic.clone(), SplittingScheme::STRANG);
+            let least = Cost::of_stages(K::OPERATIONS, 1).least();
+            self.add(name.to_owned(), (SplittingScheme::STRANG.order(), 1), least, make);
+            if let Some(candidate) = self.methods.last_mut() {
+                candidate.is_exact = K::EXACT;
+            }
+            return self;
+        }
         let has_gradient = has_force_gradient(&scene);
         // What is left of a drift whose spin has been taken out.
         let Operations { step, iteration } = K::OPERATIONS;
@@ -191,6 +251,12 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
             let (scene, kinetic, stages) = (scene.clone(), kinetic.clone(), count(scheme.drifts()));
             let make = move |h| Stepper::split(scene.clone(), h, kinetic.clone(), scheme);
             let least = Cost::of_stages(drift, stages).least();
+            self.add(format!("{name}, {}", scheme.name()), (scheme.order(), stages), least, make);
+        }
+        for scheme in ProcessedScheme::ALL.into_iter().filter(|_| has_gradient) {
+            let (scene, kinetic, stages) = (scene.clone(), kinetic.clone(), count(scheme.kernel().drifts()));
+            let make = move |h| Stepper::processed(scene.clone(), h, kinetic.clone(), scheme);
+            let least = Cost::of_stages(K::OPERATIONS, stages).least();
             self.add(format!("{name}, {}", scheme.name()), (scheme.order(), stages), least, make);
         }
         self
@@ -217,7 +283,7 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
         let (scene, stages) = (scene.clone(), count(2 * PAIRS));
         let make = move |h| Stepper::collocated::<PAIRS>(scene.clone(), h);
         let least = Gauss::<S, PAIRS>::COST.least();
-        self.add(format!("Gauss, {stages} stages"), (2 * stages, stages), least, make);
+        self.add(format!("Gauss, {stages} stages"), (2 * stages, stages * ITERATIONS), least, make);
     }
 }
 
@@ -237,6 +303,9 @@ impl Candidates<SO3, ()> {
         self
     }
 }
+
+/// How often a step of collocation computes each of its stages, about.
+const ITERATIONS: u32 = 14;
 
 fn count(stages: usize) -> u32 {
     u32::try_from(stages).unwrap_or(u32::MAX)

@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::Accuracy;
 use super::candidates::Candidate;
-use super::ladder::Estimate;
+use super::saved::SavedChoice;
 use super::search::Found;
 use crate::groups::{Advected, LieGroup};
 
@@ -52,7 +52,7 @@ pub struct Choice {
     pub accuracy: Accuracy,
     /// The number of steps to the horizon.
     pub steps: u64,
-    /// The error at the horizon, measured against a run of the same method with shorter steps.
+    /// The error at the horizon, measured against a run with a smaller one.
     pub error: f64,
     /// The arithmetic of all trial runs, relative to that of the run.
     pub trials: f64,
@@ -69,27 +69,29 @@ impl Choice {
         accuracy: Accuracy,
         found: &Found,
     ) -> Self {
-        let offer = |(index, (candidate, estimate)): (usize, (&Candidate<G, A>, &Estimate))| {
-            let is_chosen = index == found.run.index;
-            let (steps, cost) =
-                if is_chosen { (found.run.steps, found.run.cost) } else { (estimate.steps, estimate.cost) };
-            Offer {
-                name: candidate.name.clone(),
-                order: candidate.order,
-                step: accuracy.horizon / steps,
-                cost: cost / found.run.cost,
-                is_bound: estimate.is_bound && !is_chosen,
-            }
+        let offer = |(candidate, (steps, cost, is_bound)): (&Candidate<G, A>, &(f64, f64, bool))| Offer {
+            name: candidate.name.clone(),
+            order: candidate.order,
+            step: accuracy.horizon / steps,
+            cost: cost / found.cost,
+            is_bound: *is_bound,
         };
         Self {
             accuracy,
-            steps: found.run.steps as u64,
-            error: found.run.error,
-            trials: found.spent / found.run.cost,
-            nearby: found.nearby.map(|estimate| estimate.cost / found.run.cost),
-            offers: candidates.iter().zip(&found.estimates).enumerate().map(offer).collect(),
-            chosen: found.run.index,
+            steps: found.steps as u64,
+            error: found.error,
+            trials: found.trials.operations / found.cost,
+            nearby: found.nearby,
+            offers: candidates.iter().zip(&found.offers).map(offer).collect(),
+            chosen: found.index,
         }
+    }
+
+    /// What to give the same scene when it is asked again.
+    #[must_use]
+    pub fn saved(&self) -> SavedChoice {
+        let Offer { name, step, .. } = self.chosen();
+        SavedChoice { method: name.clone(), step: *step }
     }
 
     /// The method chosen.

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::trials::Trials;
 use crate::error::{SetupError, StepError};
 
 /// Why there is no method and step for an accuracy.
@@ -26,11 +27,17 @@ pub enum AccuracyError {
         /// About the smallest tolerance that can be reached; of the order of one where the motion can't be predicted so
         /// far.
         floor: f64,
+        /// What was tried.
+        trials: Trials,
     },
-    /// The steps that all methods would need are too many.
+    /// The steps that all methods would need are too many to be tried.
     TooManySteps {
-        /// How many the cheapest one would make, or has made in vain.
+        /// About how many the one that looks cheapest would make, or more.
         steps: f64,
+        /// What it is called.
+        method: String,
+        /// What was tried.
+        trials: Trials,
     },
     /// The scene or the start can't be used, or a step short enough can't.
     Setup(SetupError),
@@ -47,13 +54,15 @@ impl fmt::Display for AccuracyError {
             Self::Horizon { horizon } => {
                 write!(f, "the horizon {horizon:e} s can't be used; choose a finite time above zero")
             }
-            Self::Unreachable { tolerance, floor } => write!(
+            Self::Unreachable { tolerance, floor, .. } => write!(
                 f,
                 "the tolerance {tolerance:e} is below what rounding leaves at the horizon: about {floor:.0e} can be reached; choose a larger one or a nearer horizon"
             ),
-            Self::TooManySteps { steps } => {
-                write!(f, "about {steps:.0e} steps would be needed; choose a larger tolerance or a nearer horizon")
-            }
+            Self::TooManySteps { steps, method, trials } => write!(
+                f,
+                "about {steps:.0e} steps of the method `{method}` would be needed, which {} trials of up to {:.0e} steps show; choose a larger tolerance or a nearer horizon",
+                trials.runs, trials.most_steps
+            ),
             Self::Setup(cause) => cause.fmt(f),
             Self::Step(cause) => write!(f, "no step leads to the horizon: {cause}"),
         }

@@ -1,24 +1,31 @@
 //! Asking by accuracy: the cheapest method and its step.
 //!
-//! Every method is tried on the very motion, from its start to the horizon, with one step, two, four and so on. Two
-//! neighbouring trials show the error of the coarser (Richardson), and its fall from trial to trial what a given error
-//! takes; trial by trial the search follows the method that looks cheapest, by the operations that its steps make and
-//! by no clock, so that the same question has the same answer each time on one platform. Growth of errors along the
-//! motion, steps too long to be solved and orders that coarse steps haven't got yet are in these measurements; in the
-//! end the step is taken from a run whose error has been measured against a finer one, and of that one only the own
-//! error is extrapolated. Where the potential can be split off, [`Gauss`](crate::methods::Gauss) collocation may be among the
-//! methods ([`Candidates::and_gauss`]).
+//! All methods are tried over a short part of the very motion, with one step, two, four and so on. Their errors there
+//! rank them by the operations that their steps make, by no clock, so that the same question has the same answer each
+//! time on one platform. The one that looks cheapest is run to the horizon with ever shorter steps, until they show the
+//! error of those before (Richardson); the finest is the reference for all the others that may be cheaper. Growth of
+//! errors along the motion, steps too long to be solved and orders that coarse steps haven't got yet are in these
+//! measurements: the step is taken from a run to the horizon whose error has been measured against a finer one, and of
+//! that one only the own error is extrapolated.
+//!
+//! All trials together cost at most thirty times the run, unless that is of one or two steps only. A scene that would
+//! take more than some seconds is refused with what was tried, and a choice that was made can be [saved](SavedChoice):
+//! then one run besides the chosen one is enough.
 
 mod candidates;
 mod choice;
 mod error;
 mod ladder;
+mod part;
+mod saved;
 mod search;
+mod trials;
 
-use candidates::Candidate;
 pub use candidates::Candidates;
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
+pub use saved::SavedChoice;
+pub use trials::Trials;
 
 use core::ops::Deref;
 
@@ -68,14 +75,15 @@ impl<S: Effect> Stepper<S> {
     /// of order 4, 6, 8 or 10, with the step that is just short enough for the motion from this attitude (body to
     /// space) and body velocity.
     ///
-    /// The choice takes trial runs to the horizon, which cost together some twenty to a hundred times what the run
-    /// does; [`Choice::trials`] says how much. The step is then fixed: energy and momenta are kept as by any fixed
+    /// The choice takes trial runs, which cost together up to thirty times what the run does; [`Choice::trials`] says
+    /// how much. The step is then fixed: energy and momenta are kept as by any fixed
     /// step, and the same question gives the same bits. [`Candidates`] chooses from more methods, where a scene allows
     /// them.
     ///
     /// # Errors
     ///
-    /// [`AccuracyError`], among others where rounding alone is larger than the tolerance at the horizon.
+    /// [`AccuracyError`], among others where rounding alone is larger than the tolerance at the horizon, and where trials
+    /// would take more than some seconds.
     ///
     /// # Examples
     ///

@@ -1,48 +1,101 @@
-//! The search for the cheapest method: the one that looks cheapest is tried a step finer, until it is near enough.
+//! The search for the cheapest method: all are ranked over a short part of the motion, and the first of them are run to
+//! the horizon.
 
+use super::Accuracy;
+use super::candidates::Candidate;
 use super::error::AccuracyError;
-use super::ladder::{AIM, Estimate, Ladder, Start};
-use super::{Accuracy, Candidate};
+use super::ladder::{Ladder, SMALLEST_ERROR};
+use super::part::{FAR, Part};
+use super::trials::{End, Start, Trial, Trials};
 use crate::groups::{Advected, LieGroup};
 
-/// A run with more stages isn't tried.
-const MOST_STAGES: f64 = 2e8;
-/// Nor is one where no two trials agree so long.
-const MOST_STAGES_IN_VAIN: f64 = 4e6;
-/// A method that comes to its floor is followed by others only so much more expensive.
-const BEYOND_THE_FLOOR: f64 = 4.0;
-/// What of the tolerance a run may differ from the reference by, whose own error is a quarter at most.
-const ACCEPTED: f64 = 0.75;
-/// Of the least difference of two runs, a tolerance that they show to be reached.
-const ABOVE_THE_FLOOR: f64 = 8.0;
+/// All trials together may cost so many runs of the method chosen.
+pub(super) const MOST_RUNS: f64 = 30.0;
+/// Of that, what other methods than the first may take: the best is looked at once more.
+const MOST_RUNS_YET: f64 = MOST_RUNS - 2.0;
+/// Nor so many operations, some seconds of a processor,
+const MOST_OPERATIONS: f64 = 1e10;
+/// or so many before two trials to the horizon agree.
+pub(super) const MOST_IN_VAIN: f64 = 1e9;
 
-/// A method is looked at further, once one is found, if it may be cheaper than that by this factor.
-const WORTH_LOOKING: f64 = 0.8;
+/// Of the tolerance, the error that is aimed at; errors aren't quite powers of the step.
+const AIM: f64 = 0.6;
+/// What of the tolerance a run may differ from the reference by.
+const ACCEPTED: f64 = 0.8;
+/// What of the tolerance the reference may be wrong by, and what is aimed at.
+const OF_THE_REFERENCE: f64 = 0.2;
+const AIM_OF_THE_REFERENCE: f64 = 0.1;
+/// Each trial of a method has so many times the steps of the one before, or more.
+const LEAST_FACTOR: f64 = 1.5;
+/// With so many times the steps the order that shows is of little importance;
+const SURE_RATIO: f64 = 1.9;
+/// with fewer an error may be so many times what was expected.
+const EXPECTED: f64 = 3.0;
+/// Errors so many times what the trials before have shown may be rounding's.
+const UNEXPECTED: f64 = 10.0;
+/// The first trials to the horizon are aimed at this error, if the tolerance isn't larger.
+const COARSE: f64 = 1e-2;
 /// Of the tolerance, an error so small that longer steps are tried.
 const TOO_GOOD: f64 = 0.4;
 
+/// Once a run is known, methods are told apart that seem to cost up to so many times the cheapest.
+const NEAR: f64 = 1.3;
+/// A method is run to the horizon if it seems to cost less than so many times the best.
+const WORTH_TRYING: f64 = 1.15;
+/// Runs of a method to the horizon, until its step is right.
+const MOST_CORRECTIONS: u32 = 4;
+/// Of the least difference of two runs, a tolerance that they show to be reached.
+const ABOVE_THE_FLOOR: f64 = 8.0;
+/// What of the tolerance rounding may grow to.
+const OF_ROUNDING: f64 = 0.25;
+/// So many methods are run to the horizon where rounding stops all.
+const MOST_FLOORS: u32 = 3;
+
 /// The method found, and how it compares.
 pub(super) struct Found {
-    /// Which of the candidates, by how many steps.
-    pub(super) run: Run,
-    /// Operations of all trials.
-    pub(super) spent: f64,
-    /// What each candidate takes for the tolerance.
-    pub(super) estimates: Vec<Estimate>,
-    /// What the method found takes for ten times the tolerance and for a tenth.
-    pub(super) nearby: [Estimate; 2],
+    /// Which of the candidates.
+    pub(super) index: usize,
+    pub(super) steps: f64,
+    /// Against the reference.
+    pub(super) error: f64,
+    /// Operations.
+    pub(super) cost: f64,
+    pub(super) trials: Trials,
+    /// What each candidate takes for the tolerance: steps and operations of a run, and whether these are bounds.
+    pub(super) offers: Vec<(f64, f64, bool)>,
+    /// What the method found takes for ten times the tolerance and for a tenth, in its own runs.
+    pub(super) nearby: [f64; 2],
 }
 
 /// A run that is near enough.
 #[derive(Clone, Copy)]
-pub(super) struct Run {
-    /// Which of the candidates.
-    pub(super) index: usize,
-    pub(super) steps: f64,
-    /// Against the finest trial.
-    pub(super) error: f64,
-    /// Operations.
-    pub(super) cost: f64,
+struct Run<G: LieGroup> {
+    index: usize,
+    steps: f64,
+    error: f64,
+    cost: f64,
+    end: End<G>,
+}
+
+/// A question, and what has been tried to answer it.
+struct Search<'a, G: LieGroup<Scalar = f64>, A> {
+    candidates: &'a [Candidate<G, A>],
+    accuracy: Accuracy,
+    start: &'a Start<G>,
+    trials: Trials,
+    refused: Refused,
+}
+
+/// What was found of methods that don't come near enough.
+#[derive(Default)]
+struct Refused {
+    /// Steps that the first would have made, and its name.
+    steps: Option<(f64, String)>,
+    /// The least tolerance that rounding leaves.
+    floor: Option<f64>,
+    /// Whether that is what the motion makes of roundings, whatever the method.
+    is_final: bool,
+    failure: Option<AccuracyError>,
 }
 
 /// The cheapest candidate for an accuracy, by operations.
@@ -51,105 +104,256 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
     accuracy: Accuracy,
     start: &Start<G>,
 ) -> Result<Found, AccuracyError> {
-    let tolerance = accuracy.tolerance;
-    let aim = AIM * tolerance;
-    let mut ladders: Vec<_> = candidates.iter().map(Ladder::new).collect();
-    let mut open: Vec<usize> = (0..ladders.len()).collect();
-    let mut best: Option<Run> = None;
-    let mut refused = Refused { steps: 0.0, in_vain: None, floor: f64::INFINITY };
-    // The most expensive run worth trying.
-    let mut limit = f64::INFINITY;
-    loop {
-        let costs = open.iter().map(|&index| (index, ladders[index].estimate(aim)));
-        let cheapest = costs.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-        let Some((index, estimate)) = cheapest.filter(|(_, estimate)| estimate.cost <= limit) else { break };
-        let ladder = &mut ladders[index];
-        let run = if ladder.is_reference(tolerance) { settle(ladder, index, start, tolerance) } else { None };
-        let most = if estimate.is_bound { MOST_STAGES_IN_VAIN } else { MOST_STAGES };
-        if let Some(run) = run {
-            best = best.filter(|best| best.cost <= run.cost).or(Some(run));
-            limit = limit.min(WORTH_LOOKING * run.cost);
-        } else if let Some((least, cost)) = ladder.floor() {
-            let of_rounding = ladder.least_tolerance(start);
-            refused.floor = refused.floor.min(of_rounding.max(ABOVE_THE_FLOOR * least));
-            limit = limit.min(BEYOND_THE_FLOOR * cost);
-        } else if ladder.next_steps() * f64::from(ladder.candidate.stages) > most {
-            refused.steps = refused.steps.max(estimate.steps);
-            // Trials that don't agree may have steps too long all the same; it is rounding if that alone parts them.
-            let in_vain = ladder.last_difference().filter(|_| estimate.is_bound && refused.in_vain.is_none());
-            refused.in_vain = refused.in_vain.or(in_vain.filter(|_| ladder.least_tolerance(start) > tolerance));
-        } else {
-            ladder.extend(start);
-            continue;
+    let (mut trials, refused) = (Trials::default(), Refused::default());
+    let short = {
+        let mut part = Part::find(candidates, accuracy, start, &mut trials)?;
+        part.rank(AIM * part.level(accuracy), FAR, &mut trials);
+        part
+    };
+    let longer = short.longer(candidates, accuracy, &mut trials).map(|mut part| {
+        part.rank(AIM * part.level(accuracy), FAR, &mut trials);
+        part
+    });
+    let (short, mut part) = match longer {
+        Some(longer) => (Some(short), longer),
+        None => (None, short),
+    };
+    let mut level = AIM * part.level(accuracy);
+    let mut search = Search { candidates, accuracy, start, trials, refused };
+    let (best, reference) = search.first(&part, level)?;
+    if let Some(error) = part.error_at(best.index, best.steps) {
+        level = error * (AIM * accuracy.tolerance / best.error.max(SMALLEST_ERROR));
+        part.rank(level, NEAR, &mut search.trials);
+    }
+    let best = search.improved(best, &reference, &part, level);
+    let floor = search.rounding(&candidates[best.index], best.steps, &best.end);
+    if floor > accuracy.tolerance {
+        return Err(AccuracyError::Unreachable { tolerance: accuracy.tolerance, floor, trials: search.trials });
+    }
+    // Of what is too expensive to be looked at over a longer part, what the shorter one says.
+    let of_short = short.as_ref().and_then(|short| Some((short, short.error_at(best.index, best.steps)?)));
+    let offer = |index: usize| {
+        if index == best.index {
+            return (best.steps, best.cost, false);
         }
-        open.retain(|other| *other != index);
-    }
-    let Some(run) = best else { return Err(refused.error(ladders, accuracy.tolerance)) };
-    let floor = ladders[run.index].least_tolerance(start);
-    if floor > tolerance {
-        return Err(AccuracyError::Unreachable { tolerance: accuracy.tolerance, floor });
-    }
-    let estimates = ladders.iter().map(|ladder| ladder.estimate(aim)).collect();
-    let nearby = [10.0, 0.1].map(|factor| ladders[run.index].estimate(factor * aim));
-    let spent = ladders.iter().map(|ladder| ladder.spent).sum();
-    Ok(Found { run, spent, estimates, nearby })
+        let (part, level) = if part.has(index) { (&part, level) } else { of_short.unwrap_or((&part, level)) };
+        let estimate = part.estimate(index, level);
+        ((estimate.steps * part.times).max(1.0), estimate.cost(part.times), estimate.is_bound)
+    };
+    let usual = part.cost(best.index, level);
+    Ok(Found {
+        index: best.index,
+        steps: best.steps,
+        error: best.error,
+        cost: best.cost,
+        trials: search.trials,
+        offers: (0..candidates.len()).map(offer).collect(),
+        nearby: [10.0, 0.1].map(|factor| part.cost(best.index, factor * level) / usual),
+    })
 }
 
-/// The number of steps that is just enough; nothing where a finer reference is needed.
-fn settle<G: LieGroup<Scalar = f64>, A: Advected<G>>(
-    ladder: &mut Ladder<'_, G, A>,
-    index: usize,
+/// What of the tolerance the error of a choice may be that is looked at again: it is known to a tenth.
+const ACCEPTED_AGAIN: f64 = 0.9;
+/// The run that it is compared with has so many times its steps.
+const FINER: f64 = 1.5;
+
+/// Whether a method with so many steps is near enough: by one run besides, with shorter steps.
+pub(super) fn again<G: LieGroup<Scalar = f64>, A: Advected<G>>(
+    candidates: &[Candidate<G, A>],
+    (index, steps): (usize, f64),
+    accuracy: Accuracy,
     start: &Start<G>,
-    tolerance: f64,
-) -> Option<Run> {
-    let (order, finest) = (ladder.order(), 0.5 * ladder.next_steps());
-    let ratio = |error: f64| (error / (AIM * tolerance)).powf(order.recip());
-    let mut steps = ladder.estimate(AIM * tolerance).steps.ceil();
-    let mut best: Option<Run> = None;
-    while steps < finest {
-        // A step that has no solution is too long.
-        let (error, cost) = ladder.verify(start, steps).unwrap_or((f64::INFINITY, f64::INFINITY));
-        if error > ACCEPTED * tolerance {
-            if best.is_some() {
+) -> Option<Found> {
+    let (candidate, mut trials) = (&candidates[index], Trials::default());
+    let finer = (FINER * steps).ceil();
+    if steps * candidate.least > MOST_OPERATIONS {
+        return None;
+    }
+    let [run, fine] = [steps, finer].map(|steps| trials.run(candidate, start, steps).0);
+    // What is measured is the difference of two errors.
+    let error =
+        start.difference(&run.end?, &fine.end?) / (1.0 - (steps / finer).powi(candidate.order.try_into().ok()?));
+    let cost = run.cost();
+    let offer = |(other, candidate): (usize, &Candidate<G, A>)| match other == index {
+        true => (steps, cost, false),
+        false => (1.0, candidate.least, true),
+    };
+    let nearby = [0.1_f64, 10.0].map(|factor| factor.powf(f64::from(candidate.order).recip()));
+    (error <= ACCEPTED_AGAIN * accuracy.tolerance).then(|| Found {
+        index,
+        steps,
+        error,
+        cost,
+        trials,
+        offers: candidates.iter().enumerate().map(offer).collect(),
+        nearby,
+    })
+}
+
+impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
+    /// A method near enough, the one that looks cheapest if that gets there, and a run by which others are measured.
+    fn first(&mut self, part: &Part<'a, G, A>, level: f64) -> Result<(Run<G>, End<G>), AccuracyError> {
+        let mut floors = 0;
+        for index in part.ranking(level) {
+            let estimate = part.estimate(index, level);
+            if estimate.steps.is_infinite() {
                 break;
             }
-            steps = (steps * ratio(error).clamp(1.05, 2.0)).ceil();
-            continue;
+            if let Some(found) = self.approach(index, estimate.steps * part.times) {
+                return Ok(found);
+            }
+            floors += u32::from(self.refused.floor.is_some());
+            if self.refused.is_final || floors >= MOST_FLOORS || self.trials.operations > MOST_IN_VAIN {
+                break;
+            }
         }
-        best = Some(Run { index, steps, error, cost });
-        let fewer = (steps * ratio(error).max(0.5)).ceil();
-        if error > TOO_GOOD * tolerance || fewer >= steps {
-            break;
-        }
-        steps = fewer;
+        Err(self.refusal())
     }
-    best
-}
 
-/// What was found of methods that would need too many steps.
-struct Refused {
-    steps: f64,
-    /// How far the runs of one ended from each other, however short the steps, where that is what rounding leaves.
-    in_vain: Option<f64>,
-    /// The least tolerance that differences which have stopped falling show to be reached.
-    floor: f64,
-}
+    /// Runs a method to the horizon with ever shorter steps, until they show the error of those before.
+    fn approach(&mut self, index: usize, likely: f64) -> Option<(Run<G>, End<G>)> {
+        let (candidate, start, tolerance) = (&self.candidates[index], self.start, self.accuracy.tolerance);
+        let mut ladder = Ladder::new(candidate);
+        let coarser = (AIM * tolerance / COARSE).min(1.0).powf(f64::from(candidate.order).recip());
+        let mut steps = (likely * coarser).ceil().max(1.0);
+        let mut expected = f64::INFINITY;
+        let left = loop {
+            let agree = ladder.last_error(start).is_some();
+            let most = if agree { MOST_OPERATIONS } else { MOST_IN_VAIN };
+            if self.trials.operations + ladder.cost_of(steps) > most {
+                let needed = if agree { ladder.estimate(start, None, AIM * tolerance).steps } else { likely };
+                self.refused.steps.get_or_insert_with(|| (needed.max(steps), candidate.name.clone()));
+                if !agree {
+                    self.note_floor(&ladder, 0.0);
+                }
+                break None;
+            }
+            ladder.extend(start, steps, &mut self.trials);
+            let Some(error) = ladder.error_of_finest(start) else {
+                steps = ladder.twice_the_steps();
+                continue;
+            };
+            // Steps much shorter than those before tell an error by themselves; others where it is the one expected.
+            let last = ladder.last_error(start).unwrap_or(f64::INFINITY);
+            let is_sure = ladder.last_ratio() >= SURE_RATIO || last <= EXPECTED * expected;
+            if error <= OF_THE_REFERENCE * tolerance && is_sure {
+                break Some(error);
+            }
+            if let Some(least) = ladder.floor(start) {
+                self.note_floor(&ladder, ABOVE_THE_FLOOR * least);
+                break None;
+            }
+            // Far more than the trials before have shown: that may be rounding.
+            if last > UNEXPECTED * expected && self.note_floor(&ladder, 0.0) {
+                break None;
+            }
+            expected = error;
+            let aim = ladder.estimate(start, None, AIM * tolerance).steps.ceil();
+            let finer = ladder.factor(start, error / (AIM_OF_THE_REFERENCE * tolerance)).max(LEAST_FACTOR);
+            steps = if aim > 1.1 * steps { aim } else { (steps * finer).ceil() };
+        };
+        let Some(left) = left else {
+            self.refused.failure = self.refused.failure.take().or(ladder.failure);
+            return None;
+        };
+        let finest = *ladder.finest()?;
+        let reference = finest.end?;
+        let run = |trial: &Trial<G>, error| {
+            Some(Run { index, steps: trial.steps, error, cost: trial.cost(), end: trial.end? })
+        };
+        let measured = ladder.trials().iter().filter_map(|trial| {
+            let error = start.difference(&trial.end?, &reference);
+            run(trial, error).filter(|_| trial.steps < finest.steps && error <= ACCEPTED * tolerance)
+        });
+        let best = measured.min_by(|a, b| a.cost.total_cmp(&b.cost));
+        let is_settled = best.is_some_and(|best| best.error > TOO_GOOD * tolerance);
+        let aim = ladder.estimate(start, None, AIM * tolerance).steps.ceil().max(1.0);
+        let order = ladder.order(start);
+        let best = if is_settled { best } else { self.settled(index, aim, order, &reference, best) };
+        // Where all others are too rough, the finest is near enough by what the others show of it.
+        let best = best.filter(|best| best.cost < finest.cost()).or_else(|| run(&finest, left));
+        best.map(|best| (best, reference))
+    }
 
-impl Refused {
-    fn error<G, A>(&self, ladders: Vec<Ladder<'_, G, A>>, tolerance: f64) -> AccuracyError
-    where
-        G: LieGroup<Scalar = f64>,
-        A: Advected<G>,
-    {
-        if self.floor.is_finite() {
-            return AccuracyError::Unreachable { tolerance, floor: self.floor };
+    /// A run of this method with a step that is just short enough, if one is cheaper than the best so far.
+    fn settled(
+        &mut self,
+        index: usize,
+        mut steps: f64,
+        order: f64,
+        reference: &End<G>,
+        mut best: Option<Run<G>>,
+    ) -> Option<Run<G>> {
+        let (candidate, start, tolerance) = (&self.candidates[index], self.start, self.accuracy.tolerance);
+        for _ in 0..MOST_CORRECTIONS {
+            let (trial, _) = self.trials.run(candidate, start, steps);
+            // A step that has no solution is too long.
+            let error = trial.end.map_or(f64::INFINITY, |end| start.difference(&end, reference));
+            let is_near = error <= ACCEPTED * tolerance;
+            if is_near && best.is_none_or(|best| trial.cost() < best.cost) {
+                best = trial.end.map(|end| Run { index, steps, error, cost: trial.cost(), end });
+            }
+            let ratio = (error / (AIM * tolerance)).powf(order.recip());
+            let next = (steps * ratio.clamp(0.1, 2.0)).ceil();
+            // One that is near enough is only made longer, one that isn't shorter.
+            let is_right = if is_near { error > TOO_GOOD * tolerance || next >= steps } else { next <= steps };
+            let likely = trial.once + next * trial.a_step;
+            if is_right || best.is_some_and(|best| likely > best.cost) {
+                break;
+            }
+            steps = next;
         }
-        if let Some(floor) = self.in_vain {
-            return AccuracyError::Unreachable { tolerance, floor };
+        best
+    }
+
+    /// Runs other methods that may be cheaper, as far as trials may go.
+    fn improved(&mut self, first: Run<G>, reference: &End<G>, part: &Part<'a, G, A>, level: f64) -> Run<G> {
+        let mut best = first;
+        for index in part.ranking(level) {
+            let estimate = part.estimate(index, level);
+            let likely = estimate.cost(part.times);
+            if index == first.index {
+                continue;
+            }
+            if likely > WORTH_TRYING * best.cost
+                || self.trials.operations + likely > MOST_RUNS_YET * best.cost.min(likely)
+            {
+                break;
+            }
+            let steps = (estimate.steps * part.times).ceil().max(1.0);
+            let order = f64::from(self.candidates[index].order);
+            best = self.settled(index, steps, order, reference, Some(best)).unwrap_or(best);
         }
-        match ladders.into_iter().find_map(|ladder| ladder.failure) {
-            Some(cause) => cause,
-            None => AccuracyError::TooManySteps { steps: self.steps },
+        best
+    }
+
+    /// By how far a run ends from one that starts some roundings away: the least tolerance that this leaves.
+    fn rounding(&mut self, candidate: &Candidate<G, A>, steps: f64, end: &End<G>) -> f64 {
+        let (trial, _) = self.trials.run(candidate, &self.start.nearby(), steps);
+        trial.end.map_or(f64::INFINITY, |nearby| self.start.difference(&nearby, end) / OF_ROUNDING)
+    }
+
+    /// Whether rounding leaves more than the tolerance.
+    fn note_floor(&mut self, ladder: &Ladder<'_, G, A>, least: f64) -> bool {
+        let Some((steps, Some(end))) = ladder.finest().map(|finest| (finest.steps, finest.end)) else { return false };
+        let rounding = self.rounding(ladder.candidate, steps, &end);
+        self.refused.is_final |= rounding > self.accuracy.tolerance;
+        let floor = rounding.max(least);
+        if floor > self.accuracy.tolerance {
+            self.refused.floor = Some(self.refused.floor.map_or(floor, |before| before.min(floor)));
+        }
+        floor > self.accuracy.tolerance
+    }
+
+    fn refusal(&mut self) -> AccuracyError {
+        let Refused { steps, floor, failure, .. } = core::mem::take(&mut self.refused);
+        let (trials, tolerance) = (self.trials, self.accuracy.tolerance);
+        match (floor, failure, steps) {
+            (Some(floor), ..) => AccuracyError::Unreachable { tolerance, floor, trials },
+            // Long steps may fail in any way; that a step can't be had at all has to do with short ones.
+            (_, Some(failure @ AccuracyError::Setup(_)), _) | (_, Some(failure), None) => failure,
+            (_, _, Some((steps, method))) => AccuracyError::TooManySteps { steps, method, trials },
+            (..) => AccuracyError::TooManySteps { steps: trials.most_steps, method: String::new(), trials },
         }
     }
 }

@@ -2,11 +2,13 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::samples::{MatrixLieGroup, ROUNDING, Random, assert_small, condition, eliminated_inverse};
+use super::samples::{
+    DIFFERENCE, MatrixLieGroup, ROUNDING, Random, along, assert_small, condition, derivative, eliminated_inverse,
+};
 use crate::groups::{Advected, ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 use crate::numbers::Entries;
 
-/// `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, and linear in `w`.
+/// `e · w = w`, `(gf)⁻¹ · w = f⁻¹ · (g⁻¹ · w)`, linear in `w`, and `−ξ·w` is the rate along `exp(tξ)`.
 pub fn parameter_is_acted_on<G, A, const N: usize, const D: usize>()
 where
     G: MatrixLieGroup<N, D>,
@@ -24,6 +26,13 @@ where
         assert_same(&at_once, &in_turn, allowed, "(g f)⁻¹ · w = f⁻¹ · (g⁻¹ · w)");
         let back = w.advect(&f.increment()).advect(&f.inverse().increment());
         assert_same(&back, &w, allowed, "f · (f⁻¹ · w) = w");
+
+        let xi: SVector<f64, D> = random.sample();
+        let entries_at = |t: f64| entries(&w.seen_from(&along::<G, N, D>(&xi, t)));
+        let rate = entries(&w.rate(&G::hat(&xi)));
+        for (place, rate) in rate.into_iter().enumerate() {
+            assert_small(rate - derivative(|t| entries_at(t)[place]), DIFFERENCE, "the rate is −ξ·w");
+        }
 
         let v: A = random.sample();
         let sum = combined(&w, &v).advect(&f.increment());

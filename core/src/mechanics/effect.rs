@@ -7,7 +7,8 @@ use crate::groups::{Advected, LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Coordinates, Real};
+use crate::numbers::{Coordinates, Real, real, reported};
+use nalgebra::SimdBool as _;
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Effect>::Scalar;
@@ -84,7 +85,8 @@ pub struct Residual<V> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` isn't an effect, so it can't be in a scene",
     label = "not an effect",
-    note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums"
+    note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
+    note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps"
 )]
 pub trait Effect {
     /// The scalar.
@@ -250,4 +252,18 @@ pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advecte
     let velocity = velocity_of_momentum(effect, momentum, w);
     let kinetic = velocity.dot(&(effect.inertia() * velocity)) * crate::numbers::real(0.5);
     kinetic + effect.potential(w)
+}
+
+/// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.
+pub(crate) fn check_inertia<T: Real, V: Coordinates<T>>(inertia: &V::Square) -> Result<(), SetupError> {
+    let (unit, determinant) = V::solve(inertia, &V::zero());
+    let pivot = V::least_pivot(inertia);
+    // Less than this is what rounding leaves of a zero.
+    if pivot.simd_lt(-T::simd_default_epsilon() * real(1e6)).any() {
+        return Err(SetupError::NegativeKinetic { pivot: reported(pivot) });
+    }
+    if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & pivot.simd_gt(real(0.0))).all() {
+        return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
+    }
+    Ok(())
 }

@@ -1,8 +1,10 @@
 //! Mechanics: what a scene is made of, as the macro declares it or a user writes it by hand.
 //!
 //! An [`Effect`] is one term with all that a step needs of it; a [`DiscreteLagrangian`] is one with `l_d(F, w)`
-//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again. Nothing here solves an equation.
+//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again. A [`ContinuousLagrangian`] is `l(ξ, w)`
+//! with the continuous equations. Nothing here solves an equation but that of the inverse Legendre transform.
 
+mod continuous;
 mod description;
 mod effect;
 mod force;
@@ -13,9 +15,10 @@ mod operations;
 mod sum;
 mod symmetry;
 
+pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
 pub use effect::{Effect, Group, Matrix, Moves, Parts, Regular, Residual, Scalar, Square, Vector};
-pub(crate) use effect::{energy, momentum_of_velocity, velocity_of_momentum};
+pub(crate) use effect::{check_inertia, energy, momentum_of_velocity, velocity_of_momentum};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use kinetic_part::{KineticPart, WithKinetic, WithoutKinetic};

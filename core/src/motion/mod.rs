@@ -2,7 +2,8 @@
 //!
 //! A [`Stepper`] is a scene and a [`Plan`], the method with its constants folded; a [`State`] is a [`Motion`] and what
 //! the plan keeps from step to step. [`Declared`] is the plan of the scene's own step; the others are in
-//! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with).
+//! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with). A [`RightHandSide`] is the
+//! continuous motion, for an ODE solver of another library.
 
 // First, as on its page in the documentation.
 mod stepper;
@@ -13,6 +14,7 @@ mod flows;
 mod kept;
 mod plan;
 mod report;
+mod right_hand_side;
 mod state;
 mod summation;
 
@@ -25,6 +27,7 @@ pub use kept::Kept;
 pub(crate) use kept::{count, counted};
 pub use plan::{Cost, Plan, Steerable};
 pub use report::{Remedy, StepReport};
+pub use right_hand_side::RightHandSide;
 pub use state::State;
 #[cfg(feature = "serde")]
 pub(crate) use stepper::StateOf;

@@ -144,6 +144,8 @@ pub struct Cost {
     pub iteration: f64,
     /// The fewest iterations that a step can take, but where nothing changes from step to step.
     pub fewest: u32,
+    /// Besides its steps, a run, whatever their number: a processor.
+    pub once: f64,
 }
 
 /// Besides what an effect counts, a solve and its reconstruction make so many operations on SO(3).
@@ -161,6 +163,7 @@ impl Cost {
             iteration: OF_AN_ITERATION + f64::from(operations.iteration),
             // With one iteration none is known to have settled.
             fewest: if operations.iteration > 0 { 2 * stages } else { 0 },
+            once: 0.0,
         }
     }
 
@@ -174,6 +177,6 @@ impl Cost {
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // an estimate
     pub fn of_run(&self, steps: u64, iterations: u64) -> f64 {
-        steps as f64 * self.step + iterations as f64 * self.iteration
+        self.once + steps as f64 * self.step + iterations as f64 * self.iteration
     }
 }

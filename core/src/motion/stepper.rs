@@ -140,7 +140,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
     #[inline]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
-        let made = dispatch(P::DISPATCHED, Step(self, state));
+        let made = dispatch(Step(self, state));
         match made {
             Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
             made => made,
@@ -168,7 +168,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// As [`run`](Self::run), but after an error the state may be anywhere, and what would do isn't looked for.
     pub(crate) fn run_unexplained(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
-        dispatch(P::DISPATCHED, Run(self, state, steps))
+        dispatch(Run(self, state, steps))
     }
 
     /// The states after each step from here on; after an error, nothing more.
@@ -463,6 +463,7 @@ struct Step<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>)
 
 impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
+    const DISPATCHED: bool = P::DISPATCHED;
 
     #[inline(always)]
     fn run(self) -> Self::Output {
@@ -475,6 +476,7 @@ struct Run<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>, 
 
 impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
     type Output = Result<u64, StepError>;
+    const DISPATCHED: bool = P::DISPATCHED;
 
     #[inline(always)]
     fn run(self) -> Self::Output {

@@ -8,14 +8,18 @@
 pub(crate) trait Kernel {
     type Output;
 
+    /// Whether it is worth it. What isn't is compiled once: as an argument of [`dispatch`], all would be compiled for
+    /// every instruction set, and tests took twice as long to build.
+    const DISPATCHED: bool;
+
     /// Does it; marked `#[inline(always)]`.
     fn run(self) -> Self::Output;
 }
 
-/// Does it with the best instructions that the machine has, if that is asked for and the feature `dispatch` is on.
+/// Does it with the best instructions that the machine has, if that is worth it and the feature `dispatch` is on.
 #[cfg(feature = "dispatch")]
 #[inline(always)]
-pub(crate) fn dispatch<K: Kernel>(best: bool, kernel: K) -> K::Output {
+pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     use pulp::{Arch, Simd, WithSimd};
 
     struct Dispatched<K>(K);
@@ -29,12 +33,12 @@ pub(crate) fn dispatch<K: Kernel>(best: bool, kernel: K) -> K::Output {
         }
     }
 
-    if best { Arch::new().dispatch(Dispatched(kernel)) } else { kernel.run() }
+    if K::DISPATCHED { Arch::new().dispatch(Dispatched(kernel)) } else { kernel.run() }
 }
 
 /// Does it with the instructions that it was compiled for.
 #[cfg(not(feature = "dispatch"))]
 #[inline(always)]
-pub(crate) fn dispatch<K: Kernel>(_: bool, kernel: K) -> K::Output {
+pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     kernel.run()
 }

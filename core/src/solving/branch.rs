@@ -1,5 +1,6 @@
 //! Where the Jacobian is near that of the free body.
 
+use super::problem::{newton_system, step_terms};
 use crate::groups::{Advected as _, LieGroup as _, Retraction};
 use crate::mechanics::{Effect, Group, Scalar, Square, Vector};
 use crate::numbers::{Coordinates as _, Mask, nowhere, real};
@@ -21,7 +22,7 @@ const DEPARTURE: f64 = 0.5;
 pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
     let inertia = lagrangian.inertia();
     let standing: Vec<L::StepTerms> = elements::<L>()
-        .map(|g| L::step_terms(constants, &Vector::<L>::zero(), &lagrangian.advected().seen_from(&g)))
+        .map(|g| step_terms::<L>(constants, &Vector::<L>::zero(), &lagrangian.advected().seen_from(&g)))
         .collect();
     let directions = directions::<L>();
     let mut trusted = real::<Scalar<L>>(0.0);
@@ -31,7 +32,7 @@ pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants
             let xi = *direction * real::<Scalar<L>>(radius);
             let model = L::Retraction::free_momentum_tangent(&inertia, &xi);
             for terms in &standing {
-                let (_, jacobian) = L::newton_system(constants, terms, &(xi * real(0.5)));
+                let (_, jacobian) = newton_system::<L>(constants, terms, &(xi * real(0.5)));
                 is_near = is_near & is_nearly::<L>(&model, &jacobian);
             }
         }

@@ -16,7 +16,7 @@
 
 use crate::error::StepError;
 use crate::groups::Retraction;
-use crate::mechanics::{Effect, Matrix, Scalar, Vector};
+use crate::mechanics::{Effect, Matrix, Scalar, Square, Vector};
 use crate::numbers::{Coordinates, Mask, Real, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
@@ -167,7 +167,7 @@ impl<L: Effect> Problem<'_, L> {
         if !self.a.is_finite() {
             return Err(StepError::NonFinite { what: "momentum" });
         }
-        let terms = L::step_terms(self.constants, &self.a, self.w);
+        let terms = step_terms::<L>(self.constants, &self.a, self.w);
         let (start, spent) = self.start(&terms, guess);
         let (warm, iterations) = self.iterate(&terms, start);
         let accepted = self.accepted(&terms, &warm);
@@ -230,9 +230,8 @@ impl<L: Effect> Problem<'_, L> {
         (lanes, MAX_DAMPED_ITERATIONS)
     }
 
-    #[inline(always)]
     pub(super) fn update(&self, terms: &L::StepTerms, half: &Vector<L>) -> (Vector<L>, Scalar<L>) {
-        let (residual, jacobian) = L::newton_system(self.constants, terms, half);
+        let (residual, jacobian) = newton_system::<L>(self.constants, terms, half);
         Vector::<L>::solve(&jacobian, &residual)
     }
 
@@ -256,9 +255,9 @@ impl<L: Effect> Problem<'_, L> {
     ///
     /// The bound is far above rounding, and far below the right side where rounding has swallowed the Jacobian.
     pub(super) fn is_solved(&self, terms: &L::StepTerms, half: &Vector<L>) -> Mask<Scalar<L>> {
-        let (residual, _) = L::newton_system(self.constants, terms, half);
-        let (unknown, jacobian) =
-            L::newton_system(self.constants, &L::step_terms(self.constants, &Vector::<L>::zero(), self.w), half);
+        let (residual, _) = newton_system::<L>(self.constants, terms, half);
+        let still = step_terms::<L>(self.constants, &Vector::<L>::zero(), self.w);
+        let (unknown, jacobian) = newton_system::<L>(self.constants, &still, half);
         let size = |v: &Vector<L>| v.dot(v).simd_sqrt();
         let scale = size(&unknown) + size(&(unknown - residual)) + Vector::<L>::trace(&jacobian).simd_abs();
         size(&residual).simd_le(scale * Scalar::<L>::simd_default_epsilon().simd_sqrt())
@@ -285,6 +284,23 @@ impl<L: Effect> Problem<'_, L> {
         let residual = reported((update.dot(&update) / lanes.half.dot(&lanes.half)).simd_sqrt());
         Err(StepError::NotConverged { iterations, residual })
     }
+}
+
+/// [`Effect::newton_system`] for what is seldom asked. A scene has it inlined where steps are made and here, and no
+/// third time: its derived code is most of what a user's build compiles.
+#[inline(never)]
+pub(crate) fn newton_system<L: Effect>(
+    constants: &L::Constants,
+    terms: &L::StepTerms,
+    half: &Vector<L>,
+) -> (Vector<L>, Square<L>) {
+    L::newton_system(constants, terms, half)
+}
+
+/// [`Effect::step_terms`] for what is seldom asked, as [`newton_system`].
+#[inline(never)]
+pub(crate) fn step_terms<L: Effect>(constants: &L::Constants, a: &Vector<L>, w: &L::Advected) -> L::StepTerms {
+    L::step_terms(constants, a, w)
 }
 
 /// Whether the next update would be below rounding.

@@ -71,10 +71,51 @@ pub(crate) struct Declaration {
     pub(crate) advected: Vec<AdvectedParameter>,
     /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.
     pub(crate) expression: Option<Expr>,
+    /// Of a continuous Lagrangian `l`, what it is written and discretised with.
+    pub(crate) continuous: Option<Continuous>,
     pub(crate) fields: Vec<Field>,
     /// The fields whose type has no meaning.
     pub(crate) unreadable: Vec<String>,
     pub(crate) scalar: Scalar,
+}
+
+/// What belongs to `l = …`.
+pub(crate) struct Continuous {
+    /// The name of `ξ`; a term without a velocity may leave it out.
+    pub(crate) velocity: Option<Ident>,
+    /// How `l_d` is made of it; left out where only the continuous equations are wanted.
+    pub(crate) discretisation: Option<Discretisation>,
+}
+
+/// `discretise = trapezoid(Cayley)`.
+#[derive(Clone, Copy)]
+pub(crate) struct Discretisation {
+    pub(crate) quadrature: Quadrature,
+    pub(crate) coordinates: Coordinates,
+    /// From the first token to the last.
+    pub(crate) place: [Span; 2],
+}
+
+/// Where in a step `l` is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quadrature {
+    /// At both ends, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
+    Trapezoid,
+    /// In the middle of the curve, `h l(ξ, τ(hξ/2)⁻¹·w)`.
+    Midpoint,
+    /// In the middle of the chord, `h l(ξ, (w + F⁻¹·w)/2)`.
+    Chord,
+}
+
+/// What the velocity of a step is, as a function of `F`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Coordinates {
+    /// The matrix `ξ̂ = (F − I)/h`, near the algebra and not in it.
+    Ambient,
+    /// `hξ = cay⁻¹(F)`.
+    Cayley,
+    /// `hξ = log F`.
+    Exponential,
 }
 
 /// `w = up`: `w` in the expression is the field `up`, carried by the group, or given for each step.
@@ -94,6 +135,16 @@ impl AdvectedParameter {
 }
 
 impl Declaration {
+    /// The name of the velocity in `l`.
+    pub(crate) fn velocity(&self) -> Option<&Ident> {
+        self.continuous.as_ref()?.velocity.as_ref()
+    }
+
+    /// How `l` is discretised.
+    pub(crate) fn discretisation(&self) -> Option<Discretisation> {
+        self.continuous.as_ref()?.discretisation
+    }
+
     /// What an advected parameter's field promises; a plain vector after a mistake.
     pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
         let size = self.group.size;

@@ -3,10 +3,14 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use syn::ext::IdentExt as _;
+
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
-use crate::mathematics::derive::{Declared, Displacements, Let};
-use crate::mathematics::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
+use crate::mathematics::derive::{
+    Declared, DeclaredContinuous, Displacements, Let, hat, linear_forms, matrix_symbol, unit,
+};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance, stage_of};
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
@@ -46,6 +50,74 @@ pub(crate) fn readings_without(
     let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
     names.insert(Name::Step, step);
     names.insert(Name::Increment, increment);
+    let advected = parameters(declaration, weaker, &mut symbols, &mut names);
+    let displacements = (declaration.role == Role::Force).then(|| {
+        let mut displacement = |name: &str, place| {
+            let id = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
+            names.insert(place, id);
+            id
+        };
+        let before = displacement("η", Name::DisplacementBefore);
+        Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
+    });
+    let attempt = |lets| {
+        let (symbols, known) = (symbols.clone(), BTreeMap::new());
+        Lowering { symbols, names: &names, known, lets, velocity_matrix: None }.whole(tree)
+    };
+    let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
+        let (group, advected, names) = (declaration.group.clone(), advected.clone(), names.clone());
+        let declared = Declared { group, symbols, lets, expression, increment, step, advected, displacements };
+        Lowered { declared, names }
+    };
+    let multiplied_out = attempt(None);
+    // The work of a force is always multiplied out: it is linear in the displacements, and short.
+    let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
+    let closed = if may_close { Some(attempt(Some(Vec::new()))) } else { None };
+    let all = [Some(multiplied_out), closed].into_iter().flatten();
+    let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
+    if found.is_empty() {
+        failures.into_iter().filter_map(Result::err).take(1).for_each(|failure| report(failure, tree, errors));
+        return None;
+    }
+    Some(found.into_iter().flatten().map(lowered).collect())
+}
+
+/// A continuous Lagrangian in symbols.
+pub(crate) struct LoweredContinuous {
+    pub(crate) declared: DeclaredContinuous,
+    pub(crate) names: BTreeMap<Name, SymbolId>,
+}
+
+/// The reading of a declared `l`, multiplied out; `None` where it is too large, which has been reported.
+pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<LoweredContinuous> {
+    let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
+    let advected = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
+    let name = declaration.velocity().map_or_else(|| "ξ".to_owned(), |name| name.unraw().to_string());
+    let velocity = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
+    names.insert(Name::Velocity, velocity);
+    let group = declaration.group.clone();
+    let name = format!("hat({})", symbols.get(velocity).name);
+    let velocity_matrix = (!group.is_so3).then(|| matrix_symbol(&group, &name, &mut symbols));
+    let lowering = Lowering { symbols, names: &names, known: BTreeMap::new(), lets: None, velocity_matrix };
+    match lowering.whole(tree) {
+        Ok((symbols, expression, _)) => {
+            let declared = DeclaredContinuous { group, symbols, expression, velocity, velocity_matrix, advected };
+            Some(LoweredContinuous { declared, names })
+        }
+        Err(failure) => {
+            report(failure, tree, errors);
+            None
+        }
+    }
+}
+
+/// The symbols of the fields and of the advected parameters, and how the latter are moved.
+fn parameters(
+    declaration: &Declaration,
+    weaker: &dyn Fn(Name, Structure) -> Structure,
+    symbols: &mut Symbols,
+    names: &mut BTreeMap<Name, SymbolId>,
+) -> Vec<(SymbolId, Variance)> {
     for (index, field) in declaration.fields.iter().enumerate() {
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
@@ -71,32 +143,7 @@ pub(crate) fn readings_without(
         names.insert(Name::Advected(index), id);
         advected.push((id, kind.variance()));
     }
-    let displacements = (declaration.role == Role::Force).then(|| {
-        let mut displacement = |name: &str, place| {
-            let id = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
-            names.insert(place, id);
-            id
-        };
-        let before = displacement("η", Name::DisplacementBefore);
-        Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
-    });
-    let attempt = |lets| Lowering { symbols: symbols.clone(), names: &names, known: BTreeMap::new(), lets }.whole(tree);
-    let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
-        let (group, advected, names) = (declaration.group.clone(), advected.clone(), names.clone());
-        let declared = Declared { group, symbols, lets, expression, increment, step, advected, displacements };
-        Lowered { declared, names }
-    };
-    let multiplied_out = attempt(None);
-    // The work of a force is always multiplied out: it is linear in the displacements, and short.
-    let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
-    let closed = if may_close { Some(attempt(Some(Vec::new()))) } else { None };
-    let all = [Some(multiplied_out), closed].into_iter().flatten();
-    let (found, failures): (Vec<_>, Vec<_>) = all.partition(Result::is_ok);
-    if found.is_empty() {
-        failures.into_iter().filter_map(Result::err).take(1).for_each(|failure| report(failure, tree, errors));
-        return None;
-    }
-    Some(found.into_iter().flatten().map(lowered).collect())
+    advected
 }
 
 /// Whether a `let` names anything but a name.
@@ -144,6 +191,8 @@ struct Lowering<'a> {
     known: BTreeMap<*const Tree, Expression>,
     /// The `let`s so far, where they stay closed.
     lets: Option<Vec<Let>>,
+    /// What stands for the matrix of the velocity in a continuous Lagrangian.
+    velocity_matrix: Option<SymbolId>,
 }
 
 impl Lowering<'_> {
@@ -319,9 +368,18 @@ impl Lowering<'_> {
                 self.closed(tree, value)
             }
             Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
+            Kind::Hat(a, _) if matches!(a.kind, Kind::Name(Name::Velocity)) && self.velocity_matrix.is_some() => {
+                let square = ambient(tree.shape);
+                self.velocity_matrix
+                    .map_or_else(|| Expression::zero(square), |id| Expression::symbol(id, &self.symbols))
+            }
             Kind::Hat(a, generators) => {
                 let components = self.expression(a)?;
-                self.hat(&components, generators, tree.shape.rows())
+                hat(generators, tree.shape.rows(), &components, &self.symbols)
+            }
+            Kind::Components(a, forms) => {
+                let element = self.expression(a)?;
+                linear_forms(forms, (element.shape().0, tree.shape.rows()), &element, &self.symbols)
             }
             Kind::Inverse(a) => match &a.kind {
                 Kind::Name(name) => match self.names.get(name) {
@@ -333,30 +391,15 @@ impl Lowering<'_> {
             Kind::Entry(a, row, column) => {
                 let operand = self.expression(a)?;
                 let (rows, columns) = operand.shape();
-                let left = self.unit(*row, rows, true).times(&operand, &self.symbols);
-                if columns == 1 { left } else { left.times(&self.unit(*column, columns, false), &self.symbols) }
+                let left = unit(*row, rows, true, &self.symbols).times(&operand, &self.symbols);
+                if columns == 1 {
+                    left
+                } else {
+                    left.times(&unit(*column, columns, false, &self.symbols), &self.symbols)
+                }
             }
         };
         Ok(result)
-    }
-
-    /// `Σ v_k E_k`, entry by entry.
-    fn hat(&self, components: &Expression, generators: &[Vec<Rational>], size: usize) -> Expression {
-        let mut sum = Expression::zero((size, size));
-        for (k, generator) in generators.iter().enumerate() {
-            let component = self.unit(k, generators.len(), true).times(components, &self.symbols);
-            for (place, &entry) in generator.iter().enumerate().filter(|(_, entry)| !entry.is_zero()) {
-                let (row, column) = (self.unit(place / size, size, false), self.unit(place % size, size, true));
-                let there = row.times(&component, &self.symbols).times(&column, &self.symbols);
-                sum = sum.plus(there.scaled(entry));
-            }
-        }
-        sum
-    }
-
-    fn unit(&self, index: usize, size: usize, transposed: bool) -> Expression {
-        let shape = if transposed { (1, size) } else { (size, 1) };
-        Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, &self.symbols)
     }
 
     fn product(&self, tree: &Tree, left: &Expression, right: &Expression) -> Result<Expression, Failure> {

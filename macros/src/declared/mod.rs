@@ -15,6 +15,8 @@ pub(crate) mod parse;
 mod spelling;
 mod tree;
 
-pub(crate) use declaration::{AdvectedParameter, Declaration, Field, FieldKind, Role, Scalar};
+pub(crate) use declaration::{
+    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Field, FieldKind, Quadrature, Role, Scalar,
+};
 pub(crate) use spelling::Spelling;
 pub(crate) use tree::{Kind, Name, Shape, Tree};

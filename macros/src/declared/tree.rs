@@ -73,6 +73,8 @@ pub(crate) enum Name {
     Increment,
     /// `h`.
     Step,
+    /// The components of the velocity in a continuous Lagrangian.
+    Velocity,
     /// `eta`, the displacement at the beginning of the step.
     DisplacementBefore,
     /// `eta_next`, the one at its end.
@@ -105,6 +107,8 @@ pub(crate) enum Kind {
     Vee(Rc<Tree>),
     /// `Σ v_k E_k`, with the generators by rows.
     Hat(Rc<Tree>, Rc<[Vec<Rational>]>),
+    /// `v` of `Σ v_k E_k`, by linear forms in its entries: the component, row, column and factor of each term.
+    Components(Rc<Tree>, Rc<[(usize, usize, usize, Rational)]>),
     /// Of a parameter or of `F`.
     Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
@@ -124,6 +128,7 @@ impl Kind {
             | Self::Apply(_, a)
             | Self::Vee(a)
             | Self::Hat(a, _)
+            | Self::Components(a, _)
             | Self::Inverse(a)
             | Self::Entry(a, ..)
             | Self::Bound(_, a) => [Some(a), None],

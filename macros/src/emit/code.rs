@@ -6,7 +6,7 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens as _, quote_spanned};
 use syn::Ident;
 
-use super::Emitter;
+use super::Code;
 use crate::mathematics::symbolic::{Function, Rational};
 use crate::program::{Graph, Node, NodeId};
 
@@ -21,7 +21,7 @@ pub(super) enum Form {
 /// The token of a node that isn't computed here: an input, or what an earlier stage has left.
 pub(super) type Given<'a> = &'a dyn Fn(NodeId) -> Option<TokenStream>;
 
-impl Emitter<'_> {
+impl Code<'_> {
     /// The `let`s that the outputs need, and the outputs as one value.
     pub(super) fn body(
         &self,
@@ -42,7 +42,7 @@ impl Emitter<'_> {
     /// One value from its entries, a square matrix row by row.
     pub(super) fn assembled(&self, form: Form, values: &[TokenStream]) -> TokenStream {
         let (private, span) = (&self.header.private, Span::mixed_site());
-        let dimension = self.derived.group.dimension();
+        let dimension = self.declaration.group.dimension();
         let nalgebra = quote_spanned!(span=> #private::nalgebra);
         match (form, dimension, values) {
             (Form::Scalar, ..) => values.iter().cloned().collect(),

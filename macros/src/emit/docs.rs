@@ -1,20 +1,24 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
 use crate::declared::Declaration;
-use crate::judged::{Chosen, Findings};
+use crate::judged::{Chosen, Equations, Findings};
 use crate::mathematics::derive::{Declared, Derived, SelfAdjointness};
-use crate::mathematics::symbolic::{Stage, Variance, covector_text, text};
+use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
 pub(super) struct Equation {
     pub(super) method: &'static str,
-    left: &'static str,
+    left: String,
     right: String,
     source: &'static str,
 }
 
 impl Equation {
+    pub(super) fn new(method: &'static str, left: &str, right: String, source: &'static str) -> Self {
+        Self { method, left: left.to_owned(), right, source }
+    }
+
     /// `left = right    [source]`.
     pub(super) fn line(&self) -> String {
         let source = if self.source.is_empty() { String::new() } else { format!("    [{}]", self.source) };
@@ -41,11 +45,11 @@ pub(super) fn lets(derived: &Derived) -> String {
 }
 
 /// The equations of a declaration, in the order of the thesis.
-pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation> {
+pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Option<&Equations>) -> Vec<Equation> {
     let symbols = &derived.symbols;
     let covector = |expression| covector_text(expression, derived.directions.first, symbols);
     let scalar = |expression| text(expression, symbols);
-    let equation = |method, left, right, source| Equation { method, left, right, source };
+    let equation = Equation::new;
     let mut equations = vec![
         equation("l_d", "l_d", scalar(&declared.expression), "as declared, in normal form"),
         equation("right_momentum", "(R_F)* δl_d/δF", covector(&derived.right_momentum), "section 3.2.1, item 2"),
@@ -54,23 +58,47 @@ pub(super) fn equations(derived: &Derived, declared: &Declared) -> Vec<Equation>
         equation("legendre_minus", "μ", covector(&derived.momentum), "(2.7)"),
         equation("momentum_jacobian", "∂μ_k along exp(tE_j)F", scalar(&derived.jacobian), "exact, right-trivialised"),
         equation("discrete_energy", "−∂l_d/∂h", scalar(&derived.energy), ""),
-        equation("inertia", "η·Jξ for η̂ = E_k, ξ̂ = E_j", scalar(&derived.limit.inertia), "continuous limit"),
+        inertia(derived, continuous),
         equation("momentum_bias", "s", covector(&derived.limit.bias), "continuous limit"),
         equation("potential", "V", scalar(&derived.limit.potential), "continuous limit"),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
         equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
     ];
+    if let Some([next, before]) = &derived.flow {
+        let (next, before) = (covector(next), covector(before));
+        if next.len() + before.len() <= LONGEST {
+            equations.push(equation("increments", &next, before, "F ↦ F⁺, the flow (2.5); of the heavy top (3.16)"));
+        }
+    }
     if let Some(change) = &derived.kick_derivative {
         equations.push(equation("kick_derivative", "∂k₀ along exp(−tE_j)·w", covector(change), "the force gradient's"));
     }
     equations
 }
 
+/// A longer flow on increments is the equation of two terms that are in print.
+const LONGEST: usize = 1_500;
+
+/// `J` as a matrix, where it can be written as one.
+fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
+    let as_matrix = continuous.and_then(|equations| {
+        let derived = &equations.derived;
+        matrix_text(&derived.hessian, derived.directions, &derived.symbols)
+    });
+    match as_matrix {
+        Some(text) if text.len() <= LONGEST => Equation::new("inertia", "J", text, "continuous limit"),
+        _ => {
+            let text = text(&derived.limit.inertia, &derived.symbols);
+            Equation::new("inertia", "η·Jξ for η̂ = E_k, ξ̂ = E_j", text, "continuous limit")
+        }
+    }
+}
+
 /// The equations of a force.
 pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<Equation> {
     let symbols = &derived.symbols;
     let covector = |expression| covector_text(expression, derived.directions.first, symbols);
-    let equation = |method, left, right, source| Equation { method, left, right, source };
+    let equation = Equation::new;
     let (work, jacobian) = (text(&declared.expression, symbols), text(&derived.jacobian, symbols));
     vec![
         equation("virtual_work", "f⁻·η + f⁺·η⁺", work, "as declared, with FᵀF = I used"),
@@ -99,6 +127,7 @@ pub(super) fn derivation(
     declaration: &Declaration,
     chosen: &Chosen,
     equations: &[Equation],
+    continuous: Option<String>,
     findings: &Findings,
 ) -> String {
     let line = |equation: &Equation| format!("{}\n    {}\n", equation.method, equation.line());
@@ -113,8 +142,8 @@ pub(super) fn derivation(
         ("operations", costs(&chosen.kernel)),
     ];
     let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
-    let beginning = [setting(declaration), lets(&chosen.derived)];
-    beginning.into_iter().chain(equations.iter().map(line)).chain(sections).collect()
+    let beginning = [setting(declaration, true), lets(&chosen.derived)];
+    beginning.into_iter().chain(equations.iter().map(line)).chain(continuous).chain(sections).collect()
 }
 
 /// The operations of each stage, one a line.
@@ -140,7 +169,7 @@ pub(super) fn costs(kernel: &Kernel) -> String {
 }
 
 /// The group, and how it moves the advected parameters.
-fn setting(declaration: &Declaration) -> String {
+pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
     let group = declaration
         .group_path
         .as_ref()
@@ -157,10 +186,15 @@ fn setting(declaration: &Declaration) -> String {
             Variance::Fixed => return format!("    {} is given for each step\n", w.plain_name()),
         };
         let name = w.plain_name();
-        format!("    {name}⁺ = F⁻¹·{name} = {} for {name} in {space}\n", moved.replace('w', &name))
+        if is_discrete {
+            format!("    {name}⁺ = F⁻¹·{name} = {} for {name} in {space}\n", moved.replace('w', &name))
+        } else {
+            format!("    {name} = g⁻¹·a₀ in {space}\n")
+        }
     });
     let advected: String = advected.collect();
-    format!("group\n    F = g⁻¹ g⁺ in {group}\n{advected}")
+    let element = if is_discrete { "F = g⁻¹ g⁺" } else { "g" };
+    format!("group\n    {element} in {group}\n{advected}")
 }
 
 /// The unknown of the Newton system, how it is written, and how it might have been.

@@ -29,7 +29,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let types = header.types(true, &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let effect = header.implementation("Effect");
-    let addition = header.addition();
+    let addition = header.addition("Effect");
     let core = quote_spanned!(span=> #private::core);
     let of_increment = [
         ("right_momentum", &vector),
@@ -46,6 +46,8 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         Role::Lagrangian => {
             let (lagrangian, invariance) =
                 (header.implementation("DiscreteLagrangian"), header.implementation("LeftInvariant"));
+            let continuous = header.implementation("ContinuousLagrangian");
+            let (group, advected) = (header.group(), header.advected_types());
             quote_spanned! {span=>
                 #lagrangian {
                     const SELF_ADJOINT: #core::primitive::bool = false;
@@ -54,6 +56,23 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
 
                 #[automatically_derived]
                 #invariance {}
+
+                #[automatically_derived]
+                #[allow(clippy::all, clippy::pedantic)]
+                #continuous {
+                    type Scalar = #scalar;
+                    type Group = #group;
+                    type Advected = #advected;
+                    const LEGENDRE: #private::Legendre = #private::Legendre::Constant;
+                    const CONTINUOUS_DERIVATION: &'static #core::primitive::str = "";
+                    fn check_parameters(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
+                    fn spatial_parameters(&self) -> Self::Advected { loop {} }
+                    fn l(&self, _: &#vector, _: &Self::Advected) -> #scalar { loop {} }
+                    fn momentum(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
+                    fn velocity_hessian(&self, _: &#vector, _: &Self::Advected) -> #square { loop {} }
+                    fn diamond_rate(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
+                    fn momentum_advection(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
+                }
             }
         }
         Role::Force => {
@@ -114,7 +133,7 @@ fn as_struct(item: &TokenStream) -> Option<ItemStruct> {
 fn without_lagrangian(role: Role, arguments: TokenStream) -> TokenStream {
     let mut is_lagrangian = false;
     let other = arguments.into_iter().filter(|token| {
-        is_lagrangian |= matches!(token, TokenTree::Ident(key) if key == role.key());
+        is_lagrangian |= matches!(token, TokenTree::Ident(key) if key == role.key() || key == "l");
         let is_other = !is_lagrangian;
         is_lagrangian &= !matches!(token, TokenTree::Punct(comma) if comma.as_char() == ',');
         is_other

@@ -134,16 +134,17 @@ impl Header {
         self.implementation_of(None, &quote_spanned!(Span::mixed_site()=> #private::#implemented))
     }
 
-    /// `impl … Add<Other> for …`: the sum with any effect of the same group.
-    pub(crate) fn addition(&self) -> TokenStream {
+    /// `impl … Add<Other> for …`: the sum with any effect of the same group, or with any continuous Lagrangian.
+    pub(crate) fn addition(&self, of: &str) -> TokenStream {
         let (span, private, group, scalar) = (Span::mixed_site(), &self.private, &self.group_path, &self.scalar);
         let core = quote_spanned!(span=> #private::core);
         // A name that no type of the user's has.
         let other = Ident::new("LiestepOtherEffect", span);
+        let of = Ident::new(of, span);
         let bounds = [
-            syn::parse_quote_spanned!(span=> #other: #private::Effect),
+            syn::parse_quote_spanned!(span=> #other: #private::#of),
             syn::parse_quote_spanned! {span=>
-                <#other as #private::Effect>::Group: #private::SharedBy<#group<#scalar>, Self, #other>
+                <#other as #private::#of>::Group: #private::SharedBy<#group<#scalar>, Self, #other>
             },
         ];
         let added = quote_spanned!(span=> #core::ops::Add<#other>);
@@ -182,15 +183,26 @@ impl Header {
         quote_spanned!(Span::mixed_site()=> impl #before #implemented for #name #arguments #conditions)
     }
 
+    /// The advected parameters.
+    pub(crate) fn advected_types(&self) -> TokenStream {
+        let values: Vec<TokenStream> = self.advected.iter().map(|kind| self.advected_type(*kind)).collect();
+        match values.as_slice() {
+            [single] => single.clone(),
+            values => quote_spanned!(Span::mixed_site()=> (#(#values),*)),
+        }
+    }
+
+    /// The group.
+    pub(crate) fn group(&self) -> TokenStream {
+        let (group, scalar) = (&self.group_path, &self.scalar);
+        quote_spanned!(Span::mixed_site()=> #group<#scalar>)
+    }
+
     /// The associated types of an effect.
     pub(crate) fn types(&self, has_kinetic: bool, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
         let kinetic = Ident::new(if has_kinetic { "WithKinetic" } else { "WithoutKinetic" }, Span::mixed_site());
         let (private, group, scalar) = (&self.private, &self.group_path, &self.scalar);
-        let values: Vec<TokenStream> = self.advected.iter().map(|kind| self.advected_type(*kind)).collect();
-        let advected = match values.as_slice() {
-            [single] => single.clone(),
-            values => quote_spanned!(Span::mixed_site()=> (#(#values),*)),
-        };
+        let advected = self.advected_types();
         quote_spanned! {Span::mixed_site()=>
             type Scalar = #scalar;
             type Group = #group<#scalar>;

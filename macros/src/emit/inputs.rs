@@ -3,17 +3,18 @@
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
 
-use super::Emitter;
+use super::Code;
 use crate::declared::{FieldKind, Name};
 use crate::program::Input;
 
-impl Emitter<'_> {
+impl Code<'_> {
     /// An entry of `F`, `w`, `h` or a parameter; arrays are indexed by numbers, so nothing can panic.
     pub(super) fn input_token(&self, input: Input) -> TokenStream {
         let span = Span::mixed_site();
-        let found = self.lowered.names.iter().find(|(_, id)| **id == input.symbol).map(|(name, _)| *name);
+        let found = self.names.iter().find(|(_, id)| **id == input.symbol).map(|(name, _)| *name);
         match found {
             Some(Name::Step) => quote_spanned!(span=> h),
+            Some(Name::Velocity) => entry(&quote_spanned!(span=> velocity), input),
             Some(Name::Increment) => entry(&quote_spanned!(span=> f), input),
             Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),
@@ -25,7 +26,7 @@ impl Emitter<'_> {
     /// An entry of a symbol that the derivation has added.
     fn derived_input(&self, input: Input) -> TokenStream {
         let span = Span::mixed_site();
-        let directions = &self.derived.directions;
+        let Some(directions) = self.directions else { return self.no_input(input) };
         if let Some(index) = directions.next.iter().position(|&next| next == input.symbol) {
             return self.advected_entry(&quote_spanned!(span=> next), index, input);
         }
@@ -47,10 +48,14 @@ impl Emitter<'_> {
         if input.symbol == directions.target {
             return entry(&quote_spanned!(span=> a), input);
         }
-        // Directions are replaced by their entries before; a leftover is a bug that the user's compiler then shows.
-        let name = self.symbol_name(input.symbol);
+        self.no_input(input)
+    }
+
+    /// Directions are replaced by their entries before; a leftover is a bug that the user's compiler then shows.
+    fn no_input(&self, input: Input) -> TokenStream {
+        let name = &self.symbols.get(input.symbol).name;
         let message = format!("liestep: no value for `{name}`; please report this declaration");
-        quote_spanned!(span=> compile_error!(#message))
+        quote_spanned!(Span::mixed_site()=> compile_error!(#message))
     }
 
     /// An entry of one advected parameter.

@@ -3,6 +3,7 @@
 //! The only room that quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
 
 mod code;
+mod continuous;
 mod docs;
 mod fallback;
 mod header;
@@ -12,17 +13,20 @@ mod page;
 mod stages;
 mod verbatim;
 
+use std::collections::BTreeMap;
+
 use proc_macro2::{Span, TokenStream};
 use quote::quote_spanned;
 
 use crate::declared::lower::Lowered;
-use crate::declared::{Declaration, FieldKind, Role};
-use crate::judged::{Chosen, Findings};
-use crate::mathematics::derive::Derived;
-use crate::mathematics::symbolic::{Expression, SymbolId};
+use crate::declared::{Declaration, FieldKind, Name, Role};
+use crate::judged::{Chosen, Equations, Findings};
+use crate::mathematics::derive::{Derived, Directions};
+use crate::mathematics::symbolic::{Expression, SymbolId, Symbols};
 use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
 
 use code::Form;
+pub(crate) use continuous::alone as continuous;
 pub(crate) use fallback::mistakes;
 use header::Header;
 pub(crate) use own_group::{ask, own_group};
@@ -32,18 +36,26 @@ pub(crate) fn implementation(
     item: &TokenStream,
     declaration: &Declaration,
     chosen: &Chosen,
+    equations: Option<&Equations>,
     findings: &Findings,
 ) -> TokenStream {
     let (header, Chosen { lowered, derived, kernel }) = (Header::new(declaration), chosen);
     let mut graph = Graph::default();
     let given = with_lets(&mut graph, derived, Given::new());
-    let emitter = Emitter { declaration, lowered, derived, header: &header, lets: (graph, given) };
+    let (names, symbols) = (&lowered.names, &derived.symbols);
+    let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
+    let emitter = Emitter { code, lowered, derived, equations, lets: (graph, given) };
     let (mathematics, effect, texts) = emitter.mathematics();
     let stages = stages::stages(&emitter, kernel, &texts);
-    let declared = verbatim::declared(declaration, &header);
-    let derivation = docs::derivation(declaration, chosen, &texts, findings);
+    let declared = match declaration.discretisation() {
+        Some(discretisation) => continuous::discretised(&emitter, discretisation),
+        None => verbatim::declared(declaration, &header),
+    };
+    let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations));
+    let section = equations.map(|equations| continuous::text::section(declaration, equations));
+    let derivation = docs::derivation(declaration, chosen, &texts, section, findings);
     let documentation = format!("```text\n{derivation}```");
-    let item = page::documented(item, &page::page(declaration, chosen, &texts, findings));
+    let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
     let validate = emitter.validate();
     let describe = emitter.describe();
     let advected = emitter.advected();
@@ -57,7 +69,7 @@ pub(crate) fn implementation(
     };
     let (of_role, term) = (header.implementation(name), header.implementation("Effect"));
     let invariance = invariance(declaration, &header);
-    let addition = header.addition();
+    let addition = header.addition("Effect");
     let body = &stages.methods;
     let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
@@ -92,6 +104,7 @@ pub(crate) fn implementation(
             #body
         }
 
+        #continuous
         #invariance
         #addition
     };
@@ -120,14 +133,33 @@ enum Takes {
     Increment,
 }
 
-/// What the pieces share.
-struct Emitter<'a> {
+/// What code is written with.
+struct Code<'a> {
     declaration: &'a Declaration,
+    header: &'a Header,
+    names: &'a BTreeMap<Name, SymbolId>,
+    symbols: &'a Symbols,
+    /// The symbols that the derivation of a step adds.
+    directions: Option<&'a Directions>,
+}
+
+/// What the pieces of a step share.
+struct Emitter<'a> {
+    code: Code<'a>,
     lowered: &'a Lowered,
     derived: &'a Derived,
-    header: &'a Header,
+    /// Of a Lagrangian, its continuous equations.
+    equations: Option<&'a Equations>,
     /// The closed `let`s, which the methods share.
     lets: (Graph, Given),
+}
+
+impl<'a> std::ops::Deref for Emitter<'a> {
+    type Target = Code<'a>;
+
+    fn deref(&self) -> &Code<'a> {
+        &self.code
+    }
 }
 
 impl Emitter<'_> {
@@ -135,7 +167,7 @@ impl Emitter<'_> {
     fn mathematics(&self) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
         let equations = match self.declaration.role {
-            Role::Lagrangian => docs::equations(d, &self.lowered.declared),
+            Role::Lagrangian => docs::equations(d, &self.lowered.declared, self.equations),
             Role::Force => docs::equations_of_force(d, &self.lowered.declared),
         };
         let method = |(name, takes, form, expression)| self.method(name, takes, form, expression, &equations);
@@ -192,10 +224,12 @@ impl Emitter<'_> {
             fn #name(&self, #arguments) -> #result { #inverse #body }
         }
     }
+}
 
-    fn validate(&self) -> TokenStream {
+impl Code<'_> {
+    /// The checks of all parameters.
+    fn checks(&self) -> TokenStream {
         let span = Span::mixed_site();
-        let private = &self.header.private;
         let checks = self.declaration.fields.iter().map(|field| {
             let name = &field.name;
             let text = syn::ext::IdentExt::unraw(name).to_string();
@@ -207,9 +241,14 @@ impl Emitter<'_> {
                 quote_spanned!(span=> #private::Parameter::validate(&self.#name, #text)?;)
             }
         });
+        checks.collect()
+    }
+
+    fn validate(&self) -> TokenStream {
+        let (span, private, checks) = (Span::mixed_site(), &self.header.private, self.checks());
         quote_spanned! {span=>
             fn validate(&self) -> #private::core::result::Result<(), #private::SetupError> {
-                #(#checks)*
+                #checks
                 #private::core::result::Result::Ok(())
             }
         }
@@ -238,7 +277,8 @@ impl Emitter<'_> {
         }
     }
 
-    fn advected(&self) -> TokenStream {
+    /// The spatial values.
+    fn advected_value(&self) -> TokenStream {
         let span = Span::mixed_site();
         let private = &self.header.private;
         let values = self.declaration.advected.iter().filter_map(|w| {
@@ -251,16 +291,16 @@ impl Emitter<'_> {
             })
         });
         let values: Vec<TokenStream> = values.collect();
-        let value = match values.as_slice() {
+        match values.as_slice() {
             [single] => single.clone(),
             values => quote_spanned!(span=> (#(#values),*)),
-        };
-        quote_spanned! {span=>
-            fn advected(&self) -> Self::Advected { #value }
         }
     }
 
-    fn symbol_name(&self, id: SymbolId) -> &str {
-        &self.derived.symbols.get(id).name
+    fn advected(&self) -> TokenStream {
+        let value = self.advected_value();
+        quote_spanned! {Span::mixed_site()=>
+            fn advected(&self) -> Self::Advected { #value }
+        }
     }
 }

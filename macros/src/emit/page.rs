@@ -5,7 +5,7 @@ use quote::quote_spanned;
 
 use super::docs::{Equation, costs, lets};
 use crate::declared::{Declaration, Role};
-use crate::judged::{Chosen, Findings};
+use crate::judged::{Chosen, Equations, Findings};
 use crate::mathematics::derive::SelfAdjointness;
 
 /// The item as it stands, with a page of documentation behind its own, and the letters of the field allowed.
@@ -38,7 +38,13 @@ pub(super) fn documented(item: &TokenStream, page: &str) -> TokenStream {
 const LONGEST: usize = 1_200;
 
 /// The momentum equation, the order, what limits a step, and what a step costs.
-pub(super) fn page(declaration: &Declaration, chosen: &Chosen, equations: &[Equation], findings: &Findings) -> String {
+pub(super) fn page(
+    declaration: &Declaration,
+    chosen: &Chosen,
+    equations: &[Equation],
+    continuous: Option<&Equations>,
+    findings: &Findings,
+) -> String {
     let (derived, is_lagrangian) = (&chosen.derived, declaration.role == Role::Lagrangian);
     let has_kinetic = derived.limit.has_kinetic;
     let heading = match declaration.role {
@@ -69,8 +75,12 @@ pub(super) fn page(declaration: &Declaration, chosen: &Chosen, equations: &[Equa
     }
     points.push(format!("Cost:\n  * {}", costs(&chosen.kernel).replace("\n    ", "\n  * ")));
     let points = points.into_iter().fold(String::new(), |points, point| points + "* " + &point + "\n");
+    let continuous = continuous.map(|equations| super::continuous::text::shown(declaration, equations));
+    let continuous = continuous.filter(|shown| shown.len() <= LONGEST);
+    let continuous = continuous.map(|shown| format!("The continuous equations that it discretises:\n\n{shown}\n\n"));
+    let continuous = continuous.unwrap_or_default();
     format!(
-        "\n{heading}\n\n{text}\n\n{points}\nAll equations are in `DERIVATION` and in the documentation of the methods."
+        "\n{heading}\n\n{text}\n\n{points}\n{continuous}All equations are in `DERIVATION` and in the documentation of the methods."
     )
 }
 

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
 
-use super::Emitter;
 use super::code::{Form, needed};
+use super::{Code, Emitter};
 use crate::mathematics::symbolic::{Stage, SymbolId};
 use crate::program::{Graph, Kernel, Node, NodeId};
 
@@ -78,7 +78,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     );
     let construction =
         super::docs::stage(graph, &constants.keys().copied().collect::<Vec<_>>(), Stage::Construction, "construction");
-    let generators = same_generators(emitter);
+    let generators = same_generators(&emitter.code);
     let methods = quote_spanned! {span=>
         #[doc = #construction]
         fn constants(&self, h: #scalar) -> Self::Constants {
@@ -207,8 +207,8 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
 }
 
 /// The compiler's check that the generators that were derived with are those of the group that is run with.
-fn same_generators(emitter: &Emitter) -> TokenStream {
-    let (span, private, group) = (Span::mixed_site(), &emitter.header.private, &emitter.derived.group);
+pub(super) fn same_generators(code: &Code) -> TokenStream {
+    let (span, private, group) = (Span::mixed_site(), &code.header.private, &code.declaration.group);
     if group.is_so3 {
         return TokenStream::new();
     }

@@ -1,4 +1,4 @@
-//! The declared expression as the method `l_d` or `virtual_work`, as it stands.
+//! The declared expression as the method `l_d`, `l` or `virtual_work`, as it stands.
 //!
 //! Its names are bound to the values that the macro gave them, so that rustc checks the types that the macro assumed.
 //! Their spans keep the place but resolve where the bindings do, whatever `macro_rules!` they came through; the names of
@@ -14,7 +14,7 @@ use syn::{Expr, Ident};
 use super::Header;
 use crate::declared::{Declaration, FieldKind, Role, Shape, Spelling};
 
-/// The Lagrangian's `l_d`, or a force's `virtual_work`.
+/// The Lagrangian's `l_d` or `l`, or a force's `virtual_work`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
     let (private, scalar, square) = (&header.private, &header.scalar, header.matrix());
@@ -34,8 +34,11 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
     bind("vee", quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)));
     let vector = header.vector();
-    let group = quote_spanned!(span=> <Self as #private::Effect>::Group);
+    let group = header.group();
     bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
+    if let Some(name) = declaration.velocity() {
+        bind(&name.unraw().to_string(), quote_spanned!(span=> *velocity));
+    }
     if declaration.role == Role::Force {
         bind("eta", quote_spanned!(span=> *eta));
         bind("eta_next", quote_spanned!(span=> *eta_next));
@@ -73,6 +76,10 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
     let traits = header.parameter.as_ref().map(|_| quote!(use #private::nalgebra::SimdComplexField as _;));
     let signature = match declaration.role {
+        Role::Lagrangian if declaration.continuous.is_some() => quote_spanned! {span=>
+            /// The Lagrangian as declared.
+            fn l(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
+        },
         Role::Lagrangian => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar

@@ -6,11 +6,12 @@ use std::rc::Rc;
 use proc_macro2::Span;
 
 use super::choose::Chosen;
+use super::discretise::Misfit;
 use super::verify::{self, KineticPart, TermMistake, Unconfirmed};
 use crate::declared::check;
 use crate::declared::errors::Errors;
-use crate::declared::{Declaration, Kind, Name, Tree};
-use crate::mathematics::derive::{ForceError, LimitError, Refusal};
+use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Tree};
+use crate::mathematics::derive::{ForceError, Inverse, LimitError, Refusal};
 
 /// Reports the terms that can't be meant; `None` where there are some.
 pub(crate) fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
@@ -143,6 +144,102 @@ pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, error
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
+}
+
+/// Reports a continuous kinetic part that no values of the parameters make regular at rest.
+pub(super) fn continuous_kinetic_part(
+    found: &KineticPart,
+    declaration: &Declaration,
+    errors: &mut Errors,
+) -> Option<()> {
+    let message = match found {
+        KineticPart::Regular | KineticPart::NotStationary(_) => return Some(()),
+        KineticPart::NotSmooth => {
+            "the kinetic part has no second derivative at rest: write it as a square of the velocity, without a root"
+                .to_owned()
+        }
+        KineticPart::Negative => "the kinetic part is negative: check its sign".to_owned(),
+        KineticPart::Singular(idle) => {
+            let names: Vec<String> = idle.iter().map(|k| format!("E_{}", k + 1)).collect();
+            let along = match names.as_slice() {
+                [] => String::new(),
+                names => format!(": there is no kinetic energy along {}", names.join(", ")),
+            };
+            format!(
+                "the kinetic part is singular at rest whatever the parameters, so a momentum doesn't determine a \
+                 velocity{along}"
+            )
+        }
+    };
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+    None
+}
+
+/// Reports a Lagrangian that a step has no inertia for.
+pub(super) fn not_discretised(inverse: Inverse, discretisation: Discretisation, errors: &mut Errors) {
+    let what = match inverse {
+        Inverse::Varying => "the second derivative of `l` by the velocity depends on what is advected",
+        Inverse::Constant | Inverse::Nonlinear => "`l` isn't quadratic in the velocity",
+    };
+    let message = format!(
+        "{what}, and a step needs one inertia for all places and velocities: leave `discretise` out, and integrate the \
+         continuous equations"
+    );
+    errors.push_between(discretisation.place, message);
+}
+
+/// Reports a discretisation that doesn't fit the group or the Lagrangian.
+pub(super) fn misfit(misfit: Misfit, asked: Discretisation, declaration: &Declaration, errors: &mut Errors) {
+    let (name, instead) = match asked.quadrature {
+        Quadrature::Trapezoid => ("trapezoid", "trapezoid(Cayley)"),
+        Quadrature::Midpoint => ("midpoint", "chord(Cayley)"),
+        Quadrature::Chord => ("chord", "chord(Cayley)"),
+    };
+    let message = match misfit {
+        Misfit::NoLogarithm => {
+            format!("no closed logarithm is known on this group, which `{name}(exp)` needs: write `{instead}`")
+        }
+        Misfit::NoCayley => {
+            "no closed inverse of the Cayley map is known on this group: declare `l_d` by hand".to_owned()
+        }
+        Misfit::NotInMatrix => {
+            let velocity = declaration.velocity().map_or_else(|| "Omega".to_owned(), ToString::to_string);
+            let forms = if declaration.group.is_so3 {
+                format!("as `hat({velocity})`, in `{velocity}.dot(&(J * {velocity}))` or in `s.dot(&{velocity})`")
+            } else {
+                format!("as `hat({velocity})`")
+            };
+            format!(
+                "`{name}` puts the matrix `(F - I) / h` in the place of the velocity, which may stand {forms} alone: write \
+                 `{instead}`"
+            )
+        }
+    };
+    let message = if asked.coordinates == Coordinates::Ambient || !matches!(misfit, Misfit::NotInMatrix) {
+        message
+    } else {
+        format!("`{name}` doesn't fit this Lagrangian: write `{instead}`")
+    };
+    errors.push_between(asked.place, message);
+}
+
+/// Reports a discretisation that isn't its own adjoint.
+pub(super) fn not_self_adjoint(asked: Discretisation, errors: &mut Errors) {
+    let instead = match asked.quadrature {
+        Quadrature::Trapezoid => "trapezoid(Cayley)",
+        Quadrature::Midpoint | Quadrature::Chord => "chord(Cayley)",
+    };
+    let message = format!(
+        "with this discretisation `l_d` isn't its own adjoint, so the order is 1 and a step of −h doesn't undo a step of \
+         h: write `{instead}`"
+    );
+    errors.push_between(asked.place, message);
+}
+
+/// Reports a term of the continuous equations that the exact check doesn't confirm.
+pub(super) fn unconfirmed_term(term: &str, declaration: &Declaration, errors: &mut Errors) {
+    let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
 /// Reports a kinetic part that isn't the same for all values of the advected parameters.

@@ -34,6 +34,11 @@ pub(crate) fn findings(
     };
     match verified {
         Ok(self_adjointness) => {
+            let asked = declaration.discretisation().filter(|_| self_adjointness == SelfAdjointness::No);
+            if let Some(asked) = asked {
+                explain::not_self_adjoint(asked, errors);
+                return None;
+            }
             let hypotheses = match declaration.role {
                 Role::Lagrangian => hypotheses::hypotheses(declaration, tree, lowered),
                 Role::Force => Vec::new(),

@@ -1,6 +1,6 @@
 //! Which of the derivations is taken, and whether it is right.
 //!
-//! `choose` counts operations, `verify` evaluates the declared tree on numbers and compares, `hypotheses` finds what the
+//! `discretise` makes `l_d` of a continuous `l`, `continuous` has the continuous equations, `choose` counts operations, `verify` evaluates the declared tree on numbers and compares, `hypotheses` finds what the
 //! equations rest on, `findings` has what comes of both, and `explain` says at the tokens of the declaration why nothing
 //! could be derived.
 //!
@@ -8,11 +8,15 @@
 //! emitted. The room knows `declared`, `program` and `mathematics`.
 
 mod choose;
+mod continuous;
+mod discretise;
 mod explain;
 mod findings;
 mod hypotheses;
-mod verify;
+pub(crate) mod verify;
 
 pub(crate) use choose::{Chosen, cheapest};
+pub(crate) use continuous::{Equations, continuous, of_declared};
+pub(crate) use discretise::discretised;
 pub(crate) use explain::terms;
 pub(crate) use findings::{Findings, findings};

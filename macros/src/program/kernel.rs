@@ -7,9 +7,9 @@ use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, NodeId};
 use super::scalarise::{Entries, Scalariser};
-use crate::mathematics::derive::{Cleared, Derived};
+use crate::mathematics::derive::{Cleared, Continuous, Derived};
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Rational, Stage};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId};
 
 /// A way to write the Newton system, with its operations an iteration.
 #[derive(Clone, Debug)]
@@ -95,6 +95,28 @@ pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, co
         .collect()
 }
 
+/// The values of a continuous term: of rank 0 a scalar, of rank 1 the components of a covector, of rank 2 the entries of
+/// a bilinear form, row by row.
+pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
+    let dimension = derived.group.dimension();
+    let along = [1, 2].map(|least| if rank >= least { dimension } else { 1 });
+    let unit = |graph: &mut Graph, k: usize| {
+        let (zero, one) = (graph.zero(), graph.one());
+        Entries::new(dimension, 1, |row, _| if row == k { one } else { zero })
+    };
+    let places = (0..along[0]).flat_map(|k| (0..along[1]).map(move |j| (k, j)));
+    let of_place = |(k, j)| {
+        let mut given = Given::from([(derived.directions[0], unit(graph, k)), (derived.directions[1], unit(graph, j))]);
+        if let Some([eta, zeta]) = derived.direction_matrices {
+            given.insert(eta, generator(graph, &derived.group, k));
+            given.insert(zeta, generator(graph, &derived.group, j));
+        }
+        given.extend(derived.velocity_matrix.map(|xi| (xi, matrix_of(graph, &derived.group, derived.velocity))));
+        Scalariser { graph, symbols: &derived.symbols, given }.scalar(term)
+    };
+    places.map(of_place).collect()
+}
+
 /// The constant matrix `E_k`.
 fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
@@ -106,7 +128,11 @@ fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
 
 /// `Σ v_j E_j`.
 fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
-    let (group, symbol) = (&derived.group, derived.directions.along);
+    matrix_of(graph, &derived.group, derived.directions.along)
+}
+
+/// `Σ v_j E_j` for the components of a symbol.
+fn matrix_of(graph: &mut Graph, group: &Group, symbol: SymbolId) -> Entries {
     let components: Vec<NodeId> =
         (0..group.dimension()).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Step)).collect();
     let generators: Vec<Entries> = (0..group.dimension()).map(|j| generator(graph, group, j)).collect();

@@ -50,6 +50,11 @@ impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<
     }
 
     #[inline(always)]
+    fn rate(&self, _: &G::Matrix) -> Self {
+        Self(SMatrix::zeros())
+    }
+
+    #[inline(always)]
     fn advect(&self, _: &G::Matrix) -> Self {
         *self
     }

@@ -51,6 +51,10 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
         sum(self, &self.change(increment))
     }
 
+    /// `−ξ·w`, the rate `ẇ` at which the body with velocity `ξ` sees it change, for the matrix `ξ̂`, \[RDAE, (2.2)\].
+    #[must_use]
+    fn rate(&self, velocity: &G::Matrix) -> Self;
+
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
 }
@@ -59,6 +63,8 @@ impl<G: LieGroup> Advected<G> for () {
     fn seen_from(&self, _: &G) -> Self {}
 
     fn change(&self, _: &G::Matrix) -> Self {}
+
+    fn rate(&self, _: &G::Matrix) -> Self {}
 
     fn is_finite(&self) -> bool {
         true
@@ -80,6 +86,12 @@ where
     #[inline(always)]
     fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
         transpose_mul(increment, self)
+    }
+
+    /// `ξ̂ᵀ w`.
+    #[inline(always)]
+    fn rate(&self, velocity: &SMatrix<T, N, N>) -> Self {
+        transpose_mul(velocity, self)
     }
 
     #[inline(always)]
@@ -113,6 +125,11 @@ macro_rules! tuple {
             #[inline(always)]
             fn change(&self, increment: &G::Matrix) -> Self {
                 ($(self.$index.change(increment),)+)
+            }
+
+            #[inline(always)]
+            fn rate(&self, velocity: &G::Matrix) -> Self {
+                ($(self.$index.rate(velocity),)+)
             }
 
             #[inline(always)]

@@ -48,6 +48,12 @@ macro_rules! points {
                 Self::from(change.fixed_rows::<$dimension>(0).into_owned())
             }
 
+            /// `−ξ̂(p, 1)`.
+            fn rate(&self, velocity: &SMatrix<T, $size, $size>) -> Self {
+                let rate: SVector<T, $size> = -(velocity * homogeneous(self));
+                Self::from(rate.fixed_rows::<$dimension>(0).into_owned())
+            }
+
             fn is_finite(&self) -> bool {
                 self.iter().all(|&entry| is_finite(entry))
             }

@@ -36,7 +36,7 @@ where
 }
 
 macro_rules! kind {
-    ($type:ident, $seen:expr, $change:expr) => {
+    ($type:ident, $seen:expr, $change:expr, $rate:expr) => {
         impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
             fn from_entries(next: &mut impl FnMut() -> T) -> Self {
                 Self(Entries::from_entries(next))
@@ -63,6 +63,10 @@ macro_rules! kind {
                 Self($change(&self.0, increment))
             }
 
+            fn rate(&self, velocity: &SMatrix<T, N, N>) -> Self {
+                Self($rate(&self.0, velocity))
+            }
+
             fn is_finite(&self) -> bool {
                 self.0.iter().all(|&entry| is_finite(entry))
             }
@@ -70,9 +74,12 @@ macro_rules! kind {
     };
 }
 
-kind!(ContravariantVector, |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v, |v: &SVector<T, N>, d| {
-    inverse_increment::<G, T, N>(d) * v
-});
+kind!(
+    ContravariantVector,
+    |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v,
+    |v: &SVector<T, N>, d| inverse_increment::<G, T, N>(d) * v,
+    |v: &SVector<T, N>, x: &SMatrix<T, N, N>| -(x * v)
+);
 
 kind!(
     ContravariantTensor,
@@ -84,22 +91,19 @@ kind!(
         let inverse = inverse_increment::<G, T, N>(d);
         let change = inverse * s;
         change + (s + change) * inverse.transpose()
-    }
+    },
+    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| -(x * s + s * x.transpose())
 );
 
-kind!(CovariantTensor, |s: &SMatrix<T, N, N>, g: &G| g.matrix().transpose() * s * g.matrix(), |s: &SMatrix<
-    T,
-    N,
-    N,
->,
-                                                                                               d: &SMatrix<
-    T,
-    N,
-    N,
->| {
-    let change = d.transpose() * s;
-    change + (s + change) * d
-});
+kind!(
+    CovariantTensor,
+    |s: &SMatrix<T, N, N>, g: &G| g.matrix().transpose() * s * g.matrix(),
+    |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
+        let change = d.transpose() * s;
+        change + (s + change) * d
+    },
+    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| x.transpose() * s + s * x
+);
 
 kind!(
     MixedTensor,
@@ -107,5 +111,6 @@ kind!(
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
         let change = inverse_increment::<G, T, N>(d) * s;
         change + (s + change) * d
-    }
+    },
+    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| s * x - x * s
 );

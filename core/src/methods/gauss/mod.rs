@@ -115,9 +115,9 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         #[allow(clippy::cast_precision_loss)] // at most eight
         let pairs = PAIRS as f64;
         // Half of both kicks, and half of that in lanes.
-        let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.25 * (S::OPERATIONS.step as f64) } else { 0.0 };
+        let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.16 * (S::OPERATIONS.step as f64) } else { 0.0 };
         let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
-        Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3 }
+        Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3, once: 0.0 }
     };
 
     fn new(scene: &S, h: f64) -> Result<Self, SetupError> {
@@ -220,12 +220,12 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 /// An iteration makes so many operations at each of its stages: for the rates of quaternion and momentum, for the
 /// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count
 /// as one, here and below.
-const OF_RATES: f64 = 75.0;
-const OF_PARAMETERS: f64 = 35.0;
-const OF_A_SUM: f64 = 10.0;
+const OF_RATES: f64 = 48.0;
+const OF_PARAMETERS: f64 = 22.0;
+const OF_A_SUM: f64 = 6.5;
 /// Besides its iterations, a step makes so many, and so many for each pair of pairs in its guess.
-const OF_AN_UPDATE: f64 = 50.0;
-const OF_A_GUESS: f64 = 32.0;
+const OF_AN_UPDATE: f64 = 33.0;
+const OF_A_GUESS: f64 = 21.0;
 
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S, PAIRS> {
     #[inline(always)]

@@ -20,6 +20,9 @@ pub trait KineticFlow<T: Real>: Clone {
     /// How much arithmetic the flow over one share is.
     const OPERATIONS: Operations = Operations::UNCOUNTED;
 
+    /// Whether it is the motion itself, but for rounding, whatever the time.
+    const EXACT: bool = false;
+
     /// How much of that [`take_spin`](Self::take_spin) takes out.
     const OPERATIONS_OF_SPIN: u32 = 0;
 
@@ -109,6 +112,8 @@ pub struct SymmetricDrift<T> {
 
 impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     type Drift = SymmetricDrift<T>;
+
+    const EXACT: bool = true;
 
     // A rotation is 62, 30 of them for its two coefficients; nothing is solved.
     const OPERATIONS: Operations = Operations { step: 131, iteration: 0 };

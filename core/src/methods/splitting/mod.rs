@@ -211,6 +211,16 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         StepError::NonFinite { what: "momentum after the step" }
     }
 
+    /// Of a share that is made for itself, besides its iterations.
+    fn operations(share: &Share<K::Drift, Scalar<S>>) -> f64 {
+        let kick = 0.5 * f64::from(S::OPERATIONS.step);
+        match share {
+            Share::Drift(_) => Cost::of_stages(K::OPERATIONS, 1).step,
+            Share::Kick(_) => kick,
+            Share::GradientKick(..) => 2.0 * kick + OF_A_FORCE_GRADIENT,
+        }
+    }
+
     /// The coefficients.
     #[must_use]
     pub fn scheme(&self) -> &SplittingScheme {

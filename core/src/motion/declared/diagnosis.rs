@@ -6,7 +6,9 @@ use crate::groups::Advected as _;
 use crate::groups::Retraction as _;
 use crate::mechanics::{Effect, Group, Scalar, Vector, velocity_of_momentum};
 use crate::numbers::{Coordinates as _, largest_lane, real, reported};
-use crate::solving::{Problem, Root, Solvability, TurningLimits, largest_fraction, six_digits, turning_limits};
+use crate::solving::{
+    Problem, Root, Solvability, TurningLimits, largest_fraction, newton_system, six_digits, step_terms, turning_limits,
+};
 use nalgebra::SimdComplexField as _;
 
 impl<S: Effect> Declared<S> {
@@ -70,12 +72,12 @@ impl<S: Effect> Declared<S> {
     fn turning_limits(&self, scene: &S, advected: &S::Advected) -> Option<TurningLimits> {
         let at = |h: Scalar<S>| {
             let constants = scene.constants(h);
-            let terms = S::step_terms(&constants, &Vector::<S>::zero(), advected);
+            let terms = step_terms::<S>(&constants, &Vector::<S>::zero(), advected);
             let unknown = |f: &Group<S>| {
                 let xi = S::Retraction::local_coordinates(f)?;
                 let half = xi * real(0.5);
                 let factor = (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::DENOMINATORS.cast_signed());
-                Some(S::newton_system(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
+                Some(newton_system::<S>(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
             };
             turning_limits::<Group<S>>(&unknown, &scene.inertia())
         };
@@ -104,7 +106,7 @@ impl<S: Effect> Declared<S> {
             let a = kicked::<S>(&constants, momentum, advected);
             let problem =
                 Problem { scene, constants: &constants, a, w: advected, h, trusted: self.trusted, safe: self.safe };
-            let terms = S::step_terms(&constants, &a, advected);
+            let terms = step_terms::<S>(&constants, &a, advected);
             problem.attempt(&terms, &Vector::<S>::zero()).is_ok()
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))

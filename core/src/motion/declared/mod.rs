@@ -6,13 +6,15 @@ pub(crate) use diagnosis::beyond_solvable;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, velocity_of_momentum};
+use crate::mechanics::{
+    Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, velocity_of_momentum,
+};
 use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
-use crate::solving::{Continued, Kick, Problem, Root, Warm, safe, trusted_radius};
+use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -47,16 +49,7 @@ impl<S: Effect> Declared<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        let inertia = scene.inertia();
-        let (unit, determinant) = Vector::<S>::solve(&inertia, &Vector::<S>::zero());
-        let pivot = Vector::<S>::least_pivot(&inertia);
-        // Less than this is what rounding leaves of a zero.
-        if pivot.simd_lt(-Scalar::<S>::simd_default_epsilon() * real(1e6)).any() {
-            return Err(SetupError::NegativeKinetic { pivot: reported(pivot) });
-        }
-        if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & pivot.simd_gt(real(0.0))).all() {
-            return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
-        }
+        check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia())?;
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
             return Err(SetupError::NonFiniteConstant);
@@ -89,7 +82,7 @@ impl<S: Effect> Declared<S> {
             return Ok(Group::<S>::identity());
         }
         let problem = self.problem(scene, momentum, advected);
-        let terms = S::step_terms(&self.constants, &problem.a, advected);
+        let terms = step_terms::<S>(&self.constants, &problem.a, advected);
         problem.attempt(&terms, &(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
     }
 
@@ -353,7 +346,7 @@ const RATIO: f64 = 1.0 / 4096.0;
 /// Determinant and trace of the Newton system for a body at rest.
 fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S>, Scalar<S>) {
     let zero = Vector::<S>::zero();
-    let terms = S::step_terms(constants, &zero, &scene.advected());
-    let (_, jacobian) = S::newton_system(constants, &terms, &zero);
+    let terms = step_terms::<S>(constants, &zero, &scene.advected());
+    let (_, jacobian) = newton_system::<S>(constants, &terms, &zero);
     (Vector::<S>::solve(&jacobian, &zero).1, Vector::<S>::trace(&jacobian))
 }

@@ -26,9 +26,20 @@ impl Checker<'_> {
             "t" | "time" => format!(
                 "; {noun} has no time: declare what changes with it by `given(u = field)`, and go on by `step_with`"
             ),
+            "omega" | "Omega" | "xi" | "velocity" if self.declaration.continuous.is_some() => {
+                match self.declaration.velocity() {
+                    Some(velocity) => format!("; the velocity is called `{velocity}`"),
+                    None => format!("; name the velocity by `velocity = {name}`"),
+                }
+            }
             "omega" | "Omega" | "xi" | "velocity" => {
                 let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
-                format!("; the velocity of a step is in `F`: write {velocity}")
+                let continuous = if self.is_force() {
+                    String::new()
+                } else {
+                    format!(", or declare `l = …` with `velocity = {name}`")
+                };
+                format!("; the velocity of a step is in `F`: write {velocity}{continuous}")
             }
             "R" | "rotation" | "attitude" | "orientation" => format!(
                 "; {noun} is reduced, and sees no `{name}`: what is fixed in space is declared with `advected(w = field)`"
@@ -54,8 +65,10 @@ impl Checker<'_> {
         let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
         let bound = self.scopes.iter().flat_map(|scope| scope.keys().map(|bound| bound.letters.clone()));
         let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
-        let builtin = ["F", "I", "h"].iter().chain(displacements).map(|name| (*name).to_owned());
-        builtin.chain(advected).chain(fields).chain(bound).collect()
+        let of_step: &[&str] = if self.declaration.continuous.is_some() { &["I"] } else { &["F", "I", "h"] };
+        let builtin = of_step.iter().chain(displacements).map(|name| (*name).to_owned());
+        let velocity = self.declaration.velocity().map(|velocity| velocity.unraw().to_string());
+        builtin.chain(velocity).chain(advected).chain(fields).chain(bound).collect()
     }
 
     /// For a method that isn't known.

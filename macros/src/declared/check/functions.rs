@@ -32,10 +32,17 @@ impl Checker<'_> {
             self.errors.push(at, format!("`{function}` takes one {wanted}"));
             return None;
         };
-        let argument = self.expression(argument)?;
+        let (passed, argument) = (argument, self.expression(argument)?);
+        if !self.is_passed_right(&function, passed, 0) {
+            return None;
+        }
         match (function.as_str(), argument.shape) {
             ("hat", shape) if shape == Shape::Matrix(self.declaration.group.dimension(), 1) => {
-                let Group { size, generators, .. } = &self.declaration.group;
+                let Group { size, generators, is_so3, .. } = &self.declaration.group;
+                // In cross products the relations of vectors are known.
+                if *is_so3 && self.declaration.continuous.is_some() {
+                    return Some(Tree::new(span, SQUARE, Kind::CrossMatrix(argument)));
+                }
                 let generators = generators.as_slice().into();
                 Some(Tree::new(span, Shape::Matrix(*size, *size), Kind::Hat(argument, generators)))
             }

@@ -61,8 +61,9 @@ impl Checker<'_> {
         match (name.as_str(), call.args.first()) {
             ("powi", Some(exponent)) => self.power(receiver, exponent, span, at),
             (_, Some(argument)) => {
-                let argument = self.expression(argument)?;
-                self.of_two(&name, receiver, argument, span, at)
+                let (passed, argument) = (argument, self.expression(argument)?);
+                let product = self.of_two(&name, receiver, argument, span, at)?;
+                self.is_passed_right(&name, passed, 1).then_some(product)
             }
             (_, None) => self.of_one(&name, receiver, span, at),
         }

@@ -87,6 +87,8 @@ fn end(expression: &Expr) -> Span {
 struct Binding {
     tree: Option<Rc<Tree>>,
     span: Span,
+    /// How many `&` its value has.
+    references: usize,
     used: bool,
 }
 
@@ -176,6 +178,39 @@ impl Checker<'_> {
         }
     }
 
+    /// How many `&` the value of an expression has, where that is seen; parameters are values, and so is what is made.
+    fn references(&self, expression: &Expr) -> Option<usize> {
+        match expression {
+            Expr::Reference(inner) => self.references(&inner.expr).map(|references| references + 1),
+            Expr::Paren(inner) => self.references(&inner.expr),
+            Expr::Group(inner) => self.references(&inner.expr),
+            Expr::Block(_) => None,
+            Expr::Path(path) => {
+                let spelling = Spelling::of(path.path.get_ident()?);
+                let binding = self.scopes.iter().rev().find_map(|scope| scope.get(&spelling));
+                Some(binding.map_or(0, |binding| binding.references))
+            }
+            _ => Some(0),
+        }
+    }
+
+    /// Whether the compiler will take it as the argument of that function; if not, says what to write.
+    fn is_passed_right(&mut self, function: &str, argument: &Expr, wanted: usize) -> bool {
+        let found = self.references(argument).unwrap_or(wanted);
+        if found == wanted {
+            return true;
+        }
+        let text = argument.to_token_stream().to_string();
+        let advice = match (wanted, found) {
+            (1, 0) if matches!(argument, Expr::Path(_)) => format!("takes a reference: write `&{text}`"),
+            (1, 0) => "takes a reference: write `&(…)`".to_owned(),
+            (1, _) => "takes one reference: leave the other `&` away".to_owned(),
+            _ => "takes the value itself: leave the `&` away".to_owned(),
+        };
+        self.errors.push_over(argument, format!("`{function}` {advice}"));
+        false
+    }
+
     /// The token, and not what it stands among, has no meaning.
     fn unknown(&mut self, token: impl ToTokens) -> Option<Rc<Tree>> {
         let noun = self.declaration.role.noun();
@@ -254,7 +289,8 @@ impl Checker<'_> {
             let (span, end, shape) = (tree.span, tree.end, tree.shape);
             Tree::until(Tree::new(span, shape, Kind::Bound(name.unraw().to_string(), tree)), end)
         });
-        let binding = Binding { tree, span: name.span(), used: false };
+        let references = self.references(&init.expr).unwrap_or(0);
+        let binding = Binding { tree, span: name.span(), references, used: false };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(Spelling::of(name), binding);
         }
@@ -264,7 +300,7 @@ impl Checker<'_> {
     fn bind_nothing(&mut self, pattern: &Pat) {
         match pattern {
             Pat::Ident(name) => {
-                let binding = Binding { tree: None, span: name.span(), used: true };
+                let binding = Binding { tree: None, span: name.span(), references: 0, used: true };
                 if let Some(scope) = self.scopes.last_mut() {
                     scope.insert(Spelling::of(&name.ident), binding);
                 }
@@ -315,8 +351,12 @@ impl Checker<'_> {
         let square = Shape::Matrix(size, size);
         let (shape, found) = match name.as_str() {
             "I" => return Some(Tree::new(span, square, Kind::Identity)),
+            "F" | "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
             "F" => (square, Name::Increment),
             "h" => (Shape::Scalar, Name::Step),
+            _ if self.declaration.velocity().is_some_and(|velocity| velocity.unraw() == name) => {
+                (self.displacement(), Name::Velocity)
+            }
             "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
             "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
             _ => {
@@ -350,10 +390,29 @@ impl Checker<'_> {
         Some(Tree::new(span, shape, Kind::Name(found)))
     }
 
+    /// A continuous Lagrangian knows no step.
+    fn of_a_step(&mut self, name: &str, span: Span) -> Option<Rc<Tree>> {
+        if self.unknown.insert(name.to_owned()) {
+            let velocity = match self.declaration.velocity() {
+                Some(velocity) => format!("`{}`", velocity.unraw()),
+                None => "`Omega`, named by `velocity = Omega`".to_owned(),
+            };
+            let what = if name == "F" {
+                format!("`F` is the increment of a step, and `l` has no steps: write it in the velocity {velocity}")
+            } else {
+                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
+                    .to_owned()
+            };
+            self.errors.push(span, format!("{what}, or declare `l_d = …`"));
+        }
+        None
+    }
+
     fn is_force(&self) -> bool {
         self.declaration.role == Role::Force
     }
 
+    /// A vector with a component for each generator.
     fn displacement(&self) -> Shape {
         Shape::Matrix(self.declaration.group.dimension(), 1)
     }

@@ -15,6 +15,21 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         check_names(declaration, used, errors);
         return;
     }
+    if declaration.continuous.is_some() {
+        if let Some(velocity) = declaration.velocity().filter(|_| !used.contains(&Name::Velocity)) {
+            let message =
+                format!("`{velocity}` isn't used in the Lagrangian: remove `velocity = {velocity}`, or use it");
+            errors.push(velocity.span(), message);
+        } else if !used.iter().any(|name| matches!(name, Name::Velocity | Name::Advected(_))) {
+            errors.push_over(
+                declaration.expression.as_ref().map(super::value),
+                "the Lagrangian depends on no velocity, which `velocity = Omega` names, and on nothing advected: nothing \
+                 would move",
+            );
+        }
+        check_names(declaration, used, errors);
+        return;
+    }
     // A potential at the beginning of a step alone has no `F`, and still pushes.
     if !used.iter().any(|name| matches!(name, Name::Increment | Name::Advected(_))) {
         errors.push_over(

@@ -6,8 +6,8 @@ use syn::parse::ParseStream;
 use syn::{Expr, ExprArray, Ident, Path, Token, parenthesized};
 
 use super::group;
-use crate::declared::Role;
 use crate::declared::errors::{Errors, suggestion};
+use crate::declared::{Coordinates, Discretisation, Quadrature, Role};
 
 /// The arguments as written.
 #[derive(Default)]
@@ -15,7 +15,14 @@ pub(super) struct Arguments {
     pub(super) group: Option<group::Named>,
     /// Name, field, and whether it is given for each step.
     pub(super) advected: Vec<(Ident, Ident, bool)>,
-    pub(super) expression: Option<Expr>,
+    /// `l_d`, or the virtual work, with its key.
+    pub(super) expression: Option<(Ident, Expr)>,
+    /// `l`, with its key.
+    pub(super) continuous: Option<(Ident, Expr)>,
+    /// The name of the velocity, with its key.
+    pub(super) velocity: Option<(Ident, Ident)>,
+    /// With its key.
+    pub(super) discretisation: Option<(Ident, Discretisation)>,
     pub(super) root: Option<Path>,
     /// With its key.
     pub(super) generators: Option<(Ident, ExprArray)>,
@@ -43,7 +50,10 @@ fn skip_argument(input: ParseStream) {
 }
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
-    let known = ["group", "advected", "given", role.key(), "generators", "crate"];
+    let mut known = vec!["group", "advected", "given", role.key(), "generators", "crate"];
+    if role == Role::Lagrangian {
+        known.extend(["l", "velocity", "discretise"]);
+    }
     let Some(key) = key(input, &known) else {
         if !arguments.has_nameless {
             errors.push(input.span(), format!("arguments have names: write `group = SO3`, `{} = …`", role.key()));
@@ -73,7 +83,24 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         expression if expression == role.key() => {
             once(arguments.expression.is_some());
             equals(&key, input)?;
-            arguments.expression = Some(input.parse()?);
+            arguments.expression = Some((key, input.parse()?));
+        }
+        "l" if role == Role::Lagrangian => {
+            once(arguments.continuous.is_some());
+            equals(&key, input)?;
+            arguments.continuous = Some((key, input.parse()?));
+        }
+        "velocity" if role == Role::Lagrangian => {
+            once(arguments.velocity.is_some());
+            equals(&key, input)?;
+            without_quotes(&key, input)?;
+            arguments.velocity = Some((key, input.call(Ident::parse_any)?));
+        }
+        "discretise" if role == Role::Lagrangian => {
+            once(arguments.discretisation.is_some());
+            equals(&key, input)?;
+            without_quotes(&key, input)?;
+            arguments.discretisation = Some((key, discretisation(input)?));
         }
         "generators" => {
             once(arguments.generators.is_some());
@@ -95,7 +122,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             arguments.advected.extend(pairs?.into_iter().map(|(name, field)| (name, field, is_given)));
         }
         other => {
-            let near = suggestion(other, known);
+            let near = suggestion(other, known.iter().copied());
             let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
             let attribute = role.attribute();
             return Err(syn::Error::new(
@@ -116,6 +143,43 @@ fn key(input: ParseStream, known: &[&str]) -> Option<Ident> {
     let key = ahead.call(Ident::parse_any).ok()?;
     let is_given = ahead.peek(Token![=]) || ahead.peek(syn::token::Paren);
     (is_given || known.iter().any(|name| key == name)).then(|| input.call(Ident::parse_any).ok())?
+}
+
+/// `trapezoid`, `trapezoid(Cayley)`, `midpoint(exp)`, `chord`, ….
+fn discretisation(input: ParseStream) -> syn::Result<Discretisation> {
+    let name: Ident = input.call(Ident::parse_any)?;
+    let known = ["trapezoid", "midpoint", "chord"];
+    let quadrature = match name.to_string().as_str() {
+        "trapezoid" => Quadrature::Trapezoid,
+        "midpoint" => Quadrature::Midpoint,
+        "chord" => Quadrature::Chord,
+        other => {
+            let near = suggestion(other, known);
+            let message = format!("`{other}` isn't a discretisation{near}\nknown: {}", known.join(", "));
+            return Err(syn::Error::new(name.span(), message));
+        }
+    };
+    if !input.peek(syn::token::Paren) {
+        let place = [name.span(); 2];
+        return Ok(Discretisation { quadrature, coordinates: Coordinates::Ambient, place });
+    }
+    let content;
+    let parentheses = parenthesized!(content in input);
+    let retraction: Ident = content.call(Ident::parse_any)?;
+    let rest: TokenStream = content.parse()?;
+    if !rest.is_empty() {
+        return Err(syn::Error::new_spanned(rest, format!("write one retraction: `{name}({retraction})`")));
+    }
+    let coordinates = match retraction.to_string().as_str() {
+        "Cayley" => Coordinates::Cayley,
+        "exp" => Coordinates::Exponential,
+        other => {
+            let near = suggestion(other, ["Cayley", "exp"]);
+            let message = format!("`{other}` isn't a retraction{near}\nknown: Cayley, exp");
+            return Err(syn::Error::new(retraction.span(), message));
+        }
+    };
+    Ok(Discretisation { quadrature, coordinates, place: [name.span(), parentheses.span.close()] })
 }
 
 fn equals(key: &Ident, input: ParseStream) -> syn::Result<()> {

@@ -9,10 +9,12 @@ mod size;
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
-use syn::{Fields, Ident, Item, ItemStruct, Path, braced};
+use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};
 
 use crate::declared::errors::{Errors, suggestion};
-use crate::declared::{AdvectedParameter, Declaration, Field, FieldKind, Role};
+use crate::declared::{
+    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Field, FieldKind, Quadrature, Role,
+};
 use crate::mathematics::group::Group;
 use arguments::{Arguments, arguments_from};
 use fields::{points, scalar};
@@ -80,7 +82,7 @@ pub(crate) fn as_far_as_readable(
         braced!(content in input);
         Ok(arguments_from(role, &content, errors))
     };
-    let arguments = parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
+    let mut arguments = parser.parse2(TokenTree::Group(braces).into()).unwrap_or_else(|error| {
         // What a mistake has left unread isn't another.
         if errors.is_empty() {
             errors.extend(error);
@@ -89,10 +91,13 @@ pub(crate) fn as_far_as_readable(
     });
     // What seems to be missing may stand in an argument that couldn't be read.
     let is_readable = errors.is_empty();
-    let (group_path, group) = group::group(arguments.group, arguments.generators, is_readable, errors);
-    if arguments.expression.is_none() && is_readable {
+    let (group_path, group) = group::group(arguments.group.take(), arguments.generators.take(), is_readable, errors);
+    if arguments.expression.is_none() && arguments.continuous.is_none() && is_readable {
         let message = match role {
-            Role::Lagrangian => "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`",
+            Role::Lagrangian => {
+                "the Lagrangian is missing: write `l_d = …` with an expression in `F` and `h`, or `velocity = Omega, \
+                 l = …` with one in `Omega`"
+            }
             Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
         };
         errors.push(Span::call_site(), message);
@@ -104,6 +109,7 @@ pub(crate) fn as_far_as_readable(
     let scalar = scalar(&item, errors);
     let advected =
         advected(role, &arguments.advected, &fields, &unreadable, group_path.as_ref().map(|_| &group), errors);
+    let (expression, continuous) = kind(role, &mut arguments, &fields, &advected, errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
     Declaration {
@@ -112,12 +118,69 @@ pub(crate) fn as_far_as_readable(
         group_path,
         group,
         advected,
-        expression: arguments.expression.filter(|_| has_meaning),
+        expression: expression.filter(|_| has_meaning),
+        continuous,
         fields,
         unreadable,
         scalar,
         item,
     }
+}
+
+/// The expression, and what belongs to a continuous one.
+fn kind(
+    role: Role,
+    arguments: &mut Arguments,
+    fields: &[Field],
+    advected: &[AdvectedParameter],
+    errors: &mut Errors,
+) -> (Option<Expr>, Option<Continuous>) {
+    let (velocity, discretisation) = (arguments.velocity.take(), arguments.discretisation.take());
+    let Some((key, l)) = arguments.continuous.take() else {
+        if let Some((key, name)) = velocity {
+            let message = format!(
+                "`velocity` belongs to a continuous Lagrangian `l = …`; in `l_d` the velocity of a step is in `F`: remove \
+                 it, or write `l = …` in `{name}`"
+            );
+            errors.push_decisive(key.span(), message);
+        }
+        if let Some((key, _)) = discretisation {
+            let message = "`discretise` makes `l_d` of a continuous Lagrangian `l = …`, which isn't given: remove it, or \
+                           write `l = …` in place of `l_d = …`";
+            errors.push_decisive(key.span(), message);
+        }
+        return (arguments.expression.take().map(|(_, expression)| expression), None);
+    };
+    if let Some((l_d, _)) = &arguments.expression {
+        let message =
+            "`l` and `l_d` are two Lagrangians: remove `l_d`, which `discretise = …` makes of `l`, or remove `l`";
+        errors.push_decisive(l_d.span(), message);
+        errors.push(key.span(), "`l` is given here");
+    }
+    let velocity = velocity.map(|(_, name)| name);
+    if let Some(name) = &velocity {
+        let plain = name.unraw().to_string();
+        check_free(role, name, errors);
+        if fields.iter().any(|field| field.plain_name() == plain) {
+            errors.push_decisive(name.span(), format!("`{plain}` is a field already: choose another name"));
+        } else if advected.iter().any(|w| w.plain_name() == plain) {
+            errors.push_decisive(name.span(), format!("`{plain}` is advected already: choose another name"));
+        }
+    }
+    let discretisation = discretisation.map(|(_, discretisation)| discretisation);
+    if let Some(Discretisation { quadrature: Quadrature::Midpoint, coordinates, place }) = discretisation
+        && coordinates != Coordinates::Exponential
+    {
+        let message = match coordinates {
+            Coordinates::Cayley => {
+                "the midpoint of a Cayley curve isn't its own adjoint, as cay(x/2)² isn't cay(x): a step of −h wouldn't \
+                 undo a step of h; write `chord(Cayley)`, or `midpoint(exp)`"
+            }
+            _ => "`(F - I) / h` has no midpoint in the group: write `midpoint(exp)`, or `chord`",
+        };
+        errors.push_between(place, message);
+    }
+    (Some(l), Some(Continuous { velocity, discretisation }))
 }
 
 fn advected(

@@ -6,14 +6,23 @@ use super::{HEAVY_TOP, expanded, tokens, top};
 use crate::declared::Role;
 
 /// The text of `const DERIVATION` in an expansion.
-fn derivation(arguments: &str, item: &str) -> String {
+pub(super) fn derivation(arguments: &str, item: &str) -> String {
+    constant("DERIVATION", arguments, item)
+}
+
+/// The text of `const CONTINUOUS_DERIVATION`.
+pub(super) fn continuous_derivation(arguments: &str, item: &str) -> String {
+    constant("CONTINUOUS_DERIVATION", arguments, item)
+}
+
+fn constant(name: &str, arguments: &str, item: &str) -> String {
     let file: syn::File = syn::parse2(expanded(arguments, item)).expect("items");
     let constants = file.items.iter().filter_map(|item| match item {
         syn::Item::Impl(implementation) => Some(&implementation.items),
         _ => None,
     });
     let mut texts = constants.flatten().filter_map(|item| match item {
-        syn::ImplItem::Const(constant) => match &constant.expr {
+        syn::ImplItem::Const(constant) if constant.ident == name => match &constant.expr {
             syn::Expr::Block(block) => block.block.stmts.iter().find_map(|statement| match statement {
                 syn::Stmt::Item(syn::Item::Const(constant)) => text_of(&constant.expr),
                 _ => None,
@@ -33,7 +42,7 @@ fn text_of(value: &syn::Expr) -> Option<String> {
 }
 
 /// What the struct's own documentation says, in the lines of `///`.
-fn page(arguments: &str, item: &str) -> String {
+pub(super) fn page(arguments: &str, item: &str) -> String {
     let file: syn::File = syn::parse2(expanded(arguments, item)).expect("items");
     let Some(syn::Item::Struct(item)) = file.items.first() else { panic!("no struct") };
     let values = item.attrs.iter().filter_map(|attribute| match &attribute.meta {
@@ -65,28 +74,38 @@ fn components_are_entries() {
 fn on_the_struct() {
     let item = format!("/// A top.\n#[derive(Clone)] #[repr(C)] pub {}", top("NonstandardInertia"));
     expect![[r#"
-         A top.
+        A top.
 
- 
-         # Derived integrator
- 
-         The momentum equation, solved for `F` in each step:
- 
-         ```text
-         μ = (1/h) (F J_d − J_d Fᵀ)^∨ + (h m g/2) (w rhoᵀ − rho wᵀ)^∨    [(2.7)]
-         k₀ = (h m g/2) (rho wᵀ − w rhoᵀ)^∨    [a = μ + k₀]
-         k₁⁺ = (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
-         ```
- 
-         * Order: even, as `l_d` is self-adjoint: a step of −h undoes a step of h.
-         * Limit of a step: the part of `μ` with `F` is a polynomial in `F`, so it is bounded. Where the body turns too fast for the step, there is no solution, and the error names the largest step that has one.
-         * Cost:
-           * construction: 9 operations
-           * step, before the solve: 18 operations
-           * Newton iteration: 97 operations
-           * step, after the solve: 9 operations
- 
-         All equations are in `DERIVATION` and in the documentation of the methods."#]].assert_eq(&page(HEAVY_TOP, &item));
+
+        # Derived integrator
+
+        The momentum equation, solved for `F` in each step:
+
+        ```text
+        μ = (1/h) (F J_d − J_d Fᵀ)^∨ + (h m g/2) (w rhoᵀ − rho wᵀ)^∨    [(2.7)]
+        k₀ = (h m g/2) (rho wᵀ − w rhoᵀ)^∨    [a = μ + k₀]
+        k₁⁺ = (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
+        ```
+
+        * Order: even, as `l_d` is self-adjoint: a step of −h undoes a step of h.
+        * Limit of a step: the part of `μ` with `F` is a polynomial in `F`, so it is bounded. Where the body turns too fast for the step, there is no solution, and the error names the largest step that has one.
+        * Cost:
+          * construction: 9 operations
+          * step, before the solve: 18 operations
+          * Newton iteration: 97 operations
+          * step, after the solve: 9 operations
+
+        The continuous equations that it discretises:
+
+        ```text
+        l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
+        μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
+        dμ/dt = 𝕀 dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+        dw/dt = w × Ω    [(2.2): −ξ·w]
+        h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+        ```
+
+        All equations are in `DERIVATION` and in the documentation of the methods."#]].assert_eq(&page(HEAVY_TOP, &item));
     let text = expanded(HEAVY_TOP, &item).to_string();
     let (attributes, rest) = text.split_once("# [allow (non_snake_case)]").expect("the letters of the field");
     assert!(attributes.starts_with("# [doc = \" A top.\"] # [derive (Clone)] # [repr (C)] # [doc ="), "{attributes}");
@@ -94,25 +113,35 @@ fn on_the_struct() {
     let pull = "group = SO3, advected(w = up), l_d = -h * k * w.dot(&(F * rho))";
     expect![[r#"
 
- 
-         # Derived terms
- 
-         The share in the momentum equation of a body that this is added to:
- 
-         ```text
-         μ = 0    [(2.7)]
-         k₀ = 0    [a = μ + k₀]
-         k₁⁺ = h k (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
-         ```
- 
-         * Order: 1 in general, as `l_d` isn't self-adjoint: a step of −h doesn't undo a step of h.
-         * Cost:
-           * construction: 5 operations
-           * step, before the solve: 6 operations, 3 sign flips
-           * Newton iteration: 0 operations
-           * step, after the solve: 9 operations
- 
-         All equations are in `DERIVATION` and in the documentation of the methods."#]]
+
+        # Derived terms
+
+        The share in the momentum equation of a body that this is added to:
+
+        ```text
+        μ = 0    [(2.7)]
+        k₀ = 0    [a = μ + k₀]
+        k₁⁺ = h k (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
+        ```
+
+        * Order: 1 in general, as `l_d` isn't self-adjoint: a step of −h doesn't undo a step of h.
+        * Cost:
+          * construction: 5 operations
+          * step, before the solve: 6 operations, 3 sign flips
+          * Newton iteration: 0 operations
+          * step, after the solve: 9 operations
+
+        The continuous equations that it discretises:
+
+        ```text
+        l(Ω, w) = −k ⟨rho, w⟩    [the limit of l_d/h]
+        μ = 0    [∂l/∂ξ, (1.14)]
+        dμ/dt = μ × Ω + k w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+        dw/dt = w × Ω    [(2.2): −ξ·w]
+        h(μ, w) = k ⟨rho, w⟩    [(1.16)]
+        ```
+
+        All equations are in `DERIVATION` and in the documentation of the methods."#]]
     .assert_eq(&page(pull, "struct Pull { k: f64, rho: Vector3<f64>, up: Vector3<f64> }"));
     let drag = "group = SO3, work = -0.5 * c * vee(F).dot(&(eta + eta_next))";
     let drag = crate::expand::expand(Role::Force, tokens(drag), &tokens("struct Drag { c: f64 }")).to_string();
@@ -142,7 +171,7 @@ fn of_the_heavy_top() {
         discrete_energy
             −∂l_d/∂h = −(1/h²) tr(F J_d) + (1/h²) tr(J_d) + (m g/2) ⟨rho, Fᵀ w⟩ + (m g/2) ⟨rho, w⟩
         inertia
-            η·Jξ for η̂ = E_k, ξ̂ = E_j = −tr(J_d E_k E_j)    [continuous limit]
+            J = tr(J_d) I − J_d    [continuous limit]
         momentum_bias
             s = 0    [continuous limit]
         potential
@@ -151,8 +180,23 @@ fn of_the_heavy_top() {
             k₀ = (h m g/2) (rho wᵀ − w rhoᵀ)^∨    [a = μ + k₀]
         kick_after
             k₁⁺ = (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [μ⁺ = Ad*_F a + k₁⁺]
+        increments
+            (1/h) (F⁺ J_d − J_d F⁺ᵀ)^∨ + (h m g/2) (w⁺ rhoᵀ − rho w⁺ᵀ)^∨ = (1/h) (J_d F − Fᵀ J_d)^∨ + (h m g/2) (rho w⁺ᵀ − w⁺ rhoᵀ)^∨    [F ↦ F⁺, the flow (2.5); of the heavy top (3.16)]
         kick_derivative
             ∂k₀ along exp(−tE_j)·w = (h m g/2) (E_j w rhoᵀ + rho wᵀ E_j)^∨    [the force gradient's]
+        continuous
+            Ω = g⁻¹ dg/dt
+            l_d(exp(h Ω), w, h) = h l(Ω, w) + O(h²)
+            pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
+            l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
+            μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
+            𝕀 = tr(J_d) I − J_d    [∂²l/∂ξ², the inertia]
+            ∂l/∂w ⋄ w = m g w × rho    [(2.1)]
+            dμ/dt = 𝕀 dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dw/dt = w × Ω    [(2.2): −ξ·w]
+            Ω = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+            kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
         hypotheses used
             FᵀF = I, J_dᵀ = J_d
         self-adjoint

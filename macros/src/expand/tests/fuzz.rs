@@ -123,14 +123,14 @@ const DICTIONARY: &[&str] = &[
 ];
 
 /// The tokens of a declaration with brackets apart, so that mutations can't unbalance them beyond repair.
-fn pieces(text: &str) -> Vec<String> {
+pub(super) fn pieces(text: &str) -> Vec<String> {
     let spaced: String =
         text.chars().map(|c| if "()[]{},;=+-*/&".contains(c) { format!(" {c} ") } else { c.to_string() }).collect();
     spaced.split_whitespace().map(str::to_owned).collect()
 }
 
 /// Drops closing brackets that close nothing, and closes what is open.
-fn balanced(pieces: &[String]) -> String {
+pub(super) fn balanced(pieces: &[String]) -> String {
     let (mut open, mut text) = (Vec::new(), String::new());
     for piece in pieces {
         let closing = match piece.as_str() {
@@ -155,7 +155,7 @@ fn balanced(pieces: &[String]) -> String {
 
 /// Deletes, duplicates, exchanges or replaces.
 #[derive(Clone, Debug)]
-enum Mutation {
+pub(super) enum Mutation {
     Delete(usize),
     Duplicate(usize),
     Exchange(usize, usize),
@@ -163,7 +163,7 @@ enum Mutation {
     Insert(usize, &'static str),
 }
 
-fn mutation() -> impl Strategy<Value = Mutation> {
+pub(super) fn mutation() -> impl Strategy<Value = Mutation> {
     let word = || proptest::sample::select(DICTIONARY);
     prop_oneof![
         any::<usize>().prop_map(Mutation::Delete),
@@ -174,7 +174,7 @@ fn mutation() -> impl Strategy<Value = Mutation> {
     ]
 }
 
-fn mutated(text: &str, mutations: &[Mutation]) -> String {
+pub(super) fn mutated(text: &str, mutations: &[Mutation]) -> String {
     let mut all = pieces(text);
     for mutation in mutations {
         let length = all.len().max(1);
@@ -203,7 +203,7 @@ fn survives(arguments: &str, item: &str) {
     assert!(start.elapsed() < PATIENCE, "{:?}", start.elapsed());
 }
 
-const RICH: &str = "group = SO3, advected(w = up, b = field), crate = ::liestep, l_d = {
+pub(super) const RICH: &str = "group = SO3, advected(w = up, b = field), crate = ::liestep, l_d = {
     let d = F - I; let tip = F * rho;
     (d * J_d * d.transpose()).trace() / (2.0 * h) - h * k * (w.dot(&tip).powi(2) / 3.0 + (3.0 + b.dot(&tip)).ln())
         + h * vee(F * A).dot(&w.cross(&b)) - h * tip[2] * F[(0, 1)] * w.x + h * (A - F).norm_squared()

@@ -1,9 +1,11 @@
 //! Whole expansions.
 
+mod continuous;
 mod derivation;
 mod determinism;
 mod fuzz;
 mod higher_order;
+mod mutants;
 mod own_group;
 mod right;
 mod rooms;

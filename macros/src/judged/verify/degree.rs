@@ -91,6 +91,7 @@ impl Degrees {
             | Kind::CrossMatrix(a)
             | Kind::Vee(a)
             | Kind::Hat(a, _)
+            | Kind::Components(a, _)
             | Kind::Entry(a, ..)
             | Kind::Bound(_, a) => self.of(a),
             Kind::Add(a, b) | Kind::Subtract(a, b) => self.of(a).plus(self.of(b)),

@@ -83,6 +83,13 @@ impl<'a, T: Number> Evaluation<'a, T> {
                 };
                 Value::new(size, size, entry)
             }
+            Kind::Components(a, forms) => {
+                let element = self.of(a);
+                Value::new(tree.shape.rows(), 1, |row, _| {
+                    let own = forms.iter().filter(|(k, ..)| *k == row);
+                    own.fold(T::ZERO, |sum, &(_, i, j, factor)| sum + T::of(factor) * element.at(i, j))
+                })
+            }
             Kind::Inverse(a) => self.of(a).inverse(),
             Kind::Bound(_, a) => self.of(a),
             Kind::Entry(a, row, column) => Value::scalar(self.of(a).at(*row, *column)),

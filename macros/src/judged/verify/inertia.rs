@@ -60,12 +60,24 @@ pub(crate) fn kinetic_part(
     }
     let dimension = derived.group.dimension();
     let inertias = samples.iter().map(|sample| at_identity(sample, &graph, &inertia));
-    let finite = inertias.filter(|inertia| inertia.iter().all(|entry| entry.is_finite()));
-    let inertias: Vec<Value> = finite.map(|entries| Value { rows: dimension, columns: dimension, entries }).collect();
+    let inertias = inertias.map(|entries| Value { rows: dimension, columns: dimension, entries });
+    let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
+    classified(declaration, &is_used, inertias.collect())
+}
+
+/// What second derivatives at sample values show; `is_used` says which names they depend on.
+pub(super) fn classified(
+    declaration: &Declaration,
+    is_used: &dyn Fn(Name) -> bool,
+    inertias: Vec<Value>,
+) -> KineticPart {
+    let dimension = declaration.group.dimension();
+    let finite = inertias.into_iter().filter(|inertia| inertia.entries.iter().all(|entry| entry.is_finite()));
+    let inertias: Vec<Value> = finite.collect();
     let identity = Value::identity(dimension);
     if inertias.is_empty() {
         KineticPart::NotSmooth
-    } else if has_a_sign(declaration, lowered, derived) && inertias.iter().all(|j| is_positive(&j.map(|x| -x))) {
+    } else if has_a_sign(declaration, is_used) && inertias.iter().all(|j| is_positive(&j.map(|x| -x))) {
         KineticPart::Negative
     } else if inertias.iter().any(|inertia| linear::solve(inertia, &identity).is_some()) {
         KineticPart::Regular
@@ -79,8 +91,7 @@ pub(crate) fn kinetic_part(
 }
 
 /// Whether all that the kinetic part depends on is one field whose type promises a positive matrix.
-fn has_a_sign(declaration: &Declaration, lowered: &Lowered, derived: &Derived) -> bool {
-    let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
+fn has_a_sign(declaration: &Declaration, is_used: &dyn Fn(Name) -> bool) -> bool {
     let used: Vec<_> = (0..declaration.fields.len()).filter(|&index| is_used(Name::Field(index))).collect();
     match used.as_slice() {
         [] => true,

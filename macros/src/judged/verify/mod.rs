@@ -3,7 +3,10 @@
 //! The declared tree is evaluated on numbers by itself, without the symbolic form, so a wrong rewrite can't agree with
 //! itself. First derivatives are compared with its central differences; what is built from them, with them.
 
+mod cayley;
+mod continuous;
 mod degree;
+mod dual;
 mod evaluation;
 mod exact;
 mod force;
@@ -30,6 +33,10 @@ use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 use crate::program::{Graph, Input, Kernel, NodeId};
 
+pub(super) use cayley::{is_cayley_coordinates, nilpotency};
+#[cfg(test)]
+pub(crate) use continuous::energy_is_kept;
+pub(crate) use continuous::{disagreement, kinetic_hessian, limit_disagrees, right_symmetries};
 use evaluation::Evaluation;
 pub(super) use force::force;
 pub(super) use inertia::{KineticPart, kinetic_part};

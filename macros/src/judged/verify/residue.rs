@@ -8,6 +8,9 @@ use crate::mathematics::symbolic::{Function, Rational};
 
 const PRIME: u64 = (1 << 61) - 1;
 
+/// Numerators and denominators of what is recognised as a fraction.
+const LARGEST: i128 = 64;
+
 /// An element of the field; nothing where there is no value, as after a division by zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Residue(Option<u64>);
@@ -29,6 +32,14 @@ impl Residue {
 
     pub(super) fn is_defined(self) -> bool {
         self.0.is_some()
+    }
+
+    /// The fraction of small whole numbers that it is, if it is one.
+    pub(super) fn small(self) -> Option<Rational> {
+        let value = i128::from(self.0?);
+        let centred = |value: i128| if 2 * value > i128::from(PRIME) { value - i128::from(PRIME) } else { value };
+        let fractions = (1..=LARGEST).map(|q| (centred((value * q).rem_euclid(PRIME.into())), q));
+        fractions.into_iter().find(|(p, _)| p.abs() <= LARGEST).map(|(p, q)| Rational::new(p, q))
     }
 
     fn with(self, other: Self, operation: impl Fn(i128, i128) -> i128) -> Self {
@@ -114,6 +125,21 @@ impl Number for Residue {
     /// The field has no sines or logarithms. A pseudorandom function of the same symmetry, even or odd, stands in for
     /// them. If two expressions agree with the stand-in, they agree whatever the function is.
     fn apply(self, function: Function) -> Self {
+        let of = |numerator, denominator| Self::of(Rational::new(numerator, denominator));
+        // Those that follow from others of their family follow from them here, too.
+        match function {
+            Function::Stumpff(k @ 0..5) => {
+                let first = function.at_zero().map_or(Self::UNDEFINED, Self::of);
+                return first - self * self.apply(Function::Stumpff(k + 2));
+            }
+            Function::LogRatio(k @ 0..2) => {
+                let (u, s) = (self * (Self::ONE - self), Self::ONE - of(2, 1) * self);
+                let second = self.apply(Function::LogRatio(2));
+                let first = of(2, 1) * (Self::ONE - s * u * second) / (of(3, 1) - of(8, 1) * u);
+                return if k == 1 { first } else { u * second + of(3, 2) * s * first };
+            }
+            _ => {}
+        }
         let partner = match function {
             Function::Sin | Function::Cos | Function::Exp => -self,
             Function::Ln => self.reciprocal(),

@@ -54,7 +54,9 @@ impl Sample<'_> {
             let is_vector = match name {
                 Name::Field(_) => true,
                 Name::Advected(_) => self.advected.contains(&(*name, Variance::Vector)),
-                Name::Increment | Name::Step | Name::DisplacementBefore | Name::DisplacementAfter => false,
+                Name::Increment | Name::Step | Name::Velocity | Name::DisplacementBefore | Name::DisplacementAfter => {
+                    false
+                }
             };
             if is_vector && (value.rows, value.columns) == (group.size, 1) {
                 value.entries.pop();

@@ -10,14 +10,13 @@
 //! given      0                 w⁺
 //! ```
 
-use super::Context;
-use crate::mathematics::symbolic::{Expression, Rational, Variance};
+use crate::mathematics::symbolic::{Expression, Rational, Symbols, Variance};
 
 /// `E·w`.
-pub(super) fn infinitesimal(context: &Context, variance: Variance, e: &Expression, w: &Expression) -> Expression {
-    let transposed = e.transpose(context.symbols);
-    let from_left = |matrix: &Expression| context.product(matrix, w);
-    let from_right = |matrix: &Expression| context.product(w, matrix);
+pub(super) fn infinitesimal(symbols: &Symbols, variance: Variance, e: &Expression, w: &Expression) -> Expression {
+    let transposed = e.transpose(symbols);
+    let from_left = |matrix: &Expression| matrix.times(w, symbols);
+    let from_right = |matrix: &Expression| w.times(matrix, symbols);
     let minus = |expression: Expression| expression.scaled(-Rational::ONE);
     match variance {
         Variance::Vector => from_left(e),
@@ -31,16 +30,16 @@ pub(super) fn infinitesimal(context: &Context, variance: Variance, e: &Expressio
 
 /// `F·w⁺`, with `F` and its inverse.
 pub(super) fn moved_back(
-    context: &Context,
+    symbols: &Symbols,
     variance: Variance,
     (f, inverse): (&Expression, &Expression),
     next: &Expression,
 ) -> Expression {
-    let product = |factors: [&Expression; 3]| context.product(&context.product(factors[0], factors[1]), factors[2]);
-    let (f_t, inverse_t) = (f.transpose(context.symbols), inverse.transpose(context.symbols));
+    let product = |factors: [&Expression; 3]| factors[0].times(factors[1], symbols).times(factors[2], symbols);
+    let (f_t, inverse_t) = (f.transpose(symbols), inverse.transpose(symbols));
     match variance {
-        Variance::Vector => context.product(f, next),
-        Variance::Covector => context.product(&inverse_t, next),
+        Variance::Vector => f.times(next, symbols),
+        Variance::Covector => inverse_t.times(next, symbols),
         Variance::Contravariant => product([f, next, &f_t]),
         Variance::Covariant => product([&inverse_t, next, inverse]),
         Variance::Mixed => product([f, next, inverse]),

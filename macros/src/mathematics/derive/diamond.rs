@@ -11,11 +11,10 @@ use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};
 
 pub(super) fn diamond(context: &Context) -> Expression {
     let direction = context.symbol(context.directions.first);
-    let carried = context
-        .declared
-        .advected
-        .iter()
-        .map(|&(w, variance)| (w, action::infinitesimal(context, variance, &direction, &context.symbol(w))));
+    let carried =
+        context.declared.advected.iter().map(|&(w, variance)| {
+            (w, action::infinitesimal(context.symbols, variance, &direction, &context.symbol(w)))
+        });
     let variations: Variations = carried.collect();
     variation(context.lagrangian, &variations, context.symbols).scaled(-Rational::ONE)
 }

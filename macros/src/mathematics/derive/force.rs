@@ -65,6 +65,7 @@ pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result
         jacobian,
         energy: none(),
         adjoint_defect: none(),
+        flow: None,
         closed: Vec::new(),
         previous: transport::previous(&context),
         limit: Limit { has_kinetic: false, slope: none(), inertia: none(), bias: none(), potential: none() },

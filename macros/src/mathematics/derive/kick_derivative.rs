@@ -13,7 +13,7 @@ use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};
 pub(super) fn kick_derivative(context: &Context, kick_before: &Expression) -> Expression {
     let direction = context.symbol(context.directions.second);
     let carried = context.declared.advected.iter().map(|&(w, variance)| {
-        let moved = action::infinitesimal(context, variance, &direction, &context.symbol(w));
+        let moved = action::infinitesimal(context.symbols, variance, &direction, &context.symbol(w));
         (w, moved.scaled(-Rational::ONE))
     });
     let variations: Variations = carried.collect();

@@ -1,8 +1,10 @@
 //! From `l_d` to all that an integrator needs, in the order of the thesis. Knows no token.
 
 mod action;
+mod algebra;
 mod cayley;
 mod closed;
+mod continuous;
 mod diamond;
 mod energy;
 mod force;
@@ -17,10 +19,12 @@ mod transport;
 use std::collections::BTreeMap;
 
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Factor, Rational, Stage, Structure, SymbolId, Symbols, Variance};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance};
 
+pub(crate) use algebra::{hat, linear_forms, unit};
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
+pub(crate) use continuous::{Continuous, DeclaredContinuous, Inverse, continuous, matrix_symbol, of_limit};
 pub(crate) use force::{Displacements, ForceError};
 pub(crate) use limit::{Limit, LimitError};
 pub(crate) use self_adjoint::SelfAdjointness;
@@ -76,6 +80,8 @@ pub(crate) struct Directions {
     pub(crate) coordinate_direction: SymbolId,
     /// The new advected parameters `w⁺ = F⁻¹·w`.
     pub(crate) next: Vec<SymbolId>,
+    /// The increment `F⁺` of the next step, in print.
+    pub(crate) next_increment: SymbolId,
     /// `ξ̂` in the limit `F = exp(hξ̂)`.
     velocity: SymbolId,
     /// The body velocity `v` that a kick is differentiated along.
@@ -109,6 +115,9 @@ pub(crate) struct Derived {
     pub(crate) energy: Expression,
     /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero where the Lagrangian is seen to be self-adjoint.
     pub(crate) adjoint_defect: Expression,
+    /// The flow on increments (2.5): `μ(F⁺, w⁺)` and what it equals, `(L_F)* δl_d/δF` in `F` and `w⁺`; not where there
+    /// are closed `let`s.
+    pub(crate) flow: Option<[Expression; 2]>,
     /// The Lagrangian's limit as `h → 0`.
     pub(crate) limit: Limit,
     /// The part of the diamond without `F`.
@@ -188,6 +197,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
     let parts = transport::parts(&context, &momentum, &diamond);
     let kick_derivative = (closed.is_empty() && declared.group.is_so3)
         .then(|| kick_derivative::kick_derivative(&context, &parts.kick_before));
+    let flow = closed.is_empty().then(|| transport::increments(&context, &momentum, &left_momentum));
     let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
     let unknown =
         if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
@@ -201,6 +211,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
         jacobian,
         energy,
         adjoint_defect,
+        flow,
         limit,
         kick_before: parts.kick_before,
         kick_derivative,
@@ -257,20 +268,7 @@ impl Context<'_> {
 
     /// The components of an element of the algebra with respect to the generators.
     fn components(&self, element: &Expression) -> Expression {
-        let group = &self.declared.group;
-        if group.is_so3 {
-            return element.vee(self.symbols);
-        }
-        let unit = |index, size, transposed| {
-            let shape = if transposed { (1, size) } else { (size, 1) };
-            Expression::from_word(vec![Factor::Unit { index, size, transposed }], shape, self.symbols)
-        };
-        let (size, dimension) = (group.size, group.dimension());
-        let terms = group.dual().into_iter().map(|(k, row, column, factor)| {
-            let entry = self.product(&self.product(&unit(row, size, true), element), &unit(column, size, false));
-            self.product(&unit(k, dimension, false), &entry).scaled(factor)
-        });
-        terms.fold(Expression::zero((dimension, 1)), Expression::plus)
+        algebra::components(&self.declared.group, element, self.symbols)
     }
 
     fn substituted(&self, expression: &Expression, map: &BTreeMap<SymbolId, Expression>) -> Expression {
@@ -284,6 +282,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
     let column =
         |symbols: &mut Symbols, name: &str, rows, stage| symbols.add(name, (rows, 1), Structure::General, stage);
     let algebra = |symbols: &mut Symbols, name: &str| symbols.add(name, (size, size), structure, Stage::Construction);
+    let of_increment = symbols.get(declared.increment).structure;
     let inverse = symbols.add("F⁻¹", (size, size), Structure::General, Stage::Iteration);
     symbols.set_inverse(declared.increment, inverse);
     Directions {
@@ -308,5 +307,6 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
                 symbols.add(name, shape, structure, Stage::Step)
             })
             .collect(),
+        next_increment: symbols.add("F⁺", (size, size), of_increment, Stage::Iteration),
     }
 }

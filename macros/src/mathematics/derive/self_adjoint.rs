@@ -45,7 +45,7 @@ pub(super) fn defect(context: &Context) -> Expression {
         (declared.step, context.symbol(declared.step).scaled(-Rational::ONE)),
     ]);
     for &(w, variance) in &declared.advected {
-        map.insert(w, action::moved_back(context, variance, (&inverse, &f), &context.symbol(w)));
+        map.insert(w, action::moved_back(context.symbols, variance, (&inverse, &f), &context.symbol(w)));
     }
     declared.expression.clone().plus(context.substituted(&declared.expression, &map))
 }

@@ -9,8 +9,8 @@ use crate::mathematics::symbolic::{
 
 /// Terms of this order and above are dropped. The limit needs `l_d` to the first order, and `l_d` may divide by `h`.
 const CUTOFF: i32 = 3;
-/// A limit that a person would write down has a tenth of it.
-const MOST_FACTORS: usize = 4_000;
+/// A limit that a person would write down has a hundredth of it; that of a Cayley transform has a tenth.
+const MOST_FACTORS: usize = 16_000;
 
 /// `Σ c_i hⁱ + O(hᵉ)`.
 #[derive(Clone, Debug)]

@@ -43,9 +43,23 @@ pub(super) fn previous(context: &Context) -> Vec<(SymbolId, Expression)> {
     let inverse = Expression::inverse(context.declared.increment, context.symbols);
     let pairs = context.declared.advected.iter().zip(&context.directions.next);
     let moved = pairs.map(|(&(w, variance), &next)| {
-        (w, action::moved_back(context, variance, (&f, &inverse), &context.symbol(next)))
+        (w, action::moved_back(context.symbols, variance, (&f, &inverse), &context.symbol(next)))
     });
     moved.collect()
+}
+
+/// The two sides of the flow on increments: `μ(F⁺, w⁺)`, and the momentum after a step in `F` and `w⁺`.
+pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expression) -> [Expression; 2] {
+    let (symbols, directions) = (context.symbols, context.directions);
+    let next = directions.next_increment;
+    let mut map = BTreeMap::from([
+        (context.declared.increment, context.symbol(next)),
+        (directions.inverse, Expression::inverse(next, symbols)),
+    ]);
+    let carried = context.declared.advected.iter().zip(&directions.next);
+    map.extend(carried.map(|(&(w, _), &next)| (w, context.symbol(next))));
+    let after = context.substituted(left, &previous(context).into_iter().collect());
+    [context.substituted(momentum, &map), after]
 }
 
 /// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.

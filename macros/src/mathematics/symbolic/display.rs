@@ -185,3 +185,111 @@ fn factor_text(factor: &Factor, symbols: &Symbols) -> String {
         Factor::Vee { word, transposed } => format!("vee({}){}", word_text(word, symbols), mark(*transposed)),
     }
 }
+
+/// An expression that is linear in the components of a direction, as the vector that it pairs with; on SO(3) products
+/// of vectors are cross products. `None` where a term doesn't open.
+pub(crate) fn vector_text(expression: &Expression, direction: SymbolId, symbols: &Symbols) -> Option<String> {
+    let term = |(monomial, coefficient): (&Monomial, Rational)| {
+        let (atom, sign, word) = opened_form(monomial, direction, symbols)?;
+        let mut coefficient = if sign < 0 { -coefficient } else { coefficient };
+        let mut text = column_text(&word, symbols);
+        // −u × v = v × u.
+        if coefficient.is_negative()
+            && let [Factor::Hat(inner), rest @ ..] = word.as_slice()
+            && !rest.is_empty()
+        {
+            text = column_text(&[vec![Factor::Hat(rest.to_vec())], inner.clone()].concat(), symbols);
+            coefficient = -coefficient;
+        }
+        let (prefix, mut body) = parts(monomial, coefficient, Some(atom), symbols);
+        body.extend((!text.is_empty()).then_some(text));
+        Some((coefficient, prefix, body.join(" ")))
+    };
+    let terms: Option<Vec<_>> = expression.terms().map(term).collect();
+    terms.map(|terms| join(terms.into_iter()))
+}
+
+/// An expression that is linear in the components of two directions, as the matrix between them. `None` where a term
+/// doesn't open.
+pub(crate) fn matrix_text(expression: &Expression, [left, right]: [SymbolId; 2], symbols: &Symbols) -> Option<String> {
+    let term = |(monomial, coefficient): (&Monomial, Rational)| {
+        let mut rest = monomial.clone();
+        let (atom, sign, word) = opened_form(monomial, left, symbols)?;
+        rest.scalars.remove(atom);
+        let (prefix, mut body, sign) = if word.iter().any(|factor| factor.contains(right)) {
+            let (last, matrix) = word.split_last()?;
+            let is_direction = matches!(last, Factor::Symbol { id, transposed: false } if *id == right);
+            if !is_direction || matrix.iter().any(|factor| factor.contains(right)) {
+                return None;
+            }
+            let (prefix, mut body) = parts(&rest, coefficient, None, symbols);
+            body.push(if matrix.is_empty() { "I".to_owned() } else { word_text(matrix, symbols) });
+            (prefix, body, sign)
+        } else {
+            let (other, turn, row) = opened_form(&rest, right, symbols)?;
+            let (prefix, body) = parts(&rest, coefficient, Some(other), symbols);
+            let row = match row.as_slice() {
+                [] => String::new(),
+                [single] => format!("{}ᵀ", factor_text(single, symbols)),
+                row => format!("({})ᵀ", word_text(row, symbols)),
+            };
+            let outer = format!("{} {row}", word_text(&word, symbols)).trim().to_owned();
+            (prefix, [body, vec![outer]].concat(), sign * turn)
+        };
+        let coefficient = if sign < 0 { -coefficient } else { coefficient };
+        body.retain(|part| !part.is_empty());
+        Some((coefficient, prefix, body.join(" ")))
+    };
+    let terms: Option<Vec<_>> = expression.terms().map(term).collect();
+    terms.map(|terms| join(terms.into_iter()))
+}
+
+/// The atom `±⟨direction, W⟩` of a monomial, with its sign and the column `W`.
+fn opened_form<'a>(
+    monomial: &'a Monomial,
+    direction: SymbolId,
+    symbols: &Symbols,
+) -> Option<(&'a Atom, i8, Vec<Factor>)> {
+    let mut found = monomial.scalars.iter().filter(|(atom, _)| match atom {
+        Atom::Symbol(id) => *id == direction,
+        Atom::Trace(word) => word.iter().any(|factor| factor.contains(direction)),
+        Atom::Function(_, inner) | Atom::Sum(inner) => inner.contains(direction),
+    });
+    let (Some((atom, 1)), None) = (found.next(), found.next()) else { return None };
+    // On a line components are scalars.
+    let Atom::Trace(word) = atom else { return matches!(atom, Atom::Symbol(_)).then(|| (atom, 1, Vec::new())) };
+    let is_direction = |factor: &Factor| matches!(factor, Factor::Symbol { id, .. } if *id == direction);
+    let others = |factors: &[Factor]| !factors.iter().any(|factor| factor.contains(direction));
+    if word.first()?.shape(symbols).0 != 1 {
+        return None;
+    }
+    match word.as_slice() {
+        [first, rest @ ..] if is_direction(first) && others(rest) => Some((atom, 1, rest.to_vec())),
+        [rest @ .., last] if is_direction(last) && others(rest) => {
+            let (sign, column) = transpose(rest, symbols);
+            Some((atom, sign, column))
+        }
+        // uᵀ η̂ v = η·(v × u).
+        _ => {
+            let at = word.iter().position(
+                |factor| matches!(factor, Factor::Hat(inner) if inner.len() == 1 && is_direction(&inner[0])),
+            )?;
+            let (row, rest) = word.split_at(at);
+            let (_, column) = rest.split_first()?;
+            let (sign, u) = transpose(row, symbols);
+            (others(row) && others(column)).then(|| (atom, sign, [vec![Factor::Hat(column.to_vec())], u].concat()))
+        }
+    }
+}
+
+/// A column, `û v` as `u × v`.
+fn column_text(word: &[Factor], symbols: &Symbols) -> String {
+    let bracketed = |text: String| if text.contains(' ') { format!("({text})") } else { text };
+    match word {
+        [Factor::Hat(inner), rest @ ..] if !rest.is_empty() => {
+            let right = column_text(rest, symbols);
+            format!("{} × {}", bracketed(word_text(inner, symbols)), bracketed(right))
+        }
+        _ => word_text(word, symbols),
+    }
+}

@@ -17,7 +17,7 @@ mod variance;
 mod variation;
 mod word;
 
-pub(crate) use display::{covector_text, text};
+pub(crate) use display::{covector_text, matrix_text, text, vector_text};
 pub(crate) use expression::{Atom, Expression, Monomial, degree, monomial_contains, stage_of, stage_of_monomial};
 pub(crate) use functions::Function;
 pub(crate) use rational::Rational;

@@ -123,6 +123,8 @@ pub struct ExactDrift<T> {
 impl<T: Real> KineticFlow<T> for ExactBody<T> {
     type Drift = ExactDrift<T>;
 
+    const EXACT: bool = true;
+
     // With the shorter polynomials.
     const OPERATIONS: Operations = Operations { step: 270, iteration: 0 };
 

@@ -258,8 +258,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         self.kernel.describe(visitor);
     }
 
-    /// Without the processor, as in a run of many steps.
     fn cost(&self) -> Cost {
-        self.kernel.cost()
+        let [enter, leave] =
+            [&self.enter, &self.leave].map(|way| way.iter().map(Split::<S, K>::operations).sum::<f64>());
+        Cost { once: enter + leave, ..self.kernel.cost() }
     }
 }

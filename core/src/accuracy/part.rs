@@ -1,0 +1,237 @@
+//! A short part of the motion, over which all methods are tried: it tells them apart for little.
+//!
+//! A few steps show what a method's error is made of, and errors of some steps grow along the motion by nearly the same
+//! factor, whichever method has made them. So methods are ranked by the steps that they need over the part for an error
+//! that one of them is known to have there when it has the error asked for at the horizon; before any is known to, for
+//! one that grows in proportion to time.
+
+use super::Accuracy;
+use super::candidates::Candidate;
+use super::error::AccuracyError;
+use super::ladder::{Estimate, LARGEST_ERROR, Ladder, SMALLEST_ERROR};
+use super::search::MOST_IN_VAIN;
+use super::trials::{End, Start, Trials};
+use crate::groups::{Advected, LieGroup};
+
+/// The part is shortened by this factor until so many steps are enough for a motion.
+const SHORTER: f64 = 8.0;
+const MOST_STEPS: f64 = 8.0;
+/// So many times at most.
+const MOST_SHORTENINGS: u32 = 20;
+/// The part is found by a method of this order, if there is one.
+const HIGHEST_ORDER_OF_A_SCOUT: u32 = 6;
+/// The part has about so many steps of the method by which it is found.
+const OF_STEPS: f64 = 3.0;
+/// Of the stages of that method, what none is thought to come below; so little that it isn't the one missed.
+const OF_STAGES: f64 = 0.4;
+/// Of an error, what a reference is allowed.
+const OF_A_REFERENCE: f64 = 0.1;
+/// Errors below this aren't measured over the part: rounding has a share of them.
+const LEAST_LEVEL: f64 = 64.0 * f64::EPSILON;
+/// A reference isn't looked for with so many times the steps of the first trial.
+const MOST_REFERENCE_STEPS: f64 = 256.0;
+/// The ranking ends where it has cost so many runs of the method that looks cheapest.
+const MOST_RUNS: f64 = 8.0;
+/// Methods are told apart that seem to cost up to so many times the cheapest.
+pub(super) const FAR: f64 = 2.0;
+/// How often a longer part is in the horizon.
+const LONGER: f64 = 5.0;
+/// It is shorter where a run over it would take more operations, so that the ranking ends in time.
+const OF_A_LONGER_PART: f64 = MOST_IN_VAIN / 30.0;
+/// Of the steps that the shorter part shows, the trials over the longer one begin with these fractions.
+const ROUGHER: f64 = 4.0;
+const MUCH_ROUGHER: f64 = 16.0;
+
+/// The trials of all methods over a part of the motion.
+pub(super) struct Part<'a, G: LieGroup<Scalar = f64>, A> {
+    start: Start<G>,
+    /// How often it is in the horizon.
+    pub(super) times: f64,
+    reference: Option<End<G>>,
+    /// Stages over the part below which no method is thought to come.
+    least_stages: f64,
+    /// Of the methods that are looked at.
+    ladders: Vec<Option<Ladder<'a, G, A>>>,
+}
+
+impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
+    /// The part over which some method's steps are few.
+    ///
+    /// # Errors
+    ///
+    /// That of a method, where none makes steps however short.
+    pub(super) fn find(
+        candidates: &'a [Candidate<G, A>],
+        accuracy: Accuracy,
+        start: &Start<G>,
+        trials: &mut Trials,
+    ) -> Result<Self, AccuracyError> {
+        // Which method needs the fewest operations, if the errors of all fell by the same law; first what has none, and
+        // last those of high orders, whose steps may be much longer than others'.
+        let likely = |index: usize| {
+            let candidate: &Candidate<G, A> = &candidates[index];
+            let operations = candidate.least * accuracy.tolerance.powf(-f64::from(candidate.order).recip());
+            (!candidate.is_exact, candidate.order > HIGHEST_ORDER_OF_A_SCOUT, operations)
+        };
+        let mut scouts: Vec<usize> = (0..candidates.len()).collect();
+        scouts.sort_by(|&a, &b| {
+            let ((errs_a, high_a, of_a), (errs_b, high_b, of_b)) = (likely(a), likely(b));
+            (errs_a, high_a).cmp(&(errs_b, high_b)).then(of_a.total_cmp(&of_b))
+        });
+        let mut failure = None;
+        for scout in scouts {
+            let (mut scouted, mut horizon) = (None, start.horizon);
+            for _ in 0..MOST_SHORTENINGS {
+                let (start, mut ladder) = (start.until(horizon), Ladder::new(&candidates[scout]));
+                let level = level(accuracy, horizon);
+                while ladder.twice_the_steps() <= MOST_STEPS {
+                    ladder.extend(&start, ladder.twice_the_steps(), trials);
+                    if ladder.error_of_finest(&start).is_some_and(|error| error <= OF_A_REFERENCE * level) {
+                        break;
+                    }
+                }
+                if ladder.last_error(&start).is_some() {
+                    scouted = Some((start, ladder, level));
+                    break;
+                }
+                failure = failure.or(ladder.failure);
+                horizon /= SHORTER;
+            }
+            let Some((found, ladder, level)) = scouted else { continue };
+            let step = found.horizon / ladder.estimate(&found, None, level).steps;
+            let wanted = (OF_STEPS * step).min(start.horizon);
+            let mut ladders: Vec<_> = candidates.iter().map(Ladder::new).map(Some).collect();
+            let horizon = if wanted <= found.horizon && wanted > 0.25 * found.horizon {
+                ladders[scout] = Some(ladder);
+                found.horizon
+            } else {
+                wanted
+            };
+            let least_stages = OF_STAGES * horizon / step * f64::from(candidates[scout].stages);
+            let (start, times) = (start.until(horizon), start.horizon / horizon);
+            let mut part = Self { start, times, reference: None, least_stages, ladders };
+            if part.refer(scout, accuracy, trials).is_some() {
+                return Ok(part);
+            }
+        }
+        Err(failure.unwrap_or(AccuracyError::TooManySteps {
+            steps: f64::INFINITY,
+            method: candidates.first().map_or_else(String::new, |first| first.name.clone()),
+            trials: *trials,
+        }))
+    }
+
+    /// A longer part, for the methods that may be cheapest; none where this one is as long.
+    pub(super) fn longer(
+        &self,
+        candidates: &'a [Candidate<G, A>],
+        accuracy: Accuracy,
+        trials: &mut Trials,
+    ) -> Option<Self> {
+        let level = self.level(accuracy);
+        let scout = *self.ranking(level).first()?;
+        let likely = self.cost(scout, level);
+        let times = LONGER.max(likely / OF_A_LONGER_PART);
+        if 2.0 * times > self.times {
+            return None;
+        }
+        let most = FAR * likely;
+        let ladder = |(index, candidate): (usize, &'a Candidate<G, A>)| {
+            let estimate = self.estimate(index, level);
+            let may_be_cheaper = estimate.is_short || estimate.cost(self.times) <= most;
+            let rougher = if estimate.is_short { MUCH_ROUGHER } else { ROUGHER };
+            let first = (estimate.steps * self.times / times / rougher).ceil().max(1.0);
+            may_be_cheaper.then(|| Ladder::from(candidate, first))
+        };
+        let ladders = candidates.iter().enumerate().map(ladder).collect();
+        let start = self.start.until(accuracy.horizon / times);
+        let mut part = Self { start, times, reference: None, least_stages: 0.0, ladders };
+        part.refer(scout, accuracy, trials)?;
+        Some(part)
+    }
+
+    /// Makes the reference.
+    fn refer(&mut self, scout: usize, accuracy: Accuracy, trials: &mut Trials) -> Option<()> {
+        let (ladder, start) = (self.ladders[scout].as_mut()?, &self.start);
+        let enough = OF_A_REFERENCE * level(accuracy, start.horizon);
+        let most = MOST_REFERENCE_STEPS * ladder.twice_the_steps();
+        loop {
+            let is_enough = ladder.error_of_finest(start).is_some_and(|error| error <= enough);
+            let steps = ladder.twice_the_steps();
+            let is_too_much = steps > most || trials.operations + ladder.cost_of(steps) > MOST_IN_VAIN;
+            if is_enough || ladder.floor(start).is_some() || is_too_much {
+                break;
+            }
+            ladder.extend(start, steps, trials);
+        }
+        let agrees = ladder.last_error(start).is_some_and(|error| error < LARGEST_ERROR);
+        self.reference = ladder.finest().and_then(|finest| finest.end).filter(|_| agrees);
+        self.reference.map(|_| ())
+    }
+
+    /// The error over the part that is about the tolerance at the horizon, if errors grow in proportion to time.
+    pub(super) fn level(&self, accuracy: Accuracy) -> f64 {
+        level(accuracy, self.start.horizon)
+    }
+
+    /// Whether a method is looked at.
+    pub(super) fn has(&self, index: usize) -> bool {
+        self.ladders[index].is_some()
+    }
+
+    /// What a method takes for an error over the part.
+    pub(super) fn estimate(&self, index: usize, error: f64) -> Estimate {
+        let Some(ladder) = &self.ladders[index] else { return Estimate::NEVER };
+        let estimate = ladder.estimate(&self.start, self.reference.as_ref(), error);
+        let least = if estimate.is_bound { self.least_stages / f64::from(ladder.candidate.stages) } else { 0.0 };
+        Estimate { steps: estimate.steps.max(least), ..estimate }
+    }
+
+    /// Operations of a run to the horizon with the steps that an error over the part takes.
+    pub(super) fn cost(&self, index: usize, error: f64) -> f64 {
+        self.estimate(index, error).cost(self.times)
+    }
+
+    /// The error over the part of steps of which a run to the horizon has so many.
+    pub(super) fn error_at(&self, index: usize, steps: f64) -> Option<f64> {
+        let error =
+            self.ladders[index].as_ref()?.error_at(&self.start, self.reference.as_ref()?, steps / self.times)?;
+        Some(error).filter(|error| *error > 0.1 * SMALLEST_ERROR && *error < LARGEST_ERROR)
+    }
+
+    /// All methods, the cheapest first, and last those of which but a bound is known.
+    pub(super) fn ranking(&self, error: f64) -> Vec<usize> {
+        let mut indices: Vec<usize> = (0..self.ladders.len()).collect();
+        let place = |index| (self.estimate(index, error).is_bound, self.cost(index, error));
+        indices.sort_by(|&a, &b| {
+            let ((a, of_a), (b, of_b)) = (place(a), place(b));
+            a.cmp(&b).then(of_a.total_cmp(&of_b))
+        });
+        indices
+    }
+
+    /// Tries methods over the part until all that may take less than so many times what the cheapest takes have come
+    /// near the error.
+    pub(super) fn rank(&mut self, error: f64, within: f64, trials: &mut Trials) {
+        let before = trials.operations;
+        loop {
+            let estimates: Vec<_> = (0..self.ladders.len()).map(|index| self.estimate(index, error)).collect();
+            let cost = |index: usize| estimates[index].cost(self.times);
+            let (known, open): (Vec<usize>, Vec<usize>) =
+                (0..self.ladders.len()).partition(|&index| estimates[index].is_near);
+            let best = known.into_iter().map(cost).fold(f64::INFINITY, f64::min);
+            let Some(index) = open.into_iter().min_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
+            let spent = trials.operations - before;
+            let is_expensive = cost(index) > within * best || spent > MOST_RUNS * best;
+            if is_expensive || cost(index).is_infinite() || trials.operations > MOST_IN_VAIN {
+                break;
+            }
+            let Some(ladder) = &mut self.ladders[index] else { break };
+            ladder.extend(&self.start, ladder.twice_the_steps(), trials);
+        }
+    }
+}
+
+fn level(accuracy: Accuracy, horizon: f64) -> f64 {
+    (accuracy.tolerance * (horizon / accuracy.horizon)).max(LEAST_LEVEL)
+}

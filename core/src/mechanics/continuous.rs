@@ -1,0 +1,304 @@
+//! The trait of reduced continuous Lagrangians: what the thesis' first two chapters make of `l(ξ, w)`.
+
+use crate::error::{SetupError, StepError};
+use crate::groups::{Advected, LieGroup};
+use crate::mechanics::sum::Sum;
+use crate::numbers::{Coordinates, Mask, Real, real};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
+
+type Velocity<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
+type Covector<L> = Velocity<L>;
+type Hessian<L> = <Velocity<L> as Coordinates<<L as ContinuousLagrangian>::Scalar>>::Square;
+
+/// What is known of the Legendre transform `ξ ↦ μ = ∂l/∂ξ`, and with it of its inverse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Legendre {
+    /// `l` is quadratic in `ξ`, and its second derivative is the same for all `w`: `ξ = M⁻¹ (μ − s(w))`.
+    Constant,
+    /// `l` is quadratic in `ξ`: `ξ = M(w)⁻¹ (μ − s(w))`.
+    Varying,
+    /// The equation `∂l/∂ξ = μ` is solved by Newton's iteration.
+    Nonlinear,
+}
+
+impl Legendre {
+    /// Of a sum of two Lagrangians.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Nonlinear, _) | (_, Self::Nonlinear) => Self::Nonlinear,
+            (Self::Varying, _) | (_, Self::Varying) => Self::Varying,
+            _ => Self::Constant,
+        }
+    }
+}
+
+/// A reduced Lagrangian `l(ξ, w)` with its momentum, its diamond term and its equations of motion.
+///
+/// `ξ = g⁻¹ġ` is the body velocity, in components of the declared basis `E_k` (on SO(3) in rad/s), `w = g⁻¹·a_0` the
+/// advected parameters as the body sees them. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are body-frame
+/// angular momenta in kg m²/s.
+///
+/// [`lagrangian`](crate::lagrangian) implements it: of a declared `l` with its terms derived, and of a declared `l_d`
+/// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. Lagrangians add, and so do these: see [`Sum`]. What
+/// an ODE solver integrates is made of it by [`RightHandSide`](crate::motion::RightHandSide).
+///
+/// # Source
+///
+/// \[RDAE\], sections 1.1 to 1.3 and 2.1; see [`conventions`](crate::conventions).
+///
+/// # Examples
+///
+/// ```
+/// use liestep::mechanics::{ContinuousLagrangian, Inertia};
+/// use liestep::{SO3, lagrangian};
+/// use nalgebra::Vector3;
+///
+/// /// A heavy top, as in (2.3).
+/// #[lagrangian(
+///     group = SO3,
+///     velocity = Omega,
+///     advected(w = up),
+///     l = 0.5 * Omega.dot(&(J * Omega)) - m * g * w.dot(&rho),
+/// )]
+/// struct Top {
+///     J: Inertia,
+///     m: f64,
+///     g: f64,
+///     rho: Vector3<f64>,
+///     up: Vector3<f64>,
+/// }
+///
+/// let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
+/// let top = Top { J, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let (Omega, w) = (Vector3::new(0.5, 2.0, 12.0), Vector3::new(0.0, 0.6, 0.8));
+/// let momentum = top.momentum(&Omega, &w);
+/// assert_eq!(momentum, Vector3::new(1.5, 6.0, 48.0));
+/// let (torque, turn) = top.lie_poisson(&momentum, &w)?;
+/// assert!((torque - (momentum.cross(&Omega) + w.cross(&Vector3::z()) * 9.81)).norm() < 1e-12);
+/// assert!((turn - w.cross(&Omega)).norm() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` isn't a Lagrangian with a continuous limit",
+    label = "no `l(ξ, w)` is known of it",
+    note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none"
+)]
+pub trait ContinuousLagrangian {
+    /// The scalar.
+    type Scalar: Real;
+    /// The group.
+    type Group: LieGroup<Scalar = Self::Scalar>;
+    /// The advected parameters: `()`, a vector, or a tuple.
+    type Advected: Advected<Self::Group>;
+
+    /// What is known of the inverse Legendre transform.
+    const LEGENDRE: Legendre;
+
+    /// What was declared, and the continuous equations that are derived from it, as text.
+    const CONTINUOUS_DERIVATION: &'static str;
+
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] naming the first field whose value can't be used.
+    fn check_parameters(&self) -> Result<(), SetupError>;
+
+    /// The spatial values `a_0` of the advected parameters.
+    fn spatial_parameters(&self) -> Self::Advected;
+
+    /// `l(ξ, w)`, in J; of a declared `l` the expression as it stands.
+    fn l(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Scalar;
+
+    /// The momentum `μ = ∂l/∂ξ`, \[RDAE, (1.14)\].
+    fn momentum(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self>;
+
+    /// The second derivative `M = ∂²l/∂ξ²`.
+    fn velocity_hessian(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Hessian<Self>;
+
+    /// `∂l/∂w ⋄ w`: components `−⟨∂l/∂w, E_k·w⟩`, \[RDAE, (2.1)\].
+    fn diamond_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self>;
+
+    /// `(∂²l/∂w∂ξ)(ξ·w)`: by how much the momentum of a fixed velocity falls as `w` is carried along. Zero where `l` is
+    /// a kinetic energy of `ξ` alone and a potential of `w`.
+    fn momentum_advection(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self>;
+
+    /// `μ̇ = ad*_ξ μ + ∂l/∂w ⋄ w`, \[RDAE, (1.4) and (2.2)\].
+    fn momentum_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
+        let momentum = self.momentum(velocity, w);
+        Self::Group::lie_bracket_transpose(velocity, &momentum) + self.diamond_rate(velocity, w)
+    }
+
+    /// `ẇ = −ξ·w`, \[RDAE, (2.2)\].
+    fn advected_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Advected {
+        w.rate(&Self::Group::hat(velocity))
+    }
+
+    /// The inverse Legendre transform: the velocity `ξ` with `∂l/∂ξ = μ`.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::Singular`] where `M` is singular or has lost its sign, [`StepError::NotConverged`] where Newton's
+    /// iteration finds no velocity.
+    fn velocity(&self, momentum: &Covector<Self>, w: &Self::Advected) -> Result<Velocity<Self>, StepError> {
+        let rest = Velocity::<Self>::zero();
+        let defect = *momentum - self.momentum(&rest, w);
+        let velocity = Velocity::<Self>::solve(&self.velocity_hessian(&rest, w), &defect).0;
+        match Self::LEGENDRE {
+            Legendre::Constant | Legendre::Varying => finite(velocity),
+            Legendre::Nonlinear => velocity_by_newton(self, momentum, w, velocity),
+        }
+    }
+
+    /// The reduced Hamiltonian `h(μ, w) = ⟨μ, ξ⟩ − l(ξ, w)`, in J, \[RDAE, (1.16)\].
+    ///
+    /// # Errors
+    ///
+    /// As [`velocity`](Self::velocity).
+    fn hamiltonian(&self, momentum: &Covector<Self>, w: &Self::Advected) -> Result<Self::Scalar, StepError> {
+        let velocity = self.velocity(momentum, w)?;
+        Ok(momentum.dot(&velocity) - self.l(&velocity, w))
+    }
+
+    /// The Euler–Poincaré equations with advection, \[RDAE, (1.4) and (2.2)\], solved for the rates of velocity and
+    /// advected parameters: `M ξ̇ = ad*_ξ μ + ∂l/∂w ⋄ w + (∂²l/∂w∂ξ)(ξ·w)` and `ẇ = −ξ·w`.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::Singular`] where `M` is singular.
+    fn euler_poincare(
+        &self,
+        velocity: &Velocity<Self>,
+        w: &Self::Advected,
+    ) -> Result<(Velocity<Self>, Self::Advected), StepError> {
+        let force = self.momentum_rate(velocity, w) + self.momentum_advection(velocity, w);
+        let rate = Velocity::<Self>::solve(&self.velocity_hessian(velocity, w), &force).0;
+        Ok((finite(rate)?, self.advected_rate(velocity, w)))
+    }
+
+    /// The Lie–Poisson equations on the dual of the semidirect product, \[RDAE, (1.12)\]: with `ξ = ∂h/∂μ` the rates
+    /// `μ̇ = ad*_ξ μ − ∂h/∂w ⋄ w` and `ẇ = −ξ·w`.
+    ///
+    /// # Errors
+    ///
+    /// As [`velocity`](Self::velocity).
+    fn lie_poisson(
+        &self,
+        momentum: &Covector<Self>,
+        w: &Self::Advected,
+    ) -> Result<(Covector<Self>, Self::Advected), StepError> {
+        let velocity = self.velocity(momentum, w)?;
+        // ∂h/∂w = −∂l/∂w at the velocity of the momentum.
+        let rate = Self::Group::lie_bracket_transpose(&velocity, momentum) + self.diamond_rate(&velocity, w);
+        Ok((rate, self.advected_rate(&velocity, w)))
+    }
+}
+
+/// The value, if it is one.
+fn finite<T: Real, V: Coordinates<T>>(value: V) -> Result<V, StepError> {
+    if value.is_finite() { Ok(value) } else { Err(StepError::Singular) }
+}
+
+/// More than any regular Lagrangian needs: Newton's iteration doubles the digits, and a halved step is a lost one.
+const MOST_ITERATIONS: u32 = 50;
+/// A step of `2⁻²⁰` of Newton's is no longer one that the linear model speaks of.
+const MOST_HALVINGS: u32 = 20;
+/// What rounding leaves of the equation, in units of the scalar's epsilon and of the size of its terms.
+const ROUNDINGS: f64 = 1e4;
+
+/// Newton's iteration for `∂l/∂ξ = μ`, with steps that are halved until they help; it ends where none does.
+fn velocity_by_newton<L: ContinuousLagrangian + ?Sized>(
+    lagrangian: &L,
+    momentum: &Covector<L>,
+    w: &L::Advected,
+    mut velocity: Velocity<L>,
+) -> Result<Velocity<L>, StepError> {
+    let defect_at = |velocity: &Velocity<L>| *momentum - lagrangian.momentum(velocity, w);
+    let (rest, first) = (Velocity::<L>::zero(), defect_at(&Velocity::<L>::zero()));
+    // Where the first step leaves the domain of `l`, the iteration begins at rest.
+    let mut defect = defect_at(&velocity);
+    let starts = defect.dot(&defect).simd_le(first.dot(&first));
+    velocity = velocity.select(starts, rest);
+    defect = defect.select(starts, first);
+    let half = real::<L::Scalar>(0.5);
+    for _ in 0..MOST_ITERATIONS {
+        let size = defect.dot(&defect);
+        let step = Velocity::<L>::solve(&lagrangian.velocity_hessian(&velocity, w), &defect).0;
+        let (mut fraction, mut next, mut next_defect) = (real::<L::Scalar>(1.0), velocity, defect);
+        let mut helped: Mask<L::Scalar> = size.simd_lt(size);
+        for _ in 0..MOST_HALVINGS {
+            let candidate = velocity + step * fraction;
+            let candidate_defect = defect_at(&candidate);
+            let helps = candidate_defect.dot(&candidate_defect).simd_lt(size) & !helped;
+            next = candidate.select(helps, next);
+            next_defect = candidate_defect.select(helps, next_defect);
+            helped = helped | helps;
+            if helped.all() {
+                break;
+            }
+            fraction *= half;
+        }
+        (velocity, defect) = (next, next_defect);
+        if helped.none() {
+            break;
+        }
+    }
+    let size = momentum.dot(momentum) + lagrangian.momentum(&velocity, w).dot(&lagrangian.momentum(&velocity, w));
+    let allowed = L::Scalar::simd_default_epsilon() * real(ROUNDINGS);
+    let residual = defect.dot(&defect);
+    if !residual.simd_le(size * allowed * allowed).all() {
+        let relative = (residual / size).simd_sqrt();
+        return Err(StepError::NotConverged {
+            iterations: MOST_ITERATIONS,
+            residual: crate::numbers::reported(relative),
+        });
+    }
+    // Of two velocities with one momentum the one is meant on whose side of the singularity rest is.
+    let sign = |velocity: &Velocity<L>| Velocity::<L>::least_pivot(&lagrangian.velocity_hessian(velocity, w));
+    let lost = sign(&rest).simd_gt(real(0.0)) & sign(&velocity).simd_le(real(0.0));
+    if lost.any() { Err(StepError::Singular) } else { finite(velocity) }
+}
+
+impl<A, B> ContinuousLagrangian for Sum<A, B>
+where
+    A: ContinuousLagrangian,
+    B: ContinuousLagrangian<Scalar = A::Scalar, Group = A::Group>,
+{
+    type Scalar = A::Scalar;
+    type Group = A::Group;
+    type Advected = (A::Advected, B::Advected);
+
+    const LEGENDRE: Legendre = A::LEGENDRE.or(B::LEGENDRE);
+    const CONTINUOUS_DERIVATION: &'static str =
+        "the sum of two Lagrangians: l, its momenta and diamonds, each added; see CONTINUOUS_DERIVATION of either\n";
+
+    fn check_parameters(&self) -> Result<(), SetupError> {
+        self.first.check_parameters()?;
+        self.second.check_parameters()
+    }
+
+    fn spatial_parameters(&self) -> Self::Advected {
+        (self.first.spatial_parameters(), self.second.spatial_parameters())
+    }
+
+    fn l(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Scalar {
+        self.first.l(velocity, &w.0) + self.second.l(velocity, &w.1)
+    }
+
+    fn momentum(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
+        self.first.momentum(velocity, &w.0) + self.second.momentum(velocity, &w.1)
+    }
+
+    fn velocity_hessian(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Hessian<Self> {
+        self.first.velocity_hessian(velocity, &w.0) + self.second.velocity_hessian(velocity, &w.1)
+    }
+
+    fn diamond_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
+        self.first.diamond_rate(velocity, &w.0) + self.second.diamond_rate(velocity, &w.1)
+    }
+
+    fn momentum_advection(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
+        self.first.momentum_advection(velocity, &w.0) + self.second.momentum_advection(velocity, &w.1)
+    }
+}

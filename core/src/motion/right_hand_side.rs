@@ -1,0 +1,137 @@
+//! The continuous equations of motion as numbers, for any ODE solver.
+
+use crate::error::{SetupError, StepError};
+use crate::groups::{Advected as _, LieGroup};
+use crate::mechanics::{ContinuousLagrangian, Legendre, check_inertia};
+use crate::numbers::{Coordinates, Entries as _, real};
+
+type Velocity<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
+type Matrix<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Matrix;
+type Square<L> = <Velocity<L> as Coordinates<<L as ContinuousLagrangian>::Scalar>>::Square;
+
+/// The right-hand side of `ġ = g ξ̂`, `μ̇ = ad*_ξ μ + ∂l/∂w ⋄ w` with `w = g⁻¹·a_0`, \[RDAE, (1.5), (1.12) and (2.2)\],
+/// its parameters checked and its inertia factorised once.
+///
+/// As numbers a state is the attitude's matrix row by row, then the body momentum. An explicit method keeps neither the
+/// relation of the group nor a momentum: it is for references, and for comparison.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::effects::{Gravity, RigidBody};
+/// use liestep::motion::RightHandSide;
+/// use liestep::{NonstandardInertia, SO3};
+/// use nalgebra::Vector3;
+///
+/// let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
+/// let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let top = RightHandSide::new(RigidBody { J_d } + gravity)?;
+///
+/// let state = top.state(&SO3::default(), &Vector3::new(1.5, 6.0, 48.0));
+/// let mut rate = vec![0.0; state.len()];
+/// top.rate(&state, &mut rate)?; // what a solver calls
+/// assert_eq!(rate[..3], [0.0, -12.0, 2.0]); // the first row of ξ̂, as g = I
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RightHandSide<L: ContinuousLagrangian> {
+    lagrangian: L,
+    spatial: L::Advected,
+    /// `M` factorised, and its determinant, where it is the same for all `ξ` and `w`.
+    inertia: Option<(Square<L>, L::Scalar)>,
+}
+
+impl<L: ContinuousLagrangian> RightHandSide<L> {
+    /// Checks the parameters, and folds what doesn't change.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] for a parameter that can't be used, [`SetupError::NonFinite`] for an advected one,
+    /// [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] where a momentum doesn't determine a velocity
+    /// at rest.
+    pub fn new(lagrangian: L) -> Result<Self, SetupError> {
+        lagrangian.check_parameters()?;
+        let spatial = lagrangian.spatial_parameters();
+        if !spatial.is_finite() {
+            return Err(SetupError::NonFinite { what: "advected parameter" });
+        }
+        let inertia = lagrangian.velocity_hessian(&Velocity::<L>::zero(), &spatial);
+        check_inertia::<L::Scalar, Velocity<L>>(&inertia)?;
+        let inertia = (L::LEGENDRE == Legendre::Constant).then(|| Velocity::<L>::factorise(&inertia));
+        Ok(Self { lagrangian, spatial, inertia })
+    }
+
+    /// The Lagrangian.
+    pub const fn lagrangian(&self) -> &L {
+        &self.lagrangian
+    }
+
+    /// The velocity of a momentum, (1.14) solved.
+    ///
+    /// # Errors
+    ///
+    /// As [`ContinuousLagrangian::velocity`].
+    #[inline]
+    pub fn velocity(&self, momentum: &Velocity<L>, w: &L::Advected) -> Result<Velocity<L>, StepError> {
+        let Some((factors, determinant)) = &self.inertia else { return self.lagrangian.velocity(momentum, w) };
+        let bias = self.lagrangian.momentum(&Velocity::<L>::zero(), w);
+        Ok(Velocity::<L>::solve_again(factors, *determinant, &(*momentum - bias)))
+    }
+
+    /// `ġ` and `μ̇`.
+    ///
+    /// # Errors
+    ///
+    /// As [`ContinuousLagrangian::velocity`].
+    #[inline]
+    pub fn rates(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Result<(Matrix<L>, Velocity<L>), StepError> {
+        let w = self.spatial.seen_from(attitude);
+        let velocity = self.velocity(momentum, &w)?;
+        let rate = L::Group::lie_bracket_transpose(&velocity, momentum) + self.lagrangian.diamond_rate(&velocity, &w);
+        Ok((attitude.change(&L::Group::hat(&velocity)), rate))
+    }
+
+    /// The energy `h(μ, w)`, (1.16), in J.
+    ///
+    /// # Errors
+    ///
+    /// As [`ContinuousLagrangian::velocity`].
+    pub fn energy(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Result<L::Scalar, StepError> {
+        self.lagrangian.hamiltonian(momentum, &self.spatial.seen_from(attitude))
+    }
+
+    /// A state as numbers: the attitude's matrix row by row, then the momentum.
+    pub fn state(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Vec<L::Scalar> {
+        let mut numbers = Vec::new();
+        attitude.matrix().each(&mut |entry| numbers.push(entry));
+        momentum.each(&mut |entry| numbers.push(entry));
+        numbers
+    }
+
+    /// The attitude and the momentum of a [`state`](Self::state), the matrix as it is; numbers that are missing are NaN.
+    pub fn parts(&self, state: &[L::Scalar]) -> (L::Group, Velocity<L>) {
+        let mut numbers = state.iter().copied();
+        let mut next = || numbers.next().unwrap_or_else(|| real(f64::NAN));
+        let matrix = Matrix::<L>::from_entries(&mut next);
+        (L::Group::from_matrix_unchecked(matrix), Velocity::<L>::from_entries(&mut next))
+    }
+
+    /// Writes the rate of a [`state`](Self::state), in the same order.
+    ///
+    /// # Errors
+    ///
+    /// As [`ContinuousLagrangian::velocity`].
+    pub fn rate(&self, state: &[L::Scalar], rate: &mut [L::Scalar]) -> Result<(), StepError> {
+        let (attitude, momentum) = self.parts(state);
+        let (of_attitude, of_momentum) = self.rates(&attitude, &momentum)?;
+        let mut places = rate.iter_mut();
+        let mut write = |entry: L::Scalar| {
+            if let Some(place) = places.next() {
+                *place = entry;
+            }
+        };
+        of_attitude.each(&mut write);
+        of_momentum.each(&mut write);
+        Ok(())
+    }
+}

@@ -1,0 +1,141 @@
+//! The implementation of `ContinuousLagrangian`.
+
+pub(super) mod text;
+
+use proc_macro2::{Span, TokenStream};
+use quote::quote_spanned;
+use syn::Ident;
+
+use super::code::Form;
+use super::{Code, Emitter, Header, Takes, docs, page, stages, verbatim};
+use crate::declared::{Coordinates, Declaration, Discretisation, Quadrature};
+use crate::judged::Equations;
+use crate::mathematics::derive::Inverse;
+use crate::mathematics::symbolic::Expression;
+use crate::program::{Graph, along_directions};
+
+/// The item with the continuous equations alone.
+pub(crate) fn alone(item: &TokenStream, declaration: &Declaration, equations: &Equations) -> TokenStream {
+    let header = Header::new(declaration);
+    let implementation = implementation(declaration, &header, equations);
+    let addition = header.addition("ContinuousLagrangian");
+    let item = page::documented(item, &text::page(declaration, equations));
+    let implementations = header.enclosing(quote_spanned!(Span::mixed_site()=> #implementation #addition));
+    quote_spanned!(Span::mixed_site()=> #item #implementations)
+}
+
+/// The continuous equations of a declared `l`, or of the limit of `l_d`.
+pub(super) fn implementation(declaration: &Declaration, header: &Header, equations: &Equations) -> TokenStream {
+    let (span, derived, private) = (Span::mixed_site(), &equations.derived, &header.private);
+    let code = Code { declaration, header, names: &equations.names, symbols: &derived.symbols, directions: None };
+    let texts = text::equations(declaration, equations);
+    let method =
+        |name: &str, rank, form, expression| code.continuous_method(name, rank, form, expression, equations, &texts);
+    let l = match declaration.continuous {
+        Some(_) => verbatim::declared(declaration, header),
+        None => method("l", 0, Form::Scalar, &derived.lagrangian),
+    };
+    let methods: TokenStream = [
+        method("momentum", 1, Form::Vector, &derived.momentum),
+        method("velocity_hessian", 2, Form::Square, &derived.hessian),
+        method("diamond_rate", 1, Form::Vector, &derived.diamond),
+        method("momentum_advection", 1, Form::Vector, &derived.advection),
+    ]
+    .into_iter()
+    .collect();
+    let legendre = match derived.inverse {
+        Inverse::Constant => "Constant",
+        Inverse::Varying => "Varying",
+        Inverse::Nonlinear => "Nonlinear",
+    };
+    let legendre = Ident::new(legendre, span);
+    let (scalar, group, advected) = (&header.scalar, header.group(), header.advected_types());
+    let derivation = text::derivation(declaration, equations);
+    let documentation = format!("```text\n{derivation}```");
+    let implementation = header.implementation("ContinuousLagrangian");
+    let (checks, values) = (code.checks(), code.advected_value());
+    let generators = stages::same_generators(&code);
+    quote_spanned! {span=>
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
+        #implementation {
+            type Scalar = #scalar;
+            type Group = #group;
+            type Advected = #advected;
+
+            const LEGENDRE: #private::Legendre = #private::Legendre::#legendre;
+
+            #[doc = #documentation]
+            const CONTINUOUS_DERIVATION: &'static #private::core::primitive::str = {
+                // So that rustdoc shows no value: it would escape each letter that isn't ASCII.
+                const TEXT: &#private::core::primitive::str = #derivation;
+                TEXT
+            };
+
+            fn check_parameters(&self) -> #private::core::result::Result<(), #private::SetupError> {
+                #generators
+                #checks
+                #private::core::result::Result::Ok(())
+            }
+
+            fn spatial_parameters(&self) -> Self::Advected { #values }
+
+            #l
+            #methods
+        }
+    }
+}
+
+/// `l_d` as it is made of `l`.
+pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> TokenStream {
+    let (span, header) = (Span::mixed_site(), emitter.header);
+    let (private, square, scalar) = (&header.private, header.matrix(), &header.scalar);
+    let name = match discretisation.quadrature {
+        Quadrature::Trapezoid => "trapezoid",
+        Quadrature::Chord => "chord",
+        // By the derived expression.
+        Quadrature::Midpoint => "",
+    };
+    // Of the Cayley map, what is made of the declared `l` shares nothing with the derivation.
+    if discretisation.coordinates == Coordinates::Cayley && !name.is_empty() {
+        let name = Ident::new(name, span);
+        return quote_spanned! {span=>
+            /// The Lagrangian as it is made of the declared `l`.
+            fn l_d(&self, f: &#square, w: &<Self as #private::Effect>::Advected, h: #scalar) -> #scalar {
+                #private::#name::<Self, #private::CayleyRetraction>(self, f, w, h)
+            }
+        };
+    }
+    let lagrangian = &emitter.lowered.declared.expression;
+    let equations = docs::equations(emitter.derived, &emitter.lowered.declared, emitter.equations);
+    emitter.method("l_d", Takes::Increment, Form::Scalar, lagrangian, &equations)
+}
+
+impl Code<'_> {
+    /// A term as a method, with its equation as documentation.
+    fn continuous_method(
+        &self,
+        name: &str,
+        rank: usize,
+        form: Form,
+        expression: &Expression,
+        equations: &Equations,
+        texts: &[docs::Equation],
+    ) -> TokenStream {
+        let (span, header) = (Span::mixed_site(), self.header);
+        let mut graph = Graph::default();
+        let outputs = along_directions(&mut graph, &equations.derived, rank, expression);
+        let documentation = docs::of(texts, name, &graph, &outputs);
+        let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
+        let result = match form {
+            Form::Scalar => header.scalar.clone(),
+            Form::Vector => header.vector(),
+            Form::Square => header.square(),
+        };
+        let (name, vector) = (Ident::new(name, span), header.vector());
+        quote_spanned! {span=>
+            #[doc = #documentation]
+            fn #name(&self, velocity: &#vector, w: &Self::Advected) -> #result { #body }
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! The continuous equations in print.
+
+use crate::declared::{Declaration, FieldKind};
+use crate::emit::docs::{Equation, setting};
+use crate::judged::Equations;
+use crate::mathematics::derive::{Continuous, Inverse};
+use crate::mathematics::symbolic::{Expression, Rational, Variance, matrix_text, text, vector_text};
+
+/// A longer equation is said in words.
+const LONGEST: usize = 1_500;
+
+/// The name of the velocity.
+fn velocity(derived: &Continuous) -> &str {
+    &derived.symbols.get(derived.velocity).name
+}
+
+/// A covector as a vector, or as what it pairs with `η`.
+fn covector(derived: &Continuous, expression: &Expression) -> Option<String> {
+    vector_text(expression, derived.directions[0], &derived.symbols).filter(|text| text.len() <= LONGEST)
+}
+
+/// The equations in the order of the thesis.
+pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec<Equation> {
+    let derived = &equations.derived;
+    let xi = velocity(derived);
+    let scalar = |expression: &Expression| {
+        let text = text(expression, &derived.symbols);
+        if text.len() <= LONGEST { text } else { "…, which is long".to_owned() }
+    };
+    let paired = |method, name: &str, expression: &Expression, source| match covector(derived, expression) {
+        Some(text) => Equation::new(method, name, text, source),
+        None => Equation::new(method, &format!("⟨{name}, η⟩"), scalar(expression), source),
+    };
+    let w = names(declaration);
+    let at = if w.is_empty() { xi.to_owned() } else { format!("{xi}, {}", w.join(", ")) };
+    let source = if declaration.continuous.is_some() { "as declared, in normal form" } else { "the limit of l_d/h" };
+    let mut list = vec![
+        Equation::new("l", &format!("l({at})"), scalar(&derived.lagrangian), source),
+        paired("momentum", "μ", &derived.momentum, "∂l/∂ξ, (1.14)"),
+    ];
+    list.push(match matrix_text(&derived.hessian, derived.directions, &derived.symbols) {
+        Some(text) if text.len() <= LONGEST => Equation::new("velocity_hessian", "𝕀", text, "∂²l/∂ξ², the inertia"),
+        _ => Equation::new("velocity_hessian", "⟨𝕀η, ζ⟩", scalar(&derived.hessian), "∂²l/∂ξ², the inertia"),
+    });
+    let has_moved = derived.advected.iter().any(|(_, variance)| *variance != Variance::Fixed);
+    if has_moved {
+        list.push(paired("diamond_rate", "∂l/∂w ⋄ w", &derived.diamond, "(2.1)"));
+    }
+    if !derived.advection.is_zero() {
+        list.push(paired("momentum_advection", "(∂²l/∂w∂ξ)(ξ·w)", &derived.advection, "by which μ of a fixed ξ falls"));
+    }
+    list.push(momentum_rate(derived, has_moved));
+    list.extend(advected_rates(declaration, derived));
+    list.push(inverse(derived));
+    list.push(hamiltonian(derived, &w));
+    list.push(kept(declaration, equations));
+    list
+}
+
+/// The names of what is advected.
+fn names(declaration: &Declaration) -> Vec<String> {
+    declaration.advected.iter().map(crate::declared::AdvectedParameter::plain_name).collect()
+}
+
+fn sum(terms: &[String]) -> String {
+    let mut sum = String::new();
+    for term in terms.iter().filter(|term| *term != "0") {
+        match (sum.is_empty(), term.strip_prefix('−')) {
+            (true, _) => sum.push_str(term),
+            (false, Some(rest)) => sum += &format!(" − {rest}"),
+            (false, None) => sum += &format!(" + {term}"),
+        }
+    }
+    if sum.is_empty() { "0".to_owned() } else { sum }
+}
+
+/// (1.4) with (2.2), on SO(3) in cross products.
+fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
+    let xi = velocity(derived);
+    let momentum = covector(derived, &derived.momentum);
+    let diamond = covector(derived, &derived.diamond);
+    let right = match (derived.group.is_so3, momentum, diamond) {
+        (true, Some(momentum), Some(diamond)) if derived.has_kinetic() => {
+            sum(&[format!("({momentum}) × {xi}"), diamond])
+        }
+        (_, _, Some(diamond)) if has_moved && derived.group.is_so3 => format!("μ × {xi} + {diamond}"),
+        _ if has_moved => format!("ad*_{xi} μ + ∂l/∂w ⋄ w"),
+        _ => format!("ad*_{xi} μ"),
+    };
+    let source = if has_moved { "(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w" } else { "(1.4): ad*_ξ μ" };
+    let left = if derived.inverse == Inverse::Constant && derived.advection.is_zero() && derived.has_kinetic() {
+        "dμ/dt = 𝕀 dξ/dt"
+    } else {
+        "dμ/dt"
+    };
+    Equation::new("momentum_rate", &left.replace("ξ", xi), right, source)
+}
+
+/// (2.2), by the kind of each parameter.
+fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equation> {
+    let hat = format!("hat({})", velocity(derived));
+    let rate = |index: usize, name: String| {
+        let right = match declaration.advected_kind(index).variance() {
+            Variance::Covector if derived.group.is_so3 => format!("{name} × {}", velocity(derived)),
+            Variance::Vector => format!("−{hat} {name}"),
+            Variance::Covector => format!("{hat}ᵀ {name}"),
+            Variance::Contravariant => format!("−{hat} {name} − {name} {hat}ᵀ"),
+            Variance::Covariant => format!("{hat}ᵀ {name} + {name} {hat}"),
+            Variance::Mixed => format!("{name} {hat} − {hat} {name}"),
+            Variance::Fixed => return None,
+        };
+        Some(Equation::new("advected_rate", &format!("d{name}/dt"), right, "(2.2): −ξ·w"))
+    };
+    names(declaration).into_iter().enumerate().filter_map(|(index, name)| rate(index, name)).collect()
+}
+
+/// `μ − s(w)`.
+fn without_bias(derived: &Continuous) -> String {
+    match covector(derived, &derived.bias()) {
+        Some(bias) if bias == "0" => "μ".to_owned(),
+        Some(bias) if !bias.contains(" + ") && !bias.contains('−') => format!("μ − {bias}"),
+        Some(bias) => format!("μ − ({bias})"),
+        None => "μ − s(w)".to_owned(),
+    }
+}
+
+fn inverse(derived: &Continuous) -> Equation {
+    let (xi, difference) = (velocity(derived), without_bias(derived));
+    let difference = if difference == "μ" { difference } else { format!("({difference})") };
+    let (right, source) = match derived.inverse {
+        _ if !derived.has_kinetic() => ("not determined by μ: add a kinetic part".to_owned(), ""),
+        Inverse::Constant => (format!("𝕀⁻¹ {difference}"), "(1.14) inverted, 𝕀⁻¹ once for all"),
+        Inverse::Varying => (format!("𝕀(w)⁻¹ {difference}"), "(1.14) inverted"),
+        Inverse::Nonlinear => ("the solution of ∂l/∂ξ = μ".to_owned(), "(1.14) inverted by Newton's iteration"),
+    };
+    Equation::new("velocity", xi, right, source)
+}
+
+fn hamiltonian(derived: &Continuous, w: &[String]) -> Equation {
+    let at = ["μ"].into_iter().chain(w.iter().map(String::as_str)).collect::<Vec<_>>().join(", ");
+    let potential = text(&derived.potential(), &derived.symbols);
+    let difference = without_bias(derived);
+    let right = match derived.inverse {
+        Inverse::Nonlinear => format!("⟨μ, {0}⟩ − l at {0} = ∂h/∂μ", velocity(derived)),
+        _ if !derived.has_kinetic() => potential,
+        Inverse::Varying if difference == "μ" => sum(&["½ ⟨μ, 𝕀(w)⁻¹ μ⟩".to_owned(), potential]),
+        Inverse::Varying => sum(&[format!("½ ⟨{difference}, 𝕀(w)⁻¹ ({difference})⟩"), potential]),
+        _ if difference == "μ" => sum(&["½ ⟨μ, 𝕀⁻¹ μ⟩".to_owned(), potential]),
+        _ => sum(&[format!("½ ⟨{difference}, 𝕀⁻¹ ({difference})⟩"), potential]),
+    };
+    Equation::new("hamiltonian", &format!("h({at})"), right, "(1.16)")
+}
+
+/// What the motion keeps.
+fn kept(declaration: &Declaration, equations: &Equations) -> Equation {
+    let derived = &equations.derived;
+    let mut kept = vec![format!("h({})", if derived.advected.is_empty() { "μ" } else { "μ, w" })];
+    let carried = |index: &usize| declaration.advected_kind(*index).variance() != Variance::Fixed;
+    let carried: Vec<usize> = (0..declaration.advected.len()).filter(carried).collect();
+    let names = names(declaration);
+    match carried.as_slice() {
+        [] => kept.push("Ad*_{g⁻¹} μ".to_owned()),
+        [one] if derived.group.is_so3 && matches!(declaration.advected_kind(*one), FieldKind::Vector(_)) => {
+            let name = &names[*one];
+            kept.push(format!("|{name}|²"));
+            kept.push(format!("⟨μ, {name}⟩, the spatial momentum along it"));
+        }
+        _ => kept.push("⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0".to_owned()),
+    }
+    for symmetry in &equations.right_symmetries {
+        let terms = symmetry.iter().enumerate().filter(|(_, factor)| !factor.is_zero());
+        let term = |(k, factor): (usize, &Rational)| match factor.parts() {
+            (1, 1) => format!("μ_{}", k + 1),
+            (-1, 1) => format!("−μ_{}", k + 1),
+            (numerator, 1) => format!("{} μ_{}", numerator.to_string().replace('-', "−"), k + 1),
+            (numerator, denominator) => format!("({numerator}/{denominator}) μ_{}", k + 1).replace('-', "−"),
+        };
+        kept.push(sum(&terms.map(term).collect::<Vec<_>>()));
+    }
+    Equation::new("kept", "kept", kept.join("; "), "left and right symmetries")
+}
+
+/// The equations as one text.
+pub(super) fn derivation(declaration: &Declaration, equations: &Equations) -> String {
+    setting(declaration, false) + &section(declaration, equations)
+}
+
+/// Without the setting.
+pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations) -> String {
+    let texts = self::equations(declaration, equations);
+    let xi = velocity(&equations.derived);
+    let basis = if equations.derived.group.is_so3 {
+        "so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)"
+    } else {
+        "with the generators E_k of the declaration"
+    };
+    let lines: String = texts.iter().map(|equation| format!("    {}\n", equation.line())).collect();
+    let limit = if declaration.continuous.is_some() && declaration.discretisation().is_none() {
+        String::new()
+    } else {
+        format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²)\n")
+    };
+    format!("continuous\n    {xi} = g⁻¹ dg/dt\n{limit}    pairing: μ_k = ⟨μ, E_k⟩, {basis}\n{lines}")
+}
+
+/// What the struct's own documentation says of the continuous equations.
+pub(in crate::emit) fn page(declaration: &Declaration, equations: &Equations) -> String {
+    let shown = shown(declaration, equations);
+    format!(
+        "\n# Derived equations\n\n{shown}\n\nAll equations are in `CONTINUOUS_DERIVATION` and in the documentation of the \
+         methods. An ODE solver integrates what `RightHandSide` makes of them."
+    )
+}
+
+/// The equations of motion.
+pub(in crate::emit) fn shown(declaration: &Declaration, equations: &Equations) -> String {
+    let shown = ["l", "momentum", "momentum_rate", "advected_rate", "hamiltonian"];
+    let lines = self::equations(declaration, equations);
+    let lines = lines.iter().filter(|one| shown.contains(&one.method));
+    let text: String = lines.map(|equation| equation.line() + "\n").collect();
+    format!("```text\n{text}```")
+}

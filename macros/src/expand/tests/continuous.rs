@@ -1,0 +1,361 @@
+//! Continuous Lagrangians, and what is made of them.
+
+use std::rc::Rc;
+
+use expect_test::expect;
+
+use super::derivation::{continuous_derivation, derivation, page};
+use super::{HEAVY_TOP, expanded, tokens, top};
+use crate::declared::errors::Errors;
+use crate::declared::{Declaration, Role, Tree, check, lower, parse};
+use crate::judged::{self, Equations, verify};
+use crate::mathematics::derive::{self, Inverse};
+use crate::mathematics::symbolic::{Expression, Rational, substitute};
+
+/// Example 3 of the thesis.
+const TOP: &str = "group = SO3, velocity = Omega, advected(w = up),
+    l = 0.5 * Omega.dot(&(J * Omega)) - m * g * w.dot(&rho)";
+
+/// The same with the matrix `J_d`, as in section 3.2.
+const TOP_OF_MATRICES: &str = "group = SO3, velocity = Omega, advected(w = up),
+    l = 0.5 * (hat(Omega) * J_d * hat(Omega).transpose()).trace() - m * g * w.dot(&rho)";
+
+const PARAMETERS: &str = "struct Top { J: Inertia, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+
+fn read(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
+    let mut errors = Errors::default();
+    let declaration = parse::declaration(Role::Lagrangian, &tokens(arguments), &tokens(item), &mut errors);
+    let declaration = declaration.expect("a declaration");
+    let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
+    (declaration, tree)
+}
+
+fn equations(arguments: &str, item: &str) -> Equations {
+    let (declaration, tree) = read(arguments, item);
+    let mut errors = Errors::default();
+    let equations = judged::of_declared(&declaration, &tree, &mut errors);
+    assert!(errors.is_empty(), "{errors:?}");
+    equations.expect("regular").expect("continuous")
+}
+
+/// `l_d` in normal form, multiplied out.
+fn discrete(arguments: &str, item: &str) -> Expression {
+    let (declaration, tree) = read(arguments, item);
+    let mut errors = Errors::default();
+    let tree = judged::discretised(&declaration, &tree, &mut errors).expect("a fit").expect("discrete");
+    let readings = lower::readings(&declaration, &tree, &mut errors).expect("small");
+    readings.into_iter().find(|reading| reading.declared.lets.is_empty()).expect("short").declared.expression
+}
+
+/// The matrix `(F − I)/h` for the velocity, and the trapezoidal rule, make (3.13), the same sum of the same terms; what
+/// is generated for a step is the same too, token by token.
+#[test]
+fn the_trapezoidal_rule_makes_the_heavy_top() {
+    let item = top("NonstandardInertia");
+    let made = format!("{TOP_OF_MATRICES}, discretise = trapezoid");
+    assert_eq!(discrete(&made, &item), discrete(HEAVY_TOP, &item));
+    // Another rule for the potential is another Lagrangian, where the potential isn't linear.
+    let bent = TOP_OF_MATRICES.replace("w.dot(&rho)", "w.dot(&rho).powi(2)");
+    let [trapezoid, chord] =
+        ["trapezoid", "chord"].map(|rule| discrete(&format!("{bent}, discretise = {rule}"), &item));
+    assert_ne!(trapezoid, chord);
+    let stages = |arguments: &str| {
+        let text = expanded(arguments, &item).to_string();
+        let after = text.split_once("fn constants").expect("stages").1;
+        after.split_once("impl").expect("an end").0.to_owned()
+    };
+    assert_eq!(stages(&made), stages(HEAVY_TOP));
+}
+
+/// In principal axes or not, with `J` for `J_d`: the same steps up to `J_d = ½ tr(J) I − J`.
+#[test]
+fn the_ordinary_inertia_is_a_nonstandard_one() {
+    let text = derivation(&format!("{TOP}, discretise = trapezoid"), PARAMETERS);
+    assert!(text.contains("l_d = −(1/(2 h)) tr(F) tr(J) + (1/h) tr(F J) + (1/(2 h)) tr(J)"), "{text}");
+}
+
+/// The thesis' equations for the heavy top.
+#[test]
+#[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them
+fn of_the_heavy_top() {
+    expect![[r#"
+        group
+            g in SO3
+            w = g⁻¹·a₀ in V*
+        continuous
+            Omega = g⁻¹ dg/dt
+            pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
+            l(Omega, w) = −m g ⟨rho, w⟩ + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
+            μ = J Omega    [∂l/∂ξ, (1.14)]
+            𝕀 = J    [∂²l/∂ξ², the inertia]
+            ∂l/∂w ⋄ w = m g w × rho    [(2.1)]
+            dμ/dt = 𝕀 dOmega/dt = (J Omega) × Omega + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dw/dt = w × Omega    [(2.2): −ξ·w]
+            Omega = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+            kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
+    "#]].assert_eq(&continuous_derivation(TOP, PARAMETERS));
+    expect![[r#"
+        group
+            g in SO3
+            w = g⁻¹·a₀ in V*
+        continuous
+            Ω = g⁻¹ dg/dt
+            l_d(exp(h Ω), w, h) = h l(Ω, w) + O(h²)
+            pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
+            l(Ω, w) = −m g ⟨rho, w⟩ + (1/2) tr(J_d) ⟨Ω, Ω⟩ − (1/2) ⟨Ω, J_d Ω⟩    [the limit of l_d/h]
+            μ = tr(J_d) Ω − J_d Ω    [∂l/∂ξ, (1.14)]
+            𝕀 = tr(J_d) I − J_d    [∂²l/∂ξ², the inertia]
+            ∂l/∂w ⋄ w = m g w × rho    [(2.1)]
+            dμ/dt = 𝕀 dΩ/dt = (tr(J_d) Ω − J_d Ω) × Ω + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dw/dt = w × Ω    [(2.2): −ξ·w]
+            Ω = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+            kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
+    "#]].assert_eq(&continuous_derivation(HEAVY_TOP, &top("NonstandardInertia")));
+    expect![[r#"
+
+
+        # Derived equations
+
+        ```text
+        l(Omega, w) = −m g ⟨rho, w⟩ + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
+        μ = J Omega    [∂l/∂ξ, (1.14)]
+        dμ/dt = 𝕀 dOmega/dt = (J Omega) × Omega + m g w × rho    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+        dw/dt = w × Omega    [(2.2): −ξ·w]
+        h(μ, w) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + m g ⟨rho, w⟩    [(1.16)]
+        ```
+
+        All equations are in `CONTINUOUS_DERIVATION` and in the documentation of the methods. An ODE solver integrates what `RightHandSide` makes of them."#]].assert_eq(&page(TOP, PARAMETERS));
+}
+
+/// A kinetic energy that depends on `w`, one that isn't quadratic, and another group.
+#[test]
+#[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them
+fn of_others() {
+    let varying = "group = SO3, velocity = Omega, advected(w = up),
+        l = 0.5 * Omega.dot(&(J * Omega)) + 0.5 * k * w.dot(&Omega).powi(2) + k * s.dot(&Omega)";
+    let item = "struct Body { J: Inertia, k: f64, s: Vector3<f64>, up: Vector3<f64> }";
+    expect![[r#"
+        group
+            g in SO3
+            w = g⁻¹·a₀ in V*
+        continuous
+            Omega = g⁻¹ dg/dt
+            pairing: μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)
+            l(Omega, w) = k ⟨s, Omega⟩ + (k/2) ⟨w, Omega⟩² + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
+            μ = k s + k ⟨w, Omega⟩ w + J Omega    [∂l/∂ξ, (1.14)]
+            𝕀 = k w wᵀ + J    [∂²l/∂ξ², the inertia]
+            ∂l/∂w ⋄ w = k ⟨w, Omega⟩ Omega × w    [(2.1)]
+            (∂²l/∂w∂ξ)(ξ·w) = k ⟨w, Omega⟩ Omega × w    [by which μ of a fixed ξ falls]
+            dμ/dt = (k s + k ⟨w, Omega⟩ w + J Omega) × Omega + k ⟨w, Omega⟩ Omega × w    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            dw/dt = w × Omega    [(2.2): −ξ·w]
+            Omega = 𝕀(w)⁻¹ (μ − k s)    [(1.14) inverted]
+            h(μ, w) = ½ ⟨μ − k s, 𝕀(w)⁻¹ (μ − k s)⟩    [(1.16)]
+            kept = h(μ, w); |w|²; ⟨μ, w⟩, the spatial momentum along it    [left and right symmetries]
+    "#]].assert_eq(&continuous_derivation(varying, item));
+    let relativistic = "group = R1, velocity = v, l = -m * c * c * (1.0 - v.norm_squared() / (c * c)).sqrt()";
+    expect![[r#"
+        group
+            g in R1
+        continuous
+            v = g⁻¹ dg/dt
+            pairing: μ_k = ⟨μ, E_k⟩, with the generators E_k of the declaration
+            l(v) = −m c² sqrt(1 − (v²/c²))    [as declared, in normal form]
+            μ = (m v/sqrt(1 − (v²/c²)))    [∂l/∂ξ, (1.14)]
+            𝕀 = (m v²/(c² sqrt(1 − (v²/c²))³)) + (m/sqrt(1 − (v²/c²)))    [∂²l/∂ξ², the inertia]
+            dμ/dt = ad*_v μ    [(1.4): ad*_ξ μ]
+            v = the solution of ∂l/∂ξ = μ    [(1.14) inverted by Newton's iteration]
+            h(μ) = ⟨μ, v⟩ − l at v = ∂h/∂μ    [(1.16)]
+            kept = h(μ); Ad*_{g⁻¹} μ; μ_1    [left and right symmetries]
+    "#]]
+    .assert_eq(&continuous_derivation(relativistic, "struct Particle { m: f64, c: f64 }"));
+    let planar = "group = SE2, velocity = xi, advected(a = anchor),
+        l = 0.5 * xi.dot(&(M * xi)) - 0.5 * k * (a - p).norm_squared()";
+    let item = "struct Planar { M: Matrix3<f64>, k: f64, p: Point2<f64>, anchor: Point2<f64> }";
+    expect![[r#"
+        group
+            g in SE2
+            a = g⁻¹·a₀ in V
+        continuous
+            xi = g⁻¹ dg/dt
+            pairing: μ_k = ⟨μ, E_k⟩, with the generators E_k of the declaration
+            l(xi, a) = −(k/2) ⟨p, p⟩ + k ⟨p, a⟩ − (k/2) ⟨a, a⟩ + (1/2) ⟨xi, M xi⟩    [as declared, in normal form]
+            μ = (1/2) Mᵀ xi + (1/2) M xi    [∂l/∂ξ, (1.14)]
+            𝕀 = (1/2) M + (1/2) Mᵀ    [∂²l/∂ξ², the inertia]
+            ⟨∂l/∂w ⋄ w, η⟩ = −k ⟨p, hat(η) a⟩ + k ⟨a, hat(η) a⟩    [(2.1)]
+            dμ/dt = 𝕀 dxi/dt = ad*_xi μ + ∂l/∂w ⋄ w    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w]
+            da/dt = −hat(xi) a    [(2.2): −ξ·w]
+            xi = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
+            h(μ, a) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + (k/2) ⟨p, p⟩ − k ⟨p, a⟩ + (k/2) ⟨a, a⟩    [(1.16)]
+            kept = h(μ, w); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
+    "#]]
+    .assert_eq(&continuous_derivation(planar, item));
+}
+
+/// How `ξ` follows from `μ` is known exactly.
+#[test]
+fn inverses() {
+    let inverse = |l: &str, item: &str| {
+        equations(&format!("group = SO3, velocity = Omega, advected(w = up), l = {l}"), item).derived.inverse
+    };
+    let item = "struct Body { J: Inertia, k: f64, up: Vector3<f64> }";
+    assert_eq!(inverse("0.5 * Omega.dot(&(J * Omega)) - k * w.x", item), Inverse::Constant);
+    // What cancels doesn't count.
+    let cancelled = "0.5 * Omega.dot(&(J * Omega)) + k * w.x * (Omega - Omega).norm_squared()";
+    assert_eq!(inverse(cancelled, item), Inverse::Constant);
+    assert_eq!(inverse("0.5 * (1.0 + k * w.x.powi(2)) * Omega.dot(&(J * Omega))", item), Inverse::Varying);
+    assert_eq!(inverse("0.5 * Omega.dot(&(J * Omega)) + k * Omega.x.powi(4) - w.x", item), Inverse::Nonlinear);
+}
+
+/// Found in exact arithmetic, for all values of the parameters: a sphere's, those of translations, and of no body with
+/// an inertia of its own.
+#[test]
+fn right_symmetries() {
+    let found = |arguments: &str, item: &str| equations(arguments, item).right_symmetries.len();
+    let sphere = "group = SO3, velocity = Omega, l = 0.5 * j * Omega.norm_squared()";
+    assert_eq!(found(sphere, "struct Sphere { j: f64 }"), 3);
+    let symmetric = "group = SO3, velocity = Omega, advected(w = up),
+        l = 0.5 * a * (Omega.x.powi(2) + Omega.y.powi(2)) + 0.5 * b * Omega.z.powi(2) - k * w.z";
+    let item = "struct Lagrange { a: f64, b: f64, k: f64, up: Vector3<f64> }";
+    assert_eq!(found(symmetric, item), 1);
+    assert_eq!(equations(symmetric, item).right_symmetries[0], [0, 0, 1].map(Rational::integer));
+    assert_eq!(found(&symmetric.replace("k * w.z", "k * w.x"), item), 0);
+    assert_eq!(found(TOP, PARAMETERS), 0);
+    let free = "group = R3, velocity = v, l = 0.5 * m * v.norm_squared()";
+    assert_eq!(found(free, "struct Particle { m: f64 }"), 3);
+}
+
+const EVERYTHING: &str = "group = SE2, velocity = xi, advected(w = up, v = way, S = field),
+    l = 0.5 * (1.0 + w.dot(&r).powi(2)) * xi.dot(&(M * xi)) + v.dot(&xi) * w.dot(&(S * v)).sin()
+        + (hat(xi) * S).trace() - (1.0 + (S * M).trace().powi(2)).sqrt()";
+const FIELDS: &str = "struct Everything { M: Matrix3<f64>, r: Vector3<f64>, up: Vector3<f64>,
+    way: ContravariantVector<f64, 3>, field: MixedTensor<f64, 3> }";
+
+/// Each exact check sees a sign that is turned, and a factor.
+#[test]
+fn a_turned_sign_is_seen() {
+    for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS)] {
+        let (declaration, tree) = read(arguments, item);
+        let Equations { names, derived, .. } = equations(arguments, item);
+        let check = |change: &dyn Fn(&mut derive::Continuous)| {
+            let mut changed = derived.clone();
+            change(&mut changed);
+            verify::disagreement(&declaration, Some(&tree), &names, &changed)
+        };
+        assert_eq!(check(&|_| ()), None);
+        let turned = |expression: &Expression| expression.clone().scaled(-Rational::ONE);
+        assert_eq!(check(&|derived| derived.momentum = turned(&derived.momentum)), Some("velocity ∂h/∂μ"));
+        assert_eq!(check(&|derived| derived.hessian = turned(&derived.hessian)), Some("velocity ∂h/∂μ"));
+        assert_eq!(check(&|derived| derived.diamond = turned(&derived.diamond)), Some("diamond term ∂l/∂w ⋄ w"));
+        let halved = |derived: &mut derive::Continuous| {
+            derived.diamond = derived.diamond.clone().scaled(Rational::new(1, 2));
+        };
+        assert_eq!(check(&halved), Some("diamond term ∂l/∂w ⋄ w"));
+        if !derived.advection.is_zero() {
+            let turn = |derived: &mut derive::Continuous| derived.advection = turned(&derived.advection);
+            assert_eq!(check(&turn), Some("change of the momentum with w"));
+        }
+    }
+}
+
+/// The rate of the energy vanishes with the right signs of `⋄` and of `ẇ` together, and not with one of them turned.
+#[test]
+fn the_rate_of_the_energy() {
+    for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS)] {
+        let (declaration, tree) = read(arguments, item);
+        let Equations { names, derived, .. } = equations(arguments, item);
+        let rate = |diamond: &Expression| {
+            let changed = derive::Continuous { diamond: diamond.clone(), ..derived.clone() };
+            verify::energy_is_kept(&declaration, &tree, &names, &changed)
+        };
+        assert!(rate(&derived.diamond));
+        assert!(!rate(&derived.diamond.clone().scaled(-Rational::ONE)));
+        assert!(!rate(&Expression::zero((1, 1))));
+    }
+}
+
+/// The limit of what is made of `l` is `l`; of another it isn't.
+#[test]
+fn the_limit_is_what_was_discretised() {
+    let rules = ["trapezoid", "trapezoid(Cayley)", "trapezoid(exp)", "midpoint(exp)", "chord", "chord(exp)"];
+    for rule in rules {
+        let arguments = format!("{TOP}, discretise = {rule}");
+        let (declaration, tree) = read(&arguments, PARAMETERS);
+        let mut errors = Errors::default();
+        let discrete = judged::discretised(&declaration, &tree, &mut errors).expect("a fit").expect("discrete");
+        let readings = lower::readings(&declaration, &discrete, &mut errors).expect("small");
+        let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
+        let disagrees = |derived| verify::limit_disagrees(&declaration, &tree, &chosen.lowered.names, derived);
+        assert!(!disagrees(&chosen.derived), "{rule}");
+        let mut changed = chosen.derived.clone();
+        changed.limit.potential = changed.limit.potential.scaled(-Rational::ONE);
+        assert!(disagrees(&changed), "{rule}: the potential's sign");
+        let mut changed = chosen.derived.clone();
+        changed.limit.inertia = changed.limit.inertia.scaled(Rational::integer(2));
+        assert!(disagrees(&changed), "{rule}: a factor of the inertia");
+    }
+}
+
+/// On every group, whatever its Cayley transform looks like; a discretisation is its own adjoint, or is refused.
+#[test]
+fn on_every_group() {
+    let groups = [
+        ("SO2", 2, 1),
+        ("SE2", 3, 3),
+        ("SO3", 3, 3),
+        ("SE3", 4, 6),
+        ("SU2", 4, 3),
+        ("SL2", 2, 3),
+        ("Heisenberg", 3, 3),
+        ("R1", 2, 1),
+        ("R2", 3, 2),
+        ("R3", 4, 3),
+    ];
+    for (group, size, dimension) in groups {
+        let inertia: Vec<String> = (0..dimension).map(|k| format!("0.5 * j{k} * xi[{k}] * xi[{k}]")).collect();
+        let fields: Vec<String> = (0..dimension).map(|k| format!("j{k}: f64")).collect();
+        let kinetic = inertia.join(" + ");
+        let item = format!("struct Body {{ {}, r: Vector{size}<f64>, up: Vector{size}<f64> }}", fields.join(", "));
+        for rule in ["trapezoid(Cayley)", "chord(Cayley)"] {
+            let arguments = format!(
+                "group = {group}, velocity = xi, advected(w = up), l = {kinetic} - w.dot(&r), discretise = {rule}"
+            );
+            let begin = std::time::Instant::now();
+            assert!(!super::is_refused(&expanded(&arguments, &item)), "{group}, {rule}");
+            println!("{group}, {rule}: {:?}", begin.elapsed());
+        }
+        let closed = ["SO3", "Heisenberg", "R1", "R2", "R3"].contains(&group);
+        let arguments = format!(
+            "group = {group}, velocity = xi, advected(w = up), l = {kinetic} - w.dot(&r), discretise = midpoint(exp)"
+        );
+        assert_eq!(super::is_refused(&expanded(&arguments, &item)), !closed, "{group}, midpoint(exp)");
+    }
+    let own = "group = Affine, generators = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]], velocity = xi,
+        advected(w = up), l = 0.5 * j * xi.norm_squared() - w.dot(&r), discretise = trapezoid(Cayley)";
+    assert!(!super::is_refused(&expanded(own, "struct Body { j: f64, r: Vector2<f64>, up: Vector2<f64> }")));
+}
+
+/// Anisotropic added mass in the ambient matrix isn't self-adjoint on SE(2): that is refused.
+#[test]
+fn what_isnt_self_adjoint_is_refused() {
+    let body = |rule: &str| {
+        let arguments = format!(
+            "group = SE2, velocity = xi, discretise = {rule},
+            l = 0.5 * j * (hat(xi) * hat(xi).transpose()).trace() + 0.5 * k * r.dot(&(hat(xi) * s)).powi(2)"
+        );
+        expanded(&arguments, "struct Body { j: f64, k: f64, r: Vector3<f64>, s: Vector3<f64> }").to_string()
+    };
+    assert!(body("trapezoid").contains("isn't its own adjoint"));
+    assert!(!body("trapezoid(Cayley)").contains("compile_error"));
+}
+
+/// As the normal form shows.
+#[test]
+fn the_second_derivative_is_symmetric() {
+    let Equations { derived, .. } = equations(EVERYTHING, FIELDS);
+    let [eta, zeta] = derived.directions.map(|direction| Expression::symbol(direction, &derived.symbols));
+    let exchanged = std::collections::BTreeMap::from([(derived.directions[0], zeta), (derived.directions[1], eta)]);
+    let turned = substitute(&derived.hessian, &exchanged, &derived.symbols);
+    assert_eq!(turned, derived.hessian);
+}

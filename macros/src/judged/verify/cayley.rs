@@ -1,0 +1,50 @@
+//! Whether a formula is the inverse of the Cayley map on a group, at random points of a finite field.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::evaluation::Evaluation;
+use super::number::Number as _;
+use super::residue::Residue;
+use super::value::Value;
+use crate::declared::{Name, Tree};
+use crate::mathematics::group::Group;
+
+/// Independent points.
+const POINTS: u64 = 3;
+
+/// Whether `tree` at `F = cay(ξ̂)` is `ξ`, for random `ξ`.
+pub(crate) fn is_cayley_coordinates(group: &Group, tree: &Rc<Tree>) -> bool {
+    (1..=POINTS).all(|seed| {
+        let mut number = Residue::stream(seed);
+        let identity = Value::identity(group.size);
+        let xi: Vec<Residue> = (0..group.dimension()).map(|_| number()).collect();
+        let zero = Value::diagonal(group.size, |_| Residue::ZERO);
+        let half = group.generators.iter().zip(&xi).fold(zero, |sum, (entries, &component)| {
+            let half = component / (Residue::ONE + Residue::ONE);
+            sum.plus(&Value::square(group.size, entries).map(|entry: Residue| entry * half))
+        });
+        let (minus, plus) = (identity.zip(&half, |x, y| x - y), identity.plus(&half));
+        let values = BTreeMap::from([(Name::Increment, minus.inverse().times(&plus))]);
+        let found = Evaluation::new(&values).of(tree);
+        found.entries.len() == xi.len() && found.entries.iter().zip(&xi).all(|(a, b)| a.is_defined() && a == b)
+    })
+}
+
+/// The least `n` with `Nⁿ = 0` for all elements `N` of the algebra, where they are strictly triangular.
+pub(crate) fn nilpotency(group: &Group) -> usize {
+    let mut number = Residue::stream(1);
+    let zero = Value::diagonal(group.size, |_| Residue::ZERO);
+    let any = group.generators.iter().fold(zero, |sum, entries| {
+        let component = number();
+        sum.plus(&Value::square(group.size, entries).map(|entry: Residue| entry * component))
+    });
+    let mut power = any.clone();
+    (1..=group.size)
+        .find(|_| {
+            let vanishes = power.entries.iter().all(|&entry| entry == Residue::ZERO);
+            power = power.times(&any);
+            vanishes
+        })
+        .unwrap_or(group.size)
+}

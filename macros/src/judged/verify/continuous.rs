@@ -1,0 +1,357 @@
+//! The continuous equations at random points of a finite field, where nothing is rounded.
+//!
+//! Derivatives of the Lagrangian are those of dual numbers, so that the symbolic rules are compared with others. With
+//! `h(μ, w) = ⟨μ, ξ⟩ − l(ξ, w)`, two identities hold whatever the Lagrangian is: `∂h/∂μ = ξ`, and the energy doesn't
+//! change, `⟨∂h/∂μ, μ̇⟩ + ⟨∂h/∂w, ẇ⟩ = 0`.
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::dual::Dual;
+use super::evaluation::Evaluation;
+use super::inertia::{KineticPart, classified};
+use super::number::Number;
+use super::residue::Residue;
+use super::value::Value;
+use super::{SAMPLES, parameter, stream};
+use crate::declared::{Declaration, FieldKind, Name, Tree};
+use crate::mathematics::derive::{Continuous, Derived};
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
+use crate::program::{Graph, Input, Node, NodeId, along_directions, components, square};
+
+/// Independent points.
+const POINTS: u64 = 3;
+
+type Values<T> = BTreeMap<Name, Value<T>>;
+
+/// The derived terms as operations.
+struct Terms {
+    graph: Graph,
+    lagrangian: NodeId,
+    momentum: Vec<NodeId>,
+    hessian: Vec<NodeId>,
+    diamond: Vec<NodeId>,
+    advection: Vec<NodeId>,
+}
+
+impl Terms {
+    fn new(derived: &Continuous) -> Self {
+        let mut graph = Graph::default();
+        let [lagrangian, momentum, hessian, diamond, advection] = [
+            (0, &derived.lagrangian),
+            (1, &derived.momentum),
+            (2, &derived.hessian),
+            (1, &derived.diamond),
+            (1, &derived.advection),
+        ]
+        .map(|(rank, expression)| along_directions(&mut graph, derived, rank, expression));
+        let lagrangian = lagrangian.first().copied().unwrap_or_else(|| graph.zero());
+        Self { graph, lagrangian, momentum, hessian, diamond, advection }
+    }
+
+    fn values<T: Number>(&self, outputs: &[NodeId], names: &BTreeMap<Name, SymbolId>, at: &Values<T>) -> Vec<T> {
+        let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, at.get(name)?.clone())));
+        evaluated(&self.graph, outputs, &inputs.collect())
+    }
+}
+
+/// The values of operations on numbers of any kind.
+fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], inputs: &BTreeMap<SymbolId, Value<T>>) -> Vec<T> {
+    let mut known: BTreeMap<NodeId, T> = BTreeMap::new();
+    let input =
+        |input: Input| inputs.get(&input.symbol).map_or(T::UNDEFINED, |value| value.at(input.row, input.column));
+    for id in graph.reachable(outputs) {
+        let at = |operand: NodeId| known.get(&operand).copied().unwrap_or(T::UNDEFINED);
+        let value = match graph.node(id) {
+            Node::Constant(value) => T::of(value),
+            Node::Input(entry) => input(entry),
+            Node::Negate(a) => -at(a),
+            Node::Add(a, b) => at(a) + at(b),
+            Node::Subtract(a, b) => at(a) - at(b),
+            Node::Multiply(a, b) => at(a) * at(b),
+            Node::Divide(a, b) => at(a) / at(b),
+            Node::Apply(function, a) => at(a).apply(function),
+        };
+        known.insert(id, value);
+    }
+    outputs.iter().map(|output| known.get(output).copied().unwrap_or(T::UNDEFINED)).collect()
+}
+
+/// A point with its kinds of parameters.
+struct Point<'a, T> {
+    declaration: &'a Declaration,
+    values: Values<T>,
+}
+
+impl<'a, T: Number> Point<'a, T> {
+    fn new(declaration: &'a Declaration, mut number: impl FnMut() -> T) -> Self {
+        let mut values = Values::new();
+        for (index, field) in declaration.fields.iter().enumerate() {
+            values.insert(Name::Field(index), parameter(field.kind, &mut number));
+        }
+        for index in 0..declaration.advected.len() {
+            values.insert(Name::Advected(index), parameter(declaration.advected_kind(index), &mut number));
+        }
+        let velocity = FieldKind::Vector(declaration.group.dimension());
+        values.insert(Name::Velocity, parameter(velocity, &mut number));
+        Self { declaration, values }
+    }
+
+    fn group(&self) -> &Group {
+        &self.declaration.group
+    }
+
+    fn velocity(&self) -> Vec<T> {
+        self.values.get(&Name::Velocity).map_or_else(Vec::new, |velocity| velocity.entries.clone())
+    }
+
+    /// As dual numbers, whose velocity changes along component `j`.
+    fn along_velocity(&self, j: usize) -> Values<Dual<T>> {
+        let mut values = self.lifted();
+        if let Some(entry) = values.get_mut(&Name::Velocity).and_then(|velocity| velocity.entries.get_mut(j)) {
+            entry.slope = T::ONE;
+        }
+        values
+    }
+
+    /// As dual numbers, whose advected parameters change by `ξ·w`.
+    fn carried_by(&self, xi: &[T]) -> Values<Dual<T>> {
+        let mut values = self.lifted();
+        let element = hat(self.group(), xi);
+        for index in 0..self.declaration.advected.len() {
+            let (name, variance) = (Name::Advected(index), self.declaration.advected_kind(index).variance());
+            let Some(w) = self.values.get(&name) else { continue };
+            let slope = carried(variance, &element, w);
+            let entries = w.entries.iter().zip(&slope.entries).map(|(&value, &slope)| Dual { value, slope });
+            values.insert(name, Value { rows: w.rows, columns: w.columns, entries: entries.collect() });
+        }
+        values
+    }
+
+    fn lifted(&self) -> Values<Dual<T>> {
+        let lifted = |value: &Value<T>| Value {
+            rows: value.rows,
+            columns: value.columns,
+            entries: value.entries.iter().map(|&entry| Dual::constant(entry)).collect(),
+        };
+        self.values.iter().map(|(name, value)| (*name, lifted(value))).collect()
+    }
+}
+
+/// `Σ v_k E_k`.
+fn hat<T: Number>(group: &Group, v: &[T]) -> Value<T> {
+    let zero = Value::diagonal(group.size, |_| T::ZERO);
+    group.generators.iter().zip(v).fold(zero, |sum, (entries, &component)| {
+        sum.plus(&Value::square(group.size, entries).map(|entry: T| entry * component))
+    })
+}
+
+/// `E·w`.
+fn carried<T: Number>(variance: Variance, e: &Value<T>, w: &Value<T>) -> Value<T> {
+    match variance {
+        Variance::Vector => e.times(w),
+        Variance::Covector => e.transpose().times(w).map(|x| -x),
+        Variance::Contravariant => e.times(w).plus(&w.times(&e.transpose())),
+        Variance::Covariant => e.transpose().times(w).plus(&w.times(e)).map(|x| -x),
+        Variance::Mixed => e.times(w).zip(&w.times(e), |x, y| x - y),
+        Variance::Fixed => w.map(|_| T::ZERO),
+    }
+}
+
+/// `⟨ad*_ξ μ, E_k⟩ = ⟨μ, [ξ, E_k]⟩` for all `k`.
+fn coadjoint<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
+    let (dual, xi) = (group.dual(), hat(group, xi));
+    let of_generator = |entries: &Vec<Rational>| {
+        let generator = Value::square(group.size, entries);
+        let bracket = xi.times(&generator).zip(&generator.times(&xi), |x, y| x - y);
+        dual.iter().fold(T::ZERO, |sum, &(component, row, column, factor)| {
+            let paired = momentum.get(component).copied().unwrap_or(T::UNDEFINED);
+            sum + paired * T::of(factor) * bracket.at(row, column)
+        })
+    };
+    group.generators.iter().map(of_generator).collect()
+}
+
+fn dot<T: Number>(a: &[T], b: &[T]) -> T {
+    a.iter().zip(b).fold(T::ZERO, |sum, (&x, &y)| sum + x * y)
+}
+
+/// The first equation that doesn't hold; `tree` is the declared `l`, where it is one.
+pub(crate) fn disagreement(
+    declaration: &Declaration,
+    tree: Option<&Rc<Tree>>,
+    names: &BTreeMap<Name, SymbolId>,
+    derived: &Continuous,
+) -> Option<&'static str> {
+    let terms = Terms::new(derived);
+    (1..=POINTS).find_map(|seed| {
+        let point = Point::new(declaration, Residue::stream(seed));
+        disagreement_at(&point, tree, names, &terms)
+    })
+}
+
+fn disagreement_at(
+    point: &Point<Residue>,
+    tree: Option<&Rc<Tree>>,
+    names: &BTreeMap<Name, SymbolId>,
+    terms: &Terms,
+) -> Option<&'static str> {
+    let slope = |values: &Values<Dual<Residue>>| {
+        let value = match tree {
+            Some(tree) => Evaluation::new(values).of(tree).first(),
+            None => terms.values(&[terms.lagrangian], names, values).first().copied().unwrap_or(Dual::UNDEFINED),
+        };
+        value.slope
+    };
+    // What has no value here, or no derivative, isn't told.
+    let differs = |a: Residue, b: Residue| a.is_defined() && b.is_defined() && a != b;
+    let (dimension, xi) = (point.group().dimension(), point.velocity());
+    let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
+    let (momentum, hessian, diamond, advection) =
+        (at(&terms.momentum), at(&terms.hessian), at(&terms.diamond), at(&terms.advection));
+    for j in 0..dimension {
+        let varied = point.along_velocity(j);
+        let momenta = terms.values(&terms.momentum, names, &varied);
+        let velocities = varied.get(&Name::Velocity).map_or_else(Vec::new, |velocity| velocity.entries.clone());
+        let change = dot(&momenta, &velocities).slope - slope(&varied);
+        let column: Vec<Residue> = hessian.iter().skip(j).step_by(dimension).copied().collect();
+        if differs(change, dot(&xi, &column)) {
+            return Some("velocity ∂h/∂μ");
+        }
+    }
+    for (k, &found) in diamond.iter().enumerate() {
+        let unit: Vec<Residue> = (0..dimension).map(|j| if j == k { Residue::ONE } else { Residue::ZERO }).collect();
+        if differs(found, -slope(&point.carried_by(&unit))) {
+            return Some("diamond term ∂l/∂w ⋄ w");
+        }
+    }
+    let carried = point.carried_by(&xi);
+    if differs(energy_rate(point, &momentum, &diamond, slope(&carried)), Residue::ZERO) {
+        return Some("rate of the energy");
+    }
+    let varied = terms.values(&terms.momentum, names, &carried);
+    let is_wrong = advection.iter().zip(&varied).any(|(&found, varied)| differs(found, varied.slope));
+    is_wrong.then_some("change of the momentum with w")
+}
+
+/// `⟨∂h/∂μ, μ̇⟩ + ⟨∂h/∂w, ẇ⟩` with `∂h/∂μ = ξ`, `∂h/∂w = −∂l/∂w` and `ẇ = −ξ·w`; `carried` is `⟨∂l/∂w, ξ·w⟩`.
+fn energy_rate(point: &Point<Residue>, momentum: &[Residue], diamond: &[Residue], carried: Residue) -> Residue {
+    let xi = point.velocity();
+    let rate = coadjoint(point.group(), &xi, momentum);
+    let rate: Vec<Residue> = rate.iter().zip(diamond).map(|(&x, &y)| x + y).collect();
+    dot(&xi, &rate) + carried
+}
+
+/// Whether the rate of the energy vanishes, by itself.
+#[cfg(test)]
+pub(crate) fn energy_is_kept(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    names: &BTreeMap<Name, SymbolId>,
+    derived: &Continuous,
+) -> bool {
+    let terms = Terms::new(derived);
+    (1..=POINTS).all(|seed| {
+        let point = Point::new(declaration, Residue::stream(seed));
+        let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
+        let carried = Evaluation::new(&point.carried_by(&point.velocity())).of(tree).first().slope;
+        energy_rate(&point, &at(&terms.momentum), &at(&terms.diamond), carried) == Residue::ZERO
+    })
+}
+
+/// Whether the limit of a discretisation is the Lagrangian that was discretised.
+pub(crate) fn limit_disagrees(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    names: &BTreeMap<Name, SymbolId>,
+    derived: &Derived,
+) -> bool {
+    let (mut graph, none) = (Graph::default(), BTreeMap::new());
+    let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
+    let bias = components(&mut graph, derived, &none, &derived.limit.bias);
+    let mut scalariser =
+        crate::program::Scalariser { graph: &mut graph, symbols: &derived.symbols, given: none.clone() };
+    let potential = scalariser.scalar(&derived.limit.potential);
+    (1..=POINTS).any(|seed| {
+        let point = Point::new(declaration, Residue::stream(seed));
+        let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, point.values.get(name)?.clone())));
+        let inputs = inputs.collect();
+        let at = |outputs: &[NodeId]| evaluated(&graph, outputs, &inputs);
+        let (xi, dimension) = (point.velocity(), point.group().dimension());
+        let inertia = at(&inertia);
+        let image: Vec<Residue> = inertia.chunks(dimension).map(|row| dot(row, &xi)).collect();
+        let half = Residue::of(Rational::new(1, 2));
+        let potential = at(&[potential]).first().copied().unwrap_or(Residue::UNDEFINED);
+        let limit = half * dot(&xi, &image) + dot(&at(&bias), &xi) - potential;
+        let declared = Evaluation::new(&point.values).of(tree).first();
+        limit.is_defined() && declared.is_defined() && limit != declared
+    })
+}
+
+/// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved.
+pub(crate) fn right_symmetries(
+    declaration: &Declaration,
+    names: &BTreeMap<Name, SymbolId>,
+    derived: &Continuous,
+) -> Vec<Vec<Rational>> {
+    let (terms, dimension) = (Terms::new(derived), declaration.group.dimension());
+    let mut rows: Vec<Vec<Residue>> = Vec::new();
+    for seed in 1..=2 * u64::try_from(dimension).unwrap_or(0) + 2 {
+        let point = Point::new(declaration, Residue::stream(seed));
+        let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
+        let rate = coadjoint(point.group(), &point.velocity(), &at(&terms.momentum));
+        rows.push(rate.iter().zip(at(&terms.diamond)).map(|(&x, y)| x + y).collect());
+    }
+    let null_space = null_space(rows, dimension);
+    null_space.into_iter().filter_map(|vector| vector.into_iter().map(Residue::small).collect()).collect()
+}
+
+/// The vectors that all rows vanish on, by elimination; none where a row has no value.
+fn null_space(mut rows: Vec<Vec<Residue>>, dimension: usize) -> Vec<Vec<Residue>> {
+    if rows.iter().flatten().any(|entry| !entry.is_defined()) {
+        return Vec::new();
+    }
+    let mut pivots: Vec<(usize, usize)> = Vec::new();
+    for column in 0..dimension {
+        let next = pivots.len();
+        let Some(found) = (next..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else { continue };
+        rows.swap(next, found);
+        let scale = Residue::ONE / rows[next][column];
+        rows[next].iter_mut().for_each(|entry| *entry = *entry * scale);
+        let pivot = rows[next].clone();
+        for (at, row) in rows.iter_mut().enumerate().filter(|(at, _)| *at != next) {
+            let _ = at;
+            let factor = row[column];
+            row.iter_mut().zip(&pivot).for_each(|(entry, &taken)| *entry = *entry - factor * taken);
+        }
+        pivots.push((next, column));
+    }
+    let free = (0..dimension).filter(|column| pivots.iter().all(|(_, pivot)| pivot != column));
+    let vector = |free: usize| {
+        let mut vector = vec![Residue::ZERO; dimension];
+        vector[free] = Residue::ONE;
+        for &(row, column) in &pivots {
+            vector[column] = -rows[row][free];
+        }
+        vector
+    };
+    free.map(vector).collect()
+}
+
+/// What sample values of the parameters show of the second derivative of a continuous Lagrangian, at rest.
+pub(crate) fn kinetic_hessian(
+    declaration: &Declaration,
+    names: &BTreeMap<Name, SymbolId>,
+    derived: &Continuous,
+) -> KineticPart {
+    let (terms, dimension) = (Terms::new(derived), declaration.group.dimension());
+    let samples = (1..=u64::try_from(SAMPLES).unwrap_or(1)).map(|seed| {
+        let mut point = Point::new(declaration, stream(seed));
+        point.values.insert(Name::Velocity, Value::new(dimension, 1, |_, _| 0.0));
+        let entries = terms.values(&terms.hessian, names, &point.values);
+        Value { rows: dimension, columns: dimension, entries }
+    });
+    let is_used = |name: Name| names.get(&name).is_some_and(|&id| derived.hessian.contains(id));
+    classified(declaration, &is_used, samples.collect())
+}

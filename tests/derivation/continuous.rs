@@ -1,0 +1,272 @@
+//! Continuous Lagrangians: what `discretise` makes of them, and their equations against those by hand.
+
+use checks::random::Random;
+use declarations::{ContinuousTop, HeavyTop, RelativisticParticle};
+use liestep::effects::{Gravity, RigidBody, Rotor};
+use liestep::groups::R3;
+use liestep::mechanics::{ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia};
+use liestep::motion::RightHandSide;
+use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
+use nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3, Vector4, convert};
+use num_dual::Dual64;
+
+fn moments() -> DiagonalNonstandardInertia {
+    DiagonalNonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap()
+}
+
+/// A thousand steps of what is made of `l` and of (3.13), which are the same bits.
+#[test]
+fn the_trapezoidal_rule_makes_the_steps_of_the_heavy_top() {
+    let (J_d, m, g, rho, up) = (moments(), 1.1, 9.81, Vector3::new(0.1, -0.2, 1.0), Vector3::z());
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, 0.0));
+    let velocity = Vector3::new(0.5, 2.0, 12.0);
+    let made = Stepper::new(ContinuousTop { J_d, m, g, rho, up }, 0.01).unwrap();
+    let declared = Stepper::new(HeavyTop { J_d, m, g, rho, up }, 0.01).unwrap();
+    let mut made_state = made.start(attitude, velocity).unwrap();
+    let mut declared_state = declared.start(attitude, velocity).unwrap();
+    for _ in 0..1000 {
+        made.step(&mut made_state).unwrap();
+        declared.step(&mut declared_state).unwrap();
+        assert_eq!(made_state, declared_state);
+    }
+    assert_eq!(ContinuousTop::OPERATIONS, HeavyTop::OPERATIONS);
+    const { assert!(ContinuousTop::SELF_ADJOINT) };
+}
+
+macro_rules! discretised {
+    ($($name:ident: $rule:ident$(($retraction:ident))?),+) => {$(
+        #[lagrangian(
+            group = SO3,
+            velocity = Omega,
+            advected(w = up),
+            l = 0.5 * Omega.dot(&(J * Omega)) + s.dot(&Omega) - k * w.dot(&rho) - k * w.dot(&rho).powi(2),
+            discretise = $rule$(($retraction))?,
+        )]
+        struct $name<T: RealField + Copy> {
+            J: Inertia<T>,
+            s: Vector3<T>,
+            k: T,
+            rho: Vector3<T>,
+            up: Vector3<T>,
+        }
+
+        impl<T: RealField + Copy> $name<T> {
+            fn new() -> Self {
+                let J = Matrix3::new(3.0, 0.2, -0.1, 0.2, 2.5, 0.3, -0.1, 0.3, 4.0).map(convert);
+                let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(convert);
+                Self {
+                    J: Inertia::new(J).unwrap(),
+                    s: vector(0.3, -0.2, 0.5),
+                    k: convert(1.7),
+                    rho: vector(0.1, -0.2, 1.0),
+                    up: vector(0.0, 0.0, 1.0),
+                }
+            }
+        }
+    )+};
+}
+
+discretised! {
+    Trapezoid: trapezoid, TrapezoidCayley: trapezoid(Cayley), TrapezoidExp: trapezoid(exp),
+    MidpointExp: midpoint(exp), Chord: chord, ChordCayley: chord(Cayley), ChordExp: chord(exp)
+}
+
+/// `l_d` of each rule, by hand.
+fn by_hand(rule: &str, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
+    let top = Trapezoid::<f64>::new();
+    let rotation = UnitQuaternion::from_matrix(f);
+    let (axis, angle) = (rotation.axis().unwrap(), rotation.angle());
+    let potential = |w: &Vector3<f64>| top.k * w.dot(&top.rho) + top.k * w.dot(&top.rho).powi(2);
+    let kinetic = |velocity: &Vector3<f64>| 0.5 * velocity.dot(&(top.J.as_matrix() * velocity)) + top.s.dot(velocity);
+    let moving = if rule.ends_with("Cayley") {
+        kinetic(&(axis.into_inner() * (2.0 * (angle / 2.0).tan() / h)))
+    } else if rule.ends_with("exp") {
+        kinetic(&(axis.into_inner() * (angle / h)))
+    } else {
+        let (x, J) = ((f - Matrix3::identity()) / h, top.J.as_matrix());
+        let nonstandard = Matrix3::identity() * (0.5 * J.trace()) - J;
+        let skew = Vector3::new(x.m32 - x.m23, x.m13 - x.m31, x.m21 - x.m12) * 0.5;
+        0.5 * (x * nonstandard * x.transpose()).trace() + top.s.dot(&skew)
+    };
+    let next = f.transpose() * w;
+    let rest = if rule.starts_with("trapezoid") {
+        0.5 * (potential(w) + potential(&next))
+    } else if rule.starts_with("chord") {
+        potential(&((w + next) * 0.5))
+    } else {
+        potential(&(UnitQuaternion::from_axis_angle(&axis, -angle / 2.0) * w))
+    };
+    h * (moving - rest)
+}
+
+/// `l_d` by hand, its derivatives by dual numbers of the generated one, order two, and a step back undoes a step.
+fn assert_discretised<L, D>(rule: &str, system: L, dual: &D)
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
+        + ContinuousLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
+        + Effect<Kinetic = liestep::mechanics::WithKinetic>,
+    D: DiscreteLagrangian<Scalar = Dual64, Group = SO3<Dual64>, Advected = Vector3<Dual64>>,
+{
+    let mut random = Random::new(17);
+    for _ in 0..10 {
+        let (f, w, h) = (UnitQuaternion::from_scaled_axis(random.vector() * 0.4), random.vector(), 0.03);
+        let f = f.to_rotation_matrix().into_inner();
+        let expected = by_hand(rule, &f, &w, h);
+        let found = system.l_d(&f, &w, h);
+        assert!((found - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{rule}: {found} and {expected}");
+        let slope = |element: Matrix3<Dual64>, w: Vector3<Dual64>| dual.l_d(&element, &w, convert(h)).eps;
+        let lift = |m: &Matrix3<f64>| m.map(convert::<f64, Dual64>);
+        let epsilon = Dual64::new(0.0, 1.0);
+        let momentum = Vector3::from_fn(|k, _| {
+            let generator = lift(&SO3::hat_of(k)) * epsilon;
+            let moved = w.map(convert::<f64, Dual64>);
+            slope(lift(&f) + generator * lift(&f), moved + generator * moved)
+        });
+        let mu = system.legendre_minus(&f, &w, h);
+        assert!((mu - momentum).norm() <= 1e-10 * (1.0 + mu.norm()), "{rule}: {mu} and {momentum}");
+    }
+    const { assert!(L::SELF_ADJOINT) };
+}
+
+/// The basis of so(3) as matrices.
+trait Basis {
+    fn hat_of(k: usize) -> Matrix3<f64>;
+}
+
+impl Basis for SO3 {
+    fn hat_of(k: usize) -> Matrix3<f64> {
+        Vector3::from_fn(|j, _| if j == k { 1.0 } else { 0.0 }).cross_matrix()
+    }
+}
+
+#[test]
+fn every_discretisation_is_what_it_says() {
+    assert_discretised("trapezoid", Trapezoid::new(), &Trapezoid::new());
+    assert_discretised("trapezoid Cayley", TrapezoidCayley::new(), &TrapezoidCayley::new());
+    assert_discretised("trapezoid exp", TrapezoidExp::new(), &TrapezoidExp::new());
+    assert_discretised("midpoint exp", MidpointExp::new(), &MidpointExp::new());
+    assert_discretised("chord", Chord::new(), &Chord::new());
+    assert_discretised("chord Cayley", ChordCayley::new(), &ChordCayley::new());
+    assert_discretised("chord exp", ChordExp::new(), &ChordExp::new());
+}
+
+/// A classical Runge–Kutta step of the numbers of a right-hand side.
+fn rk4(rate: impl Fn(&[f64], &mut [f64]), state: &mut [f64], h: f64) {
+    let n = state.len();
+    let at = |k: &[f64], h: f64| -> Vec<f64> { state.iter().zip(k).map(|(y, k)| y + h * k).collect() };
+    let of = |y: &[f64]| {
+        let mut k = vec![0.0; n];
+        rate(y, &mut k);
+        k
+    };
+    let k1 = of(state);
+    let k2 = of(&at(&k1, 0.5 * h));
+    let k3 = of(&at(&k2, 0.5 * h));
+    let k4 = of(&at(&k3, h));
+    for i in 0..n {
+        state[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    }
+}
+
+/// Steps of each discretisation converge, at order two, to what a solver makes of the continuous equations.
+#[test]
+fn discretisations_converge_to_the_continuous_motion() {
+    fn check<L>(make: impl Fn() -> L, name: &str)
+    where
+        L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
+            + ContinuousLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
+            + Effect<Kinetic = liestep::mechanics::WithKinetic>,
+        L::Retraction: liestep::groups::Retraction<SO3>,
+    {
+        let continuous = RightHandSide::new(make()).unwrap();
+        let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, 0.0));
+        let momentum = Vector3::new(1.5, 4.0, 7.0);
+        let mut state = continuous.state(&SO3::from(attitude), &momentum);
+        for _ in 0..400 {
+            rk4(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, 0.5 / 400.0);
+        }
+        let error = |steps: u32| {
+            let stepper = Stepper::new(make(), 0.5 / f64::from(steps)).unwrap();
+            let mut body = stepper.start_with_momentum(attitude, momentum).unwrap();
+            stepper.run(&mut body, steps.into()).unwrap();
+            let (attitude, momentum) = continuous.parts(&state);
+            (body.attitude().as_matrix() - attitude.as_matrix()).norm() + (body.momentum() - momentum).norm()
+        };
+        let ratio = error(50) / error(100);
+        println!("{name}: {ratio}");
+        assert!((3.7..4.3).contains(&ratio), "{name}: {ratio}");
+    }
+    check(Trapezoid::<f64>::new, "trapezoid");
+    check(TrapezoidCayley::<f64>::new, "trapezoid(Cayley)");
+    check(TrapezoidExp::<f64>::new, "trapezoid(exp)");
+    check(MidpointExp::<f64>::new, "midpoint(exp)");
+    check(ChordCayley::<f64>::new, "chord(Cayley)");
+}
+
+/// A sum has the sum of the terms, and the bias of a rotor: by hand, `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
+#[test]
+fn sums_have_continuous_equations() {
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
+    let (m, g, rho, up) = (1.1_f64, 9.81, Vector3::new(0.1, -0.2, 1.0), Vector3::z());
+    let spin = Vector3::new(0.0, 0.3, 2.0);
+    let scene = RigidBody { J_d } + Gravity { m, g, rho, up } + Rotor { spin };
+    let (velocity, w) = (Vector3::new(0.5, 2.0, 12.0), Vector3::new(0.1, 0.6, 0.7));
+    let parameters = (((), w), ());
+    let J = Matrix3::identity() * J_d.as_matrix().trace() - J_d.as_matrix();
+    let momentum = J * velocity + spin;
+    assert!((scene.momentum(&velocity, &parameters) - momentum).norm() < 1e-13);
+    assert!((scene.velocity(&momentum, &parameters).unwrap() - velocity).norm() < 1e-13);
+    let (torque, turn) = scene.lie_poisson(&momentum, &parameters).unwrap();
+    assert!((torque - (momentum.cross(&velocity) + w.cross(&rho) * (m * g))).norm() < 1e-12);
+    assert!((turn.0.1 - w.cross(&velocity)).norm() < 1e-14);
+    let energy: f64 = 0.5 * velocity.dot(&(J * velocity)) + m * g * w.dot(&rho);
+    assert!((scene.hamiltonian(&momentum, &parameters).unwrap() - energy).abs() < 1e-12);
+}
+
+/// A pull by a uniform field: the momentum grows evenly, and the velocity stays below that of light.
+#[test]
+fn a_fast_particle() {
+    let (m, c, q) = (2.0, 3.0, 0.5);
+    let particle = RelativisticParticle { m, c, q, field: Vector4::new(0.4, -1.0, 0.2, 0.0) };
+    let system = RightHandSide::new(particle.clone()).unwrap();
+    let mut state = system.state(&R3::default_place(), &Vector3::zeros());
+    for _ in 0..2000 {
+        rk4(|y, rate| system.rate(y, rate).unwrap(), &mut state, 0.02);
+    }
+    let (place, momentum) = system.parts(&state);
+    let pull = Vector3::new(0.4, -1.0, 0.2) * q;
+    assert!((momentum - pull * 40.0).norm() < 1e-11);
+    // h = √(m²c⁴ + p²c²), and the place by integrating v = p c²/h.
+    let energy = |p: f64| (m * m * c.powi(4) + p * p * c * c).sqrt();
+    let distance = (energy(momentum.norm()) - m * c * c) / pull.norm();
+    let place = place.as_matrix().fixed_view::<3, 1>(0, 3).into_owned();
+    assert!((place - pull.normalize() * distance).norm() < 1e-8, "{place} and {distance}");
+    let velocity = particle.velocity(&momentum, &Vector4::zeros()).unwrap();
+    assert!((velocity - momentum * (c * c / energy(momentum.norm()))).norm() < 1e-13);
+}
+
+/// The identity of translations.
+trait Place {
+    fn default_place() -> Self;
+}
+
+impl Place for R3 {
+    fn default_place() -> Self {
+        liestep::groups::LieGroup::identity()
+    }
+}
+
+/// The kinetic energy `c² (√(1 + ξ²/c²) − 1)` has momenta below `c` alone: others are an error.
+#[lagrangian(group = R3, velocity = v, l = (c * c) * (1.0 + v.norm_squared() / (c * c)).sqrt())]
+struct Bounded {
+    c: f64,
+}
+
+#[test]
+fn a_momentum_without_a_velocity_is_an_error() {
+    let bounded = Bounded { c: 2.0 };
+    let velocity = bounded.velocity(&Vector3::new(1.9, 0.0, 0.0), &()).unwrap();
+    assert!((velocity.x - 1.9 / (1.0_f64 - 1.9 * 1.9 / 4.0).sqrt()).abs() < 1e-9);
+    let error = bounded.velocity(&Vector3::new(2.1, 0.0, 0.0), &()).unwrap_err();
+    assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");
+}

@@ -1,0 +1,51 @@
+//! Any text is the declaration of a Lagrangian or of a force: what comes of it is items or an error to show, no panic and
+//! no hang. Run with `cargo fuzz run tokens`.
+//!
+//! Nothing can be linked to a macro crate, so its rooms are built here once more.
+
+#![no_main]
+// What the macro alone calls.
+#![allow(dead_code, unreachable_pub)]
+
+#[path = "../../../macros/src/declared/mod.rs"]
+mod declared;
+#[path = "../../../macros/src/emit/mod.rs"]
+mod emit;
+#[path = "../../../macros/src/expand.rs"]
+mod expand;
+#[path = "../../../macros/src/judged/mod.rs"]
+mod judged;
+#[path = "../../../macros/src/mathematics/mod.rs"]
+mod mathematics;
+#[path = "../../../macros/src/program/mod.rs"]
+mod program;
+
+use declared::Role;
+use libfuzzer_sys::fuzz_target;
+use proc_macro2::TokenStream;
+
+/// Fields of every kind of declaration, so that names in the text mean something.
+const ITEM: &str = "struct Top { J_d: NonstandardInertia, A: Matrix3<f64>, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+
+fuzz_target!(|bytes: &[u8]| {
+    let Some((kind, text)) = bytes.split_first() else { return };
+    let Ok(text) = std::str::from_utf8(text) else { return };
+    // What no lexer accepts never reaches a macro.
+    let Ok(written) = text.parse::<TokenStream>() else { return };
+    let item: TokenStream = ITEM.parse().expect("tokens");
+    let expansion = match kind % 4 {
+        0 => expand::expand(Role::Lagrangian, written, &item),
+        1 => {
+            let arguments = format!("group = SO3, advected(w = up), l_d = {text}");
+            let Ok(arguments) = arguments.parse() else { return };
+            expand::expand(Role::Lagrangian, arguments, &item)
+        }
+        2 => expand::expand(Role::Force, written, &item),
+        _ => expand::matrix_group(written),
+    };
+    let shown = expansion.to_string();
+    assert!(
+        shown.contains("compile_error") || syn::parse2::<syn::File>(expansion).is_ok(),
+        "neither an error nor items: {shown}"
+    );
+});

@@ -1,0 +1,17 @@
+use liestep::mechanics::Inertia;
+use liestep::{SO3, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    velocity = w,
+    advected(w = up),
+    l = 0.5 * w.dot(&(J * w)) - w.dot(&rho),
+)]
+struct Top {
+    J: Inertia,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+fn main() {}

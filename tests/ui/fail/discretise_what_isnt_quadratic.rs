@@ -1,0 +1,18 @@
+use liestep::mechanics::Inertia;
+use liestep::{SO3, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group = SO3,
+    velocity = Omega,
+    advected(w = up),
+    l = 0.5 * Omega.dot(&(J * Omega)) + Omega.x.powi(4) - w.dot(&rho),
+    discretise = trapezoid(Cayley),
+)]
+struct Top {
+    J: Inertia,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+fn main() {}
