@@ -2,33 +2,33 @@
 //! notice if it were wrong.
 //!
 //! Paths are relative to the root of the repository. A test is named behind its file; where that file makes a test for
-//! each group or each declared system, the name is of the function that they all call. What is continuous in time
-//! serves to check the discrete theory, and to read energies and velocities off a state; collocation and the motion of a
-//! free body integrate it as well. Where an equation has to be read with care, [`errata`](super::errata) says how.
+//! each group or each declared system, the name is of the function that they all call. Where an equation has to be read
+//! with care, [`errata`](super::errata) says how. [`guide::thesis`](crate::guide::thesis) goes through them in order, with
+//! the generated equation beside each.
 //!
 //! # Chapter 1: reduction
 //!
 //! | | what | where | checked by |
 //! |---|---|---|---|
 //! | `TG/G ≃ 𝔤` | the body velocity `ξ = g⁻¹ġ` | [`Stepper::velocity`], [`Stepper::start`] | `core/src/laws/group.rs` `variations` |
-//! | (1.1) | `l(ξ) = L(e, ξ)` | a declaration contains no `g` | `tests/ui/fail/spatial_field_used.rs`; `tests/groups/reduction.rs` `euler_poincare_reduction` |
+//! | (1.1) | `l(ξ) = L(e, ξ)` | [`l`], declared as `l = …` or the limit of `l_d` | `tests/random_lagrangians/continuous.rs` `assert_equations`; no attitude is in scope, `tests/ui/fail/spatial_field_used.rs` |
 //! | theorem 1.1.1 | four equivalent statements | | `tests/groups/reduction.rs` `euler_poincare_reduction` |
 //! | (1.2) | `δ∫l dt = 0` | | `tests/groups/reduction.rs` `euler_poincare_reduction` |
 //! | (1.3), (1.6) | `δξ = η' + ad_ξ η` | [`lie_bracket`] | `core/src/laws/group.rs` `variations` |
-//! | (1.4) | `d/dt δl/δξ = ad*_ξ δl/δξ` | [`lie_bracket_transpose`]; exact for a free body in [`ExactBody`], in stages in `core/src/methods/gauss/lift.rs` | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/hard_cases/rows.rs` `b8_closed_forms` |
-//! | (1.5) | `ġ = g ξ` | as (1.4) | `tests/groups/reduction.rs` `euler_poincare_reduction` |
+//! | (1.4) | `d/dt δl/δξ = ad*_ξ δl/δξ` | [`euler_poincare`], [`momentum_rate`]; exact for a free body in [`ExactBody`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
+//! | (1.5) | `ġ = g ξ` | [`RightHandSide`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/derivation/continuous.rs` `discretisations_converge_to_the_continuous_motion` |
 //! | (1.7)–(1.9) | the canonical bracket and Hamilton's equations | `core/src/methods/gauss/lift.rs`, on `T*ℝ⁴` | `tests/groups/reduction.rs` `reduction_of_the_bracket` `legendre_transform`; `tests/accuracy/poisson.rs` |
 //! | (1.10) | `{f, k}∘r = {f∘r, k∘r}` | | `tests/groups/reduction.rs` `reduction_of_the_bracket` |
 //! | lemma 1.2.1, (1.11) | `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩` | [`lie_poisson_bracket`] | `tests/groups/reduction.rs` `reduction_of_the_bracket`; `core/src/laws/group.rs` `lie_poisson_brackets` |
-//! | theorem 1.2.2, (1.12) | `μ̇ = ad*_{δh/δμ} μ` | as (1.4) | `tests/groups/reduction.rs` `legendre_transform`; `core/src/laws/group.rs` `lie_poisson_brackets` |
+//! | theorem 1.2.2, (1.12) | `μ̇ = ad*_{δh/δμ} μ` | [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `core/src/laws/group.rs` `lie_poisson_brackets` |
 //! | (1.13) | `𝔽L` before reduction | | `tests/groups/reduction.rs` `legendre_transform` |
-//! | (1.14) | `μ = δl/δξ` | [`Stepper::start`], [`Stepper::velocity`] | `tests/systems/limit.rs` `assert_limit` |
+//! | (1.14) | `μ = δl/δξ` | [`momentum`], inverse [`velocity`]; [`Stepper::start`], [`Stepper::velocity`] | `tests/systems/limit.rs` `assert_limit`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
 //! | (1.15) | `H = ⟨𝔽L, ġ⟩ − L` | | `tests/groups/reduction.rs` `legendre_transform` |
-//! | (1.16) | `h(μ) = μ·ξ − l(ξ)`, with `δh/δμ = ξ` | [`Stepper::energy`] | `tests/systems/limit.rs` `assert_limit`; `tests/groups/reduction.rs` `legendre_transform` |
-//! | lemma 1.3.1 | `𝔽l` carries (1.4) to (1.12) | | `tests/groups/reduction.rs` `legendre_transform` |
+//! | (1.16) | `h(μ) = μ·ξ − l(ξ)`, with `δh/δμ = ξ` | [`hamiltonian`], [`Stepper::energy`] | `tests/systems/limit.rs` `assert_limit`; `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
+//! | lemma 1.3.1 | `𝔽l` carries (1.4) to (1.12) | [`euler_poincare`], [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform` |
 //! | example 1 | the free body; `J = tr(J_d) I − J_d` | [`NonstandardInertia::to_inertia`], [`ExactBody`] | `tests/derivation/thesis.rs` `matrix_in_the_trace`; `tests/hard_cases/bodies/inertia.rs` `conversions_agree_with_the_integrals` |
 //! | (1.17) | `ad*_Ω Π = Π × Ω` | [`lie_bracket_transpose`] of [`SO3`] | `tests/groups/so3_laws.rs` `adjoint_actions_and_their_pairings` |
-//! | (1.18) | `l_d` approximates the action of a step | as declared | `tests/derivation/exact_lagrangian.rs` `order_of_the_action` |
+//! | (1.18) | `l_d` approximates the action of a step | as declared, or by `discretise = …` | `tests/derivation/exact_lagrangian.rs` `order_of_the_action`; `tests/derivation/continuous.rs` `every_discretisation_is_what_it_says` |
 //! | discrete action | `Σ L_d(g_i, g_{i+1})` is stationary | | `tests/systems/unreduced.rs` `assert_variational` |
 //! | (1.19) | `𝔽L_d⁻ = −D₁L_d`, `𝔽L_d⁺ = D₂L_d` | reduced: [`legendre_minus`], [`legendre_plus`] | `tests/systems/unreduced.rs` `assert_variational` |
 //! | (1.20) | `𝔽L_d⁺ ∘ (𝔽L_d⁻)⁻¹` | [`DiscreteLiePoisson`] with [`LieGroup::advance`] | `tests/systems/unreduced.rs` `assert_variational`; `tests/common/structure/stages.rs` `assert_step` |
@@ -50,8 +50,8 @@
 //! |---|---|---|---|
 //! | actions on `V` and `V*` | `ρ(g)`, `ξ·v` | [`Advected`] | `core/src/laws/advected.rs` `kinds_move_as_declared` `kinds_act` `pairings_are_invariant` |
 //! | (2.1) | `δl_d/δw ⋄ w` | [`diamond`] | `tests/common/structure/momenta.rs` `assert_momenta` |
-//! | theorem 2.1.1, (2.2) | continuous advected equations | `core/src/methods/gauss/lift.rs`, for a potential on SO(3) | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/systems/order.rs` `assert_second_order` |
-//! | example 3, (2.3) | continuous Lagrangian of a top | [`inertia`], [`momentum_bias`] and [`potential`] of the limit | `tests/systems/limit.rs` `assert_limit`; `tests/hard_cases/rows.rs` `t1_orders_of_the_tops_of_the_thesis` |
+//! | theorem 2.1.1, (2.2) | continuous advected equations | [`momentum_rate`], [`advected_rate`], [`RightHandSide`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `tests/systems/order.rs` `assert_second_order` |
+//! | example 3, (2.3) | continuous Lagrangian of a top | [`l`], and [`inertia`], [`momentum_bias`], [`potential`] of a limit | `tests/systems/limit.rs` `assert_limit`; `tests/hard_cases/rows.rs` `t1_orders_of_the_tops_of_the_thesis` |
 //! | theorem 2.2.1 | reduced and unreduced paths are one | | `tests/systems/unreduced.rs` `assert_variational` |
 //! | (2.4), first line | `w_{i+1} = f_i⁻¹ w_i` | [`Advected::advect`] | `core/src/laws/advected.rs` `kinds_move_as_declared` |
 //! | (2.4), second line; (2.5) | discrete advected Euler–Poincaré flow | [`DiscreteEulerPoincare::step`] | `tests/common/structure/two_flows.rs` `parting` |
@@ -68,10 +68,11 @@
 //!
 //! | | what | where | checked by |
 //! |---|---|---|---|
-//! | (3.1)–(3.4) | Euler angles and their rates | `examples/common/heavy_top/euler_angles.rs`; no angle enters a step | `tests/hard_cases/bodies/euler_angles.rs` `t10_frame_and_rates` |
+//! | (3.1)–(3.4) | Euler angles and their rates | [`from_euler_angles`], [`euler_angles`], `examples/common/heavy_top/euler_angles.rs`; no angle enters a step | `tests/hard_cases/bodies/euler_angles.rs` `t10_frame_and_rates` |
 //! | (3.5)–(3.9) | inertia, momenta and moment in the frame of the axis | `examples/common/heavy_top/euler_angles.rs` | `tests/hard_cases/bodies/euler_angles.rs` `t10_equations_of_motion` |
 //! | (3.10)–(3.12) | equations of motion in Euler angles | `examples/common/heavy_top/euler_angles.rs`, as a rival | `tests/hard_cases/bodies/euler_angles.rs` `t10_equations_of_motion`; `tests/hard_cases/rows.rs` `t10_euler_angles` |
 //! | three kinds of precession | looping, cuspidal, unidirectional | `examples/common/heavy_top/precession.rs` | `tests/hard_cases/rows.rs` `t11_nutation_and_precession` |
+//! | section 3.2, `Ω̂ ≈ (F − I)/h` | the trapezoidal rule makes (3.13) | `discretise = trapezoid` | `tests/derivation/thesis.rs` `trapezoidal_rule_gives_3_13`; `tests/derivation/continuous.rs` `the_trapezoidal_rule_makes_the_steps_of_the_heavy_top` |
 //! | (3.13) | the reduced discrete Lagrangian | `examples/common/heavy_top/declaration.rs`; [`RigidBody`] and [`Gravity`] | `tests/derivation/thesis.rs` `trapezoidal_rule_gives_3_13`; `tests/effects/sums.rs` `body_and_gravity_are_the_heavy_top` |
 //! | section 3.2.1, items 1 to 3 | `(L_F)* δl_d/δF`, `(R_F)* δl_d/δF`, `δl_d/δw ⋄ w` | derived: [`left_momentum`], [`right_momentum`], [`diamond`] | `tests/derivation/thesis.rs` `derived_terms_as_printed` |
 //! | (3.14) | `R_{i+1} = R_i F_i` | [`LieGroup::advance`] | `core/src/laws/group.rs` `increments`; `tests/derivation/golden_steps.rs` |
@@ -109,7 +110,8 @@
 //! | (2.7), (3.17) | the momentum equation and its Newton Jacobian | `macros/src/mathematics/derive/momentum_equation.rs` |
 //! | (2.9) | the kicks of the transport form | `macros/src/mathematics/derive/transport.rs` |
 //! | (3.17) in Cayley coordinates | residual and Jacobian without denominators | `macros/src/mathematics/derive/cayley.rs` |
-//! | (2.3) from (3.13) | inertia, bias and potential of the limit `h → 0` | `macros/src/mathematics/derive/limit.rs` |
+//! | (1.4), (1.12), (1.14), (1.16), (2.2) | the continuous equations | `macros/src/mathematics/derive/continuous.rs` |
+//! | (3.13) from (2.3) | the discretisations of a declared `l` | `macros/src/judged/discretise.rs` |
 //! | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` | whether a step of `−h` undoes a step of `h` | `macros/src/mathematics/derive/self_adjoint.rs` |
 //!
 //! [`Advected`]: crate::groups::Advected
@@ -148,3 +150,14 @@
 //! [`reconstruct`]: crate::motion::reconstruct
 //! [`right_momentum`]: crate::mechanics::DiscreteLagrangian::right_momentum
 //! [`spatial_momentum`]: crate::motion::Motion::spatial_momentum
+//! [`RightHandSide`]: crate::motion::RightHandSide
+//! [`advected_rate`]: crate::mechanics::ContinuousLagrangian::advected_rate
+//! [`euler_poincare`]: crate::mechanics::ContinuousLagrangian::euler_poincare
+//! [`hamiltonian`]: crate::mechanics::ContinuousLagrangian::hamiltonian
+//! [`l`]: crate::mechanics::ContinuousLagrangian::l
+//! [`lie_poisson`]: crate::mechanics::ContinuousLagrangian::lie_poisson
+//! [`momentum_rate`]: crate::mechanics::ContinuousLagrangian::momentum_rate
+//! [`momentum`]: crate::mechanics::ContinuousLagrangian::momentum
+//! [`velocity`]: crate::mechanics::ContinuousLagrangian::velocity
+//! [`euler_angles`]: crate::groups::SO3::euler_angles
+//! [`from_euler_angles`]: crate::groups::SO3::from_euler_angles
