@@ -47,6 +47,7 @@
 //! | move on another group, or on one of your own | [`groups`], [`laws`] |
 //! | use `f32`, SIMD lanes, dual numbers | [`numbers::Real`] |
 //! | know what is conserved, and what left and right mean here | [`conventions::guarantees`], [`conventions`] |
+//! | come from the thesis' equations to a program | [`guide::thesis`] |
 //! | find an equation of the thesis | [`conventions::equations`] |
 //! | step by a method of your own | [`motion::Plan`], [`Stepper::with_plan`] |
 //! | work without the macro | [`mechanics::DiscreteLagrangian`] |
@@ -80,6 +81,7 @@ pub mod accuracy;
 pub mod conventions;
 pub mod effects;
 pub mod groups;
+pub mod guide;
 pub mod laws;
 pub mod mechanics;
 pub mod methods;

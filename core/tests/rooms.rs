@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// What each room may import besides itself, as `src/lib.rs` draws it. Documentation may name everything.
-const MAY_IMPORT: [(&str, &[&str]); 13] = [
+const MAY_IMPORT: [(&str, &[&str]); 14] = [
     ("error", &[]),
     ("numbers", &[]),
     ("groups", &["numbers"]),
@@ -18,6 +18,7 @@ const MAY_IMPORT: [(&str, &[&str]); 13] = [
     ("accuracy", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion", "methods"]),
     ("laws", &["numbers", "groups"]),
     ("conventions", &[]),
+    ("guide", &[]),
     ("prelude", &["error", "groups", "mechanics", "effects", "motion"]),
 ];
 

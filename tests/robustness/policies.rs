@@ -8,7 +8,7 @@ use workbench::measure::relative;
 
 type TopState = State<SO3, Vector3<f64>>;
 
-/// The thesis' published setting, at which (3.13) has no first step.
+/// The setting of the script that the thesis' author has published, at which (3.13) has no first step.
 fn published() -> (Stepper<HeavyTop>, TopState) {
     let Motion { top, attitude, velocity, .. } = Motion::looping();
     let stepper = Stepper::new(top, 0.1).unwrap();

@@ -122,10 +122,13 @@ pub(crate) fn s2(_: Effort, _: &mut Curves) -> Result<Row, Failure> {
     let end = rk4.sample();
     let energy = energy_of(&motion.top, &end) / energy_of(&motion.top, &start) - 1.0;
     let vertical = relative(&(end.attitude * end.momentum).row(2), &(start.attitude * start.momentum).row(2));
-    let row =
-        Row::new("S2", "the thesis' published h = 0.1", "typed error at the first step, state unchanged to the bit")
-            .holds(&answer, is_typed)
-            .holds("state unchanged", same);
+    let row = Row::new(
+        "S2",
+        "h = 0.1, as in the script of the thesis' author",
+        "typed error at the first step, state unchanged to the bit",
+    )
+    .holds(&answer, is_typed)
+    .holds("state unchanged", same);
     Ok(row.other(format!(
         "RK4 (quaternion) makes 2000 such steps: relative change of the energy {energy:+.1e}, of the vertical momentum {}",
         short(vertical)

@@ -1,6 +1,7 @@
 //! T10: section 3.1 as printed. Each equation of (3.1) to (3.12) from the ones before it, at random angles and rates.
 
 use checks::random::Random;
+use liestep::SO3;
 use liestep::laws::samples::derivative;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use workbench::heavy_top::declaration::HeavyTop;
@@ -31,6 +32,10 @@ fn t10_frame_and_rates() {
         let velocity = Vector3::new(hat.m32, hat.m13, hat.m21);
         assert!((velocity - here.velocity()).norm() < 1e-11, "(3.2) to (3.4)");
         assert!((spin * velocity - here.velocity_without_spin()).norm() < 1e-11, "(3.2) to (3.4)");
+        let [precession, nutation, spin] = here.angles.into();
+        let attitude = SO3::from_euler_angles(precession, nutation, spin);
+        assert!((attitude.as_matrix() - here.attitude()).norm() < 1e-15, "from_euler_angles");
+        assert!((Vector3::from(attitude.euler_angles()) - here.angles).norm() < 1e-14, "euler_angles");
         let back = EulerAngles::of(&here.attitude(), &here.velocity());
         assert!((back.angles - here.angles).norm() + (back.rates - here.rates).norm() < 1e-13, "angles and back");
     }

@@ -1,0 +1,80 @@
+//! The page that says where each equation of the thesis is: every number has a row, and every file and test is there.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+const PAGE: &str = include_str!("../../core/src/conventions/equations.rs");
+
+/// How many numbered equations each chapter has.
+const NUMBERED: [(u32, u32); 3] = [(1, 32), (2, 10), (3, 20)];
+
+fn rows() -> impl Iterator<Item = Vec<&'static str>> {
+    let lines = PAGE.lines().filter_map(|line| line.strip_prefix("//! |")?.strip_suffix('|'));
+    lines.map(|row| row.split('|').map(str::trim).collect())
+}
+
+/// The numbers in a cell, those between the ends of a range among them.
+fn numbers(cell: &str) -> Vec<(u32, u32)> {
+    let parts: Vec<&str> = cell.split(['(', ')']).collect();
+    let number = |part: &str| {
+        let (chapter, equation) = part.split_once('.')?;
+        Some((chapter.parse().ok()?, equation.parse().ok()?))
+    };
+    let mut numbers: Vec<(u32, u32)> = Vec::new();
+    for (i, part) in parts.iter().enumerate() {
+        let Some((chapter, equation)) = number(part) else { continue };
+        let first =
+            if i >= 2 && parts[i - 1] == "–" { numbers.last().map_or(equation, |last| last.1 + 1) } else { equation };
+        numbers.extend((first..=equation).map(|equation| (chapter, equation)));
+    }
+    numbers
+}
+
+#[test]
+fn every_numbered_equation_has_a_row() {
+    assert_eq!(numbers("(1.7)–(1.9), x; (1.11)"), [(1, 7), (1, 8), (1, 9), (1, 11)]);
+    // Of the tables that have a column of tests.
+    let found: BTreeSet<_> = rows().filter(|row| row.len() == 4).flat_map(|row| numbers(row[0])).collect();
+    let expected: BTreeSet<_> =
+        NUMBERED.iter().flat_map(|&(chapter, last)| (1..=last).map(move |equation| (chapter, equation))).collect();
+    assert_eq!(found, expected);
+    for figure in 1..=10 {
+        let name = format!("3.{figure}");
+        assert!(rows().any(|row| row.len() == 3 && row[0].split(", ").any(|part| part == name)), "figure {name}");
+    }
+}
+
+#[test]
+fn files_and_tests_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut tests = 0;
+    for row in rows() {
+        let mut source: Option<String> = None;
+        for cell in &row {
+            for word in cell.split('`').skip(1).step_by(2) {
+                if word.contains('/') && word.contains('.') {
+                    let text = fs::read_to_string(root.join(word));
+                    source = Some(text.unwrap_or_else(|error| panic!("{word}: {error}")));
+                }
+            }
+        }
+        // The names in the last column, each in the file before it.
+        let mut file = "";
+        for word in row.last().unwrap().split('`').skip(1).step_by(2) {
+            if word.contains('/') {
+                file = word;
+                source = fs::read_to_string(root.join(word)).ok();
+            } else if row.len() >= 3 && !file.is_empty() {
+                let text = source.as_deref().unwrap_or_default();
+                let is_there = text.contains(&format!("fn {word}(")) || text.contains(&format!("fn {word}<"));
+                assert!(is_there || text.contains(&format!("{word} \"")), "{file} has no test {word}");
+                tests += 1;
+            }
+        }
+        // A row of a table with tests names one.
+        let heading = row[0].is_empty() || row[0].starts_with("---") || row[0] == "equation";
+        assert!(row.len() != 4 || heading || !file.is_empty(), "nothing checks {}", row[0]);
+    }
+    assert!(tests > 60, "{tests} tests are named");
+}
