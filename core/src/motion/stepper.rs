@@ -140,7 +140,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
     #[inline]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
-        let made = dispatch(P::DISPATCHED, Step(self, state));
+        let made = dispatch(P::VECTORS, Step(self, state));
         match made {
             Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
             made => made,
@@ -168,7 +168,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// As [`run`](Self::run), but after an error the state may be anywhere, and what would do isn't looked for.
     pub(crate) fn run_unexplained(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
-        dispatch(P::DISPATCHED, Run(self, state, steps))
+        dispatch(P::VECTORS, Run(self, state, steps))
     }
 
     /// The states after each step from here on; after an error, nothing more.

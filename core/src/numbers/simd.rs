@@ -1,5 +1,19 @@
 //! The vector instructions of the machine that the program runs on, whatever it was compiled for.
 
+/// How wide the vector registers are that a step is worth compiling for.
+///
+/// Which of them there are is found out when the program runs, with the feature `dispatch`; without it, all is as
+/// compiled. No digit depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vectors {
+    /// Those of the target that the program was compiled for: two `f64` by default.
+    AsCompiled,
+    /// Up to four `f64`: AVX2.
+    Four,
+    /// Up to eight `f64`: AVX-512, and AVX2 where there is but that.
+    Eight,
+}
+
 /// What is worth compiling for several instruction sets.
 ///
 /// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions
@@ -12,10 +26,10 @@ pub(crate) trait Kernel {
     fn run(self) -> Self::Output;
 }
 
-/// Does it with the best instructions that the machine has, if that is asked for and the feature `dispatch` is on.
+/// Does it with the best instructions that the machine has, up to those asked for, if the feature `dispatch` is on.
 #[cfg(feature = "dispatch")]
 #[inline(always)]
-pub(crate) fn dispatch<K: Kernel>(best: bool, kernel: K) -> K::Output {
+pub(crate) fn dispatch<K: Kernel>(vectors: Vectors, kernel: K) -> K::Output {
     use pulp::{Arch, Simd, WithSimd};
 
     struct Dispatched<K>(K);
@@ -29,12 +43,22 @@ pub(crate) fn dispatch<K: Kernel>(best: bool, kernel: K) -> K::Output {
         }
     }
 
-    if best { Arch::new().dispatch(Dispatched(kernel)) } else { kernel.run() }
+    match vectors {
+        Vectors::AsCompiled => kernel.run(),
+        #[cfg(target_arch = "x86_64")]
+        Vectors::Four => match pulp::x86::V3::try_new() {
+            Some(four) => Simd::vectorize(four, Dispatched(kernel)),
+            None => kernel.run(),
+        },
+        #[cfg(not(target_arch = "x86_64"))]
+        Vectors::Four => Arch::new().dispatch(Dispatched(kernel)),
+        Vectors::Eight => Arch::new().dispatch(Dispatched(kernel)),
+    }
 }
 
 /// Does it with the instructions that it was compiled for.
 #[cfg(not(feature = "dispatch"))]
 #[inline(always)]
-pub(crate) fn dispatch<K: Kernel>(_: bool, kernel: K) -> K::Output {
+pub(crate) fn dispatch<K: Kernel>(_: Vectors, kernel: K) -> K::Output {
     kernel.run()
 }
