@@ -18,72 +18,33 @@
 //! each counts: what else the machine does only slows, and slows the longer batches more often, so that medians would
 //! flatter the lanes.
 
+mod eight_tops;
+
 use core::hint::black_box;
 use std::time::Instant;
 
 use liestep::numbers::Real;
 use liestep::prelude::*;
-use nalgebra::{RealField, SimdValue, UnitQuaternion, Vector3};
+use nalgebra::{RealField, SimdValue, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
-const TOPS: usize = 8;
+use eight_tops::{TOPS, Top, top};
+
 /// Steps of each top in a batch: well below a slice of the scheduler's time, so that some batches of each kernel meet
 /// no other process.
 const BATCH: u32 = 500;
 const ROUNDS: usize = 4_000;
 
-/// (3.13) in principal axes.
-#[lagrangian(
-    group = SO3,
-    advected(w = up),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
-        - 0.5 * h * weight * w.dot(&(rho + F * rho)),
-)]
-#[derive(Clone)]
-#[allow(non_snake_case)] // the letters of the field
-struct Top<T: Real> {
-    J_d: DiagonalNonstandardInertia<T>,
-    weight: T,
-    rho: Vector3<T>,
-    up: Vector3<T>,
-}
-
 type Running<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
-
-/// The top with the given number, and its attitude and velocity.
-#[allow(clippy::cast_precision_loss)] // a top's number, below eight
-fn top<E: Real + RealField>(number: usize) -> (Top<E>, SO3<E>, Vector3<E>) {
-    let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(nalgebra::convert::<f64, E>);
-    let t = number as f64 / TOPS as f64;
-    let moments = vector(3.0 + 0.2 * t, 3.0 - 0.3 * t, 4.0);
-    let top = Top {
-        J_d: DiagonalNonstandardInertia::from_principal_moments(moments).expect("a body"),
-        weight: nalgebra::convert(9.81),
-        rho: vector(0.0, 0.1 * t, 1.0),
-        up: Vector3::z(),
-    };
-    let (tilt, precession, nutation, spin) = (0.8 + 0.1 * t, 3.0, 0.5, 10.0 - t);
-    let attitude = UnitQuaternion::from_scaled_axis(vector(tilt, 0.0, 0.0)).into();
-    (top, attitude, vector(nutation, precession * tilt.sin(), spin + precession * tilt.cos()))
-}
 
 /// The tops from `first` on, one in each lane.
 fn lanes<T, const N: usize>(first: usize) -> Running<T>
 where
     T: Real<Element: Real + RealField> + From<[T::Element; N]>,
 {
-    let all: [_; N] = core::array::from_fn(|lane| top::<T::Element>(first + lane));
-    let gather = |entry: &dyn Fn(usize) -> T::Element| T::from(core::array::from_fn(entry));
-    let vector = |of: &dyn Fn(usize) -> Vector3<T::Element>| Vector3::from_fn(|i, _| gather(&|lane| of(lane)[i]));
-    let wide = Top {
-        J_d: all.each_ref().map(|lane| lane.0.J_d).into(),
-        weight: gather(&|lane| all[lane].0.weight),
-        rho: vector(&|lane| all[lane].0.rho),
-        up: vector(&|lane| all[lane].0.up),
-    };
+    let (wide, attitude, velocity) = eight_tops::lanes::<T, N>(first);
     let stepper = Stepper::new(wide, nalgebra::convert(0.01)).expect("a usable step");
-    let attitude: SO3<T> = all.each_ref().map(|lane| lane.1).into();
-    let state = stepper.start(attitude, vector(&|lane| all[lane].2)).expect("a usable start");
+    let state = stepper.start(attitude, velocity).expect("a usable start");
     (stepper, state)
 }
 

@@ -5,7 +5,7 @@ use crate::mechanics::{Effect, Group, Operations, Scalar, SceneVisitor, Vector};
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation};
-use crate::numbers::real;
+use crate::numbers::{Vectors, real};
 use crate::solving::largest_fraction;
 use nalgebra::SimdValue;
 
@@ -24,9 +24,9 @@ pub trait Plan<S: Effect> {
     /// What one step leaves for the next: guesses, stages. `()` where there is nothing.
     type Kept: Kept<Scalar<S>>;
 
-    /// Whether a step takes the vector instructions that the machine is found to have. A body alone gains nothing by
+    /// Which vector instructions a step takes where the machine is found to have them. A body alone gains nothing by
     /// them, several in [lanes](crate::numbers::Real#lanes) do.
-    const DISPATCHED: bool = <Scalar<S> as SimdValue>::LANES > 1;
+    const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 { Vectors::Four } else { Vectors::AsCompiled };
 
     /// The step `h`, s.
     fn step_size(&self) -> Scalar<S>;

@@ -12,7 +12,7 @@ use crate::motion::plan::{Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
-use crate::numbers::{Coordinates as _, Kernel, dispatch, real, reported};
+use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, real, reported};
 use crate::solving::Solvability;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
@@ -463,7 +463,7 @@ struct Step<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>)
 
 impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
-    const DISPATCHED: bool = P::DISPATCHED;
+    const VECTORS: Vectors = P::VECTORS;
 
     #[inline(always)]
     fn run(self) -> Self::Output {
@@ -476,7 +476,7 @@ struct Run<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>, 
 
 impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
     type Output = Result<u64, StepError>;
-    const DISPATCHED: bool = P::DISPATCHED;
+    const VECTORS: Vectors = P::VECTORS;
 
     #[inline(always)]
     fn run(self) -> Self::Output {

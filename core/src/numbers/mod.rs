@@ -16,4 +16,5 @@ pub use scalar::real;
 pub use scalar::{Mask, Real};
 pub(crate) use scalar::{gathered, is_finite, largest_lane, nowhere, reported};
 
+pub use simd::Vectors;
 pub(crate) use simd::{Kernel, dispatch};

@@ -1,5 +1,19 @@
 //! The vector instructions of the machine that the program runs on, whatever it was compiled for.
 
+/// How wide the vector registers are that a step is worth compiling for.
+///
+/// Which of them there are is found out when the program runs, with the feature `dispatch`; without it, all is as
+/// compiled. No digit depends on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vectors {
+    /// Those of the target that the program was compiled for: two `f64` by default.
+    AsCompiled,
+    /// Up to four `f64`: AVX2.
+    Four,
+    /// Up to eight `f64`: AVX-512, and AVX2 where there is but that.
+    Eight,
+}
+
 /// What is worth compiling for several instruction sets.
 ///
 /// All that [`run`](Self::run) calls has to be inlined into it, or is compiled for the target's common instructions
@@ -8,15 +22,15 @@
 pub(crate) trait Kernel {
     type Output;
 
-    /// Whether it is worth it. What isn't is compiled once: as an argument of [`dispatch`], all would be compiled for
-    /// every instruction set, and tests took twice as long to build.
-    const DISPATCHED: bool;
+    /// The registers that it is worth compiling for. As a value of [`dispatch`], and not a constant, it would be compiled
+    /// for all of them.
+    const VECTORS: Vectors;
 
     /// Does it; marked `#[inline(always)]`.
     fn run(self) -> Self::Output;
 }
 
-/// Does it with the best instructions that the machine has, if that is worth it and the feature `dispatch` is on.
+/// Does it with the best instructions that the machine has, up to those asked for, if the feature `dispatch` is on.
 #[cfg(feature = "dispatch")]
 #[inline(always)]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
@@ -33,7 +47,18 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         }
     }
 
-    if K::DISPATCHED { Arch::new().dispatch(Dispatched(kernel)) } else { kernel.run() }
+    // A branch on a constant leaves the others uncompiled; a `match` doesn't.
+    if const { matches!(K::VECTORS, Vectors::AsCompiled) } {
+        return kernel.run();
+    }
+    #[cfg(target_arch = "x86_64")]
+    if const { matches!(K::VECTORS, Vectors::Four) } {
+        return match pulp::x86::V3::try_new() {
+            Some(four) => Simd::vectorize(four, Dispatched(kernel)),
+            None => kernel.run(),
+        };
+    }
+    Arch::new().dispatch(Dispatched(kernel))
 }
 
 /// Does it with the instructions that it was compiled for.

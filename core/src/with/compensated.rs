@@ -12,7 +12,7 @@ use crate::methods::{Composed, KineticFlow, Preprocessed, Processed, Split};
 use crate::motion::{
     Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
 };
-use crate::numbers::{Entries, Real, carried_sum, zero};
+use crate::numbers::{Entries, Real, Vectors, carried_sum, zero};
 use crate::with::remedies::OrElse;
 use nalgebra::SimdValue as _;
 
@@ -112,7 +112,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
     type Kept = Carried<P::Kept, Group<S>, S::Advected>;
 
-    const DISPATCHED: bool = P::DISPATCHED;
+    const VECTORS: Vectors = P::VECTORS;
     const EXPLAINS: bool = P::EXPLAINS;
 
     fn step_size(&self) -> Scalar<S> {

@@ -6,7 +6,7 @@
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::motion::{Cost, Motion, Plan, Remedy, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::real;
+use crate::numbers::{Vectors, real};
 
 /// A plan that has a remedy for steps without a solution, by [`Stepper::or_substeps`] or [`Stepper::or_fallback`].
 #[derive(Clone, Copy, Debug)]
@@ -112,7 +112,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
     type Kept = P::Kept;
 
-    const DISPATCHED: bool = P::DISPATCHED;
+    const VECTORS: Vectors = P::VECTORS;
     const EXPLAINS: bool = P::EXPLAINS;
 
     fn step_size(&self) -> Scalar<S> {

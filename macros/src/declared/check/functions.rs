@@ -33,7 +33,7 @@ impl Checker<'_> {
             return None;
         };
         let (passed, argument) = (argument, self.expression(argument)?);
-        if !self.is_passed_right(&function, passed, 0) {
+        if !self.is_passed_right(&function, passed, false) {
             return None;
         }
         match (function.as_str(), argument.shape) {

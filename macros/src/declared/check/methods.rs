@@ -63,7 +63,7 @@ impl Checker<'_> {
             (_, Some(argument)) => {
                 let (passed, argument) = (argument, self.expression(argument)?);
                 let product = self.of_two(&name, receiver, argument, span, at)?;
-                self.is_passed_right(&name, passed, 1).then_some(product)
+                self.is_passed_right(&name, passed, true).then_some(product)
             }
             (_, None) => self.of_one(&name, receiver, span, at),
         }

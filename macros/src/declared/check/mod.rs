@@ -87,8 +87,8 @@ fn end(expression: &Expr) -> Span {
 struct Binding {
     tree: Option<Rc<Tree>>,
     span: Span,
-    /// How many `&` its value has.
-    references: usize,
+    /// How many `&` its value has, where that is seen.
+    references: Option<usize>,
     used: bool,
 }
 
@@ -188,24 +188,23 @@ impl Checker<'_> {
             Expr::Path(path) => {
                 let spelling = Spelling::of(path.path.get_ident()?);
                 let binding = self.scopes.iter().rev().find_map(|scope| scope.get(&spelling));
-                Some(binding.map_or(0, |binding| binding.references))
+                binding.map_or(Some(0), |binding| binding.references)
             }
             _ => Some(0),
         }
     }
 
-    /// Whether the compiler will take it as the argument of that function; if not, says what to write.
-    fn is_passed_right(&mut self, function: &str, argument: &Expr, wanted: usize) -> bool {
-        let found = self.references(argument).unwrap_or(wanted);
-        if found == wanted {
-            return true;
-        }
-        let text = argument.to_token_stream().to_string();
-        let advice = match (wanted, found) {
-            (1, 0) if matches!(argument, Expr::Path(_)) => format!("takes a reference: write `&{text}`"),
-            (1, 0) => "takes a reference: write `&(…)`".to_owned(),
-            (1, _) => "takes one reference: leave the other `&` away".to_owned(),
-            _ => "takes the value itself: leave the `&` away".to_owned(),
+    /// Whether the compiler takes it as the argument of that method, a reference, or of that function, a value; if not,
+    /// says what to write. A reference to a reference is taken, too.
+    fn is_passed_right(&mut self, function: &str, argument: &Expr, by_reference: bool) -> bool {
+        let Some(found) = self.references(argument) else { return true };
+        let advice = match (by_reference, found) {
+            (true, 1..) | (false, 0) => return true,
+            (true, 0) if matches!(argument, Expr::Path(_)) => {
+                format!("takes a reference: write `&{}`", argument.to_token_stream())
+            }
+            (true, 0) => "takes a reference: write `&(…)`".to_owned(),
+            (false, _) => "takes the value itself: leave the `&` away".to_owned(),
         };
         self.errors.push_over(argument, format!("`{function}` {advice}"));
         false
@@ -289,7 +288,7 @@ impl Checker<'_> {
             let (span, end, shape) = (tree.span, tree.end, tree.shape);
             Tree::until(Tree::new(span, shape, Kind::Bound(name.unraw().to_string(), tree)), end)
         });
-        let references = self.references(&init.expr).unwrap_or(0);
+        let references = self.references(&init.expr);
         let binding = Binding { tree, span: name.span(), references, used: false };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(Spelling::of(name), binding);
@@ -300,7 +299,7 @@ impl Checker<'_> {
     fn bind_nothing(&mut self, pattern: &Pat) {
         match pattern {
             Pat::Ident(name) => {
-                let binding = Binding { tree: None, span: name.span(), references: 0, used: true };
+                let binding = Binding { tree: None, span: name.span(), references: None, used: true };
                 if let Some(scope) = self.scopes.last_mut() {
                     scope.insert(Spelling::of(&name.ident), binding);
                 }

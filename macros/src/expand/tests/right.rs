@@ -50,6 +50,19 @@ fn steep() {
     assert_right(&[&format!("{{ {square} h * m * w.dot(&(f * f * rho)) }}"), "h * (20.0 * w.dot(&(F * rho))).sin()"]);
 }
 
+/// References, however they are come by.
+#[test]
+fn by_reference() {
+    assert_right(&[
+        "{ let a = &rho; h * m * w.dot(a) }",
+        "{ let a = &rho; let b = &a; h * m * w.dot(&a) + h * m * w.dot(b) }",
+        "h * m * w.dot(&&rho)",
+        "{ let a = { &rho }; h * m * w.dot(a) }",
+        "h * m * w.dot((&rho))",
+        "{ let a = vee(F); h * m * w.dot(&a) + h * vee({ F }).dot(&w) }",
+    ]);
+}
+
 /// Each order in `h` is right, or says that it is meant.
 #[test]
 fn of_unusual_orders() {

@@ -1,0 +1,295 @@
+//! What wider vector registers gain: the same steps with those of the target, of AVX2 and of AVX-512.
+//!
+//! ```text
+//! cargo bench --bench vectors              fails where a gain is lost
+//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails where that is slower
+//! cargo bench --bench vectors -- time      nothing but the nanoseconds that the others compare
+//! ```
+//!
+//! A loop of collocation that the compiler doesn't make lanes of any more, a kernel that isn't inlined into what is
+//! dispatched: either shows here as a ratio near one. Kernels take turns within one run, and the fastest batch of each
+//! counts.
+//!
+//! Eight tops in lanes are those of `ensemble.rs`, for a step of (3.13), a splitting, a composition, and splittings with
+//! the exact motion of their asymmetric bodies. Eight alone are eight steps of one.
+
+mod eight_tops;
+
+use core::hint::black_box;
+use std::error::Error;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use liestep::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SceneVisitor};
+use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
+use liestep::motion::{Cost, Motion, Plan, Summation};
+use liestep::numbers::{Real, Vectors};
+use liestep::prelude::*;
+use nalgebra::{SimdValue, Vector3};
+use simba::simd::{AutoF64x4, AutoF64x8, WideF64x4};
+
+use eight_tops::{TOPS, Top, lanes, top};
+
+const BATCH: u64 = 100;
+const ROUNDS: usize = 1000;
+
+/// A plan with the registers given: those of the target, four or eight.
+#[derive(Clone)]
+struct With<P, const LEVEL: usize>(P);
+
+impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
+    type Kept = P::Kept;
+
+    const VECTORS: Vectors = [Vectors::AsCompiled, Vectors::Four, Vectors::Eight][LEVEL];
+
+    fn step_size(&self) -> Scalar<S> {
+        self.0.step_size()
+    }
+
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        self.0.refolded(scene, h).map(Self)
+    }
+
+    fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
+        self.0.keep(scene, motion)
+    }
+
+    #[inline(always)]
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        self.0.step(scene, motion, kept)
+    }
+
+    #[inline(always)]
+    fn run<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        self.0.run(scene, motion, kept, steps)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
+        self.0.describe(visitor);
+    }
+
+    fn cost(&self) -> Cost {
+        self.0.cost()
+    }
+}
+
+/// A batch of steps.
+type Batch = Box<dyn FnMut()>;
+
+fn batch<S, P>(stepper: Stepper<S, P>, attitude: Group<S>, velocity: liestep::mechanics::Vector<S>) -> Batch
+where
+    S: Effect + 'static,
+    P: Plan<S, Kept: 'static> + 'static,
+{
+    let start = stepper.start(attitude, velocity).expect("a usable start");
+    Box::new(move || {
+        let mut state = black_box(start);
+        stepper.run(&mut state, BATCH).expect("solvable steps");
+        black_box(state);
+    })
+}
+
+/// The batches of a stepper with each of the registers.
+fn levels<S, P>(stepper: &Stepper<S, P>, attitude: Group<S>, velocity: liestep::mechanics::Vector<S>) -> [Batch; 3]
+where
+    S: Effect + Clone + 'static,
+    P: Plan<S, Kept: 'static> + Clone + 'static,
+{
+    let with = || (stepper.scene().clone(), stepper.plan().clone());
+    let ((a, p), (b, q), (c, r)) = (with(), with(), with());
+    [
+        batch(Stepper::with_plan(a, With::<P, 0>(p)).expect("a scene"), attitude, velocity),
+        batch(Stepper::with_plan(b, With::<P, 1>(q)).expect("a scene"), attitude, velocity),
+        batch(Stepper::with_plan(c, With::<P, 2>(r)).expect("a scene"), attitude, velocity),
+    ]
+}
+
+/// Kernels with each of the registers, and by what each has to gain on the one before.
+struct Row {
+    name: String,
+    batches: [Batch; 3],
+    least: [f64; 2],
+}
+
+fn collocation<const PAIRS: usize>(least: [f64; 2]) -> Row {
+    let (scene, attitude, velocity) = top::<f64>(3);
+    let stepper = Stepper::collocated::<PAIRS>(scene, 0.1).expect("a usable step");
+    Row { name: format!("Gauss, {} stages", 2 * PAIRS), batches: levels(&stepper, attitude, velocity), least }
+}
+
+/// Eight tops in lanes of this type, stepped in these ways.
+fn in_lanes<T, const N: usize>(name: &str, gain: f64) -> Vec<Row>
+where
+    T: Real<Element: Real + nalgebra::RealField> + From<[T::Element; N]> + 'static,
+    Top<T>: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = Vector3<T>> + liestep::mechanics::Regular,
+{
+    let (scene, attitude, velocity) = lanes::<T, N>(0);
+    let h = || nalgebra::convert::<f64, T>(0.05);
+    let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
+    let row = |way: &str, batches, gain| Row { name: format!("{name}: {way}"), batches, least: [gain, 0.0] };
+    let declared = Stepper::new(scene.clone(), h()).expect("a usable step");
+    let composed = Stepper::composed(scene.clone(), h(), CompositionScheme::KAHAN_LI_6).expect("a usable step");
+    let split = |scheme| Stepper::split(scene.clone(), h(), body, scheme).expect("a usable step");
+    let processed = Stepper::processed(scene.clone(), h(), body, ProcessedScheme::SIX_A).expect("a usable step");
+    vec![
+        row("(3.13)", levels(&declared, attitude, velocity), gain),
+        row("Kahan-Li 6", levels(&composed, attitude, velocity), gain),
+        row("Nyström 11-6", levels(&split(SplittingScheme::NYSTROM_11), attitude, velocity), gain),
+        row("force gradient 5-6", levels(&split(SplittingScheme::FORCE_GRADIENT_5), attitude, velocity), gain),
+        row("processed 3-6 a", levels(&processed, attitude, velocity), gain),
+    ]
+}
+
+/// The time of the fastest batch of each kernel, ns a step; they take turns.
+#[allow(clippy::cast_precision_loss)] // a hundred
+fn fastest<const N: usize>(batches: &mut [Batch; N]) -> [f64; N] {
+    let mut best = [f64::INFINITY; N];
+    for _ in 0..ROUNDS {
+        for (best, batch) in best.iter_mut().zip(batches.iter_mut()) {
+            let start = Instant::now();
+            batch();
+            *best = best.min(start.elapsed().as_secs_f64() * 1e9 / BATCH as f64);
+        }
+    }
+    best
+}
+
+fn rows() -> Vec<Row> {
+    let mut rows = vec![collocation::<2>([1.3, 0.0]), collocation::<4>([1.5, 1.15])];
+    rows.extend(in_lanes::<AutoF64x8, 8>("8 lanes, AutoF64x8", 1.25));
+    rows.extend(in_lanes::<WideF64x4, 4>("4 lanes, WideF64x4", 0.0));
+    rows.extend(in_lanes::<AutoF64x4, 4>("4 lanes, AutoF64x4", 0.0));
+    rows
+}
+
+/// Whether a machine has more than the registers before.
+fn has(level: usize) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return [is_x86_feature_detected!("avx2"), is_x86_feature_detected!("avx512f")][level];
+    #[cfg(not(target_arch = "x86_64"))]
+    return level > 1;
+}
+
+/// A table of the gains; fails where one is lost.
+fn gains() -> Result<(), Box<dyn Error>> {
+    println!("{:<40}{:>12}{:>12}{:>12}{:>8}{:>8}", "ns a step", "as compiled", "four", "eight", "gain", "gain");
+    let mut lost = Vec::new();
+    for Row { name, mut batches, least } in rows() {
+        let [two, four, eight] = fastest(&mut batches);
+        let gains = [two / four, four / eight];
+        println!("{name:<40}{two:>12.1}{four:>12.1}{eight:>12.1}{:>8.2}{:>8.2}", gains[0], gains[1]);
+        // What the program is compiled for has no more to gain.
+        let is_compiled = [cfg!(target_feature = "avx2"), cfg!(target_feature = "avx512f")];
+        for level in 0..2 {
+            if has(level) && !is_compiled[level] && gains[level] < least[level] {
+                lost.push(format!("{name}: {:.2} instead of {}", gains[level], least[level]));
+            }
+        }
+    }
+    alone();
+    if lost.is_empty() { Ok(()) } else { Err(lost.join("; ").into()) }
+}
+
+/// The exact motion of a body in eight lanes, against eight alone.
+fn alone() {
+    let wide = lanes::<AutoF64x8, 8>(0);
+    let scheme = SplittingScheme::FORCE_GRADIENT_5;
+    let body = ExactBody::new(&NonstandardInertia::from(wide.0.J_d).to_inertia());
+    let stepper = Stepper::split(wide.0, nalgebra::convert(0.05), body, scheme).expect("a usable step");
+    let together = batch(stepper, wide.1, wide.2);
+    let mut all: Vec<Batch> = (0..TOPS)
+        .map(|number| {
+            let (scene, attitude, velocity) = top::<f64>(number);
+            let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
+            batch(Stepper::split(scene, 0.05, body, scheme).expect("a usable step"), attitude, velocity)
+        })
+        .collect();
+    let apart: Batch = Box::new(move || all.iter_mut().for_each(|batch| batch()));
+    let [apart, together] = fastest(&mut [apart, together]);
+    println!("exact motion, eight alone {apart:.1}, in lanes {together:.1}: {:.2}", apart / together);
+}
+
+/// Nanoseconds a step of each kernel with the registers that it chooses by itself, a line each.
+fn times() {
+    for Row { name, batches, .. } in rows() {
+        let [_, four, eight] = batches;
+        let is_collocation = name.starts_with("Gauss, 8");
+        let [time] = fastest(&mut [if is_collocation { eight } else { four }]);
+        println!("{time:.2} {name}");
+    }
+}
+
+/// The times of the program at this place.
+fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Box<dyn Error>> {
+    let output = Command::new(program).arg("time").output()?;
+    let lines = String::from_utf8(output.stdout)?;
+    let line = |line: &str| -> Option<(f64, String)> {
+        let (time, name) = line.split_once(' ')?;
+        Some((time.parse().ok()?, name.to_owned()))
+    };
+    Ok(lines.lines().filter_map(line).collect())
+}
+
+/// This program compiled for this machine, against itself; fails where that is slower.
+fn native() -> Result<(), Box<dyn Error>> {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["bench", "--no-run", "--bench", "vectors", "--target-dir", "target/native"]);
+    let output = cargo.env("RUSTFLAGS", "-C target-cpu=native").output()?;
+    let report = String::from_utf8_lossy(&output.stderr);
+    let executable = report.lines().find_map(|line| line.trim().strip_prefix("Executable"));
+    let place = executable.and_then(|line| line.split_once('(')?.1.strip_suffix(')'));
+    let place = place.ok_or_else(|| format!("nothing was built: {report}"))?;
+    let programs = [std::env::current_exe()?, place.into()];
+    let mut best: [Vec<(f64, String)>; 2] = Default::default();
+    for _ in 0..3 {
+        for (best, program) in best.iter_mut().zip(&programs) {
+            let times = times_of(program)?;
+            match best.is_empty() {
+                true => *best = times,
+                false => best.iter_mut().zip(times).for_each(|(best, time)| best.0 = best.0.min(time.0)),
+            }
+        }
+    }
+    println!("{:<40}{:>12}{:>12}{:>8}", "ns a step", "default", "native", "ratio");
+    let mut slower = Vec::new();
+    for ((default, name), (native, _)) in best[0].iter().zip(&best[1]) {
+        println!("{name:<40}{default:>12.1}{native:>12.1}{:>8.2}", native / default);
+        if *native > SLOWER * default {
+            slower.push(name.as_str());
+        }
+    }
+    if slower.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("slower if compiled for this machine: {}", slower.join("; ")).into())
+    }
+}
+
+/// Up to this is noise.
+const SLOWER: f64 = 1.1;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    // Cargo adds `--bench`.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    match words.first().map(String::as_str) {
+        None => gains(),
+        Some("native") => native(),
+        Some("time") => {
+            times();
+            Ok(())
+        }
+        Some(other) => Err(format!("`native`, `time` or nothing, not {other}").into()),
+    }
+}
