@@ -271,6 +271,32 @@ fn a_momentum_without_a_velocity_is_an_error() {
     assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");
 }
 
+/// The same with a momentum at rest, as of a charge in a vector potential.
+#[lagrangian(group = R3, velocity = v, l = (c * c) * (1.0 + v.norm_squared() / (c * c)).sqrt() + s.dot(&v))]
+#[derive(Clone)]
+struct Charged {
+    c: f64,
+    s: Vector3<f64>,
+}
+
+/// What cancels is as large as the momentum at rest, however small the momentum itself.
+#[test]
+fn a_momentum_that_is_small_beside_that_at_rest() {
+    let charged = Charged { c: 2.0, s: Vector3::new(0.7, -30.0, 1.3) };
+    for size in [0.0, 1e-300, 1e-9, 1e-4, 1.0] {
+        let momentum = charged.s + Vector3::new(0.6, 0.0, -0.8) * size;
+        let expected = (momentum - charged.s) / (1.0 - size * size / 4.0_f64).sqrt();
+        let velocity = charged.velocity(&momentum, &()).unwrap();
+        assert!((velocity - expected).norm() < 1e-14 * charged.s.norm(), "{size}: {velocity}");
+        // As much below c as the momentum at rest lets it be.
+        let standing = Charged { c: 40.0, ..charged.clone() };
+        let velocity = standing.velocity(&(momentum - charged.s), &()).unwrap();
+        let kinetic = momentum - charged.s * 2.0;
+        let expected = kinetic / (1.0 - kinetic.norm_squared() / 1600.0).sqrt();
+        assert!((velocity - expected).norm() < 1e-13 * charged.s.norm(), "{size}: {velocity}");
+    }
+}
+
 /// Of a symmetric top the momenta about the vertical and about its axis, of an asymmetric one the first, of a free body
 /// all in space, of a free sphere all in the body too; a solver keeps them to its error.
 #[test]

@@ -144,8 +144,8 @@ pub trait ContinuousLagrangian {
     ///
     /// # Errors
     ///
-    /// [`StepError::Singular`] where `M` is singular or has lost its sign, [`StepError::NotConverged`] where Newton's
-    /// iteration finds no velocity.
+    /// [`StepError::Singular`] where `M` is singular. Where `l` isn't quadratic in the velocity also where `M` has lost the
+    /// sign that it has at rest, and [`StepError::NotConverged`] where Newton's iteration finds no velocity.
     fn velocity(&self, momentum: &Covector<Self>, w: &Self::Advected) -> Result<Velocity<Self>, StepError> {
         let rest = Velocity::<Self>::zero();
         let defect = *momentum - self.momentum(&rest, w);
@@ -226,13 +226,21 @@ fn velocity_by_newton<L: ContinuousLagrangian + ?Sized>(
     let starts = defect.dot(&defect).simd_le(first.dot(&first));
     velocity = velocity.select(starts, rest);
     defect = defect.select(starts, first);
+    // The terms that cancel: the momentum, and what there is of it at rest and at the first velocity.
+    let bias = *momentum - first;
+    let terms = momentum.dot(momentum) + bias.dot(&bias) + (*momentum - defect).dot(&(*momentum - defect));
+    let allowed = L::Scalar::simd_default_epsilon() * real(ROUNDINGS);
+    let bound = terms * allowed * allowed;
     let half = real::<L::Scalar>(0.5);
-    for _ in 0..MOST_ITERATIONS {
+    let mut iterations = 0;
+    while iterations < MOST_ITERATIONS {
         let size = defect.dot(&defect);
+        // Near rounding a step that doesn't help ends it; farther away it is too long.
+        let halvings = if size.simd_le(bound).all() { 1 } else { MOST_HALVINGS };
         let step = Velocity::<L>::solve(&lagrangian.velocity_hessian(&velocity, w), &defect).0;
         let (mut fraction, mut next, mut next_defect) = (real::<L::Scalar>(1.0), velocity, defect);
         let mut helped: Mask<L::Scalar> = size.simd_lt(size);
-        for _ in 0..MOST_HALVINGS {
+        for _ in 0..halvings {
             let candidate = velocity + step * fraction;
             let candidate_defect = defect_at(&candidate);
             let helps = candidate_defect.dot(&candidate_defect).simd_lt(size) & !helped;
@@ -245,19 +253,15 @@ fn velocity_by_newton<L: ContinuousLagrangian + ?Sized>(
             fraction *= half;
         }
         (velocity, defect) = (next, next_defect);
+        iterations += 1;
         if helped.none() {
             break;
         }
     }
-    let size = momentum.dot(momentum) + lagrangian.momentum(&velocity, w).dot(&lagrangian.momentum(&velocity, w));
-    let allowed = L::Scalar::simd_default_epsilon() * real(ROUNDINGS);
     let residual = defect.dot(&defect);
-    if !residual.simd_le(size * allowed * allowed).all() {
-        let relative = (residual / size).simd_sqrt();
-        return Err(StepError::NotConverged {
-            iterations: MOST_ITERATIONS,
-            residual: crate::numbers::reported(relative),
-        });
+    if !residual.simd_le(bound).all() {
+        let relative = (residual / terms).simd_sqrt();
+        return Err(StepError::NotConverged { iterations, residual: crate::numbers::reported(relative) });
     }
     // Of two velocities with one momentum the one is meant on whose side of the singularity rest is.
     let sign = |velocity: &Velocity<L>| Velocity::<L>::least_pivot(&lagrangian.velocity_hessian(velocity, w));

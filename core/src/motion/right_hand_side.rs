@@ -28,9 +28,9 @@ type Square<L> = <Velocity<L> as Coordinates<<L as ContinuousLagrangian>::Scalar
 /// let top = RightHandSide::new(RigidBody { J_d } + gravity)?;
 ///
 /// let state = top.state(&SO3::identity(), &Vector3::new(1.5, 6.0, 48.0));
-/// let mut rate = vec![0.0; state.len()];
+/// let mut rate = vec![0.0_f64; state.len()];
 /// top.rate(&state, &mut rate)?; // what a solver calls
-/// assert_eq!(rate[..3], [0.0, -12.0, 2.0]); // the first row of ξ̂, as g = I
+/// assert!((rate[1] + 12.0).abs() < 1e-14 && (rate[2] - 2.0).abs() < 1e-14); // the first row of ξ̂, as g = I
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
