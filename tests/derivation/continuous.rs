@@ -5,6 +5,7 @@ use declarations::{ContinuousTop, HeavyTop, RelativisticParticle};
 use liestep::effects::{Gravity, RigidBody, Rotor};
 use liestep::groups::R3;
 use liestep::mechanics::{ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia};
+use liestep::methods::CotangentGauss;
 use liestep::motion::RightHandSide;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3, Vector4, convert};
@@ -335,4 +336,26 @@ fn conserved_momenta() {
     for (before, after) in before.iter().zip(kept(&state)) {
         assert!((before - after).abs() < 1e-8 * (1.0 + before.abs()), "{before} and {after}");
     }
+}
+
+/// On SO(3) collocation on all matrices makes the motion that collocation on quaternions makes.
+#[test]
+fn two_collocations_agree() {
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
+    let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() };
+    let scene = RigidBody { J_d } + gravity + Rotor { spin: Vector3::new(0.0, 0.3, 1.0) };
+    let quaternions = Stepper::collocated::<4>(scene, 0.1).unwrap();
+    let matrices = CotangentGauss::<_, 4, 3>::new(scene, 0.1).unwrap();
+    let (attitude, momentum) =
+        (UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, 0.0)), Vector3::new(1.0, 4.0, 7.0));
+    let mut state = quaternions.start_with_momentum(attitude, momentum).unwrap();
+    let (mut attitude, mut momentum) = (SO3::from(attitude), momentum);
+    for _ in 0..20 {
+        quaternions.step(&mut state).unwrap();
+        (attitude, momentum) = matrices.step(&attitude, &momentum).unwrap();
+    }
+    assert!((state.momentum() - momentum).norm() < 1e-11);
+    assert!((state.attitude().as_matrix() - attitude.as_matrix()).norm() < 1e-11);
+    let error = CotangentGauss::<_, 2, 3>::new(scene, 50.0).unwrap().step(&attitude, &momentum).unwrap_err();
+    assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");
 }

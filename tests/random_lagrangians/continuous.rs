@@ -137,26 +137,52 @@ where
     let system = with(&w);
     let momentum = system.momentum(&xi, &w);
     let identity = L::Group::identity();
-    let start = (identity, momentum);
+    // Fast, so that errors of high order are above rounding.
+    let start = (identity, system.momentum(&(xi * 3.0), &w));
 
     let distance = |a: &(SMatrix<f64, N, N>, SVector<f64, D>), b: &(SMatrix<f64, N, N>, SVector<f64, D>)| {
         (a.0 - b.0).norm() + (a.1 - b.1).norm()
     };
     let time = 2.0;
-    let exact = end::<L, 4, N, D>(&system, start, (time, 24)).expect("short steps");
+    let exact = end::<L, 4, N, D>(&system, start, (time, 40)).expect("short steps");
     let size = exact.0.norm() + exact.1.norm();
     let defect = L::Group::from_matrix_unchecked(exact.0).defect();
     assert!(defect <= 1e-13 * size, "off the group: {defect:e}");
     let missed = |found: Option<_>| found.map(|found| distance(&found, &exact));
-    let fourth = orders([20, 40].map(|n| (n, missed(end::<L, 1, N, D>(&system, start, (time, n))))).into_iter(), 0.0);
-    let steps = || [2, 3, 4, 5, 6].into_iter();
+    let fourth =
+        orders([60, 120].map(|n| (n, missed(end::<L, 1, N, D>(&system, start, (time, n))))).into_iter(), 1e-12 * size);
+    let steps = || [2, 3, 4, 5, 6, 8, 10].into_iter();
     let six = orders(steps().map(|n| (n, missed(end::<L, 3, N, D>(&system, start, (time, n))))), 1e-11 * size);
     let eight = orders(steps().map(|n| (n, missed(end::<L, 4, N, D>(&system, start, (time, n))))), 1e-11 * size);
     println!("orders {fourth:.2?}, {six:.1?}, {eight:.1?}");
     assert!(fourth.iter().all(|order| (3.7..4.3).contains(order)), "two stages: {fourth:?}");
-    // The last is nearest to the limit.
-    assert!(six.last().is_none_or(|&order| order > 10.0), "six stages: {six:?}");
-    assert!(eight.last().is_none_or(|&order| order > 13.0), "eight stages: {eight:?}");
+    // Of coarse steps the order is less, and near rounding it is anything; with several the best is between.
+    let reaches = |orders: &[f64], order: f64| orders.len() < 2 || orders.iter().any(|&found| found > order);
+    assert!(reaches(&six, 10.5), "six stages: {six:?}");
+    assert!(reaches(&eight, 13.0), "eight stages: {eight:?}");
+
+    // The same motion as by a Runge–Kutta method on the right-hand side, which knows nothing of the matrices off the group.
+    let numbers = RightHandSide::new(system.clone()).expect("regular at rest");
+    let mut state = numbers.state(&identity, &momentum);
+    let of = |y: &[f64]| {
+        let mut rate = vec![0.0; y.len()];
+        numbers.rate(y, &mut rate).expect("a convex kinetic energy");
+        rate
+    };
+    let h = 1e-3;
+    for _ in 0..100 {
+        let at = |k: &[f64], h: f64| -> Vec<f64> { state.iter().zip(k).map(|(y, k)| y + h * k).collect() };
+        let k1 = of(&state);
+        let k2 = of(&at(&k1, 0.5 * h));
+        let k3 = of(&at(&k2, 0.5 * h));
+        let k4 = of(&at(&k3, h));
+        let change = |i: usize| h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+        state = state.iter().enumerate().map(|(i, y)| y + change(i)).collect();
+    }
+    let (there, after) = numbers.parts(&state);
+    let found = end::<L, 4, N, D>(&system, (identity, momentum), (0.1, 1)).expect("a short step");
+    let apart = distance(&found, &(there.matrix(), after));
+    assert!(apart <= 1e-9 * size, "Runge–Kutta: {apart:e}");
 
     // Back again, and Poisson, by a step that isn't small.
     let (there, back) =

@@ -6,7 +6,7 @@ use crate::numbers::{Coordinates, Entries, real, reported};
 
 type Vector<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
 
-/// What rounding leaves of a row that is a combination of others, relative to the largest entry of all.
+/// What rounding leaves of a row that is a combination of others, relative to what the rows are made of.
 const ROUNDING: f64 = 1e-10;
 
 /// The directions in space along which a scene is the same: a basis of `η` with `η·a_0 = 0`. Along them the spatial
@@ -21,7 +21,9 @@ pub(crate) fn left_symmetries<L: ContinuousLagrangian>(lagrangian: &L) -> Vec<Ve
     let columns: Vec<Vec<f64>> = columns.collect();
     let rows = columns.first().map_or(0, Vec::len);
     let rows = (0..rows).map(|row| columns.iter().map(|column| column[row]).collect());
-    combined::<L>(null_space(rows.collect(), L::Group::DIMENSION))
+    let mut scale = 0.0_f64;
+    spatial.each(&mut |entry| scale = scale.max(reported(entry).abs()));
+    combined::<L>(null_space(rows.collect(), L::Group::DIMENSION, scale))
 }
 
 /// The directions in the body along which its Lagrangian is the same: a basis of `ζ` with `⟨μ̇, ζ⟩ = 0` at all
@@ -36,14 +38,19 @@ pub(crate) fn right_symmetries<L: ContinuousLagrangian>(lagrangian: &L) -> Vec<V
         real::<L::Scalar>(0.6 * unit - 0.3)
     };
     let dimension = L::Group::DIMENSION;
+    let mut scale = 0.0_f64;
     let rows = (0..2 * dimension + 2).map(|_| {
         let velocity = Vector::<L>::from_entries(&mut number);
         let w = L::Advected::from_entries(&mut number);
+        let (momentum, diamond) = (lagrangian.momentum(&velocity, &w), lagrangian.diamond_rate(&velocity, &w));
+        let squared = momentum.dot(&momentum) * velocity.dot(&velocity) + diamond.dot(&diamond);
+        scale = scale.max(reported(squared).sqrt());
         let mut row = Vec::new();
         lagrangian.momentum_rate(&velocity, &w).each(&mut |entry| row.push(reported(entry)));
         row
     });
-    combined::<L>(null_space(rows.collect(), dimension))
+    let rows = rows.collect();
+    combined::<L>(null_space(rows, dimension, scale))
 }
 
 /// Vectors of the algebra from their components.
@@ -55,9 +62,9 @@ fn combined<L: ContinuousLagrangian>(basis: Vec<Vec<f64>>) -> Vec<Vector<L>> {
     basis.into_iter().map(vector).collect()
 }
 
-/// A basis of the vectors on which all rows vanish, by elimination with row pivots; none where a row has no value.
-fn null_space(mut rows: Vec<Vec<f64>>, dimension: usize) -> Vec<Vec<f64>> {
-    let largest = rows.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+/// A basis of the vectors on which all rows, of terms of this size, vanish, by elimination with row pivots; none where a
+/// row has no value.
+fn null_space(mut rows: Vec<Vec<f64>>, dimension: usize, scale: f64) -> Vec<Vec<f64>> {
     if rows.iter().flatten().any(|entry| !entry.is_finite()) {
         return Vec::new();
     }
@@ -65,7 +72,7 @@ fn null_space(mut rows: Vec<Vec<f64>>, dimension: usize) -> Vec<Vec<f64>> {
     for column in 0..dimension {
         let next = pivots.len();
         let candidates = (next..rows.len()).max_by(|&a, &b| rows[a][column].abs().total_cmp(&rows[b][column].abs()));
-        let Some(found) = candidates.filter(|&row| rows[row][column].abs() > ROUNDING * largest) else { continue };
+        let Some(found) = candidates.filter(|&row| rows[row][column].abs() > ROUNDING * scale) else { continue };
         rows.swap(next, found);
         let pivot: Vec<f64> = rows[next].iter().map(|entry| entry / rows[next][column]).collect();
         for row in &mut rows {
