@@ -40,6 +40,8 @@
 //! |---|---|
 //! | simulate a body with gravity, a spring, drag, … | [`effects`]: bodies and what acts on them; they add with `+` |
 //! | declare a Lagrangian or a force of your own | [`lagrangian`], [`force`](macro@force) |
+//! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |
+//! | hand the equations of motion to an ODE solver | [`motion::RightHandSide`] |
 //! | step, run, force, save and resume a motion | [`Stepper`], [`State`] |
 //! | be more accurate | [`methods`]: orders 4 to 16 |
 //! | say how accurate, and not how | [`accuracy`] |

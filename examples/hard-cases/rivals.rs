@@ -147,9 +147,8 @@ pub(crate) fn on_quaternion(motion: &Motion, h: f64) -> OnQuaternion {
 
 /// Runge–Kutta on a motion, with the nine entries of `R`.
 pub(crate) fn on_matrix(motion: &Motion, h: f64) -> OnMatrix {
-    let body = rk4_body(&motion.top);
-    let momentum = motion.velocity.component_div(&body.inverse_moments);
-    OnMatrix::new(body, h, &motion.attitude.to_quaternion(), momentum)
+    let momentum = motion.velocity.component_mul(&motion.top.moments());
+    OnMatrix::new(&motion.top, h, &motion.attitude.to_quaternion(), momentum)
 }
 
 /// The energy of a top, J.

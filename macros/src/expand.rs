@@ -30,16 +30,24 @@ pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
     let tree = check::check(&declaration, errors)?;
-    let declared = judged::of_declared(&declaration, &tree, errors)?;
-    let Some(discrete) = judged::discretised(&declaration, &tree, errors)? else {
-        return declared.map(|equations| emit::continuous(item, &declaration, &equations));
+    let declared = match declaration.continuous {
+        Some(_) => Some(judged::of_declared(&declaration, &tree, errors)?),
+        None => None,
+    };
+    let discrete = match (&declared, declaration.discretisation()) {
+        (Some(equations), None) => return Some(emit::continuous(item, &declaration, equations)),
+        (Some(_), Some(asked)) => judged::discretised(&declaration, &tree, asked, errors)?,
+        (None, _) => tree.clone(),
     };
     judged::terms(&declaration, &discrete, errors)?;
     let readings = lower::readings(&declaration, &discrete, errors)?;
     // Handed over, as a long reading is derived only if no short one can be.
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, errors)?;
     let findings = judged::findings(&declaration, &discrete, &chosen, errors)?;
-    let equations = judged::continuous(declared, &declaration, &tree, &chosen, errors)?;
+    let equations = match role {
+        Role::Lagrangian => Some(judged::continuous(declared, &declaration, &tree, &chosen, errors)?),
+        Role::Force => None,
+    };
     Some(emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings))
 }
 

@@ -14,8 +14,8 @@ mod judged;
 mod mathematics;
 mod program;
 
-/// Derives an integrator from a reduced discrete Lagrangian: `impl Effect`, `impl DiscreteLagrangian` and `impl Add`
-/// for the annotated struct.
+/// Derives an integrator from a reduced Lagrangian, discrete or continuous: `impl Effect`, `impl DiscreteLagrangian`,
+/// `impl ContinuousLagrangian` and `impl Add` for the annotated struct.
 ///
 /// ```text
 /// #[lagrangian(
@@ -24,7 +24,9 @@ mod program;
 ///                                     `matrix_group!` declares, `group = Name!` finds them
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     given(u = torque, …),           u is the field `torque` until a step is given another value; may be left out
-///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings
+///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
+///     velocity = Omega, l = …,        the continuous one, in the velocity's components by that name
+///     discretise = trapezoid(Cayley), how `l_d` is made of `l`; left out, there are the continuous equations alone
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
 /// struct Name { … }                   the parameters
@@ -37,6 +39,28 @@ mod program;
 /// `hat(v)`, the matrix `Σ v_k E_k` of the Lie algebra; `vee(A)`, the vector of `½ (A − Aᵀ)`; `log(F)`, the rotation
 /// vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a field or of `F`. A large Lagrangian
 /// is best written with `let`s: what isn't cheaper multiplied out is differentiated through them, by multipliers.
+///
+/// # Continuous Lagrangians
+///
+/// In `l = …` the velocity `ξ = g⁻¹ġ` is in scope by the name that `velocity` gives it, a vector with a component for each
+/// generator, and its matrix as `hat(Omega)`; `F` and `h` aren't. `l` may be any smooth function of the velocity and of what
+/// is advected. It becomes `impl ContinuousLagrangian`: the momentum, the diamond, the equations of motion, the Hamiltonian.
+/// They are compared with the declared `l` in exact arithmetic, as is the limit `h → 0` of what is made of it:
+///
+/// | `discretise =` | `l_d` | |
+/// |---|---|---|
+/// | `trapezoid` | `(h/2) (l(ξ̂, w) + l(ξ̂, F⁻¹·w))` | the matrix `ξ̂ = (F − I)/h`, as in (3.13) |
+/// | `trapezoid(Cayley)`, `trapezoid(exp)` | `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))` | `hξ = cay⁻¹(F)`, or `log F` |
+/// | `midpoint(exp)` | `h l(ξ, exp(−hξ/2)·w)` | `hξ = log F` |
+/// | `chord`, `chord(Cayley)`, `chord(exp)` | `h l(ξ, (w + F⁻¹·w)/2)` | as for the trapezoid |
+///
+/// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. A step needs one inertia, so a
+/// `discretise`d `l` is quadratic in the velocity, and its second derivative doesn't depend on what is advected. For the
+/// matrix `(F − I)/h` the velocity stands as `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A
+/// logarithm is known on SO(3) and where all generators are strictly triangular. A declared `l_d` has the continuous
+/// equations of its limit.
+///
+/// # The parameters
 ///
 /// The fields are `f64`, `Vector3<f64>`, `Point3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
 /// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the

@@ -270,3 +270,43 @@ fn a_momentum_without_a_velocity_is_an_error() {
     let error = bounded.velocity(&Vector3::new(2.1, 0.0, 0.0), &()).unwrap_err();
     assert!(matches!(error, StepError::NotConverged { .. } | StepError::Singular), "{error}");
 }
+
+/// Of a symmetric top the momenta about the vertical and about its axis, of an asymmetric one the first, of a free body
+/// all in space, of a free sphere all in the body too; a solver keeps them to its error.
+#[test]
+fn conserved_momenta() {
+    let top = |J_d: Vector3<f64>, rho: Vector3<f64>| {
+        let J_d = DiagonalNonstandardInertia::from_diagonal(J_d).unwrap();
+        RightHandSide::new(HeavyTop { J_d, m: 1.0, g: 9.81, rho, up: Vector3::new(0.0, 0.6, 0.8) }).unwrap()
+    };
+    let symmetric = top(Vector3::new(2.0, 2.0, 1.0), Vector3::z());
+    let axes = symmetric.right_symmetries();
+    assert_eq!(axes.len(), 1);
+    assert!((axes[0] - Vector3::z()).norm() < 1e-15);
+    assert!((symmetric.left_symmetries()[0].cross(&Vector3::new(0.0, 0.6, 0.8))).norm() < 1e-15);
+    assert_eq!(top(Vector3::new(2.0, 1.9, 1.0), Vector3::z()).right_symmetries().len(), 0);
+    assert_eq!(top(Vector3::new(2.0, 2.0, 1.0), Vector3::x()).right_symmetries().len(), 0);
+    let free = |moments: Vector3<f64>| {
+        RightHandSide::new(RigidBody { J_d: NonstandardInertia::from_diagonal(moments).unwrap() }).unwrap()
+    };
+    assert_eq!(free(Vector3::new(2.0, 1.7, 1.0)).left_symmetries().len(), 3);
+    assert_eq!(free(Vector3::new(2.0, 1.7, 1.0)).right_symmetries().len(), 0);
+    assert_eq!(free(Vector3::new(1.0, 1.0, 1.0)).right_symmetries().len(), 3);
+
+    let attitude = SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, 0.0)));
+    let mut state = symmetric.state(&attitude, &Vector3::new(1.5, 6.0, 20.0));
+    let kept = |state: &[f64]| {
+        let (attitude, momentum) = symmetric.parts(state);
+        let mut kept = symmetric.conserved(&attitude, &momentum);
+        kept.push(symmetric.energy(&attitude, &momentum).unwrap());
+        kept
+    };
+    let before = kept(&state);
+    assert_eq!(before.len(), 3);
+    for _ in 0..1000 {
+        rk4(|y, rate| symmetric.rate(y, rate).unwrap(), &mut state, 1e-3);
+    }
+    for (before, after) in before.iter().zip(kept(&state)) {
+        assert!((before - after).abs() < 1e-8 * (1.0 + before.abs()), "{before} and {after}");
+    }
+}

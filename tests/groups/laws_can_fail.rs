@@ -231,6 +231,10 @@ impl Advected<SE2> for Backwards {
         Self(velocity * self.0)
     }
 
+    fn seen_through(&self, matrix: &Matrix3<f64>, _: &Matrix3<f64>) -> Self {
+        Self(matrix * self.0)
+    }
+
     fn is_finite(&self) -> bool {
         self.0.iter().all(|entry| entry.is_finite())
     }
@@ -265,6 +269,10 @@ impl Advected<SE2> for TurnedRate {
 
     fn rate(&self, velocity: &Matrix3<f64>) -> Self {
         Self(-(velocity.transpose() * self.0))
+    }
+
+    fn seen_through(&self, matrix: &Matrix3<f64>, _: &Matrix3<f64>) -> Self {
+        Self(matrix.transpose() * self.0)
     }
 
     fn is_finite(&self) -> bool {

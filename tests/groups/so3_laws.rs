@@ -7,6 +7,7 @@ use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
 use liestep::motion::reconstruct;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use num_dual::Dual64;
 use workbench::measure::relative;
 
 /// A product of three 3 × 3 matrices of size one.
@@ -132,5 +133,26 @@ fn what_is_not_a_rotation_is_refused() {
         let scaled = SO3::try_from(matrix * (1.0 + 1e-9)).unwrap_err();
         assert!((scaled.defect / (2.0 * 3.0_f64.sqrt() * 1e-9) - 1.0).abs() < 1e-5);
         assert!(SO3::try_from(matrix * f64::NAN).is_err());
+    }
+}
+
+/// Dual numbers keep their derivatives at the identity: `exp` has the basis there, `log` undoes it, and a velocity at
+/// rest moves the attitude.
+#[test]
+fn derivatives_are_kept_at_zero() {
+    for k in 0..3 {
+        let along = Vector3::<f64>::ith(k, 1.0).map(|x| Dual64::new(0.0, x));
+        let turned = SO3::exp(along);
+        assert_eq!(turned.as_matrix().map(|x| x.eps), basis(k));
+        assert_eq!(turned.log().map(|x| x.eps), Vector3::ith(k, 1.0));
+        // The trap that the documentation of `exp` names; if it is gone, so may be the sentence.
+        let lost = SO3::from(UnitQuaternion::from_scaled_axis(along));
+        assert_eq!(lost.as_matrix().map(|x| x.eps), Matrix3::zeros());
+    }
+    for scale in [1e-9_f64, 0.3, 1.5, 1.6, 3.0] {
+        let vector = Vector3::new(0.4, -0.7, 0.5).normalize() * scale;
+        let same = SO3::from(UnitQuaternion::from_scaled_axis(vector));
+        assert!((SO3::exp(vector).as_matrix() - same.as_matrix()).norm() < 1e-15);
+        assert!((same.log() - vector).norm() < 1e-14 * scale.max(1e-2), "{scale}");
     }
 }

@@ -61,6 +61,10 @@ impl Advected<Affine> for Density {
         Self(self.0 * velocity.m11)
     }
 
+    fn seen_through(&self, matrix: &Matrix2<f64>, _: &Matrix2<f64>) -> Self {
+        Self(self.0 * matrix.m11)
+    }
+
     fn is_finite(&self) -> bool {
         self.0.is_finite()
     }

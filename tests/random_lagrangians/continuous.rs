@@ -3,9 +3,12 @@
 //! The gradient of `l` is that of dual numbers, its change along a motion that of hyper-dual ones; the brackets and the
 //! rates of what is advected are those of the library, which its laws test.
 
+use checks::structure::numbers::Numbers;
+use checks::structure::poisson;
 use liestep::groups::{Advected, LieGroup};
 use liestep::laws::samples::{MatrixLieGroup, Random};
 use liestep::mechanics::ContinuousLagrangian;
+use liestep::methods::CotangentGauss;
 use liestep::motion::RightHandSide;
 use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{RealField, SMatrix, SVector};
@@ -96,4 +99,78 @@ where
     let mut rates = vec![0.0; state.len()];
     numbers.rate(&state, &mut rates).expect("a convex kinetic energy");
     assert_near(&SVector::from_column_slice(&rates[N * N..]), &expected, 10.0 * (1.0 + expected.norm()), "numbers");
+}
+
+/// Where a motion ends after the time, in so many steps; `None` where one is too long for the iteration.
+fn end<L, const PAIRS: usize, const N: usize, const D: usize>(
+    system: &L,
+    (mut attitude, mut momentum): (L::Group, SVector<f64, D>),
+    (time, steps): (f64, u32),
+) -> Option<(SMatrix<f64, N, N>, SVector<f64, D>)>
+where
+    L: ContinuousLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>> + Clone,
+{
+    let gauss = CotangentGauss::<L, PAIRS, N>::new(system.clone(), time / f64::from(steps)).expect("regular at rest");
+    for _ in 0..steps {
+        (attitude, momentum) = gauss.step(&attitude, &momentum).ok()?;
+    }
+    Some((attitude.matrix(), momentum))
+}
+
+/// The orders that the errors of ever more steps show, as long as they are above rounding.
+fn orders(errors: impl Iterator<Item = (u32, Option<f64>)>, rounding: f64) -> Vec<f64> {
+    let told: Vec<(u32, f64)> = errors.filter_map(|(n, error)| Some((n, error?))).collect();
+    let pairs = told.windows(2).filter(|pair| pair[1].1 > rounding);
+    pairs.map(|pair| (pair[0].1 / pair[1].1).ln() / (f64::from(pair[1].0) / f64::from(pair[0].0)).ln()).collect()
+}
+
+/// Collocation in attitude and conjugate momentum: on the group, of its order, reversible, Poisson, with the momenta along
+/// symmetries.
+pub(crate) fn assert_collocation<L, const N: usize, const D: usize>(with: impl Fn(&L::Advected) -> L, seed: u64)
+where
+    L: ContinuousLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>> + Clone,
+    L::Advected: Numbers,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    let mut random = Random::new(seed ^ 0x6A);
+    let (xi, w): (SVector<f64, D>, L::Advected) = (random.sample(), random.sample());
+    let system = with(&w);
+    let momentum = system.momentum(&xi, &w);
+    let identity = L::Group::identity();
+    let start = (identity, momentum);
+
+    let distance = |a: &(SMatrix<f64, N, N>, SVector<f64, D>), b: &(SMatrix<f64, N, N>, SVector<f64, D>)| {
+        (a.0 - b.0).norm() + (a.1 - b.1).norm()
+    };
+    let time = 2.0;
+    let exact = end::<L, 4, N, D>(&system, start, (time, 24)).expect("short steps");
+    let size = exact.0.norm() + exact.1.norm();
+    let defect = L::Group::from_matrix_unchecked(exact.0).defect();
+    assert!(defect <= 1e-13 * size, "off the group: {defect:e}");
+    let missed = |found: Option<_>| found.map(|found| distance(&found, &exact));
+    let fourth = orders([20, 40].map(|n| (n, missed(end::<L, 1, N, D>(&system, start, (time, n))))).into_iter(), 0.0);
+    let steps = || [2, 3, 4, 5, 6].into_iter();
+    let six = orders(steps().map(|n| (n, missed(end::<L, 3, N, D>(&system, start, (time, n))))), 1e-11 * size);
+    let eight = orders(steps().map(|n| (n, missed(end::<L, 4, N, D>(&system, start, (time, n))))), 1e-11 * size);
+    println!("orders {fourth:.2?}, {six:.1?}, {eight:.1?}");
+    assert!(fourth.iter().all(|order| (3.7..4.3).contains(order)), "two stages: {fourth:?}");
+    // The last is nearest to the limit.
+    assert!(six.last().is_none_or(|&order| order > 10.0), "six stages: {six:?}");
+    assert!(eight.last().is_none_or(|&order| order > 13.0), "eight stages: {eight:?}");
+
+    // Back again, and Poisson, by a step that isn't small.
+    let (there, back) =
+        [0.3, -0.3].map(|h| CotangentGauss::<L, 2, N>::new(system.clone(), h).expect("regular at rest")).into();
+    let (attitude, after) = there.step(&identity, &momentum).expect("a short step");
+    let (again, before) = back.step(&attitude, &after).expect("a short step");
+    let missed = (again.matrix() - identity.matrix()).norm() + (before - momentum).norm();
+    assert!(missed <= 1e-12 * size, "reversal: {missed:e}");
+    let map = |momentum: &SVector<f64, D>, w: &L::Advected| {
+        let gauss = CotangentGauss::<L, 2, N>::new(with(w), 0.2).expect("regular at rest");
+        let (attitude, momentum) = gauss.step(&identity, momentum).expect("a short step");
+        (momentum, gauss.advected(&attitude))
+    };
+    let (defect, scale) = poisson::defect_on::<L::Group, L::Advected, N, D>(map, &momentum, &w);
+    println!("Poisson {defect:.1e} of {scale:.1e}");
+    assert!(defect <= 1e-11 * scale, "Poisson: {defect:e} of {scale:e}");
 }

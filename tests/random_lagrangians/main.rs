@@ -69,6 +69,19 @@ macro_rules! on_every_group {
                 }
 
                 #[test]
+                fn collocation(seed in 0..4_u64) {
+                    continuous::assert_collocation(
+                        |w: &(_, _, _)| family::$group::Continuous::<f64> {
+                            covector: w.0,
+                            vector: w.1,
+                            form: w.2,
+                            ..family::$group::Continuous::random(seed)
+                        },
+                        seed,
+                    );
+                }
+
+                #[test]
                 fn tensors(seed: u64) {
                     assert_structure(&family::$group::Tensors::random(&mut Random::new(seed)), seed);
                 }

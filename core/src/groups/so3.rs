@@ -5,6 +5,7 @@ use core::fmt;
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
 
 use super::LieGroup;
+use super::rotation_functions::{rotation_exp, rotation_log};
 use crate::numbers::{Mask, Real, gathered, real};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
@@ -70,6 +71,15 @@ impl<T: Real> SO3<T> {
         Self(Matrix3::identity())
     }
 
+    /// The rotation `exp ξ̂` by a rotation vector `ξ`, rad.
+    ///
+    /// Numbers that carry derivatives keep them at `ξ = 0`, too. `UnitQuaternion::from_scaled_axis` has the same values,
+    /// but takes the identity for zero whatever the number carries.
+    #[must_use]
+    pub fn exp(rotation_vector: Vector3<T>) -> Self {
+        Self(rotation_exp(rotation_vector))
+    }
+
     /// The rotation back.
     #[must_use]
     #[inline]
@@ -120,10 +130,12 @@ impl<T: RealField + Copy> SO3<T> {
 
     /// The rotation vector `ξ` of the smallest angle with `exp ξ̂ = F`.
     ///
-    /// At 180° the axis has two signs, of which one is returned.
+    /// At 180° the axis has two signs, of which one is returned. Numbers that carry derivatives keep them at the identity,
+    /// too, as with [`exp`](Self::exp).
     #[must_use]
     pub fn log(&self) -> Vector3<T> {
-        self.to_quaternion().scaled_axis()
+        // Below 90° the formula that is smooth at the identity has all its digits; near 180° it has none.
+        if self.0.trace() > T::one() { rotation_log(self.0) } else { self.to_quaternion().scaled_axis() }
     }
 }
 

@@ -27,6 +27,8 @@ where
         let back = w.advect(&f.increment()).advect(&f.inverse().increment());
         assert_same(&back, &w, allowed, "f · (f⁻¹ · w) = w");
 
+        let through = w.seen_through(&f.matrix(), &eliminated_inverse(&f));
+        assert_same(&through, &w.seen_from(&f), allowed, "an element is a matrix, too");
         let xi: SVector<f64, D> = random.sample();
         let entries_at = |t: f64| entries(&w.seen_from(&along::<G, N, D>(&xi, t)));
         let rate = entries(&w.rate(&G::hat(&xi)));

@@ -3,11 +3,12 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::sum::Sum;
-use crate::numbers::{Coordinates, Mask, Real, real};
+use crate::numbers::{Coordinates, Mask, Real, real, sum};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
 type Velocity<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
 type Covector<L> = Velocity<L>;
+type Matrix<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Matrix;
 type Hessian<L> = <Velocity<L> as Coordinates<<L as ContinuousLagrangian>::Scalar>>::Square;
 
 /// What is known of the Legendre transform `ξ ↦ μ = ∂l/∂ξ`, and with it of its inverse.
@@ -119,6 +120,10 @@ pub trait ContinuousLagrangian {
 
     /// `∂l/∂w ⋄ w`: components `−⟨∂l/∂w, E_k·w⟩`, \[RDAE, (2.1)\].
     fn diamond_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self>;
+
+    /// The diamond along all matrices: entries `−⟨∂l/∂w, e_ij·w⟩`, where the matrix `e_ij` has a one at `(i, j)`; paired with
+    /// `E_k`, entry by entry, it is [`diamond_rate`](Self::diamond_rate).
+    fn diamond_matrix(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Matrix<Self>;
 
     /// `(∂²l/∂w∂ξ)(ξ·w)`: by how much the momentum of a fixed velocity falls as `w` is carried along. Zero where `l` is
     /// a kinetic energy of `ξ` alone and a potential of `w`.
@@ -296,6 +301,10 @@ where
 
     fn diamond_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {
         self.first.diamond_rate(velocity, &w.0) + self.second.diamond_rate(velocity, &w.1)
+    }
+
+    fn diamond_matrix(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Matrix<Self> {
+        sum(&self.first.diamond_matrix(velocity, &w.0), &self.second.diamond_matrix(velocity, &w.1))
     }
 
     fn momentum_advection(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self> {

@@ -7,6 +7,7 @@
 //! | [`Split`], by [`Stepper::split`](crate::Stepper::split) | 2 to 10 | SO(3), a potential apart | the same; nothing is solved with a closed [`KineticFlow`] |
 //! | [`Processed`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
 //! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a potential apart, `f64` | the same |
+//! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any group, `f64` | the same |
 //! | [`Preprocessed`], by [`Stepper::preprocessed`](crate::Stepper::preprocessed) | 4 to 10 | a free body | energy, momentum maps |
 
 mod composition;
@@ -15,7 +16,7 @@ mod preprocessed;
 mod splitting;
 
 pub use composition::{Composed, CompositionScheme};
-pub use gauss::{Collocated, Gauss};
+pub use gauss::{Collocated, CotangentGauss, Gauss};
 pub use preprocessed::{Preprocessed, PreprocessedOrder};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{

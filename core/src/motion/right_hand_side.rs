@@ -2,7 +2,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{ContinuousLagrangian, Legendre, check_inertia};
+use crate::mechanics::{ContinuousLagrangian, Legendre, check_inertia, left_symmetries, right_symmetries};
 use crate::numbers::{Coordinates, Entries as _, real};
 
 type Velocity<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
@@ -98,6 +98,28 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
     /// As [`ContinuousLagrangian::velocity`].
     pub fn energy(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Result<L::Scalar, StepError> {
         self.lagrangian.hamiltonian(momentum, &self.spatial.seen_from(attitude))
+    }
+
+    /// A basis of the directions in space along which the scene is the same, `η·a_0 = 0`.
+    pub fn left_symmetries(&self) -> Vec<Velocity<L>> {
+        left_symmetries(&self.lagrangian)
+    }
+
+    /// A basis of the directions in the body along which its Lagrangian is the same, found at sample points to rounding:
+    /// of a symmetric top its axis. What is found for all values of the parameters stands in
+    /// [`CONTINUOUS_DERIVATION`](ContinuousLagrangian::CONTINUOUS_DERIVATION).
+    pub fn right_symmetries(&self) -> Vec<Velocity<L>> {
+        right_symmetries(&self.lagrangian)
+    }
+
+    /// The conserved momenta: that in space along each [left symmetry](Self::left_symmetries), `⟨Ad*_{g⁻¹} μ, η⟩`, then
+    /// that in the body along each [right one](Self::right_symmetries), `⟨μ, ζ⟩`. The [energy](Self::energy) is conserved,
+    /// too.
+    pub fn conserved(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Vec<L::Scalar> {
+        let spatial = attitude.inverse().adjoint_transpose(momentum);
+        let left = self.left_symmetries().into_iter().map(|eta| spatial.dot(&eta));
+        let right = self.right_symmetries().into_iter().map(|zeta| momentum.dot(&zeta));
+        left.chain(right).collect()
     }
 
     /// A state as numbers: the attitude's matrix row by row, then the momentum.

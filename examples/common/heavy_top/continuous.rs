@@ -1,5 +1,6 @@
 //! The continuous heavy top, for references that no file holds.
 
+use liestep::mechanics::ContinuousLagrangian as _;
 use nalgebra::{SVector, Vector3};
 
 use super::declaration::HeavyTop;
@@ -12,11 +13,11 @@ pub fn phase(momentum: &Vector3<f64>, w: &Vector3<f64>) -> Phase {
     Phase::from_fn(|i, _| if i < 3 { momentum[i] } else { w[i - 3] })
 }
 
-/// `ṗ = p × Ω + m g w × ρ`, `ẇ = w × Ω`.
+/// The Lie–Poisson equations of the declared top's limit.
 fn rate(top: &HeavyTop, z: &Phase) -> Phase {
-    let (p, w): (Vector3<f64>, Vector3<f64>) = (z.fixed_rows::<3>(0).into(), z.fixed_rows::<3>(3).into());
-    let velocity = p.component_div(&top.moments());
-    phase(&(p.cross(&velocity) + w.cross(&top.rho) * (top.m * top.g)), &w.cross(&velocity))
+    let (momentum, w) = (z.fixed_rows::<3>(0).into(), z.fixed_rows::<3>(3).into());
+    let (torque, turn) = top.lie_poisson(&momentum, &w).expect("a regular inertia");
+    phase(&torque, &turn)
 }
 
 /// The solution after the time `t`, by the classical Runge–Kutta method with compensated sums.

@@ -1,10 +1,13 @@
 //! The classical Runge–Kutta method of order 4 on the equations of the top, in two sets of variables.
 //!
-//! Both integrate `Π' = Π × Ω + m g w × ρ` with `w = Rᵀ e₃`; they differ in how the attitude is kept.
+//! Both integrate `Π' = Π × Ω + m g w × ρ` with `w = Rᵀ e₃`; they differ in how the attitude is kept, and in who wrote
+//! the equations: those in quaternions are by hand.
 
 use std::ops::{Add, Mul};
 
+use liestep::SO3;
 use liestep::mechanics::Effect as _;
+use liestep::motion::RightHandSide;
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 
 use super::declaration::HeavyTop;
@@ -25,14 +28,6 @@ impl Body {
     pub fn of(top: &HeavyTop) -> Self {
         let inverse_moments = top.inertia().diagonal().map(f64::recip);
         Self { inverse_moments, lever: top.rho * (top.m * top.g) }
-    }
-
-    fn rates(&self, momentum: &Vector3<f64>) -> Vector3<f64> {
-        self.inverse_moments.component_mul(momentum)
-    }
-
-    fn momentum_rate(&self, momentum: &Vector3<f64>, rates: &Vector3<f64>, w: &Vector3<f64>) -> Vector3<f64> {
-        momentum.cross(rates) + w.cross(&self.lever)
     }
 }
 
@@ -55,9 +50,11 @@ pub struct OnQuaternion {
 }
 
 /// In the nine entries of `R`, which nothing keeps orthogonal: how the thesis did it. The momentum is beside them.
+///
+/// The equations are those that are derived of the declared top.
 #[derive(Clone)]
 pub struct OnMatrix {
-    body: Body,
+    system: RightHandSide<HeavyTop>,
     h: f64,
     state: Matrix3x4<f64>,
 }
@@ -79,8 +76,9 @@ impl OnQuaternion {
 }
 
 impl OnMatrix {
-    pub fn new(body: Body, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
-        Self { body, h, state: joined(attitude.to_rotation_matrix().matrix(), &momentum) }
+    pub fn new(top: &HeavyTop, h: f64, attitude: &UnitQuaternion<f64>, momentum: Vector3<f64>) -> Self {
+        let system = RightHandSide::new(top.clone()).expect("a regular inertia");
+        Self { system, h, state: joined(attitude.to_rotation_matrix().matrix(), &momentum) }
     }
 }
 
@@ -100,13 +98,12 @@ impl Method for OnQuaternion {
 
 impl Method for OnMatrix {
     fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
-        let body = self.body;
         for _ in 0..steps {
             self.state += change(self.state, self.h, |y| {
                 let (attitude, momentum) = apart(&y);
-                let rates = body.rates(&momentum);
-                let w = attitude.row(2).transpose();
-                joined(&(attitude * rates.cross_matrix()), &body.momentum_rate(&momentum, &rates, &w))
+                let rates = self.system.rates(&SO3::from_matrix_unchecked(attitude), &momentum);
+                let (turn, torque) = rates.expect("an inertia that is regular anywhere");
+                joined(&turn, &torque)
             });
         }
         Ok(0)

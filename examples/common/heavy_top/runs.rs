@@ -19,7 +19,7 @@ pub fn all_methods(case: Case, reading: Reading, schedule: &Schedule) -> Result<
     let (h, momentum) = (schedule.step, state.momentum());
     let ours = run("variational", Variational { stepper: &stepper, state }, schedule)?;
     let quaternion = run("RK4, quaternion", OnQuaternion::new(body, h, &attitude, momentum), schedule)?;
-    let matrix = run("RK4, nine entries of R", OnMatrix::new(body, h, &attitude, momentum), schedule)?;
+    let matrix = run("RK4, nine entries of R", OnMatrix::new(stepper.scene(), h, &attitude, momentum), schedule)?;
     Ok([
         Series::new("variational", "variational.csv", BLUE, &body, &ours),
         Series::new("RK4, quaternion renormalised", "rk4-quaternion.csv", GREEN, &body, &quaternion),

@@ -16,6 +16,8 @@ pub(super) enum Form {
     Scalar,
     Vector,
     Square,
+    /// A matrix of the group's size.
+    Matrix,
 }
 
 /// The token of a node that isn't computed here: an input, or what an earlier stage has left.
@@ -43,13 +45,18 @@ impl Code<'_> {
     pub(super) fn assembled(&self, form: Form, values: &[TokenStream]) -> TokenStream {
         let (private, span) = (&self.header.private, Span::mixed_site());
         let dimension = self.declaration.group.dimension();
+        if let Form::Matrix = form {
+            let size = self.declaration.group.size;
+            let column = |j: usize| values.iter().skip(j).step_by(size).cloned().collect();
+            return self.columns(size, &(0..size).map(column).collect::<Vec<_>>());
+        }
         let nalgebra = quote_spanned!(span=> #private::nalgebra);
         match (form, dimension, values) {
             (Form::Scalar, ..) => values.iter().cloned().collect(),
             (Form::Vector, 3, entries) => quote_spanned!(span=> #nalgebra::Vector3::new(#(#entries),*)),
             (Form::Square, 3, entries) => quote_spanned!(span=> #nalgebra::Matrix3::new(#(#entries),*)),
             (Form::Vector, _, entries) => self.columns(dimension, &[entries.to_vec()]),
-            (Form::Square, _, entries) => {
+            (Form::Square | Form::Matrix, _, entries) => {
                 let column = |j: usize| entries.iter().skip(j).step_by(dimension).cloned().collect();
                 self.columns(dimension, &(0..dimension).map(column).collect::<Vec<_>>())
             }

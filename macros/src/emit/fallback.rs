@@ -71,6 +71,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
                     fn momentum(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
                     fn velocity_hessian(&self, _: &#vector, _: &Self::Advected) -> #square { loop {} }
                     fn diamond_rate(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
+                    fn diamond_matrix(&self, _: &#vector, _: &Self::Advected) -> #matrix { loop {} }
                     fn momentum_advection(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
                 }
             }

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use super::choose::Chosen;
 use super::{explain, verify};
 use crate::declared::errors::Errors;
-use crate::declared::{Declaration, Name, Role, Tree, lower};
+use crate::declared::{Declaration, Name, Tree, lower};
 use crate::mathematics::derive::{self, Continuous, Inverse};
 use crate::mathematics::symbolic::{Rational, SymbolId};
 
@@ -18,14 +18,8 @@ pub(crate) struct Equations {
     pub(crate) right_symmetries: Vec<Vec<Rational>>,
 }
 
-/// Those of a declared `l`, if there is one; the outer `None` where something is wrong with it, which has been
-/// reported.
-pub(crate) fn of_declared(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    errors: &mut Errors,
-) -> Option<Option<Equations>> {
-    let Some(continuous) = &declaration.continuous else { return Some(None) };
+/// Those of a declared `l`; `None` where something is wrong with it, which has been reported.
+pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Equations> {
     let lowered = lower::continuous(declaration, tree, errors)?;
     let derived = derive::continuous(lowered.declared);
     let derived = derived.map_err(|refusal| explain::refusal(refusal, declaration, tree, errors)).ok()?;
@@ -33,44 +27,38 @@ pub(crate) fn of_declared(
         let found = verify::kinetic_hessian(declaration, &lowered.names, &derived);
         explain::continuous_kinetic_part(&found, declaration, errors)?;
     }
-    if let Some(discretisation) = continuous.discretisation.filter(|_| derived.inverse != Inverse::Constant) {
+    if let Some(discretisation) = declaration.discretisation().filter(|_| derived.inverse != Inverse::Constant) {
         explain::not_discretised(derived.inverse, discretisation, errors);
         return None;
     }
-    checked(declaration, Some(tree), lowered.names, derived, errors).map(Some)
+    checked(declaration, Some(tree), lowered.names, derived, errors)
 }
 
-/// Those of a discrete Lagrangian: of the `l` that it was made of, which its limit has to be, or of the limit. A force
-/// has none.
+/// Those of a discrete Lagrangian: of the `l` that it was made of, which its limit has to be, or of the limit.
 pub(crate) fn continuous(
     declared: Option<Equations>,
     declaration: &Declaration,
     tree: &Rc<Tree>,
     chosen: &Chosen,
     errors: &mut Errors,
-) -> Option<Option<Equations>> {
-    if declaration.role == Role::Force {
-        return Some(None);
-    }
-    let Some(equations) = declared else { return of_limit(declaration, chosen, errors).map(Some) };
+) -> Option<Equations> {
+    let Some(equations) = declared else { return of_limit(declaration, chosen, errors) };
     if verify::limit_disagrees(declaration, tree, &chosen.lowered.names, &chosen.derived) {
         explain::unconfirmed_term("limit of the discretisation", declaration, errors);
         return None;
     }
-    Some(Some(equations))
+    Some(equations)
 }
 
 fn of_limit(declaration: &Declaration, chosen: &Chosen, errors: &mut Errors) -> Option<Equations> {
     let declared = derive::of_limit(&chosen.lowered.declared, &chosen.derived);
     let mut names = chosen.lowered.names.clone();
     names.insert(Name::Velocity, declared.velocity);
-    match derive::continuous(declared) {
-        Ok(derived) => checked(declaration, None, names, derived, errors),
-        Err(_) => {
-            explain::unconfirmed_term("continuous limit", declaration, errors);
-            None
-        }
-    }
+    let Ok(derived) = derive::continuous(declared) else {
+        explain::unconfirmed_term("continuous limit", declaration, errors);
+        return None;
+    };
+    checked(declaration, None, names, derived, errors)
 }
 
 fn checked(

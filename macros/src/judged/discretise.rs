@@ -29,19 +29,15 @@ pub(super) enum Misfit {
     NotInMatrix,
 }
 
-/// The discrete Lagrangian: as declared, or made of `l`; the inner `None` where there is only `l`.
-pub(crate) fn discretised(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<Option<Rc<Tree>>> {
-    if declaration.continuous.is_none() {
-        return Some(Some(tree.clone()));
-    }
-    let Some(discretisation) = declaration.discretisation() else { return Some(None) };
-    match discrete(declaration, tree, discretisation) {
-        Ok(discrete) => Some(Some(discrete)),
-        Err(misfit) => {
-            explain::misfit(misfit, discretisation, declaration, errors);
-            None
-        }
-    }
+/// The discrete Lagrangian that is made of `l`; `None` where it doesn't fit, which has been reported.
+pub(crate) fn discretised(
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    asked: Discretisation,
+    errors: &mut Errors,
+) -> Option<Rc<Tree>> {
+    let discrete = discrete(declaration, tree, asked);
+    discrete.map_err(|misfit| explain::misfit(misfit, asked, declaration, errors)).ok()
 }
 
 fn discrete(declaration: &Declaration, tree: &Rc<Tree>, asked: Discretisation) -> Result<Rc<Tree>, Misfit> {

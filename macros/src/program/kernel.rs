@@ -117,6 +117,20 @@ pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: us
     places.map(of_place).collect()
 }
 
+/// The entries, row by row, of the matrix that the diamond along any matrix pairs with.
+pub(crate) fn diamond_matrix(graph: &mut Graph, derived: &Continuous) -> Vec<NodeId> {
+    let size = derived.group.size;
+    let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
+    let entry = |place| {
+        let (zero, one) = (graph.zero(), graph.one());
+        let unit = Entries::new(size, size, |row, column| if (row, column) == place { one } else { zero });
+        let mut given = Given::from([(derived.any, unit)]);
+        given.extend(derived.velocity_matrix.map(|xi| (xi, matrix_of(graph, &derived.group, derived.velocity))));
+        Scalariser { graph, symbols: &derived.symbols, given }.scalar(&derived.diamond_of_any)
+    };
+    places.map(entry).collect()
+}
+
 /// The constant matrix `E_k`.
 fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);

@@ -1,13 +1,13 @@
 //! P1: the flow (2.8) is a Poisson map of the semidirect product, `DΦ B(z) DΦᵀ = B(Φ(z))` for `z = (μ, w)`.
 
-use liestep::groups::{Advected as _, LieGroup};
+use liestep::groups::{Advected, LieGroup as _};
 use liestep::laws::samples::derivative;
-use liestep::laws::samples::{Random, along};
+use liestep::laws::samples::{MatrixLieGroup, Random, along};
 use liestep::motion::DiscreteLiePoisson;
 use nalgebra::{DMatrix, DVector, SVector};
 
 use super::numbers::Numbers;
-use super::{System, axis, random_advected, step, turn};
+use super::{System, axis, random_advected, step};
 
 /// `B(z)`, from the brackets of the group and the action on the parameters:
 ///
@@ -18,14 +18,21 @@ pub fn tensor<L: System<N, D>, const N: usize, const D: usize>(
     momentum: &SVector<f64, D>,
     w: &L::Advected,
 ) -> DMatrix<f64> {
+    tensor_on::<L::Group, L::Advected, N, D>(momentum, w)
+}
+
+fn tensor_on<G: MatrixLieGroup<N, D>, A: Advected<G> + Numbers, const N: usize, const D: usize>(
+    momentum: &SVector<f64, D>,
+    w: &A,
+) -> DMatrix<f64> {
     let numbers = DVector::from_vec(w.numbers());
     let mut tensor = DMatrix::zeros(D + numbers.len(), D + numbers.len());
     for k in 0..D {
         for l in 0..D {
-            tensor[(k, l)] = L::Group::lie_poisson_bracket(momentum, &axis(k, 1.0), &axis(l, 1.0));
+            tensor[(k, l)] = G::lie_poisson_bracket(momentum, &axis(k, 1.0), &axis(l, 1.0));
         }
         // What an attitude g sees is g⁻¹ · w.
-        let moved = derivative(|s| DVector::from_vec(w.seen_from(&turn::<L, N, D>(k, -s)).numbers()));
+        let moved = derivative(|s| DVector::from_vec(w.seen_from(&along::<G, N, D>(&axis(k, -s), 1.0)).numbers()));
         for (j, rate) in moved.iter().enumerate() {
             tensor[(k, D + j)] = *rate;
             tensor[(D + j, k)] = -rate;
@@ -34,8 +41,8 @@ pub fn tensor<L: System<N, D>, const N: usize, const D: usize>(
     tensor
 }
 
-fn taken_apart<L: System<N, D>, const N: usize, const D: usize>(z: &DVector<f64>) -> (SVector<f64, D>, L::Advected) {
-    (z.fixed_rows::<D>(0).into_owned(), L::Advected::from_numbers(z.iter().skip(D).copied()))
+fn taken_apart<A: Numbers, const D: usize>(z: &DVector<f64>) -> (SVector<f64, D>, A) {
+    (z.fixed_rows::<D>(0).into_owned(), A::from_numbers(z.iter().skip(D).copied()))
 }
 
 fn joined<const D: usize>(momentum: &SVector<f64, D>, w: &impl Numbers) -> DVector<f64> {
@@ -62,19 +69,28 @@ pub fn defect_of<L: System<N, D>, const N: usize, const D: usize>(
     momentum: &SVector<f64, D>,
     w: &L::Advected,
 ) -> (f64, f64) {
+    defect_on::<L::Group, L::Advected, N, D>(map, momentum, w)
+}
+
+/// The same for any group and parameters.
+pub fn defect_on<G: MatrixLieGroup<N, D>, A: Advected<G> + Numbers, const N: usize, const D: usize>(
+    map: impl Fn(&SVector<f64, D>, &A) -> (SVector<f64, D>, A),
+    momentum: &SVector<f64, D>,
+    w: &A,
+) -> (f64, f64) {
     let z = joined(momentum, w);
     let mut tangent = DMatrix::zeros(z.len(), z.len());
     for k in 0..z.len() {
         let direction = DVector::from_fn(z.len(), |i, _| f64::from(u8::from(i == k)));
         let column = derivative(|t| {
-            let (momentum, w) = taken_apart::<L, N, D>(&(&z + &direction * t));
+            let (momentum, w) = taken_apart::<A, D>(&(&z + &direction * t));
             let (momentum, w) = map(&momentum, &w);
             joined(&momentum, &w)
         });
         tangent.set_column(k, &column);
     }
     let (after, w_after) = map(momentum, w);
-    let (before, expected) = (tensor::<L, N, D>(momentum, w), tensor::<L, N, D>(&after, &w_after));
+    let (before, expected) = (tensor_on::<G, A, N, D>(momentum, w), tensor_on::<G, A, N, D>(&after, &w_after));
     let scale = joined(&after, &w_after).amax() * before.amax() * tangent.amax();
     ((&tangent * before * tangent.transpose() - expected).amax(), scale.max(1.0))
 }

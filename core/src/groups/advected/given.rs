@@ -54,6 +54,10 @@ impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<
         Self(SMatrix::zeros())
     }
 
+    fn seen_through(&self, _: &G::Matrix, _: &G::Matrix) -> Self {
+        *self
+    }
+
     #[inline(always)]
     fn advect(&self, _: &G::Matrix) -> Self {
         *self

@@ -55,6 +55,11 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
     #[must_use]
     fn rate(&self, velocity: &G::Matrix) -> Self;
 
+    /// The spatial value moved by the inverse of any invertible matrix, given with it: what [`seen_from`](Self::seen_from)
+    /// is for an element of the group.
+    #[must_use]
+    fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self;
+
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
 }
@@ -65,6 +70,8 @@ impl<G: LieGroup> Advected<G> for () {
     fn change(&self, _: &G::Matrix) -> Self {}
 
     fn rate(&self, _: &G::Matrix) -> Self {}
+
+    fn seen_through(&self, _: &G::Matrix, _: &G::Matrix) -> Self {}
 
     fn is_finite(&self) -> bool {
         true
@@ -92,6 +99,10 @@ where
     #[inline(always)]
     fn rate(&self, velocity: &SMatrix<T, N, N>) -> Self {
         transpose_mul(velocity, self)
+    }
+
+    fn seen_through(&self, matrix: &SMatrix<T, N, N>, _: &SMatrix<T, N, N>) -> Self {
+        transpose_mul(matrix, self)
     }
 
     #[inline(always)]
@@ -130,6 +141,10 @@ macro_rules! tuple {
             #[inline(always)]
             fn rate(&self, velocity: &G::Matrix) -> Self {
                 ($(self.$index.rate(velocity),)+)
+            }
+
+            fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self {
+                ($(self.$index.seen_through(matrix, inverse),)+)
             }
 
             #[inline(always)]

@@ -54,6 +54,11 @@ macro_rules! points {
                 Self::from(rate.fixed_rows::<$dimension>(0).into_owned())
             }
 
+            fn seen_through(&self, _: &SMatrix<T, $size, $size>, inverse: &SMatrix<T, $size, $size>) -> Self {
+                let moved: SVector<T, $size> = inverse * homogeneous(self);
+                Self::from(moved.fixed_rows::<$dimension>(0).into_owned())
+            }
+
             fn is_finite(&self) -> bool {
                 self.iter().all(|&entry| is_finite(entry))
             }

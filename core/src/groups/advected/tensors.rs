@@ -36,7 +36,7 @@ where
 }
 
 macro_rules! kind {
-    ($type:ident, $seen:expr, $change:expr, $rate:expr) => {
+    ($type:ident, $seen:expr, $change:expr, $rate:expr, $through:expr) => {
         impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
             fn from_entries(next: &mut impl FnMut() -> T) -> Self {
                 Self(Entries::from_entries(next))
@@ -67,6 +67,10 @@ macro_rules! kind {
                 Self($rate(&self.0, velocity))
             }
 
+            fn seen_through(&self, matrix: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>) -> Self {
+                Self($through(&self.0, matrix, inverse))
+            }
+
             fn is_finite(&self) -> bool {
                 self.0.iter().all(|&entry| is_finite(entry))
             }
@@ -78,7 +82,8 @@ kind!(
     ContravariantVector,
     |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v,
     |v: &SVector<T, N>, d| inverse_increment::<G, T, N>(d) * v,
-    |v: &SVector<T, N>, x: &SMatrix<T, N, N>| -(x * v)
+    |v: &SVector<T, N>, x: &SMatrix<T, N, N>| -(x * v),
+    |v: &SVector<T, N>, _: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>| inverse * v
 );
 
 kind!(
@@ -92,7 +97,8 @@ kind!(
         let change = inverse * s;
         change + (s + change) * inverse.transpose()
     },
-    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| -(x * s + s * x.transpose())
+    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| -(x * s + s * x.transpose()),
+    |s: &SMatrix<T, N, N>, _: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>| inverse * s * inverse.transpose()
 );
 
 kind!(
@@ -102,7 +108,8 @@ kind!(
         let change = d.transpose() * s;
         change + (s + change) * d
     },
-    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| x.transpose() * s + s * x
+    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| x.transpose() * s + s * x,
+    |s: &SMatrix<T, N, N>, g: &SMatrix<T, N, N>, _: &SMatrix<T, N, N>| g.transpose() * s * g
 );
 
 kind!(
@@ -112,5 +119,6 @@ kind!(
         let change = inverse_increment::<G, T, N>(d) * s;
         change + (s + change) * d
     },
-    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| s * x - x * s
+    |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| s * x - x * s,
+    |s: &SMatrix<T, N, N>, g: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>| inverse * s * g
 );

@@ -4,10 +4,12 @@
 //! accuracy, and then finds the step.
 
 mod coefficients;
+mod cotangent;
 mod lift;
 mod stages;
 mod state;
 
+pub use cotangent::CotangentGauss;
 pub use state::Collocated;
 
 use coefficients::Coefficients;

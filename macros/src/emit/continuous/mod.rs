@@ -12,7 +12,7 @@ use crate::declared::{Coordinates, Declaration, Discretisation, Quadrature};
 use crate::judged::Equations;
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Graph, along_directions};
+use crate::program::{Graph, along_directions, diamond_matrix};
 
 /// The item with the continuous equations alone.
 pub(crate) fn alone(item: &TokenStream, declaration: &Declaration, equations: &Equations) -> TokenStream {
@@ -40,6 +40,7 @@ pub(super) fn implementation(declaration: &Declaration, header: &Header, equatio
         method("velocity_hessian", 2, Form::Square, &derived.hessian),
         method("diamond_rate", 1, Form::Vector, &derived.diamond),
         method("momentum_advection", 1, Form::Vector, &derived.advection),
+        code.diamond_matrix(equations),
     ]
     .into_iter()
     .collect();
@@ -131,11 +132,26 @@ impl Code<'_> {
             Form::Scalar => header.scalar.clone(),
             Form::Vector => header.vector(),
             Form::Square => header.square(),
+            Form::Matrix => header.matrix(),
         };
         let (name, vector) = (Ident::new(name, span), header.vector());
         quote_spanned! {span=>
             #[doc = #documentation]
             fn #name(&self, velocity: &#vector, w: &Self::Advected) -> #result { #body }
+        }
+    }
+
+    /// The diamond along all matrices.
+    fn diamond_matrix(&self, equations: &Equations) -> TokenStream {
+        let (span, header) = (Span::mixed_site(), self.header);
+        let mut graph = Graph::default();
+        let outputs = diamond_matrix(&mut graph, &equations.derived);
+        let documentation = docs::of(&[], "diamond_matrix", &graph, &outputs);
+        let body = self.body(Form::Matrix, &graph, &outputs, &|input| self.input_token(input));
+        let (vector, matrix) = (header.vector(), header.matrix());
+        quote_spanned! {span=>
+            #[doc = #documentation]
+            fn diamond_matrix(&self, velocity: &#vector, w: &Self::Advected) -> #matrix { #body }
         }
     }
 }

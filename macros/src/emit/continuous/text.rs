@@ -65,11 +65,13 @@ fn names(declaration: &Declaration) -> Vec<String> {
 fn sum(terms: &[String]) -> String {
     let mut sum = String::new();
     for term in terms.iter().filter(|term| *term != "0") {
-        match (sum.is_empty(), term.strip_prefix('−')) {
-            (true, _) => sum.push_str(term),
-            (false, Some(rest)) => sum += &format!(" − {rest}"),
-            (false, None) => sum += &format!(" + {term}"),
-        }
+        let (sign, size) = match (sum.is_empty(), term.strip_prefix('−')) {
+            (true, _) => ("", term.as_str()),
+            (false, Some(rest)) => (" − ", rest),
+            (false, None) => (" + ", term.as_str()),
+        };
+        sum.push_str(sign);
+        sum.push_str(size);
     }
     if sum.is_empty() { "0".to_owned() } else { sum }
 }
@@ -145,8 +147,8 @@ fn hamiltonian(derived: &Continuous, w: &[String]) -> Equation {
         _ if !derived.has_kinetic() => potential,
         Inverse::Varying if difference == "μ" => sum(&["½ ⟨μ, 𝕀(w)⁻¹ μ⟩".to_owned(), potential]),
         Inverse::Varying => sum(&[format!("½ ⟨{difference}, 𝕀(w)⁻¹ ({difference})⟩"), potential]),
-        _ if difference == "μ" => sum(&["½ ⟨μ, 𝕀⁻¹ μ⟩".to_owned(), potential]),
-        _ => sum(&[format!("½ ⟨{difference}, 𝕀⁻¹ ({difference})⟩"), potential]),
+        Inverse::Constant if difference == "μ" => sum(&["½ ⟨μ, 𝕀⁻¹ μ⟩".to_owned(), potential]),
+        Inverse::Constant => sum(&[format!("½ ⟨{difference}, 𝕀⁻¹ ({difference})⟩"), potential]),
     };
     Equation::new("hamiltonian", &format!("h({at})"), right, "(1.16)")
 }
@@ -194,7 +196,7 @@ pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations)
     } else {
         "with the generators E_k of the declaration"
     };
-    let lines: String = texts.iter().map(|equation| format!("    {}\n", equation.line())).collect();
+    let lines: String = texts.iter().fold(String::new(), |lines, equation| lines + "    " + &equation.line() + "\n");
     let limit = if declaration.continuous.is_some() && declaration.discretisation().is_none() {
         String::new()
     } else {

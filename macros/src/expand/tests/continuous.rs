@@ -35,14 +35,17 @@ fn equations(arguments: &str, item: &str) -> Equations {
     let mut errors = Errors::default();
     let equations = judged::of_declared(&declaration, &tree, &mut errors);
     assert!(errors.is_empty(), "{errors:?}");
-    equations.expect("regular").expect("continuous")
+    equations.expect("regular")
 }
 
 /// `l_d` in normal form, multiplied out.
 fn discrete(arguments: &str, item: &str) -> Expression {
     let (declaration, tree) = read(arguments, item);
     let mut errors = Errors::default();
-    let tree = judged::discretised(&declaration, &tree, &mut errors).expect("a fit").expect("discrete");
+    let tree = match declaration.discretisation() {
+        Some(asked) => judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit"),
+        None => tree,
+    };
     let readings = lower::readings(&declaration, &tree, &mut errors).expect("small");
     readings.into_iter().find(|reading| reading.declared.lets.is_empty()).expect("short").declared.expression
 }
@@ -252,6 +255,8 @@ fn a_turned_sign_is_seen() {
             derived.diamond = derived.diamond.clone().scaled(Rational::new(1, 2));
         };
         assert_eq!(check(&halved), Some("diamond term ∂l/∂w ⋄ w"));
+        let turn = |derived: &mut derive::Continuous| derived.diamond_of_any = turned(&derived.diamond_of_any);
+        assert_eq!(check(&turn), Some("diamond along all matrices"));
         if !derived.advection.is_zero() {
             let turn = |derived: &mut derive::Continuous| derived.advection = turned(&derived.advection);
             assert_eq!(check(&turn), Some("change of the momentum with w"));
@@ -283,7 +288,8 @@ fn the_limit_is_what_was_discretised() {
         let arguments = format!("{TOP}, discretise = {rule}");
         let (declaration, tree) = read(&arguments, PARAMETERS);
         let mut errors = Errors::default();
-        let discrete = judged::discretised(&declaration, &tree, &mut errors).expect("a fit").expect("discrete");
+        let asked = declaration.discretisation().expect("a rule");
+        let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
         let readings = lower::readings(&declaration, &discrete, &mut errors).expect("small");
         let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, &mut errors).expect("derived");
         let disagrees = |derived| verify::limit_disagrees(&declaration, &tree, &chosen.lowered.names, derived);

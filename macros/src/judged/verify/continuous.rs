@@ -18,7 +18,7 @@ use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::{Continuous, Derived};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
-use crate::program::{Graph, Input, Node, NodeId, along_directions, components, square};
+use crate::program::{Graph, Input, Node, NodeId, along_directions, components, diamond_matrix, square};
 
 /// Independent points.
 const POINTS: u64 = 3;
@@ -32,6 +32,7 @@ struct Terms {
     momentum: Vec<NodeId>,
     hessian: Vec<NodeId>,
     diamond: Vec<NodeId>,
+    diamond_matrix: Vec<NodeId>,
     advection: Vec<NodeId>,
 }
 
@@ -47,7 +48,8 @@ impl Terms {
         ]
         .map(|(rank, expression)| along_directions(&mut graph, derived, rank, expression));
         let lagrangian = lagrangian.first().copied().unwrap_or_else(|| graph.zero());
-        Self { graph, lagrangian, momentum, hessian, diamond, advection }
+        let diamond_matrix = diamond_matrix(&mut graph, derived);
+        Self { graph, lagrangian, momentum, hessian, diamond, diamond_matrix, advection }
     }
 
     fn values<T: Number>(&self, outputs: &[NodeId], names: &BTreeMap<Name, SymbolId>, at: &Values<T>) -> Vec<T> {
@@ -117,12 +119,21 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// As dual numbers, whose advected parameters change by `ξ·w`.
     fn carried_by(&self, xi: &[T]) -> Values<Dual<T>> {
+        self.carried_by_matrix(&hat(self.group(), xi))
+    }
+
+    /// The same for any matrix.
+    fn carried_by_matrix(&self, element: &Value<T>) -> Values<Dual<T>> {
         let mut values = self.lifted();
-        let element = hat(self.group(), xi);
         for index in 0..self.declaration.advected.len() {
             let (name, variance) = (Name::Advected(index), self.declaration.advected_kind(index).variance());
             let Some(w) = self.values.get(&name) else { continue };
-            let slope = carried(variance, &element, w);
+            let mut slope = carried(variance, element, w);
+            // The last coordinate of a point stays one.
+            if let (FieldKind::Point(_), Some(last)) = (self.declaration.advected_kind(index), slope.entries.last_mut())
+            {
+                *last = T::ZERO;
+            }
             let entries = w.entries.iter().zip(&slope.entries).map(|(&value, &slope)| Dual { value, slope });
             values.insert(name, Value { rows: w.rows, columns: w.columns, entries: entries.collect() });
         }
@@ -224,6 +235,13 @@ fn disagreement_at(
         let unit: Vec<Residue> = (0..dimension).map(|j| if j == k { Residue::ONE } else { Residue::ZERO }).collect();
         if differs(found, -slope(&point.carried_by(&unit))) {
             return Some("diamond term ∂l/∂w ⋄ w");
+        }
+    }
+    let size = point.group().size;
+    for (place, found) in at(&terms.diamond_matrix).into_iter().enumerate() {
+        let unit = Value::new(size, size, |i, j| if i * size + j == place { Residue::ONE } else { Residue::ZERO });
+        if differs(found, -slope(&point.carried_by_matrix(&unit))) {
+            return Some("diamond along all matrices");
         }
     }
     let carried = point.carried_by(&xi);

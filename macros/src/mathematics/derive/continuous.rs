@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Declared, Derived, Refusal, action};
+use super::{Declared, Derived, Refusal, action, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{
     Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance, Variations, substitute, variation,
@@ -62,6 +62,9 @@ pub(crate) struct Continuous {
     pub(crate) hessian: Expression,
     /// `∂l/∂w ⋄ w`.
     pub(crate) diamond: Expression,
+    /// The same along any matrix, which the symbol stands for.
+    pub(crate) any: SymbolId,
+    pub(crate) diamond_of_any: Expression,
     /// `(∂²l/∂w∂ξ)(ξ·w)`.
     pub(crate) advection: Expression,
     pub(crate) inverse: Inverse,
@@ -100,6 +103,7 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
         ["η", "ζ"].map(|name| symbols.add(name, (group.dimension(), 1), Structure::General, Stage::Construction));
     let direction_matrices =
         velocity_matrix.map(|_| ["hat(η)", "hat(ζ)"].map(|name| matrix_symbol(&group, name, &mut symbols)));
+    let any = symbols.add("X", (group.size, group.size), Structure::General, Stage::Step);
     let xi = Element::new(velocity, velocity_matrix, &symbols);
     let [eta, zeta] =
         [0, 1].map(|at| Element::new(directions[at], direction_matrices.map(|matrices| matrices[at]), &symbols));
@@ -112,17 +116,21 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
         variations.extend(velocity_matrix.map(|matrix| (matrix, direction.matrix.clone())));
         vary(of, &variations)
     };
-    let carried = |of: &Expression, element: &Element| {
+    let any_matrix = Expression::symbol(any, &symbols);
+    let carried = |of: &Expression, element: &Expression| {
         let moved = advected.iter().map(|&(w, variance)| {
-            let w_now = Expression::symbol(w, &symbols);
-            (w, action::infinitesimal(&symbols, variance, &element.matrix, &w_now))
+            let moved = action::infinitesimal(&symbols, variance, element, &Expression::symbol(w, &symbols));
+            // The last coordinate of a point stays one, whatever the matrix; the algebra leaves it.
+            let is_point = *element == any_matrix && symbols.get(w).structure == Structure::Point;
+            (w, if is_point { without_last(&moved, &symbols) } else { moved })
         });
         vary(of, &moved.collect())
     };
     let momentum = along_velocity(&expression, &eta);
     let hessian = along_velocity(&momentum, &zeta);
-    let diamond = carried(&expression, &eta).scaled(-Rational::ONE);
-    let advection = carried(&momentum, &xi);
+    let diamond = carried(&expression, &eta.matrix).scaled(-Rational::ONE);
+    let diamond_of_any = carried(&expression, &any_matrix).scaled(-Rational::ONE);
+    let advection = carried(&momentum, &xi.matrix);
     let has_velocity = |of: &Expression| of.contains(velocity) || velocity_matrix.is_some_and(|xi| of.contains(xi));
     let inverse = if has_velocity(&hessian) {
         Inverse::Nonlinear
@@ -131,7 +139,7 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
     } else {
         Inverse::Constant
     };
-    let all = [&expression, &momentum, &hessian, &diamond, &advection];
+    let all = [&expression, &momentum, &hessian, &diamond, &diamond_of_any, &advection];
     if all.into_iter().any(Expression::has_overflow) {
         return Err(Refusal::Overflow);
     }
@@ -140,6 +148,8 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
         momentum,
         hessian,
         diamond,
+        any,
+        diamond_of_any,
         advection,
         inverse,
         directions,
@@ -150,6 +160,13 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
         velocity_matrix,
         advected,
     })
+}
+
+/// A column with zero for its last entry; the elements of a group of affine maps have it anyway.
+fn without_last(column: &Expression, symbols: &Symbols) -> Expression {
+    let (size, _) = column.shape();
+    let [row, unit] = [true, false].map(|transposed| unit(size - 1, size, transposed, symbols));
+    column.clone().minus(unit.times(&row.times(column, symbols), symbols))
 }
 
 /// An element of the algebra, in components and as a matrix.
