@@ -78,3 +78,31 @@ fn files_and_tests_exist() {
     }
     assert!(tests > 60, "{tests} tests are named");
 }
+
+/// The pages that show figures show those that are there, and all that are there.
+#[test]
+fn figures_are_shown() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut shown = BTreeSet::new();
+    for page in ["README.md", "examples/scenes/README.md", "examples/figures/thesis/README.md"] {
+        let page = root.join(page);
+        let text = fs::read_to_string(&page).unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')) {
+            if link.0.ends_with(".svg") {
+                let file = page.parent().unwrap().join(link.0).canonicalize();
+                shown.insert(file.unwrap_or_else(|error| panic!("{}: {}: {error}", page.display(), link.0)));
+            }
+        }
+    }
+    let mut kept = BTreeSet::new();
+    for folder in ["", "scenes", "thesis"] {
+        for entry in fs::read_dir(root.join("examples/figures").join(folder)).unwrap() {
+            let path = entry.unwrap().path().canonicalize().unwrap();
+            if path.extension().is_some_and(|extension| extension == "svg") {
+                kept.insert(path);
+            }
+        }
+    }
+    assert_eq!(shown, kept);
+    assert!((1..=10).all(|figure| kept.iter().any(|path| path.ends_with(format!("thesis/3-{figure}.svg")))));
+}

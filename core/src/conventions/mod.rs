@@ -1,9 +1,9 @@
 //! Left and right, pairing, hat, frames, units, signs: what every formula of this crate means.
 //!
 //! This page is documentation only. The source of the theory is the thesis \[RDAE\]; its equation numbers are cited
-//! as (2.7) throughout the crate. Three further pages: [`equations`] says where each of them lives in the code,
-//! [`errata`] where this crate departs from the thesis and why, [`guarantees`] what a step conserves and when it
-//! exists.
+//! as (2.7) throughout the crate. Three further pages: [`equations`] says where each of them lives in the code and what
+//! checks it, [`errata`] where this crate departs from the thesis and why, [`guarantees`] what a step conserves and when
+//! it exists.
 //!
 //! # Left and right
 //!
@@ -112,6 +112,8 @@
 //! | `𝔽l_d⁻`, `𝔽l_d⁺` | [`legendre_minus`], [`legendre_plus`] |
 //! | `Ad_g`, `Ad*_g` | [`adjoint`](crate::groups::LieGroup::adjoint), [`adjoint_transpose`] |
 //! | `ad_ξ`, `ad*_ξ` | [`lie_bracket`](crate::groups::LieGroup::lie_bracket), [`lie_bracket_transpose`] |
+//! | `{f, k}(μ)` | [`lie_poisson_bracket`](crate::groups::LieGroup::lie_poisson_bracket) |
+//! | `l(ξ, w)`, `h(μ, w)` | [`ContinuousLagrangian`](crate::mechanics::ContinuousLagrangian), [`hamiltonian`](crate::mechanics::ContinuousLagrangian::hamiltonian) |
 //! | `ξ̂`, `^∨` | [`hat`](crate::groups::LieGroup::hat), [`vee`](crate::groups::LieGroup::vee) |
 //! | `τ(ξ)`, `τ⁻¹(F)` | [`retract`](crate::groups::Retraction::retract), [`local_coordinates`](crate::groups::Retraction::local_coordinates) |
 //! | `D = F − I` | [`increment`](crate::groups::LieGroup::increment) |
