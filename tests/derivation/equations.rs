@@ -88,7 +88,7 @@ fn figures_are_shown() {
         let page = root.join(page);
         let text = fs::read_to_string(&page).unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')) {
-            if link.0.ends_with(".svg") {
+            if Path::new(link.0).extension().is_some_and(|extension| extension == "svg") {
                 let file = page.parent().unwrap().join(link.0).canonicalize();
                 shown.insert(file.unwrap_or_else(|error| panic!("{}: {}: {error}", page.display(), link.0)));
             }
