@@ -101,7 +101,7 @@ fn by_hand(rule: &str, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
 }
 
 /// `l_d` by hand, its derivatives by dual numbers of the generated one, order two, and a step back undoes a step.
-fn assert_discretised<L, D>(rule: &str, system: L, dual: &D)
+fn assert_discretised<L, D>(rule: &str, system: &L, dual: &D)
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
         + ContinuousLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
@@ -142,13 +142,13 @@ impl Basis for SO3 {
 
 #[test]
 fn every_discretisation_is_what_it_says() {
-    assert_discretised("trapezoid", Trapezoid::new(), &Trapezoid::new());
-    assert_discretised("trapezoid Cayley", TrapezoidCayley::new(), &TrapezoidCayley::new());
-    assert_discretised("trapezoid exp", TrapezoidExp::new(), &TrapezoidExp::new());
-    assert_discretised("midpoint exp", MidpointExp::new(), &MidpointExp::new());
-    assert_discretised("chord", Chord::new(), &Chord::new());
-    assert_discretised("chord Cayley", ChordCayley::new(), &ChordCayley::new());
-    assert_discretised("chord exp", ChordExp::new(), &ChordExp::new());
+    assert_discretised("trapezoid", &Trapezoid::new(), &Trapezoid::new());
+    assert_discretised("trapezoid Cayley", &TrapezoidCayley::new(), &TrapezoidCayley::new());
+    assert_discretised("trapezoid exp", &TrapezoidExp::new(), &TrapezoidExp::new());
+    assert_discretised("midpoint exp", &MidpointExp::new(), &MidpointExp::new());
+    assert_discretised("chord", &Chord::new(), &Chord::new());
+    assert_discretised("chord Cayley", &ChordCayley::new(), &ChordCayley::new());
+    assert_discretised("chord exp", &ChordExp::new(), &ChordExp::new());
 }
 
 /// A classical Runge–Kutta step of the numbers of a right-hand side.
