@@ -23,10 +23,10 @@ use std::time::Instant;
 
 use liestep::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SceneVisitor};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::{Cost, Motion, Plan, Summation};
+use liestep::motion::{Cost, Motion, Plan, StepReport, Summation};
 use liestep::numbers::{Real, Vectors};
 use liestep::prelude::*;
-use nalgebra::{SimdValue, Vector3};
+use nalgebra::Vector3;
 use simba::simd::{AutoF64x4, AutoF64x8, WideF64x4};
 
 use eight_tops::{TOPS, Top, lanes, top};
@@ -256,9 +256,10 @@ fn native() -> Result<(), Box<dyn Error>> {
     for _ in 0..3 {
         for (best, program) in best.iter_mut().zip(&programs) {
             let times = times_of(program)?;
-            match best.is_empty() {
-                true => *best = times,
-                false => best.iter_mut().zip(times).for_each(|(best, time)| best.0 = best.0.min(time.0)),
+            if best.is_empty() {
+                *best = times;
+            } else {
+                best.iter_mut().zip(times).for_each(|(best, time)| best.0 = best.0.min(time.0));
             }
         }
     }

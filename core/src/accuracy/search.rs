@@ -174,9 +174,8 @@ pub(super) fn again<G: LieGroup<Scalar = f64>, A: Advected<G>>(
     let error =
         start.difference(&run.end?, &fine.end?) / (1.0 - (steps / finer).powi(candidate.order.try_into().ok()?));
     let cost = run.cost();
-    let offer = |(other, candidate): (usize, &Candidate<G, A>)| match other == index {
-        true => (steps, cost, false),
-        false => (1.0, candidate.least, true),
+    let offer = |(other, candidate): (usize, &Candidate<G, A>)| {
+        if other == index { (steps, cost, false) } else { (1.0, candidate.least, true) }
     };
     let nearby = [0.1_f64, 10.0].map(|factor| factor.powf(f64::from(candidate.order).recip()));
     (error <= ACCEPTED_AGAIN * accuracy.tolerance).then(|| Found {
