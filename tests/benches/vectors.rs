@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! cargo bench --bench vectors              fails where a gain is lost
-//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails where that is slower
+//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails where that is slower;
+//!                                          further words are given to the compiler, as -C target-feature=-avx512f
 //! cargo bench --bench vectors -- time      nothing but the nanoseconds that the others compare
 //! ```
 //!
@@ -243,10 +244,11 @@ fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Box<dyn Error>> {
 }
 
 /// This program compiled for this machine, against itself; fails where that is slower.
-fn native() -> Result<(), Box<dyn Error>> {
+fn native(flags: &[String]) -> Result<(), Box<dyn Error>> {
+    let flags = format!("-C target-cpu=native {}", flags.join(" "));
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["bench", "--no-run", "--bench", "vectors", "--target-dir", "target/native"]);
-    let output = cargo.env("RUSTFLAGS", "-C target-cpu=native").output()?;
+    let output = cargo.env("RUSTFLAGS", flags).output()?;
     let report = String::from_utf8_lossy(&output.stderr);
     let executable = report.lines().find_map(|line| line.trim().strip_prefix("Executable"));
     let place = executable.and_then(|line| line.split_once('(')?.1.strip_suffix(')'));
@@ -286,7 +288,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     match words.first().map(String::as_str) {
         None => gains(),
-        Some("native") => native(),
+        Some("native") => native(&words[1..]),
         Some("time") => {
             times();
             Ok(())
