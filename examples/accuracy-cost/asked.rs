@@ -69,6 +69,15 @@ impl Question {
     fn of(scene: &Scene) -> Self {
         let (start, velocity) = (SO3::from_matrix_unchecked(scene.attitude), scene.velocity);
         let fixed = methods::ours(scene);
+        match scene.kind {
+            Kind::Sprung => {
+                return Self { ask: asking(Candidates::of_body(scene.sprung(), 2), start, velocity), fixed };
+            }
+            Kind::Satellite => {
+                return Self { ask: asking(Candidates::of_body(scene.satellite(), 2), start, velocity), fixed };
+            }
+            _ => {}
+        }
         if scene.kind == Kind::Free {
             let candidates = Candidates::of(scene.free_body(), 2)
                 .and_declared("K4", scene.fourth_order_body(), 4)

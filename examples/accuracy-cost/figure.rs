@@ -1,7 +1,7 @@
 //! Error against time, a panel for each scene.
 
 use plotters::prelude::*;
-use workbench::plot::{Area, BLUE, Drawn, GREEN, ORANGE, heading, legend, px, render};
+use workbench::plot::{Area, BLUE, Drawn, GREEN, ORANGE, PURPLE, heading, legend, px, render};
 
 use crate::invariants::{Kept, Lost};
 use crate::methods::Family;
@@ -13,20 +13,56 @@ pub struct Panel<'a> {
     pub methods: &'a [Measured],
 }
 
+/// What has no colour of its own.
+const GREY: RGBColor = RGBColor(150, 150, 150);
+
 const FAMILIES: [(Family, &str, RGBColor); 3] = [
     (Family::Rival, "explicit Runge–Kutta", ORANGE),
     (Family::NearlyPoisson, "Poisson to the order", GREEN),
     (Family::Poisson, "Poisson", BLUE),
 ];
 
-/// The lower envelope of each family is what a user can have; all that make it up are drawn thin behind it.
+/// What is drawn as one line.
+const KINDS: [(Kind, &str, RGBColor); 6] = [
+    (Kind::Rival, "explicit Runge–Kutta", ORANGE),
+    (Kind::Steps, "own steps, compositions", GREY),
+    (Kind::OtherFlows, "splittings, other flows", GREEN),
+    (Kind::Exact, "splittings, exact flow", BLUE),
+    (Kind::Processed, "the same, processed", BLACK),
+    (Kind::Collocation, "Gauss collocation", PURPLE),
+];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Rival,
+    Steps,
+    OtherFlows,
+    Exact,
+    Processed,
+    Collocation,
+}
+
+fn kind(method: &Measured) -> Kind {
+    let name = method.name.as_str();
+    let is_flow = ["preprocessed", "K6,", "split"].iter().any(|flow| name.starts_with(flow)) && name != "K6, Suzuki 8";
+    match name {
+        _ if method.family == Family::Rival => Kind::Rival,
+        _ if name.starts_with("Gauss") => Kind::Collocation,
+        _ if name.starts_with("exact, processed") => Kind::Processed,
+        _ if name.starts_with("exact") => Kind::Exact,
+        _ if is_flow => Kind::OtherFlows,
+        _ => Kind::Steps,
+    }
+}
+
+/// Of each kind of method the lower envelope: what a user can have of it.
 pub fn figure(panels: &[Panel<'_>]) -> Drawn<String> {
     const COLUMNS: usize = 2;
     let rows = panels.len().div_ceil(COLUMNS);
     let height = 70 + 300 * u32::try_from(rows)?;
     render((1000, height), |area| {
         heading(area, "What accuracy costs in time", "error of attitude and rate against time of one processor")?;
-        legend(area, (16, 60), &FAMILIES.map(|(_, name, colour)| (name, colour)))?;
+        legend(area, (16, 60), &KINDS.map(|(_, name, colour)| (name, colour)))?;
         let (_, below) = area.split_vertically(px(76));
         for (panel, place) in panels.iter().zip(below.split_evenly((rows, COLUMNS))) {
             panel.draw(&place)?;
@@ -106,14 +142,8 @@ impl Panel<'_> {
             .x_label_formatter(&|x| format!("{x:.0}"))
             .y_label_formatter(&|y| format!("{y:.0e}"))
             .draw()?;
-        for (family, _, colour) in FAMILIES {
-            for method in self.methods.iter().filter(|method| method.family == family) {
-                let line = method.runs.iter().map(|run| (run.cost * 1e6, run.error));
-                chart.draw_series(LineSeries::new(line, colour.mix(0.3).stroke_width(px(1))))?;
-            }
-        }
-        for (family, _, colour) in FAMILIES {
-            let line = envelope(self.methods.iter().filter(|method| method.family == family));
+        for (drawn, _, colour) in KINDS {
+            let line = envelope(self.methods.iter().filter(|method| kind(method) == drawn));
             chart.draw_series(LineSeries::new(line, colour.stroke_width(px(2))))?;
         }
         Ok(())

@@ -1,9 +1,10 @@
-//! What accuracy costs in time: structure-preserving methods beside explicit Runge–Kutta methods on five scenes.
+//! What accuracy costs in time: structure-preserving methods beside explicit Runge–Kutta methods on seven scenes.
 //!
 //! ```text
 //! cargo run --release --example accuracy-cost
 //! cargo run --release --example accuracy-cost -- --quick --out costs
 //! cargo run --release --example accuracy-cost -- --quick --asked
+//! cargo run --release --example accuracy-cost -- --readme
 //! ```
 //!
 //! Each method integrates each scene for 10 s and for 100 s with shorter and shorter steps. The error is that of the
@@ -18,13 +19,13 @@
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 use std::time::Duration;
 
 use accuracy_cost::figure::{Panel, figure, invariants_figure};
 use accuracy_cost::measure::{Effort, ladder};
 use accuracy_cost::report::Measured;
-use accuracy_cost::scenes::Scene;
+use accuracy_cost::scenes::{Kind, Scene};
 use accuracy_cost::{invariants, methods, newton, report};
 use workbench::args::{Failure, example};
 use workbench::output::{Output, print};
@@ -34,33 +35,60 @@ const HELP: &str = "Measures what each accuracy costs in time, with our methods 
 
 Options:
       --quick         Fewer and shorter runs: all is done within a minute
-      --scene <NAME>  Only this scene: looping, cuspidal, third, chaotic or free
+      --scene <NAME>  Only this scene: looping, cuspidal, third, chaotic, free, sprung or orbiting
+      --heyoka        Run with_heyoka.py, too, where Python has heyoka
+      --readme        Put the table of ratios and the figure into README, too
       --asked         Ask for accuracies instead, and see what the choices take beside the best fixed ones
       --out <DIR>     The folder for the figure and the runs [default: out/accuracy-cost]
   -h, --help          Print this
 ";
 
+#[allow(clippy::struct_excessive_bools)] // each is a word of its own
 struct Arguments {
     quick: bool,
     scene: Option<String>,
     asked: bool,
+    readme: bool,
+    heyoka: bool,
     out: PathBuf,
 }
 
 fn main() -> ExitCode {
     example(HELP, |words| {
-        let mut arguments = Arguments { quick: false, scene: None, asked: false, out: "out/accuracy-cost".into() };
+        let mut arguments = Arguments {
+            quick: false,
+            scene: None,
+            asked: false,
+            readme: false,
+            heyoka: false,
+            out: "out/accuracy-cost".into(),
+        };
         while let Some(option) = words.option()? {
             match option.as_str() {
                 "quick" => arguments.quick = true,
                 "scene" => arguments.scene = Some(words.text()?),
                 "asked" => arguments.asked = true,
+                "heyoka" => arguments.heyoka = true,
+                "readme" => arguments.readme = true,
                 "out" => arguments.out = words.folder()?,
                 _ => return Err(words.unknown()),
             }
         }
         compare(&arguments)
     })
+}
+
+/// What the script prints, or why it doesn't run.
+fn with_heyoka(arguments: &Arguments) -> String {
+    let mut python = Command::new("python3");
+    python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/with_heyoka.py")).arg("--out").arg(&arguments.out);
+    if let Some(scene) = &arguments.scene {
+        python.args(["--scene", scene]);
+    }
+    match python.output() {
+        Ok(output) => String::from_utf8_lossy(&output.stdout).into_owned(),
+        Err(cause) => format!("heyoka is left out: python3 doesn't run: {cause}"),
+    }
 }
 
 /// How long each scene is integrated, s.
@@ -102,11 +130,12 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
                 measured.push(Measured::new(method, ladder(method, scene, t, effort(t))));
                 progress.add(1, &format!("{}, {}", scene.name, method.name));
             }
-            let title = format!("{}, t = {t} s", scene.name);
+            let title = format!("{}, {t} s", scene.name);
             // Writing to a string can't fail.
             let _ = write!(text, "{title}\n\n{}\n\n{}\n\n", report::costs(&measured), report::best(&measured));
             csv.push_str(&report::csv(scene.short, t, &measured));
-            if t == TIMES[0] {
+            // The energies of the others aren't those of a top.
+            if t == TIMES[0] && !matches!(scene.kind, Kind::Sprung | Kind::Satellite) {
                 progress.add(0, &format!("{}, invariants", scene.name));
                 let most = if arguments.quick { 50_000 } else { 1_000_000 };
                 let methods = invariants::kept(scene, &methods, &measured, most);
@@ -123,10 +152,18 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     drop(progress);
+    let readme = report::ratios(&results);
     let panels: Vec<_> = results.iter().map(|(title, methods)| Panel { title: title.clone(), methods }).collect();
-    output.write("accuracy-cost.svg", &figure(&panels)?)?;
+    let picture = figure(&panels)?;
+    if arguments.readme {
+        report::put_into_readme(&readme, &picture)?;
+    }
+    output.write("accuracy-cost.svg", &picture)?;
     output.write("invariants.svg", &invariants_figure(&kept)?)?;
     output.write("accuracy-cost.csv", &csv)?;
-    print(&format!("{text}{output}"))?;
+    if arguments.heyoka {
+        let _ = write!(text, "{}\n\n", with_heyoka(arguments));
+    }
+    print(&format!("{text}{readme}\n{output}"))?;
     Ok(())
 }

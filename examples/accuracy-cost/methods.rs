@@ -9,6 +9,7 @@ use liestep::methods::{
 use liestep::motion::Plan;
 use liestep::prelude::*;
 
+use crate::rivals::rates::{Rates, rk4_step};
 use crate::rivals::{dop853, library};
 use crate::scenes::{Kind, Scene};
 
@@ -83,11 +84,21 @@ fn count(t: f64, h: f64) -> u64 {
 
 /// All the methods that a scene allows.
 pub fn all(scene: &Scene) -> Vec<Method> {
-    ours(scene).into_iter().chain(rivals()).collect()
+    let rivals = match scene.kind {
+        Kind::Sprung => rivals(Scene::sprung_equations),
+        Kind::Satellite => rivals(Scene::satellite_equations),
+        _ => rivals(Scene::equations),
+    };
+    ours(scene).into_iter().chain(rivals).collect()
 }
 
 /// Of these, those that keep the structure.
 pub fn ours(scene: &Scene) -> Vec<Method> {
+    match scene.kind {
+        Kind::Sprung => return under_another_potential(Scene::sprung),
+        Kind::Satellite => return under_another_potential(Scene::satellite),
+        _ => {}
+    }
     let mut methods = Vec::new();
     if scene.kind == Kind::Free {
         methods.extend(declared("(3.13)", Scene::free_body, 2));
@@ -108,6 +119,7 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
                 SymmetricBody::new(&scene.inertia()).ok()
             }));
         }
+        Kind::Sprung | Kind::Satellite => {}
         Kind::Top => {
             methods.extend(splittings("exact", Family::Poisson, Scene::top, |scene| {
                 Some(ExactBody::new(&scene.inertia()))
@@ -130,6 +142,15 @@ pub fn ours(scene: &Scene) -> Vec<Method> {
         methods.extend(gauss(Scene::top));
     }
     methods
+}
+
+/// Of an asymmetric body under a potential that only (3.13) is declared with.
+fn under_another_potential<L>(scene: impl Fn(&Scene) -> L + Copy + 'static) -> Vec<Method>
+where
+    L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Regular + 'static,
+{
+    let exact = splittings("exact", Family::Poisson, scene, |scene| Some(ExactBody::new(&scene.inertia())));
+    declared("(3.13)", scene, 2).into_iter().chain(exact).chain(gauss(scene)).collect()
 }
 
 /// Gauss collocation with several numbers of stages.
@@ -232,20 +253,20 @@ where
     })
 }
 
-fn rivals() -> [Method; 4] {
+fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> [Method; 4] {
     [
-        Method::new("RK4", Family::Rival, Control::Step(0.5), |scene, t, h| {
-            let (equations, start, steps) = (scene.equations(), scene.start(), count(t, h));
+        Method::new("RK4", Family::Rival, Control::Step(0.5), move |scene, t, h| {
+            let (equations, start, steps) = (equations(scene), scene.start(), count(t, h));
             Some(Box::new(move || {
                 let mut y = start;
                 for _ in 0..steps {
-                    y = equations.rk4_step(h, &y);
+                    y = rk4_step(&equations, h, &y);
                 }
                 Some(equations.end(&y))
             }))
         }),
-        Method::new("DOP853, fixed step", Family::Rival, Control::Step(1.0), |scene, t, h| {
-            let (equations, start, steps) = (scene.equations(), scene.start(), count(t, h));
+        Method::new("DOP853, fixed step", Family::Rival, Control::Step(1.0), move |scene, t, h| {
+            let (equations, start, steps) = (equations(scene), scene.start(), count(t, h));
             Some(Box::new(move || {
                 let mut y = start;
                 for _ in 0..steps {
@@ -254,12 +275,12 @@ fn rivals() -> [Method; 4] {
                 Some(equations.end(&y))
             }))
         }),
-        Method::new("DOP853", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
-            let (equations, start) = (scene.equations(), scene.start());
+        Method::new("DOP853", Family::Rival, Control::Tolerance, move |scene, t, tolerance| {
+            let (equations, start) = (equations(scene), scene.start());
             Some(Box::new(move || Some(equations.end(&dop853::integrate(&equations, t, tolerance, start)?))))
         }),
-        Method::new("DOP853 of a library", Family::Rival, Control::Tolerance, |scene, t, tolerance| {
-            let (equations, start) = (scene.equations(), scene.start());
+        Method::new("DOP853 of a library", Family::Rival, Control::Tolerance, move |scene, t, tolerance| {
+            let (equations, start) = (equations(scene), scene.start());
             Some(Box::new(move || Some(equations.end(&library::integrate(&equations, t, tolerance, start)?))))
         }),
     ]

@@ -57,12 +57,11 @@ where
     let J_d = body.J_d;
     let inertia = NonstandardInertia::from(J_d).to_inertia();
     let mut fixed = methods::declared("(3.13)", move |_| scene, 2);
-    fixed.extend(match SymmetricBody::new(&inertia) {
-        Ok(body) => methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(body)),
-        Err(_) => {
-            let body = ExactBody::new(&inertia);
-            methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(body))
-        }
+    fixed.extend(if let Ok(body) = SymmetricBody::new(&inertia) {
+        methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(body))
+    } else {
+        let body = ExactBody::new(&inertia);
+        methods::splittings("exact", Family::Poisson, move |_| scene, move |_| Some(body))
     });
     fixed.extend(methods::gauss(move |_| scene));
     let candidates = Candidates::of_body(scene, 2);

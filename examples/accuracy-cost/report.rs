@@ -1,6 +1,7 @@
 //! Tables of what an accuracy costs.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use workbench::table::aligned;
 
@@ -73,6 +74,36 @@ fn best_of(methods: &[Measured], family: Family, what: &str) -> String {
         rows.push(vec![format!("{error:.0e}"), name, cost, rival, rival_cost, ratio]);
     }
     aligned(&rows)
+}
+
+/// The table of README: our cheapest Poisson method's time as a multiple of the fastest rival's, a scene a row.
+pub fn ratios(results: &[(String, Vec<Measured>)]) -> String {
+    let errors = ERRORS.map(|error| format!("{error:.0e}")).join(" | ");
+    let mut text = format!("| error of attitude and velocity | {errors} |\n|---|---|---|---|---|---|---|\n");
+    for (title, methods) in results {
+        let ratios = ERRORS.map(|error| {
+            let cost = |family| cheapest(methods, family, error).map(|(_, cost)| cost);
+            let ratio = cost(Family::Poisson).zip(cost(Family::Rival)).map(|(ours, rival)| ours / rival);
+            ratio.map_or_else(|| "–".to_owned(), |ratio| format!("{ratio:.2}"))
+        });
+        // Writing to a string can't fail.
+        let _ = writeln!(text, "| {title} | {} |", ratios.join(" | "));
+    }
+    text
+}
+
+/// Puts the table of ratios in the place of README's, and the figure in that of the one it shows.
+pub fn put_into_readme(table: &str, figure: &str) -> Result<(), std::io::Error> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let place = root.join("README.md");
+    let readme = std::fs::read_to_string(&place)?;
+    let heading = table.lines().next().unwrap_or_default();
+    let is_row = |line: &&str| line.starts_with('|');
+    let before = readme.lines().take_while(|line| *line != heading);
+    let after = readme.lines().skip_while(|line| *line != heading).skip_while(is_row);
+    let lines: Vec<&str> = before.chain(table.lines()).chain(after).collect();
+    std::fs::write(place, lines.join("\n") + "\n")?;
+    std::fs::write(root.join("examples/figures/accuracy-cost.svg"), figure)
 }
 
 /// All runs, a line each.

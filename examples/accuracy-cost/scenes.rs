@@ -1,12 +1,16 @@
-//! The five scenes, with their exact states.
+//! The seven scenes, with their exact states.
 //!
 //! The references are those of the tests, to 25 digits and more; `tests/data/README.md` says how each was validated.
 
 use declarations::motions::End;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, Motion, SixthOrderBody, SixthOrderTop};
+use liestep::effects::{GravityGradient, PrincipalBody, Spring};
+use liestep::mechanics::Sum;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::top_equations::{Equations, State};
+
+use crate::rivals::rates::{Orbiting, Sprung};
 
 /// A body, its start, and where it is later.
 pub struct Scene {
@@ -37,17 +41,27 @@ pub enum Kind {
     Top,
     /// Nothing acts on it.
     Free,
+    /// Any body under gravity and on a spring.
+    Sprung,
+    /// Any body in the gradient of gravity of a far mass.
+    Satellite,
 }
 
+/// The spring of the file.
+const SPRING: Spring =
+    Spring { k: 20.0, length: 0.5, at: Vector3::new(0.5, 0.0, 0.25), anchor: Vector3::new(1.0, 0.5, 1.0) };
+
 impl Scene {
-    /// All five.
-    pub fn all() -> [Self; 5] {
+    /// All seven.
+    pub fn all() -> [Self; 7] {
         [
             ("looping top", "looping", Kind::SymmetricTop, "looping A"),
             ("cuspidal top", "cuspidal", Kind::SymmetricTop, "cuspidal A"),
             ("third top of the thesis", "third", Kind::SymmetricTop, "third A"),
             ("chaotic asymmetric top", "chaotic", Kind::Top, "chaotic"),
             ("asymmetric free body", "free", Kind::Free, "free"),
+            ("asymmetric top on a spring", "sprung", Kind::Sprung, "sprung"),
+            ("fast asymmetric satellite", "orbiting", Kind::Satellite, "satellite"),
         ]
         .map(|(name, short, kind, motion)| {
             let motion = Motion::read(motion);
@@ -82,6 +96,28 @@ impl Scene {
     /// The exact state at a time of the reference, s.
     pub fn reference(&self, t: f64) -> Option<&End> {
         self.states.iter().find(|(time, _)| (time - t).abs() < 1e-9).map(|(_, end)| end)
+    }
+
+    /// The top on its spring.
+    pub fn sprung(&self) -> Sum<Sum<PrincipalBody, Gravity>, Spring> {
+        let gravity = Gravity { m: 1.0, g: self.weight, rho: self.rho, up: Vector3::z() };
+        PrincipalBody { J_d: self.nonstandard } + gravity + SPRING
+    }
+
+    pub fn sprung_equations(&self) -> Sprung {
+        let Spring { k, length, at, anchor } = SPRING;
+        Sprung { top: self.equations(), k, length, at: at.into(), anchor: anchor.into() }
+    }
+
+    /// The satellite, in a field with `GM/r³ = 1`.
+    pub fn satellite(&self) -> Sum<PrincipalBody, GravityGradient> {
+        let field = GravityGradient { GM: 1.0, r: 1.0, J: self.inertia(), direction: Vector3::z() };
+        PrincipalBody { J_d: self.nonstandard } + field
+    }
+
+    pub fn satellite_equations(&self) -> Orbiting {
+        let inverse_moments = self.moments.map(f64::recip).into();
+        Orbiting { moments: self.moments.into(), inverse_moments, gradient: 3.0 }
     }
 
     /// In the variables of the rivals.

@@ -36,6 +36,8 @@ files! {
     "third B": "thesis_unidirectional_B_J221",
     "chaotic": "chaotic_asymmetric_top",
     "free": "free_asymmetric_body",
+    "sprung": "spring_asymmetric_top",
+    "satellite": "fast_satellite",
     "free flip": "free_asymmetric_J123_intermediate",
     "free symmetric": "free_axisymmetric_Jd221",
     "golden steps": "golden_steps",

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! cargo bench --bench vectors              fails where a gain is lost
-//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails where that is slower
+//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails where that is slower;
+//!                                          further words are given to the compiler, as -C target-feature=-avx512f
 //! cargo bench --bench vectors -- time      nothing but the nanoseconds that the others compare
 //! ```
 //!
@@ -23,10 +24,10 @@ use std::time::Instant;
 
 use liestep::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SceneVisitor};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::{Cost, Motion, Plan, Summation};
+use liestep::motion::{Cost, Motion, Plan, StepReport, Summation};
 use liestep::numbers::{Real, Vectors};
 use liestep::prelude::*;
-use nalgebra::{SimdValue, Vector3};
+use nalgebra::Vector3;
 use simba::simd::{AutoF64x4, AutoF64x8, WideF64x4};
 
 use eight_tops::{TOPS, Top, lanes, top};
@@ -243,10 +244,11 @@ fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Box<dyn Error>> {
 }
 
 /// This program compiled for this machine, against itself; fails where that is slower.
-fn native() -> Result<(), Box<dyn Error>> {
+fn native(flags: &[String]) -> Result<(), Box<dyn Error>> {
+    let flags = format!("-C target-cpu=native {}", flags.join(" "));
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["bench", "--no-run", "--bench", "vectors", "--target-dir", "target/native"]);
-    let output = cargo.env("RUSTFLAGS", "-C target-cpu=native").output()?;
+    let output = cargo.env("RUSTFLAGS", flags).output()?;
     let report = String::from_utf8_lossy(&output.stderr);
     let executable = report.lines().find_map(|line| line.trim().strip_prefix("Executable"));
     let place = executable.and_then(|line| line.split_once('(')?.1.strip_suffix(')'));
@@ -256,9 +258,10 @@ fn native() -> Result<(), Box<dyn Error>> {
     for _ in 0..3 {
         for (best, program) in best.iter_mut().zip(&programs) {
             let times = times_of(program)?;
-            match best.is_empty() {
-                true => *best = times,
-                false => best.iter_mut().zip(times).for_each(|(best, time)| best.0 = best.0.min(time.0)),
+            if best.is_empty() {
+                *best = times;
+            } else {
+                best.iter_mut().zip(times).for_each(|(best, time)| best.0 = best.0.min(time.0));
             }
         }
     }
@@ -285,7 +288,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     match words.first().map(String::as_str) {
         None => gains(),
-        Some("native") => native(),
+        Some("native") => native(&words[1..]),
         Some("time") => {
             times();
             Ok(())

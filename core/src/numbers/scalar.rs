@@ -26,11 +26,15 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// - The group is [`SO3`](crate::groups::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::groups::MatrixGroup) inverts matrices by
 ///   pivots and asks for `RealField`, of which lanes aren't one.
 ///
-/// [`Stepper::step`](crate::motion::Stepper::step) finds out which vector instructions the machine has and takes them, and so
-/// do composed and compensated steps: a program needn't be compiled for one machine. That is for lanes which are
-/// arrays, such as `AutoF64x8`: the `Wide` types of simba take those instructions that the program is compiled for, two
-/// `f64` a register on x86-64 unless the compiler is told more, as by `-C target-cpu=native`. `cargo bench --bench
-/// ensemble` measures both.
+/// [`Stepper::step`](crate::motion::Stepper::step) finds out which vector instructions the machine has and takes them,
+/// up to [four `f64`](crate::numbers::Vectors::Four) a register, and so does every method's: a program needn't be compiled for one
+/// machine. That is for lanes which are arrays, such as `AutoF64x8`: the `Wide` types of simba take those instructions
+/// that the program is compiled for, two `f64` a register on x86-64 unless the compiler is told more. `cargo bench
+/// --bench ensemble` and `--bench vectors` measure both.
+///
+/// With `-C target-cpu=native` on a machine with AVX-512 lanes that are arrays are two to three times slower: the
+/// compiler then makes registers of eight `f64` of parts of different arrays, and shuffles them. `-C
+/// target-feature=-avx512f` beside it takes that back; collocation finds AVX-512 by itself all the same.
 pub trait Real: SimdRealField + Copy {}
 
 impl<T: SimdRealField + Copy> Real for T {}

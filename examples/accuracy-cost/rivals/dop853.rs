@@ -7,7 +7,9 @@
 // The digits are those of the source, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
-use workbench::top_equations::{Equations, State};
+use workbench::top_equations::State;
+
+use super::rates::Rates;
 
 /// Coefficients that aren't zero, each with the stage that it belongs to.
 type Row<const N: usize> = [(usize, f64); N];
@@ -118,7 +120,7 @@ fn plus(y: &State, h: f64, change: &State) -> State {
 
 /// The twelve stages from `y`, of which `first` is the first, and the step's mean rate.
 #[inline(always)]
-fn stages(equations: &Equations, h: f64, y: &State, first: State) -> ([State; 12], State) {
+fn stages(equations: &impl Rates, h: f64, y: &State, first: State) -> ([State; 12], State) {
     let mut k = [[0.0; 7]; 12];
     k[0] = first;
     macro_rules! stage {
@@ -133,7 +135,7 @@ fn stages(equations: &Equations, h: f64, y: &State, first: State) -> ([State; 12
 
 /// One step of fixed length.
 #[inline]
-pub fn step(equations: &Equations, h: f64, y: &State) -> State {
+pub fn step(equations: &impl Rates, h: f64, y: &State) -> State {
     let (_, mean) = stages(equations, h, y, equations.rate(y));
     plus(y, h, &mean)
 }
@@ -141,7 +143,7 @@ pub fn step(equations: &Equations, h: f64, y: &State) -> State {
 /// From `y` over the time `t` with the method's own step control; `None` where it gives up.
 ///
 /// The tolerance is relative and absolute at once, as all seven numbers are of the order of one or of the momentum.
-pub fn integrate(equations: &Equations, t: f64, tolerance: f64, mut y: State) -> Option<State> {
+pub fn integrate(equations: &impl Rates, t: f64, tolerance: f64, mut y: State) -> Option<State> {
     let mut rate = equations.rate(&y);
     let (mut done, mut h) = (0.0, initial_step(equations, &y, &rate, tolerance).min(t));
     let mut rejected = false;
@@ -195,7 +197,7 @@ fn error(h: f64, y: &State, next: &State, k: &[State; 12], mean: &State, toleran
 }
 
 /// A step for which an explicit Euler step would change the rate little.
-fn initial_step(equations: &Equations, y: &State, rate: &State, tolerance: f64) -> f64 {
+fn initial_step(equations: &impl Rates, y: &State, rate: &State, tolerance: f64) -> f64 {
     let norm = |v: &State| {
         let sum: f64 = (0..7).map(|i| (v[i] / (tolerance * (1.0 + y[i].abs()))).powi(2)).sum();
         (sum / 7.0).sqrt()

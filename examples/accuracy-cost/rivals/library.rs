@@ -3,7 +3,9 @@
 use differential_equations::ode::ODE;
 use differential_equations::prelude::{ExplicitRungeKutta, IVP};
 use differential_equations::traits::State;
-use workbench::top_equations::{Equations, State as Numbers};
+use workbench::top_equations::State as Numbers;
+
+use super::rates::Rates;
 
 /// Quaternion and momentum, with what the library does to a state written out for seven numbers.
 #[derive(Clone, Copy, Debug)]
@@ -58,16 +60,19 @@ impl State<f64> for Seven {
     }
 }
 
-impl ODE<f64, Seven> for Equations {
+/// The equations, for the library.
+struct Equations<E>(E);
+
+impl<E: Rates> ODE<f64, Seven> for Equations<E> {
     #[inline(always)]
     fn diff(&self, _t: f64, y: &Seven, rate: &mut Seven) {
-        rate.0 = self.rate(&y.0);
+        rate.0 = self.0.rate(&y.0);
     }
 }
 
 /// From `y` over the time `t`; `None` where the library gives up.
-pub fn integrate(equations: &Equations, t: f64, tolerance: f64, y: Numbers) -> Option<Numbers> {
+pub fn integrate(equations: &impl Rates, t: f64, tolerance: f64, y: Numbers) -> Option<Numbers> {
     let method = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance).max_steps(10_000_000);
-    let solution = IVP::ode(equations, 0.0, t, Seven(y)).t_eval([t]).method(method).solve().ok()?;
+    let solution = IVP::ode(&Equations(*equations), 0.0, t, Seven(y)).t_eval([t]).method(method).solve().ok()?;
     solution.y.last().map(|end| end.0)
 }

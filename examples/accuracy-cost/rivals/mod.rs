@@ -2,3 +2,4 @@
 
 pub mod dop853;
 pub mod library;
+pub mod rates;

@@ -240,7 +240,11 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         motion: &mut M,
         iterations: &mut u32,
     ) -> Result<(), StepError> {
-        shares.iter().try_for_each(|share| self.make(share, motion, iterations))
+        // No closure: one wouldn't be compiled for the instructions of the machine.
+        for share in shares {
+            self.make(share, motion, iterations)?;
+        }
+        Ok(())
     }
 
     #[inline(always)]
