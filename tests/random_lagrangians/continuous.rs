@@ -14,7 +14,7 @@ use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{RealField, SMatrix, SVector};
 use num_dual::{Dual64, HyperDual64};
 
-/// The bound, relative to the size of the terms.
+/// Some hundred roundings, relative to the size of the terms.
 const BOUND: f64 = 1e-13;
 
 /// The same numbers in another scalar.

@@ -32,8 +32,8 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// that the program is compiled for, two `f64` a register on x86-64 unless the compiler is told more. `cargo bench
 /// --bench ensemble` and `--bench vectors` measure both.
 ///
-/// With `-C target-cpu=native` on a machine with AVX-512 lanes that are arrays are two to three times slower: the
-/// compiler then makes registers of eight `f64` of parts of different arrays, and shuffles them. `-C
+/// With `-C target-cpu=native` on a machine with AVX-512 lanes that are arrays are two to three times slower,
+/// probably as the compiler then makes registers of eight `f64` of parts of different arrays. `-C
 /// target-feature=-avx512f` beside it takes that back; collocation finds AVX-512 by itself all the same.
 pub trait Real: SimdRealField + Copy {}
 

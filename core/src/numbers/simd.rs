@@ -65,5 +65,6 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 #[cfg(not(feature = "dispatch"))]
 #[inline(always)]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    let _ = K::VECTORS;
     kernel.run()
 }

@@ -117,7 +117,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     pub(crate) const COST: Cost = {
         #[allow(clippy::cast_precision_loss)] // at most eight
         let pairs = PAIRS as f64;
-        // Half of both kicks, and half of that in lanes.
+        // Half of both kicks, half of that in lanes, and two thirds of that as below.
         let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.16 * (S::OPERATIONS.step as f64) } else { 0.0 };
         let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
         Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3, once: 0.0 }
@@ -223,7 +223,8 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
 
 /// An iteration makes so many operations at each of its stages: for the rates of quaternion and momentum, for the
 /// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count
-/// as one, here and below.
+/// as one, here and below, and an operation as two thirds of one of (3.13): a sum over stages waits for less than a solve
+/// with its divisions does. `accuracy-cost -- --asked` shows whether choices by these numbers are the fastest.
 const OF_RATES: f64 = 48.0;
 const OF_PARAMETERS: f64 = 22.0;
 const OF_A_SUM: f64 = 6.5;

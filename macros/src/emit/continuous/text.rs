@@ -52,7 +52,7 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
     list.push(momentum_rate(derived, has_moved));
     list.extend(advected_rates(declaration, derived));
     list.push(inverse(derived));
-    list.push(hamiltonian(derived, &w));
+    list.push(hamiltonian(derived, &hamiltonian_of(&w)));
     list.push(kept(declaration, equations));
     list
 }
@@ -85,7 +85,7 @@ fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
         (true, Some(momentum), Some(diamond)) if derived.has_kinetic() => {
             sum(&[format!("({momentum}) × {xi}"), diamond])
         }
-        (_, _, Some(diamond)) if has_moved && derived.group.is_so3 => format!("μ × {xi} + {diamond}"),
+        (_, _, Some(diamond)) if has_moved && derived.group.is_so3 => sum(&[format!("μ × {xi}"), diamond]),
         _ if has_moved => format!("ad*_{xi} μ + ∂l/∂w ⋄ w"),
         _ => format!("ad*_{xi} μ"),
     };
@@ -138,8 +138,7 @@ fn inverse(derived: &Continuous) -> Equation {
     Equation::new("velocity", xi, right, source)
 }
 
-fn hamiltonian(derived: &Continuous, w: &[String]) -> Equation {
-    let at = ["μ"].into_iter().chain(w.iter().map(String::as_str)).collect::<Vec<_>>().join(", ");
+fn hamiltonian(derived: &Continuous, name: &str) -> Equation {
     let potential = text(&derived.potential(), &derived.symbols);
     let difference = without_bias(derived);
     let right = match derived.inverse {
@@ -150,16 +149,26 @@ fn hamiltonian(derived: &Continuous, w: &[String]) -> Equation {
         Inverse::Constant if difference == "μ" => sum(&["½ ⟨μ, 𝕀⁻¹ μ⟩".to_owned(), potential]),
         Inverse::Constant => sum(&[format!("½ ⟨{difference}, 𝕀⁻¹ ({difference})⟩"), potential]),
     };
-    Equation::new("hamiltonian", &format!("h({at})"), right, "(1.16)")
+    Equation::new("hamiltonian", name, right, "(1.16)")
+}
+
+/// `h(μ, w)` by the names of what is advected or given.
+fn hamiltonian_of(w: &[String]) -> String {
+    let arguments: Vec<&str> = ["μ"].into_iter().chain(w.iter().map(String::as_str)).collect();
+    format!("h({})", arguments.join(", "))
 }
 
 /// What the motion keeps.
 fn kept(declaration: &Declaration, equations: &Equations) -> Equation {
     let derived = &equations.derived;
-    let mut kept = vec![format!("h({})", if derived.advected.is_empty() { "μ" } else { "μ, w" })];
+    let names = names(declaration);
+    let given = declaration.advected.iter().filter(|parameter| parameter.is_given);
+    let given: Vec<String> = given.map(crate::declared::AdvectedParameter::plain_name).collect();
+    let energy = hamiltonian_of(&names);
+    let condition = if given.is_empty() { String::new() } else { format!(" while {} stays", given.join(", ")) };
+    let mut kept = vec![energy + &condition];
     let carried = |index: &usize| declaration.advected_kind(*index).variance() != Variance::Fixed;
     let carried: Vec<usize> = (0..declaration.advected.len()).filter(carried).collect();
-    let names = names(declaration);
     match carried.as_slice() {
         [] => kept.push("Ad*_{g⁻¹} μ".to_owned()),
         [one] if derived.group.is_so3 && matches!(declaration.advected_kind(*one), FieldKind::Vector(_)) => {

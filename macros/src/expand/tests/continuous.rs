@@ -191,7 +191,7 @@ fn of_others() {
             da/dt = −hat(xi) a    [(2.2): −ξ·w]
             xi = 𝕀⁻¹ μ    [(1.14) inverted, 𝕀⁻¹ once for all]
             h(μ, a) = ½ ⟨μ, 𝕀⁻¹ μ⟩ + (k/2) ⟨p, p⟩ − k ⟨p, a⟩ + (k/2) ⟨a, a⟩    [(1.16)]
-            kept = h(μ, w); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
+            kept = h(μ, a); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
     "#]]
     .assert_eq(&continuous_derivation(planar, item));
 }
