@@ -24,12 +24,12 @@ const FAMILIES: [(Family, &str, RGBColor); 3] = [
 
 /// What is drawn as one line.
 const KINDS: [(Kind, &str, RGBColor); 6] = [
-    (Kind::Rival, "explicit Runge–Kutta", ORANGE),
+    (Kind::Rival, "Runge–Kutta", ORANGE),
     (Kind::Steps, "own steps, compositions", GREY),
     (Kind::OtherFlows, "splittings, other flows", GREEN),
     (Kind::Exact, "splittings, exact flow", BLUE),
-    (Kind::Processed, "the same, processed", BLACK),
-    (Kind::Collocation, "Gauss collocation", PURPLE),
+    (Kind::Processed, "processed", BLACK),
+    (Kind::Collocation, "Gauss", PURPLE),
 ];
 
 #[derive(Clone, Copy, PartialEq)]
