@@ -51,6 +51,10 @@ pub(crate) struct Graph {
     /// The products of matrices so far, by the inner dimension and the entries of both. The components of a covector,
     /// and more so the entries of a Jacobian, are made of the same ones.
     pub(super) products: BTreeMap<(usize, Matrix, Matrix), Matrix>,
+    /// What each of such products costs, to be compared.
+    pub(super) costs: BTreeMap<(usize, Matrix, Matrix), (bool, usize, usize)>,
+    /// The entries of symbols and, with `true`, of their transposes, once they have been asked for.
+    pub(super) symbols: BTreeMap<(SymbolId, bool), Matrix>,
 }
 
 /// The entries of a matrix, row by row.

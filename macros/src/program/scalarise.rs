@@ -106,8 +106,11 @@ impl Scalariser<'_> {
         }
         let symbol = self.symbols.get(id);
         let ((rows, columns), structure, stage) = (symbol.shape, symbol.structure, symbol.stage);
+        if let Some(nodes) = self.graph.symbols.get(&(id, false)) {
+            return Entries { rows, columns, nodes: nodes.clone() };
+        }
         let graph = &mut *self.graph;
-        Entries::new(rows, columns, |row, column| {
+        let entries = Entries::new(rows, columns, |row, column| {
             if structure == Structure::Diagonal && row != column {
                 return graph.zero();
             }
@@ -117,7 +120,18 @@ impl Scalariser<'_> {
             let (row, column) =
                 if structure.is_symmetric() { (row.min(column), row.max(column)) } else { (row, column) };
             graph.input(Input { symbol: id, row, column }, stage)
-        })
+        });
+        self.graph.symbols.insert((id, false), entries.nodes.clone());
+        entries
+    }
+
+    fn transposed_symbol(&mut self, id: SymbolId) -> Entries {
+        let entries = self.symbol(id);
+        if self.given.contains_key(&id) {
+            return entries.transposed();
+        }
+        let nodes = self.graph.symbols.entry((id, true)).or_insert_with(|| entries.transposed().nodes);
+        Entries { rows: entries.columns, columns: entries.rows, nodes: nodes.clone() }
     }
 
     fn word_stage(&mut self, word: &[Factor]) -> Stage {
@@ -136,7 +150,8 @@ impl Scalariser<'_> {
     fn factor(&mut self, factor: &Factor) -> Entries {
         let turned = |entries: Entries, transposed: bool| if transposed { entries.transposed() } else { entries };
         match factor {
-            Factor::Symbol { id, transposed } => turned(self.symbol(*id), *transposed),
+            Factor::Symbol { id, transposed: true } => self.transposed_symbol(*id),
+            Factor::Symbol { id, transposed: false } => self.symbol(*id),
             Factor::Inverse { id, transposed } => {
                 let inverse = if let Some(inverse) = self.symbols.inverse_of(*id) {
                     self.symbol(inverse)
@@ -187,8 +202,8 @@ impl Scalariser<'_> {
     fn product(&mut self, word: &[Factor]) -> Entries {
         let mut factors: Vec<Entries> = word.iter().map(|factor| self.factor(factor)).collect();
         while factors.len() > 1 {
-            let cheapest = (0..factors.len() - 1).min_by_key(|&i| self.pair_cost(&factors[i], &factors[i + 1]));
-            let at = cheapest.unwrap_or(0);
+            let costs: Vec<_> = factors.windows(2).map(|pair| self.pair_cost(&pair[0], &pair[1])).collect();
+            let at = cheapest(&costs);
             let right = factors.remove(at + 1);
             factors[at] = self.multiply(&factors[at].clone(), &right);
         }
@@ -209,8 +224,8 @@ impl Scalariser<'_> {
         while factors.len() > 2 {
             let pairs = if is_form { factors.len() - 1 } else { factors.len() };
             let next = |i: usize| (i + 1) % factors.len();
-            let cheapest = (0..pairs).min_by_key(|&i| self.pair_cost(&factors[i], &factors[next(i)]));
-            let at = cheapest.unwrap_or(0);
+            let costs: Vec<_> = (0..pairs).map(|i| self.pair_cost(&factors[i], &factors[next(i)])).collect();
+            let at = cheapest(&costs);
             let partner = next(at);
             let product = self.multiply(&factors[at].clone(), &factors[partner].clone());
             factors[at] = product;
@@ -282,7 +297,11 @@ impl Scalariser<'_> {
     /// What a product of two factors costs, to be compared: whether it is one with a generator, which the other
     /// components of a covector don't share; its multiplications, which count more at a later stage; the size of the
     /// result.
-    fn pair_cost(&self, left: &Entries, right: &Entries) -> (bool, usize, usize) {
+    fn pair_cost(&mut self, left: &Entries, right: &Entries) -> (bool, usize, usize) {
+        let key = (left.columns, left.nodes.clone(), right.nodes.clone());
+        if let Some(&cost) = self.graph.costs.get(&key) {
+            return cost;
+        }
         let is_own = self.is_constant(left) != self.is_constant(right);
         // For each inner index, how many entries of each stage meet.
         let cost = (0..left.columns).map(|k| {
@@ -295,8 +314,15 @@ impl Scalariser<'_> {
             construction + 100 * (step - construction) + 10_000 * (iteration - step)
         });
         let cost: usize = cost.sum();
-        (is_own, cost, left.rows * right.columns)
+        let cost = (is_own, cost, left.rows * right.columns);
+        self.graph.costs.insert(key, cost);
+        cost
     }
+}
+
+/// The place of the least, the first of equal ones.
+fn cheapest(costs: &[(bool, usize, usize)]) -> usize {
+    (0..costs.len()).min_by_key(|&i| costs[i]).unwrap_or(0)
 }
 
 /// The entries of `A⁻¹` by Cramer's rule, for matrices of up to three rows.
