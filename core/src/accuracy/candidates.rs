@@ -149,7 +149,8 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G> + 'static> Candidates<G, A> {
     }
 
     /// A choice to be taken where it still holds, which one more run by shorter steps tells; otherwise the search is made
-    /// as without. It may be that of another start, horizon or tolerance.
+    /// as without. It may be that of another start, horizon or tolerance; for a larger tolerance it is kept, though longer
+    /// steps would do. Of the other methods nothing is then known but bounds, in [`Choice::offers`](super::Choice::offers).
     #[must_use]
     pub fn with_saved(mut self, choice: SavedChoice) -> Self {
         self.saved = Some(choice);

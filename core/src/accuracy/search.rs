@@ -166,7 +166,7 @@ pub(super) fn again<G: LieGroup<Scalar = f64>, A: Advected<G>>(
 ) -> Option<Found> {
     let (candidate, mut trials) = (&candidates[index], Trials::default());
     let finer = (FINER * steps).ceil();
-    if steps * candidate.least > MOST_OPERATIONS {
+    if (steps + finer) * candidate.least > MOST_OPERATIONS {
         return None;
     }
     let [run, fine] = [steps, finer].map(|steps| trials.run(candidate, start, steps).0);
@@ -177,7 +177,9 @@ pub(super) fn again<G: LieGroup<Scalar = f64>, A: Advected<G>>(
     let offer = |(other, candidate): (usize, &Candidate<G, A>)| {
         if other == index { (steps, cost, false) } else { (1.0, candidate.least, true) }
     };
-    let nearby = [0.1_f64, 10.0].map(|factor| factor.powf(f64::from(candidate.order).recip()));
+    // What has no error of its own costs the same for any.
+    let by_order = |factor: f64| factor.powf(f64::from(candidate.order).recip());
+    let nearby = if candidate.is_exact { [1.0; 2] } else { [0.1, 10.0].map(by_order) };
     (error <= ACCEPTED_AGAIN * accuracy.tolerance).then(|| Found {
         index,
         steps,

@@ -41,8 +41,9 @@ impl Legendre {
 /// angular momenta in kg m²/s.
 ///
 /// [`lagrangian`](crate::lagrangian) implements it: of a declared `l` with its terms derived, and of a declared `l_d`
-/// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. Two of them add by `+`; a third, where none of them is discretised, by [`Sum::new`]. What an ODE
-/// solver integrates is made of it by [`RightHandSide`](crate::motion::RightHandSide).
+/// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. Two of them add by `+`; a third, where none of them is
+/// discretised, by [`Sum::new`]. What an ODE solver integrates is made of it by
+/// [`RightHandSide`](crate::motion::RightHandSide).
 ///
 /// # Source
 ///

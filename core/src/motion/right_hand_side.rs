@@ -66,7 +66,7 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         &self.lagrangian
     }
 
-    /// The velocity of a momentum, (1.14) solved.
+    /// The body velocity of a body momentum, \[RDAE, (1.14)\] solved.
     ///
     /// # Errors
     ///
@@ -78,7 +78,7 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         Ok(Velocity::<L>::solve_again(factors, *determinant, &(*momentum - bias)))
     }
 
-    /// `ġ` and `μ̇`.
+    /// `ġ = g ξ̂`, a matrix in 1/s, and `μ̇` in the body frame, on SO(3) in N m, \[RDAE, (1.5), (1.12) and (2.2)\].
     ///
     /// # Errors
     ///
@@ -138,7 +138,8 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         (L::Group::from_matrix_unchecked(matrix), Velocity::<L>::from_entries(&mut next))
     }
 
-    /// Writes the rate of a [`state`](Self::state), in the same order.
+    /// Writes the rate of a [`state`](Self::state), in the same order, into as many numbers: of a shorter slice all are
+    /// written, of a longer one those behind stay as they are.
     ///
     /// # Errors
     ///
