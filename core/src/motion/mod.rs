@@ -25,6 +25,7 @@ pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
+pub(crate) use plan::rare_step;
 pub use plan::{Cost, Plan, Steerable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;

@@ -138,7 +138,6 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// [`StepError`] where an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
-    #[inline]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         let made = dispatch(Step(self, state));
         match made {
