@@ -166,7 +166,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
         for stage in &self.stages {
             let (now, declared) = (next.now(), &self.substeps[stage.substep]);
             let turned = |increment: &Matrix<S>| next.turned(increment);
-            let stepped = if M::CARRIES {
+            let stepped = if const { M::CARRIES } {
                 declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             } else {
                 declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?

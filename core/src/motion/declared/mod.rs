@@ -65,7 +65,7 @@ impl<S: Effect> Declared<S> {
         // Without a step there is nothing to solve, which the careful solve sees to.
         let largest = trace / h * real(2.0 * RATIO) / Scalar::<S>::simd_default_epsilon();
         let largest_target = if h == real(0.0) { h } else { largest * largest };
-        let is_expensive = S::JACOBIAN_IS_EXPENSIVE && h != real(0.0);
+        let is_expensive = const { S::JACOBIAN_IS_EXPENSIVE } && h != real(0.0);
         let trusted = if is_expensive { trusted_radius(scene, &constants) } else { real(0.0) };
         Ok(Self { h, constants, largest_target, trusted, safe })
     }
@@ -82,8 +82,7 @@ impl<S: Effect> Declared<S> {
             return Ok(Group::<S>::identity());
         }
         let problem = self.problem(scene, momentum, advected);
-        let terms = step_terms::<S>(&self.constants, &problem.a, advected);
-        problem.attempt(&terms, &(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
+        problem.attempt(&(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
     }
 
     /// One step from `(μ, w)` and a guess of half the coordinates of `F`; `turned` gives `w⁺` of `F − I`, and `CARRIES`
@@ -156,7 +155,7 @@ impl<S: Effect> Declared<S> {
         momentum: &Vector<S>,
         advected: &S::Advected,
         a: &Vector<S>,
-        root: &Root<S>,
+        root: &Root<Group<S>>,
         next: S::Advected,
     ) -> Stepped<S> {
         let Root { half, increment, iterations, far, ref kick } = *root;
@@ -164,19 +163,19 @@ impl<S: Effect> Declared<S> {
         if CARRIES {
             // In `a` the kick is rounded to the digits of the momentum, which is what a carry is to make good.
             let mut kicks = None;
-            if S::PARTS.kick_before {
+            if const { S::PARTS.kick_before } {
                 kicks = Some(S::kick_before(&self.constants, advected));
             }
-            if S::PARTS.kick_after {
+            if const { S::PARTS.kick_after } {
                 let after = self.kick_after(&increment, &next, kick);
                 kicks = Some(kicks.map_or(after, |before| before + after));
             }
             change = kicks.map_or(change, |kicks| change + kicks);
         } else {
-            if S::PARTS.kick_before {
+            if const { S::PARTS.kick_before } {
                 change = change + (*a - *momentum);
             }
-            if S::PARTS.kick_after {
+            if const { S::PARTS.kick_after } {
                 change = change + self.kick_after(&increment, &next, kick);
             }
         }
@@ -187,9 +186,9 @@ impl<S: Effect> Declared<S> {
 
     /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
     #[inline(always)]
-    fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<S>) -> Vector<S> {
+    fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<Group<S>>) -> Vector<S> {
         let direct = || S::kick_after(&self.constants, increment, next);
-        if !S::JACOBIAN_IS_EXPENSIVE || !kick.found.any() {
+        if const { !S::JACOBIAN_IS_EXPENSIVE } || !kick.found.any() {
             return direct();
         }
         let mut found = kick.value + Group::<S>::adjoint_transpose_increment(increment, &kick.value);
@@ -214,7 +213,7 @@ impl<S: Effect> Declared<S> {
 
     #[cold]
     fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Stepped<S> {
-        let Root { half, increment, iterations, far, .. } = Root::<S>::at(&Vector::<S>::zero(), 0);
+        let Root { half, increment, iterations, far, .. } = Root::at::<S::Retraction>(&Vector::<S>::zero(), 0);
         let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
         Stepped { step, change: Vector::<S>::zero(), half, far }
     }
@@ -246,7 +245,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
         let turned = |increment: &Matrix<S>| motion.turned(increment);
-        let stepped = if M::CARRIES {
+        let stepped = if const { M::CARRIES } {
             self.step_directly::<true>(scene, &now.momentum, &now.advected, &guess, &turned)
         } else {
             self.step_directly::<false>(scene, &now.momentum, &now.advected, &guess, &turned)
@@ -283,7 +282,7 @@ impl<S: Effect> Declared<S> {
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
         let turned = |increment: &Matrix<S>| motion.turned(increment);
-        let stepped = if M::CARRIES {
+        let stepped = if const { M::CARRIES } {
             self.step_carefully::<true>(scene, &now.momentum, &now.advected, &guess, &turned)?
         } else {
             self.step_carefully::<false>(scene, &now.momentum, &now.advected, &guess, &turned)?
@@ -336,7 +335,7 @@ pub(crate) fn half_coordinates<S: Effect>(
 /// `a = μ + kick_before(w)`.
 #[inline(always)]
 fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
-    if S::PARTS.kick_before { *momentum + S::kick_before(constants, w) } else { *momentum }
+    if const { S::PARTS.kick_before } { *momentum + S::kick_before(constants, w) } else { *momentum }
 }
 
 /// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times
