@@ -8,7 +8,7 @@ use liestep::mechanics::{DiscreteLagrangian, Effect};
 use liestep::methods::{
     CompositionScheme, ExactBody, PreprocessedOrder, ProcessedScheme, SplitBody, SplittingScheme, SymmetricBody,
 };
-use liestep::motion::{Plan, Remedy};
+use liestep::motion::{Plan, Remedy, StepReport};
 use liestep::prelude::*;
 use liestep::with::{Checkpoint, CheckpointError, Compensable};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -31,6 +31,16 @@ where
     stepper.start(attitude(), VELOCITY).unwrap()
 }
 
+/// One copy of a step for all that is asserted of it: they are most of what this file compiles to.
+#[inline(never)]
+fn step<S, P>(stepper: &Stepper<S, P>, state: &mut State<S, P>) -> Result<StepReport, StepError>
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    stepper.step(state)
+}
+
 /// How far two motions are from each other.
 fn apart<S, P, K>(a: &State<S, P>, b: &liestep::State<SO3, S::Advected, K>) -> f64
 where
@@ -49,7 +59,7 @@ where
     let start = started(stepper);
     let (mut stepped, mut run) = (start, start);
     for _ in 0..20 {
-        stepper.step(&mut stepped).unwrap();
+        step(stepper, &mut stepped).unwrap();
     }
     stepper.run(&mut run, 20).unwrap();
     // Splittings join the flows at the ends of two steps.
@@ -69,12 +79,12 @@ where
     let mut plain = started(stepper);
     let mut forced = plain;
     for _ in 0..5 {
-        stepper.step(&mut plain).unwrap();
+        step(stepper, &mut plain).unwrap();
         stepper.step_forced(&mut forced, &Vector3::zeros()).unwrap();
     }
     assert_eq!(format!("{plain:?}"), format!("{forced:?}"), "{name}: no force");
     let before = forced.momentum();
-    stepper.step(&mut plain).unwrap();
+    step(stepper, &mut plain).unwrap();
     let torque = Vector3::new(0.3, -0.2, 0.5);
     stepper.step_forced(&mut forced, &torque).unwrap();
     let impulse = torque * stepper.step_size();
@@ -83,7 +93,7 @@ where
     let allowed = 2.0 * impulse.norm() * VELOCITY.norm() * stepper.step_size();
     assert!((gained - impulse).norm() < allowed, "{name}: {gained} for {impulse}, from {before}");
     // The next step goes on from what was pushed.
-    stepper.step(&mut forced).unwrap();
+    step(stepper, &mut forced).unwrap();
     assert!((forced.momentum() - plain.momentum()).norm() > 0.5 * impulse.norm(), "{name}: the push is lost");
     assert!(matches!(
         stepper.step_forced(&mut forced, &Vector3::from_element(f64::NAN)),
@@ -102,11 +112,11 @@ where
     stepper.run(&mut state, 7).unwrap();
     let mut adopted = other.adopt(&state);
     assert_eq!((adopted.attitude(), adopted.momentum()), (state.attitude(), state.momentum()), "{name}");
-    other.step(&mut adopted).unwrap();
+    step(&other, &mut adopted).unwrap();
     let mut back = stepper.adopt(&adopted);
-    stepper.step(&mut back).unwrap();
-    stepper.step(&mut state).unwrap();
-    stepper.step(&mut state).unwrap();
+    step(stepper, &mut back).unwrap();
+    step(stepper, &mut state).unwrap();
+    step(stepper, &mut state).unwrap();
     assert!(apart::<S, P, _>(&back, &state) < 1e-4, "{name}: adopt");
 }
 
@@ -121,11 +131,11 @@ where
     let back = stepper.inverse().unwrap();
     let mut state = start;
     for _ in 0..10 {
-        stepper.step(&mut state).unwrap();
+        step(stepper, &mut state).unwrap();
     }
     let mut state = back.adopt(&state);
     for _ in 0..10 {
-        back.step(&mut state).unwrap();
+        step(&back, &mut state).unwrap();
     }
     assert!(apart::<S, P, _>(&start, &state) < 1e-12, "{name}: inverse");
 }
@@ -144,7 +154,7 @@ where
         let stored: Checkpoint<f64> = serde_json::from_str(&text).unwrap();
         let (mut resumed, mut on) = (stepper.resume(&stored).unwrap(), state);
         for _ in 0..10 {
-            assert_eq!(stepper.step(&mut on), stepper.step(&mut resumed), "{name}");
+            assert_eq!(step(stepper, &mut on), step(stepper, &mut resumed), "{name}");
         }
         assert_eq!(format!("{on:?}"), format!("{resumed:?}"), "{name}: resumed");
     }
@@ -189,9 +199,9 @@ where
     assert_all(&format!("{name}, or fallback"), &fallback, own);
     let (mut plain, mut first, mut second) = (started(stepper), started(&substeps), started(&fallback));
     for _ in 0..10 {
-        let report = stepper.step(&mut plain).unwrap();
-        assert_eq!(substeps.step(&mut first).unwrap(), report, "{name}");
-        assert_eq!(fallback.step(&mut second).unwrap(), report, "{name}");
+        let report = step(stepper, &mut plain).unwrap();
+        assert_eq!(step(&substeps, &mut first).unwrap(), report, "{name}");
+        assert_eq!(step(&fallback, &mut second).unwrap(), report, "{name}");
     }
     assert_eq!(format!("{plain:?}"), format!("{first:?}"), "{name}");
     assert_eq!(format!("{plain:?}"), format!("{second:?}"), "{name}");

@@ -115,7 +115,7 @@ where
 
     fn step(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
         let mut state = own(self, motion, kept);
-        let report = self.step(&mut state)?;
+        let report = self.step_called(&mut state)?;
         back(state, motion, kept);
         Ok(report)
     }

@@ -138,12 +138,19 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// [`StepError`] where an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
+    #[inline]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         let made = dispatch(Step(self, state));
         match made {
             Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
             made => made,
         }
+    }
+
+    /// [`step`](Self::step), called: one copy of it for all that is put around a step.
+    #[inline(never)]
+    pub(crate) fn step_called(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
+        self.step(state)
     }
 
     /// So many steps, of which the states between aren't asked for; returns all their iterations. On an error the state
@@ -175,7 +182,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let mut current = Some(state);
         core::iter::from_fn(move || {
             let mut next = current.take()?;
-            Some(self.step(&mut next).map(|_| {
+            Some(self.step_called(&mut next).map(|_| {
                 current = Some(next);
                 next
             }))
@@ -225,7 +232,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let half = *force * (self.step_size() * real(0.5));
         let mut next = *state;
         self.plan.push(&mut next.motion, &mut next.kept, &half);
-        let report = self.step(&mut next)?;
+        let report = self.step_called(&mut next)?;
         self.plan.push(&mut next.motion, &mut next.kept, &half);
         if !next.motion.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -282,7 +289,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let mut next = *state;
         let State { motion, kept } = &mut next;
         self.plan.see(motion, kept, values.seen_from(&motion.attitude));
-        let report = self.step(&mut next)?;
+        let report = self.step_called(&mut next)?;
         let State { motion, kept } = &mut next;
         self.plan.see(motion, kept, self.scene.advected().seen_from(&motion.attitude));
         *state = next;
