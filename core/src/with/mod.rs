@@ -1,5 +1,5 @@
 //! What is put around a method: compensated sums, remedies for steps without a solution, checkpoints; runs that are
-//! observed, recorded and stopped.
+//! observed, recorded and stopped, and events in them.
 //!
 //! Each goes with every method for which it makes sense, and with each other.
 
@@ -9,10 +9,11 @@ mod compensated;
 mod record;
 mod remedies;
 mod run;
+pub mod sections;
 
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{Carried, Compensable, Compensated};
 pub use record::{Background, Column, Csv, RecordError, Recorder, Sink, SinkError, Table};
 pub use remedies::{Instead, OrElse, Substeps};
-pub use run::{Ended, Reason, Run, RunError};
+pub use run::{Ended, Event, Reason, Run, RunError};

@@ -31,6 +31,21 @@ pub enum RunError {
         /// The time of the state, s.
         now: f64,
     },
+    /// The function of an event has no value.
+    NotANumber {
+        /// Which event, counted from zero as they were given.
+        event: usize,
+        /// Where, s.
+        time: f64,
+    },
+    /// Whether an event happens in a step can't be told with ten thousand looks: the bound of its second derivative is far
+    /// too large, or the function is zero for a while.
+    TooManyLooks {
+        /// Which event, counted from zero as they were given.
+        event: usize,
+        /// The beginning of the step, s.
+        time: f64,
+    },
     /// The end of the run isn't finite, or farther away than steps can be counted.
     End {
         /// The time, s.
@@ -49,6 +64,13 @@ impl fmt::Display for RunError {
                 f,
                 "the time {asked} s can't be shown, as the motion is at t = {now} s already; give finite times in their order"
             ),
+            Self::NotANumber { event, time } => {
+                write!(f, "the function of event {event} has no value at t = {time} s")
+            }
+            Self::TooManyLooks { event, time } => write!(
+                f,
+                "event {event} can't be told apart in the step from t = {time} s: give a smaller bound of its second derivative, or a function that isn't zero for a while"
+            ),
             Self::End { asked } => {
                 write!(f, "a run can't end at t = {asked} s: give a finite time, and a step that isn't zero")
             }
@@ -61,7 +83,7 @@ impl core::error::Error for RunError {
         match self {
             Self::Step { cause, .. } => Some(cause),
             Self::Observer { cause, .. } => Some(cause.as_ref()),
-            Self::Time { .. } | Self::End { .. } => None,
+            _ => None,
         }
     }
 }
@@ -86,6 +108,13 @@ pub enum Reason {
     /// An observer stopped it.
     Stopped {
         /// The time that the observer was shown, s.
+        time: f64,
+    },
+    /// A [terminal](super::Event::terminal) event happened.
+    Event {
+        /// Which, counted from zero as they were given.
+        event: usize,
+        /// When, s.
         time: f64,
     },
 }

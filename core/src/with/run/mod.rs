@@ -1,8 +1,13 @@
 //! A run that is observed: by functions that are called every so many steps or at given times, and that may stop it.
 
+mod crossing;
 mod error;
+mod event;
 
 pub use error::{Ended, Reason, RunError};
+pub use event::Event;
+
+use event::Watched;
 
 use core::iter::Peekable;
 use core::ops::ControlFlow;
@@ -50,8 +55,8 @@ type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Verdict + 'a>;
 /// # Contract
 ///
 /// - The steps between two that are observed are made by [`Stepper::run`], so nothing is copied for them. A run with a
-///   condition or with given times makes each step by itself. Only of splittings does that change digits, which `run`
-///   says.
+///   condition, with events or with given times makes each step by itself. Only of splittings does that change digits,
+///   which `run` says.
 /// - Observers change nothing: for other methods the steps are those of an unobserved run, bit for bit.
 /// - Memory doesn't grow with the run.
 /// - After an error, and when an observer stops the run, the state is that of the last step that was made.
@@ -61,6 +66,7 @@ pub struct Run<'a, I: Integrator> {
     state: &'a mut StateIn<I>,
     regular: Vec<Regular<'a, I>>,
     timed: Vec<Timed<'a, I>>,
+    watched: Vec<Watched<'a, I>>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
 }
 
@@ -104,7 +110,7 @@ where
 
 impl<'a, I: Integrator> Run<'a, I> {
     fn new(integrator: &'a I, state: &'a mut StateIn<I>) -> Self {
-        Self { integrator, state, regular: Vec::new(), timed: Vec::new(), progress: None }
+        Self { integrator, state, regular: Vec::new(), timed: Vec::new(), watched: Vec::new(), progress: None }
     }
 
     /// Shows the motion after every so many steps, counted from its start, and at its start.
@@ -138,19 +144,23 @@ impl<'a, I: Integrator> Run<'a, I> {
         let mut ended = Ended { steps: 0, iterations: 0, reason: Reason::Done };
         let start = self.state.steps();
         let end = start.saturating_add(steps);
-        if start == 0 && self.show_regular(&mut ended)? {
-            return Ok(ended);
-        }
-        if self.show_timed(None, &mut ended)? {
+        self.look_first()?;
+        if self.show_timed(None, reported(self.integrator.time(self.state)), &mut ended)?
+            || start == 0 && self.show_regular(&mut ended)?
+        {
             return Ok(ended);
         }
         while self.state.steps() < end {
-            let next = self.next_shown(start, end);
-            let before = (!self.timed.is_empty()).then(|| self.state.clone());
-            let made = next - self.state.steps();
+            let made = self.next_shown(start, end) - self.state.steps();
+            let before = self.looks_between().then(|| self.state.clone());
             ended.iterations += self.advance(made)?;
             ended.steps += made;
-            if self.show_timed(before.as_ref(), &mut ended)? || self.show_regular(&mut ended)? {
+            if let Some(before) = before
+                && self.show_between(&before, &mut ended)?
+            {
+                break;
+            }
+            if self.show_regular(&mut ended)? {
                 break;
             }
             self.show_progress(start, end);
@@ -158,10 +168,25 @@ impl<'a, I: Integrator> Run<'a, I> {
         Ok(ended)
     }
 
+    /// Whether something may be shown that isn't the end of a step.
+    fn looks_between(&self) -> bool {
+        !(self.timed.is_empty() && self.watched.is_empty())
+    }
+
+    /// Shows what there is within a step.
+    fn show_between(&mut self, before: &StateIn<I>, ended: &mut Ended) -> Result<bool, RunError> {
+        for found in self.crossings(before)? {
+            if self.show_timed(Some(before), found.time, ended)? || self.happen(&found, ended)? {
+                return Ok(true);
+            }
+        }
+        self.show_timed(Some(before), reported(self.integrator.time(self.state)), ended)
+    }
+
     /// The next step after which something is to be done.
     fn next_shown(&self, start: u64, end: u64) -> u64 {
         let now = self.state.steps();
-        if !self.timed.is_empty() {
+        if self.looks_between() {
             return now + 1;
         }
         let after = |every: u64| (now / every).saturating_add(1).saturating_mul(every);
@@ -202,8 +227,8 @@ impl<'a, I: Integrator> Run<'a, I> {
         Ok(stops)
     }
 
-    /// Shows the times from the state before up to this one.
-    fn show_timed(&mut self, before: Option<&StateIn<I>>, ended: &mut Ended) -> Result<bool, RunError> {
+    /// Shows the times from the state before up to this time.
+    fn show_timed(&mut self, before: Option<&StateIn<I>>, up_to: f64, ended: &mut Ended) -> Result<bool, RunError> {
         let time = self.integrator.time(self.state);
         let (now, h) = (reported(time), reported(self.integrator.step_size()));
         let begun = before.map_or(now, |before| reported(self.integrator.time(before)));
@@ -211,7 +236,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         for Timed { times, shown, observer } in &mut self.timed {
             // Backwards where the step is negative.
             let is_after = |asked: f64, time: f64| (asked - time) * h.signum() > 0.0;
-            while let Some(asked) = times.next_if(|asked| !is_after(*asked, now)) {
+            while let Some(asked) = times.next_if(|asked| !is_after(*asked, up_to)) {
                 let earliest = shown.replace(asked).unwrap_or(begun);
                 if !asked.is_finite() || is_after(earliest, asked) || is_after(begun, asked) {
                     return Err(RunError::Time { asked, now: earliest });
