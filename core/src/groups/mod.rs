@@ -151,6 +151,32 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
         None
     }
 
+    /// The names of the numbers by which a table shows an element: on SO(3) those of its unit quaternion, elsewhere the
+    /// entries of the matrix, row by row.
+    #[must_use]
+    fn number_names() -> Vec<String> {
+        let mut entries = 0;
+        Self::identity().matrix().each(&mut |_| entries += 1);
+        let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
+        (0..entries).map(|entry| format!("g_{}{}", entry / rows + 1, entry % rows + 1)).collect()
+    }
+
+    /// Writes these numbers over those of the element before, or over zeros: of two quaternions it is the nearer one.
+    fn write_numbers(&self, numbers: &mut [Self::Scalar]) {
+        let mut places = numbers.iter_mut();
+        self.matrix().each(&mut |entry| {
+            if let Some(place) = places.next() {
+                *place = entry;
+            }
+        });
+    }
+
+    /// The names of the components of algebra elements and covectors: `x`, `y`, `z` on SO(3), elsewhere numbers from one.
+    #[must_use]
+    fn component_names() -> Vec<String> {
+        (1..=Self::DIMENSION).map(|component| component.to_string()).collect()
+    }
+
     /// How far the matrix is from satisfying the relation of the group; zero on it.
     fn defect(&self) -> Self::Scalar;
 

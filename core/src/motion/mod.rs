@@ -3,7 +3,8 @@
 //! A [`Stepper`] is a scene and a [`Plan`], the method with its constants folded; a [`State`] is a [`Motion`] and what
 //! the plan keeps from step to step. [`Declared`] is the plan of the scene's own step; the others are in
 //! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with). A [`RightHandSide`] is the
-//! continuous motion, for an ODE solver of another library.
+//! continuous motion, for an ODE solver of another library. What steps is an [`Integrator`], whatever its method: with
+//! it a motion is read between its steps, and [recorded and stopped](crate::with).
 
 // First, as on its page in the documentation.
 mod stepper;
@@ -11,6 +12,7 @@ mod stepper;
 mod any;
 mod declared;
 mod flows;
+mod integrator;
 mod kept;
 mod plan;
 mod report;
@@ -23,6 +25,7 @@ pub use declared::Declared;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use integrator::{Answer, Integrator, Moment, ScalarIn, StateIn};
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
 pub(crate) use plan::rare_step;
@@ -30,7 +33,6 @@ pub use plan::{Cost, Plan, Steerable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
 pub use state::State;
-#[cfg(feature = "serde")]
 pub(crate) use stepper::StateOf;
 pub use stepper::Stepper;
 pub use summation::{Motion, Proceeded, Summation};

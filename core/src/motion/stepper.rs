@@ -14,7 +14,7 @@ use crate::motion::state::State;
 use crate::motion::summation::Motion;
 use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, real, reported};
 use crate::solving::Solvability;
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The state of a scene `S` that is stepped by the plan `P`.
 pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as Plan<S>>::Kept>;
@@ -175,6 +175,27 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// As [`run`](Self::run), but after an error the state may be anywhere, and what would do isn't looked for.
     pub(crate) fn run_unexplained(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
         dispatch(Run(self, state, steps))
+    }
+
+    /// The motion after a step of this fraction of `h`; see [`Integrator::part`](crate::motion::Integrator::part).
+    pub(crate) fn fraction_of_a_step(
+        &self,
+        state: &StateOf<S, P>,
+        fraction: Scalar<S>,
+    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
+        let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
+        if fraction.simd_abs().simd_lt(least).all() {
+            return Ok(state.motion);
+        }
+        let scene = &self.scene;
+        let part = self.plan.refolded(scene, self.step_size() * fraction);
+        let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
+        let mut next = state.motion;
+        let mut kept = part.keep(scene, &next);
+        part.step(scene, &mut next, &mut kept).map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
+        next.steps = state.steps;
+        Ok(next)
     }
 
     /// The states after each step from here on; after an error, nothing more.
