@@ -9,8 +9,10 @@
 mod stepper;
 
 mod any;
+mod batch;
 mod declared;
 mod flows;
+mod integrator;
 mod kept;
 mod plan;
 mod report;
@@ -19,10 +21,12 @@ mod state;
 mod summation;
 
 pub use any::{AnyKept, AnyState, AnyStepper};
+pub use batch::{Batch, Batchable};
 pub use declared::Declared;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use integrator::Integrator;
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
 pub use plan::{Cost, Plan, Steerable};
