@@ -56,6 +56,12 @@ pub enum SetupError {
     NoForceGradient,
     /// One of the candidates for an accuracy is another scene than the first.
     PotentialMismatch,
+    /// A stepper or a state can't be in a lane beside the others: lanes share the scheme of a method and the number of
+    /// steps made, for example.
+    Unlike {
+        /// The first such lane.
+        lane: usize,
+    },
 }
 
 impl fmt::Display for SetupError {
@@ -109,6 +115,10 @@ impl fmt::Display for SetupError {
                     "one of the methods to choose from has another potential than the first; build all of them from one scene"
                 )
             }
+            Self::Unlike { lane } => write!(
+                f,
+                "the body of lane {lane} can't be stepped beside those before it: they have another method, or have made another number of steps; put like bodies together"
+            ),
         }
     }
 }

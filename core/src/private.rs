@@ -16,7 +16,7 @@ pub use crate::mechanics::{
     ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Operations, Parts, Residual,
     SceneVisitor, SharedBy, Sum, WithKinetic, WithoutKinetic,
 };
-pub use crate::numbers::{Real, real};
+pub use crate::numbers::{InLanes, Lanes, Real, real};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 

@@ -9,8 +9,9 @@ use liestep::groups::{CayleyRetraction, LieGroup as _};
 use liestep::laws::samples::derivative;
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia, Regular, Residual};
 use liestep::motion::DiscreteLiePoisson;
+use liestep::numbers::Lanes;
 use liestep::{SO3, StepError, Stepper, lagrangian};
-use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use simba::simd::WideF64x4;
 use workbench::measure::slope;
@@ -197,12 +198,7 @@ fn a_wrong_model_is_not_used() {
 fn lanes_are_independent() {
     let h = 0.02;
     let bodies = [0.0, 0.5, 1.0, 1.5].map(|extra| top(Vector3::new(2.0 + extra, 3.0, 4.0), 9.81, Vector3::z()));
-    let bodies_together = Top::<WideF64x4> {
-        J_d: bodies.map(|body| body.J_d).into(),
-        weight: bodies.map(|body| body.weight).into(),
-        rho: gathered(|k| bodies[k].rho),
-        up: gathered(|k| bodies[k].up),
-    };
+    let bodies_together = Top::<WideF64x4>::gathered(&bodies).unwrap();
     let together = DiscreteLiePoisson::new(WithoutJacobian::new(bodies_together), WideF64x4::from([h; 4])).unwrap();
     let alone = bodies.map(|body| DiscreteLiePoisson::new(WithoutJacobian::new(body), h).unwrap());
     let mut random = Random::new(4);
@@ -213,12 +209,12 @@ fn lanes_are_independent() {
         let w = angles.map(|_| random.direction());
         let momentum = [0, 1, 2, 3].map(|k| alone[k].scene().inertia() * velocity[k]);
         let guess = velocity.map(|velocity| velocity * h);
-        let wide = together.step(&gathered(|k| momentum[k]), &gathered(|k| w[k]), &gathered(|k| guess[k])).unwrap();
+        let wide = together.step(&gathered(&momentum), &gathered(&w), &gathered(&guess)).unwrap();
         let outcomes = [0, 1, 2, 3].map(|k| needs_jacobian(|| alone[k].step(&momentum[k], &w[k], &guess[k]).unwrap()));
         let singles = outcomes.map(|(single, _)| single);
         for (k, single) in singles.iter().enumerate() {
-            assert_eq!(wide.coordinates.extract(k), single.coordinates, "lane {k} in round {round}");
-            assert_eq!(wide.momentum.extract(k), single.momentum, "lane {k} in round {round}");
+            assert_eq!(wide.coordinates.lane(k), single.coordinates, "lane {k} in round {round}");
+            assert_eq!(wide.momentum.lane(k), single.momentum, "lane {k} in round {round}");
         }
         unequal += u32::from(singles.iter().any(|single| single.iterations != singles[0].iterations));
         with_jacobian += u32::from(outcomes[3].1 && !outcomes[0].1);
@@ -226,8 +222,8 @@ fn lanes_are_independent() {
     assert!(unequal > 100 && with_jacobian > 50, "{unequal} {with_jacobian}");
 }
 
-fn gathered(lane: impl Fn(usize) -> Vector3<f64>) -> Vector3<WideF64x4> {
-    Vector3::from_fn(|i, _| WideF64x4::from([0, 1, 2, 3].map(|k| lane(k)[i])))
+fn gathered(lanes: &[Vector3<f64>; 4]) -> Vector3<WideF64x4> {
+    Lanes::gathered(lanes).unwrap()
 }
 
 /// Derivatives that a dual number carries are solved to rounding too, as Newton's iteration solves them.

@@ -35,6 +35,7 @@ fn setup_errors() {
         SetupError::BiasMismatch,
         SetupError::NoForceGradient,
         SetupError::PotentialMismatch,
+        SetupError::Unlike { lane: 3 },
     ];
     for error in errors {
         let parts: &[&str] = match error {
@@ -50,6 +51,7 @@ fn setup_errors() {
             SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
             SetupError::PotentialMismatch => &["another potential"],
+            SetupError::Unlike { .. } => &["lane 3", "another method"],
         };
         assert_says(&error.to_string(), parts);
     }

@@ -7,7 +7,7 @@ use nalgebra::{RealField, SMatrix, SVector};
 
 use super::LieGroup;
 use super::generators::{Generators, dynamic, squared_lengths, structure_constants};
-use crate::numbers::{real, reported};
+use crate::numbers::{Lanes, Real, real, reported};
 
 /// An element of the matrix group that `K` declares by its [`Generators`].
 ///
@@ -211,6 +211,22 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     /// NaN where an entry isn't finite, whether or not the relation depends on it.
     fn defect(&self) -> T {
         K::relation(&self.0) + self.0.sum() * T::zero()
+    }
+}
+
+impl<K, T: Real<Element: Real>, const N: usize, const D: usize> Lanes for MatrixGroup<K, T, N, D> {
+    type Lane = MatrixGroup<K, T::Element, N, D>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self::from_matrix_unchecked(Lanes::splat(&lane.0))
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        MatrixGroup::from_matrix_unchecked(Lanes::lane(&self.0, k))
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        Lanes::set_lane(&mut self.0, k, &lane.0)
     }
 }
 

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vec
 
 use super::LieGroup;
 use super::rotation_functions::{rotation_exp, rotation_log};
-use crate::numbers::{Mask, Real, gathered, real};
+use crate::numbers::{Mask, Real, lanes_of_wrapper, real};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -167,15 +167,7 @@ impl<T: Real> From<Rotation3<T>> for SO3<T> {
     }
 }
 
-/// One attitude in each lane.
-impl<T, const LANES: usize> From<[SO3<T::Element>; LANES]> for SO3<T>
-where
-    T: Real<Element: Real> + From<[T::Element; LANES]>,
-{
-    fn from(lanes: [SO3<T::Element>; LANES]) -> Self {
-        Self(gathered(&lanes.map(|lane| lane.0)))
-    }
-}
+lanes_of_wrapper!([T] SO3<T>);
 
 impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
     type Error = NotARotation;

@@ -9,7 +9,7 @@ use crate::mechanics::effect::{Effect, Matrix, Parts, Residual, Square, Vector};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Coordinates as _, real};
+use crate::numbers::{Coordinates as _, InLanes, Lanes, real};
 
 /// The sum of two effects of one group; what `+` makes of them.
 ///
@@ -48,6 +48,26 @@ impl<A, B> Sum<A, B> {
     pub const fn new(first: A, second: B) -> Self {
         Self { first, second }
     }
+}
+
+impl<A: Lanes, B: Lanes> Lanes for Sum<A, B> {
+    type Lane = Sum<A::Lane, B::Lane>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self { first: A::splat(&lane.first), second: B::splat(&lane.second) }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        Sum { first: self.first.lane(k), second: self.second.lane(k) }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.first.set_lane(k, &lane.first) && self.second.set_lane(k, &lane.second)
+    }
+}
+
+impl<W, A: InLanes<W>, B: InLanes<W>> InLanes<W> for Sum<A, B> {
+    type Together = Sum<A::Together, B::Together>;
 }
 
 /// The group `G` itself: what the effects `A` and `B` have to share to add. It is there for its message.

@@ -5,11 +5,10 @@ use core::ops::{ControlFlow, Deref};
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, Vector};
-use crate::motion::any::{AnyKept, AnyStepper};
+use crate::motion::any::{AnyState, AnyStepper};
 use crate::motion::plan::Plan;
 use crate::motion::report::StepReport;
-use crate::motion::state::State;
-use crate::motion::stepper::Stepper;
+use crate::motion::stepper::{StateOf, Stepper};
 use crate::motion::summation::Motion;
 use crate::numbers::real;
 
@@ -23,22 +22,28 @@ pub trait Integrator {
     type Group: LieGroup;
     /// The advected parameters.
     type Advected: Advected<Self::Group>;
-    /// What is kept from step to step.
-    type Kept: Clone;
+    /// Its state: a motion, and what is kept from step to step.
+    type State: Clone + Deref<Target = Motion<Self::Group, Self::Advected>>;
 
     /// One step; on an error the state is unchanged.
     ///
     /// # Errors
     ///
     /// As [`Stepper::step`].
-    fn step(&self, state: &mut StateIn<Self>) -> Result<StepReport, StepError>;
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError>;
 
     /// So many steps; returns all their iterations. On an error the state is unchanged.
     ///
     /// # Errors
     ///
     /// As [`Stepper::run`].
-    fn run(&self, state: &mut StateIn<Self>, steps: u64) -> Result<u64, StepError>;
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError>;
+
+    /// As [`run`](Self::run), but says only whether it could be done; where not, the state may be anywhere.
+    #[must_use]
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> bool {
+        self.run(state, steps).is_ok()
+    }
 
     /// The motion a fraction of a step after this state, which stays where it is.
     ///
@@ -53,12 +58,12 @@ pub trait Integrator {
     /// As [`Stepper::step`].
     fn part(
         &self,
-        state: &StateIn<Self>,
+        state: &Self::State,
         fraction: ScalarIn<Self>,
     ) -> Result<Motion<Self::Group, Self::Advected>, StepError>;
 
     /// The state of another motion, to go on from its attitude and momentum; see [`Stepper::adopt`].
-    fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> StateIn<Self>;
+    fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> Self::State;
 
     /// The step `h`, s.
     fn step_size(&self) -> ScalarIn<Self>;
@@ -99,7 +104,7 @@ pub trait Integrator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
-    fn state_at(&self, state: &StateIn<Self>, time: f64) -> Result<Motion<Self::Group, Self::Advected>, StepError>
+    fn state_at(&self, state: &Self::State, time: f64) -> Result<Motion<Self::Group, Self::Advected>, StepError>
     where
         ScalarIn<Self>: Into<f64>,
     {
@@ -107,7 +112,7 @@ pub trait Integrator {
         const MOST: f64 = 9e15;
         let h: f64 = self.step_size().into();
         if h == 0.0 && time.is_finite() {
-            return Ok(state.motion);
+            return Ok(**state);
         }
         let steps = time / h - state.steps as f64;
         let can_be_counted = steps.abs() < MOST;
@@ -127,30 +132,31 @@ pub trait Integrator {
     }
 }
 
-/// The state that an integrator steps.
-pub type StateIn<I> = State<<I as Integrator>::Group, <I as Integrator>::Advected, <I as Integrator>::Kept>;
-
 /// The scalar of an integrator.
 pub type ScalarIn<I> = <<I as Integrator>::Group as LieGroup>::Scalar;
 
 impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     type Group = Group<S>;
     type Advected = S::Advected;
-    type Kept = P::Kept;
+    type State = StateOf<S, P>;
 
-    fn step(&self, state: &mut StateIn<Self>) -> Result<StepReport, StepError> {
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
         Stepper::step(self, state)
     }
 
-    fn run(&self, state: &mut StateIn<Self>, steps: u64) -> Result<u64, StepError> {
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
         Stepper::run(self, state, steps)
     }
 
-    fn part(&self, state: &StateIn<Self>, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> bool {
+        self.run_unexplained(state, steps).is_ok()
+    }
+
+    fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
         self.fraction_of_a_step(state, fraction)
     }
 
-    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> StateIn<Self> {
+    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> Self::State {
         Stepper::adopt(self, motion)
     }
 
@@ -170,21 +176,21 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
 impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
     type Group = G;
     type Advected = A;
-    type Kept = AnyKept;
+    type State = AnyState<G, A>;
 
-    fn step(&self, state: &mut StateIn<Self>) -> Result<StepReport, StepError> {
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
         AnyStepper::step(self, state)
     }
 
-    fn run(&self, state: &mut StateIn<Self>, steps: u64) -> Result<u64, StepError> {
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
         AnyStepper::run(self, state, steps)
     }
 
-    fn part(&self, state: &StateIn<Self>, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
+    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
         self.fraction_of_a_step(state, fraction)
     }
 
-    fn adopt(&self, motion: &Motion<G, A>) -> StateIn<Self> {
+    fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
         AnyStepper::adopt(self, motion)
     }
 

@@ -10,6 +10,7 @@
 mod stepper;
 
 mod any;
+mod batch;
 mod declared;
 mod flows;
 mod integrator;
@@ -21,11 +22,12 @@ mod state;
 mod summation;
 
 pub use any::{AnyKept, AnyState, AnyStepper};
+pub use batch::{Batch, Batchable};
 pub use declared::Declared;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
-pub use integrator::{Answer, Integrator, Moment, ScalarIn, StateIn};
+pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
 pub(crate) use plan::rare_step;

@@ -30,6 +30,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let effect = header.implementation("Effect");
     let addition = header.addition("Effect");
+    let lanes = super::lanes::lanes(&header, None);
     let core = quote_spanned!(span=> #private::core);
     let of_increment = [
         ("right_momentum", &vector),
@@ -114,6 +115,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         }
 
         #addition
+        #lanes
     };
     header.enclosing(implementations)
 }

@@ -8,6 +8,7 @@ mod docs;
 mod fallback;
 mod header;
 mod inputs;
+mod lanes;
 mod own_group;
 mod page;
 mod stages;
@@ -70,6 +71,7 @@ pub(crate) fn implementation(
     let (of_role, term) = (header.implementation(name), header.implementation("Effect"));
     let invariance = invariance(declaration, &header);
     let addition = header.addition("Effect");
+    let lanes = lanes::lanes(&header, Some(&declaration.fields));
     let body = &stages.methods;
     let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
@@ -107,6 +109,7 @@ pub(crate) fn implementation(
         #continuous
         #invariance
         #addition
+        #lanes
     };
     let implementations = header.enclosing(implementations);
     quote_spanned!(span=> #item #implementations)

@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Entries, Real, is_finite, lanes_of_wrapper};
 
 /// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
 ///
@@ -26,6 +26,13 @@ pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 /// An element of `V ⊗ V*`, a linear map, moved by `ρ(f)⁻¹ S ρ(f)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
+
+lanes_of_wrapper!(
+    [T, const N: usize] ContravariantVector<T, N>,
+    [T, const N: usize] ContravariantTensor<T, N>,
+    [T, const N: usize] CovariantTensor<T, N>,
+    [T, const N: usize] MixedTensor<T, N>,
+);
 
 /// `F⁻¹ − I = −F⁻¹D`.
 pub fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>

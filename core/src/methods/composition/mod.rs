@@ -9,7 +9,7 @@ use crate::mechanics::{DiscreteLagrangian, Effect, Group, Matrix, Regular, Scala
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
 };
-use crate::numbers::{Coordinates, Mask, Real, real};
+use crate::numbers::{Coordinates, InLanes, Lanes, Mask, Real, lanes_of_fields, real};
 use crate::solving::Guess;
 use nalgebra::SimdBool as _;
 
@@ -137,6 +137,29 @@ impl<S: Effect> Composed<S> {
 }
 
 impl<S: Effect> Steerable for Composed<S> {}
+
+lanes_of_fields!(
+    impl[S] Composed<S> => Composed<S::Lane>, as Composed
+    where [
+        S: Effect + Lanes<Lane: Effect<Scalar = <S::Scalar as nalgebra::SimdValue>::Element>>,
+        S::Scalar: Real<Element: Real>,
+        Declared<S>: Lanes<Lane = Declared<S::Lane>>
+    ]
+    { lanes: [substeps, stages], scalars: [h], shared: [scheme] }
+);
+
+impl<W, S> InLanes<W> for Composed<S>
+where
+    S: Effect + InLanes<W, Together: Effect>,
+    Composed<S::Together>: Lanes<Lane = Self>,
+{
+    type Together = Composed<S::Together>;
+}
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] Stage<T> => Stage<T::Element>, as Stage
+    { lanes: [], scalars: [scale, last, earlier], shared: [substep] }
+);
 
 impl<S: Effect> Plan<S> for Composed<S> {
     type Kept = Guess<Vector<S>>;

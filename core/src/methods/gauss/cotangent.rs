@@ -6,7 +6,7 @@ use super::coefficients::Coefficients;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, check_inertia};
-use crate::motion::{Integrator, Motion, State, StateIn, StepReport};
+use crate::motion::{Integrator, Motion, State, StepReport};
 use crate::numbers::Coordinates;
 
 /// A step of order `4 PAIRS`, by Gauss collocation with `2 PAIRS` stages in attitude and conjugate momentum, for any
@@ -254,15 +254,15 @@ where
 {
     type Group = L::Group;
     type Advected = L::Advected;
-    type Kept = ();
+    type State = State<L::Group, L::Advected, ()>;
 
-    fn step(&self, state: &mut StateIn<Self>) -> Result<StepReport, StepError> {
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
         let (attitude, momentum, iterations) = self.step_of(self.h, &state.attitude, &state.momentum)?;
         state.motion = Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps + 1 };
         Ok(StepReport::of(iterations))
     }
 
-    fn run(&self, state: &mut StateIn<Self>, steps: u64) -> Result<u64, StepError> {
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
         let (mut next, mut iterations) = (*state, 0);
         for _ in 0..steps {
             iterations += u64::from(Integrator::step(self, &mut next)?.iterations);
@@ -271,12 +271,12 @@ where
         Ok(iterations)
     }
 
-    fn part(&self, state: &StateIn<Self>, fraction: f64) -> Result<Motion<L::Group, L::Advected>, StepError> {
+    fn part(&self, state: &Self::State, fraction: f64) -> Result<Motion<L::Group, L::Advected>, StepError> {
         let (attitude, momentum, _) = self.step_of(self.h * fraction, &state.attitude, &state.momentum)?;
         Ok(Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps })
     }
 
-    fn adopt(&self, motion: &Motion<L::Group, L::Advected>) -> StateIn<Self> {
+    fn adopt(&self, motion: &Motion<L::Group, L::Advected>) -> Self::State {
         State { motion: Motion { advected: self.advected(&motion.attitude), steps: 0, ..*motion }, kept: () }
     }
 

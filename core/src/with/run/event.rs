@@ -3,7 +3,7 @@
 use super::crossing::{Looks, zeros};
 use super::error::{Ended, Reason, RunError};
 use super::{Observer, Run, show};
-use crate::motion::{Answer, Integrator, Moment, Motion, ScalarIn, StateIn};
+use crate::motion::{Answer, Integrator, Moment, Motion, ScalarIn};
 use crate::numbers::{real, reported};
 
 /// What counts as an event: in which direction a function of the motion crosses zero, whether that ends the run, and how
@@ -147,7 +147,7 @@ impl<I: Integrator> Run<'_, I> {
     }
 
     /// All zeros in the step from this state, in their order.
-    pub(super) fn crossings(&mut self, before: &StateIn<I>) -> Result<Vec<Found<I>>, RunError> {
+    pub(super) fn crossings(&mut self, before: &I::State) -> Result<Vec<Found<I>>, RunError> {
         let integrator = self.integrator;
         let (begun, h) = (reported(integrator.time(before)), reported(integrator.step_size()));
         let now = Moment::of_step(integrator, self.state);

@@ -15,7 +15,7 @@ use core::ops::ControlFlow;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::Effect;
 use crate::methods::CotangentGauss;
-use crate::motion::{Answer, AnyState, AnyStepper, Integrator, Moment, Plan, ScalarIn, StateIn, StateOf, Stepper};
+use crate::motion::{Answer, AnyState, AnyStepper, Integrator, Moment, Plan, ScalarIn, StateOf, Stepper};
 use crate::numbers::{real, reported};
 
 /// What an observer answers.
@@ -63,7 +63,7 @@ type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Verdict + 'a>;
 #[must_use = "a run is made by `until` or `steps`"]
 pub struct Run<'a, I: Integrator> {
     integrator: &'a I,
-    state: &'a mut StateIn<I>,
+    state: &'a mut I::State,
     regular: Vec<Regular<'a, I>>,
     timed: Vec<Timed<'a, I>>,
     watched: Vec<Watched<'a, I>>,
@@ -103,13 +103,13 @@ where
     Self: Integrator,
 {
     /// As [`Stepper::observed`].
-    pub fn observed<'a>(&'a self, state: &'a mut StateIn<Self>) -> Run<'a, Self> {
+    pub fn observed<'a>(&'a self, state: &'a mut <Self as Integrator>::State) -> Run<'a, Self> {
         Run::new(self, state)
     }
 }
 
 impl<'a, I: Integrator> Run<'a, I> {
-    fn new(integrator: &'a I, state: &'a mut StateIn<I>) -> Self {
+    fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
         Self { integrator, state, regular: Vec::new(), timed: Vec::new(), watched: Vec::new(), progress: None }
     }
 
@@ -174,7 +174,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     /// Shows what there is within a step.
-    fn show_between(&mut self, before: &StateIn<I>, ended: &mut Ended) -> Result<bool, RunError> {
+    fn show_between(&mut self, before: &I::State, ended: &mut Ended) -> Result<bool, RunError> {
         for found in self.crossings(before)? {
             if self.show_timed(Some(before), found.time, ended)? || self.happen(&found, ended)? {
                 return Ok(true);
@@ -228,7 +228,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     /// Shows the times from the state before up to this time.
-    fn show_timed(&mut self, before: Option<&StateIn<I>>, up_to: f64, ended: &mut Ended) -> Result<bool, RunError> {
+    fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut Ended) -> Result<bool, RunError> {
         let time = self.integrator.time(self.state);
         let (now, h) = (reported(time), reported(self.integrator.step_size()));
         let begun = before.map_or(now, |before| reported(self.integrator.time(before)));
