@@ -98,6 +98,7 @@ where
         (true, false) => A::JACOBIAN_IS_EXPENSIVE,
         (false, _) => B::JACOBIAN_IS_EXPENSIVE,
     };
+    const INERTIA_IS_CONSTANT: bool = A::INERTIA_IS_CONSTANT && B::INERTIA_IS_CONSTANT;
     const OPERATIONS: Operations = Operations {
         step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),
         iteration: match (A::PARTS.unknown, B::PARTS.unknown) {
@@ -132,8 +133,8 @@ where
         self.first.momentum_jacobian(f, &w.0, h) + self.second.momentum_jacobian(f, &w.1, h)
     }
 
-    fn inertia(&self) -> Square<Self> {
-        self.first.inertia() + self.second.inertia()
+    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
+        self.first.inertia(&w.0) + self.second.inertia(&w.1)
     }
 
     fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {

@@ -49,7 +49,9 @@ impl<S: Effect> Declared<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia())?;
+        if S::INERTIA_IS_CONSTANT {
+            check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia(&scene.advected()))?;
+        }
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
             return Err(SetupError::NonFiniteConstant);
@@ -58,7 +60,8 @@ impl<S: Effect> Declared<S> {
         let safe = safe(at_rest);
         // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
-        let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
+        // One that depends on where the bodies are may be singular somewhere, and not where they start.
+        let is_in_range = is_finite(at_rest) && !(S::INERTIA_IS_CONSTANT && at_rest.simd_eq(real(0.0)).any());
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
@@ -208,7 +211,7 @@ impl<S: Effect> Declared<S> {
             w,
             h: self.h,
             trusted: self.trusted,
-            safe: self.safe,
+            safe: if S::INERTIA_IS_CONSTANT { self.safe } else { safe(Vector::<S>::factorise(&scene.inertia(w)).1) },
         }
     }
 
