@@ -7,7 +7,7 @@ use crate::groups::{Advected, LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Coordinates, Real, real, reported};
+use crate::numbers::{Blocks, Coordinates, Real, real, reported};
 use nalgebra::SimdBool as _;
 
 /// The scalar of an effect.
@@ -121,6 +121,11 @@ pub trait Effect {
     /// Whether [`inertia`](Self::inertia) is the same for all `w`. Then it is checked once, when a stepper is built, and
     /// methods that have the motion of one free body in them may be used.
     const INERTIA_IS_CONSTANT: bool;
+
+    /// Unknowns between which the Jacobian of [`newton_system`](Self::newton_system) is zero for all values: where nothing
+    /// but potentials of the ends of a step couples bodies, each is solved for itself. The blocks end where factors of the
+    /// group end; one block is always right.
+    const APART: Blocks = Blocks::WHOLE;
 
     /// How much arithmetic its share of a step is; the macro counts it.
     const OPERATIONS: Operations = Operations::UNCOUNTED;

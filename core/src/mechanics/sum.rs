@@ -9,7 +9,7 @@ use crate::mechanics::effect::{Effect, Matrix, Parts, Residual, Square, Vector};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Coordinates as _, real};
+use crate::numbers::{Blocks, Coordinates as _, real};
 
 /// The sum of two effects of one group; what `+` makes of them.
 ///
@@ -91,6 +91,11 @@ where
         (true, true) if A::DENOMINATORS < B::DENOMINATORS => B::DENOMINATORS,
         (true, _) => A::DENOMINATORS,
         (false, _) => B::DENOMINATORS,
+    };
+    const APART: Blocks = match (A::PARTS.unknown, B::PARTS.unknown) {
+        (true, true) => A::APART.or(B::APART),
+        (true, false) => A::APART,
+        (false, _) => B::APART,
     };
     // The one unknown part's own kernel is run; two are added with their Jacobians.
     const JACOBIAN_IS_EXPENSIVE: bool = match (A::PARTS.unknown, B::PARTS.unknown) {

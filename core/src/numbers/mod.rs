@@ -2,12 +2,14 @@
 //!
 //! Nothing here knows of groups or of mechanics.
 
+mod blocks;
 mod coordinates;
 mod entries;
 mod exact;
 mod scalar;
 mod simd;
 
+pub use blocks::{Blocks, Join, Pattern};
 pub use coordinates::Coordinates;
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};

@@ -16,7 +16,7 @@ pub(crate) use branch::trusted_radius;
 pub(crate) use guess::{Continued, DIFFERENCES, History};
 pub use guess::{Guess, Warm};
 pub(crate) use largest_step::{largest_fraction, six_digits};
-pub(crate) use problem::{Kick, Problem, Root, newton_system, step_terms};
+pub(crate) use problem::{Kick, Problem, Root, newton_system, pattern, step_terms};
 pub(crate) use reused_jacobian::safe;
 pub use solvability::Solvability;
 pub(crate) use solvability::{TurningLimits, turning_limits};

@@ -15,9 +15,9 @@
 //! it.
 
 use crate::error::StepError;
-use crate::groups::Retraction;
-use crate::mechanics::{Effect, Matrix, Scalar, Square, Vector};
-use crate::numbers::{Coordinates, Mask, Real, nowhere, real, reported};
+use crate::groups::{LieGroup, Retraction};
+use crate::mechanics::{Effect, Group, Matrix, Scalar, Square, Vector};
+use crate::numbers::{Coordinates, Mask, Pattern, Real, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// Quadratic convergence needs at most nine up to 0.999 of the fold; more means that there is no solution.
@@ -232,7 +232,8 @@ impl<L: Effect> Problem<'_, L> {
 
     pub(super) fn update(&self, terms: &L::StepTerms, half: &Vector<L>) -> (Vector<L>, Scalar<L>) {
         let (residual, jacobian) = newton_system::<L>(self.constants, terms, half);
-        Vector::<L>::solve(&jacobian, &residual)
+        let (factors, det) = Vector::<L>::factorise_with(&jacobian, pattern::<L>());
+        (Vector::<L>::solve_again_with(&factors, det, pattern::<L>(), &residual), det)
     }
 
     /// The lanes that have settled on the branch of the identity.
@@ -242,13 +243,13 @@ impl<L: Effect> Problem<'_, L> {
         if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.half)) }
     }
 
-    /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too.
+    /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too, that of each body's
+    /// part where there are several.
     pub(super) fn look_closer(&self, half: &Vector<L>) -> Mask<Scalar<L>> {
-        use crate::groups::LieGroup as _;
         let f = L::Retraction::retract(&(*half + *half)).matrix();
         let jacobian = self.scene.momentum_jacobian(&f, self.w, self.h) * self.h;
-        let (_, det) = Vector::<L>::solve(&jacobian, &self.a);
-        is_positive(det) & is_positive(Vector::<L>::trace(&jacobian))
+        let (_, det) = Vector::<L>::factorise_with(&jacobian, pattern::<L>());
+        is_positive(det) & is_positive(Vector::<L>::least_trace(&jacobian, pattern::<L>().factors))
     }
 
     /// Whether the momentum equation holds; a vanishing update alone doesn't say so.
@@ -284,6 +285,12 @@ impl<L: Effect> Problem<'_, L> {
         let residual = reported((update.dot(&update) / lanes.half.dot(&lanes.half)).simd_sqrt());
         Err(StepError::NotConverged { iterations, residual })
     }
+}
+
+/// What is known of the Newton matrix of an effect.
+#[inline(always)]
+pub(crate) const fn pattern<L: Effect>() -> Pattern {
+    Pattern { factors: <Group<L> as LieGroup>::FACTORS, apart: L::APART }
 }
 
 /// [`Effect::newton_system`] for what is seldom asked. A scene has it inlined where steps are made and here, and no

@@ -20,7 +20,7 @@
 
 use core::any::TypeId;
 
-use super::problem::{Lanes, Problem};
+use super::problem::{Lanes, Problem, pattern};
 use crate::mechanics::{Effect, Scalar, Square, Vector};
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
@@ -69,15 +69,15 @@ impl<L: Effect> Problem<'_, L> {
     #[inline(always)]
     pub(super) fn newton(&self, terms: &L::StepTerms, half: &Vector<L>) -> Iteration<L> {
         let (residual, jacobian) = L::newton_system(self.constants, terms, half);
-        let (factors, det) = Vector::<L>::factorise(&jacobian);
-        Iteration { update: Vector::<L>::solve_again(&factors, det, &residual), factors, det }
+        let (factors, det) = Vector::<L>::factorise_with(&jacobian, pattern::<L>());
+        Iteration { update: Vector::<L>::solve_again_with(&factors, det, pattern::<L>(), &residual), factors, det }
     }
 
     /// The update from there by the Jacobian that another was made with.
     #[inline(always)]
     pub(super) fn simplified(&self, terms: &L::StepTerms, half: &Vector<L>, made: &Iteration<L>) -> Vector<L> {
         let residual = L::newton_residual(self.constants, terms, half).momentum_defect;
-        Vector::<L>::solve_again(&made.factors, made.det, &residual)
+        Vector::<L>::solve_again_with(&made.factors, made.det, pattern::<L>(), &residual)
     }
 
     /// The second part of [`iterate_once`](Self::iterate_once).

@@ -141,7 +141,7 @@ fn in_coordinates(
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let retraction = quote_spanned!(span=> <Self::Retraction as #private::Retraction<Self::Group>>);
     let inverse = uses(&kernel.graph, system, emitter.derived.directions.small_inverse).then(
-        || quote_spanned!(span=> let inverse_increment = #private::inverse_increment::<Self::Group, _, _>(&increment);),
+        || quote_spanned!(span=> let inverse_increment = <Self::Group as #private::LieGroup>::inverse_increment(&increment);),
     );
     (
         quote_spanned!(span=> let increment = #retraction::increment_of_half(half); #inverse),

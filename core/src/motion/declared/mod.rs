@@ -14,7 +14,7 @@ use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
-use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
+use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, pattern, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -60,8 +60,12 @@ impl<S: Effect> Declared<S> {
         let safe = safe(at_rest);
         // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
-        // One that depends on where the bodies are may be singular somewhere, and not where they start.
-        let is_in_range = is_finite(at_rest) && !(S::INERTIA_IS_CONSTANT && at_rest.simd_eq(real(0.0)).any());
+        // One that depends on where the bodies are may be singular here, and not where they start.
+        let is_in_range = if S::INERTIA_IS_CONSTANT && <Group<S> as LieGroup>::FACTORS.is_whole() {
+            is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any()
+        } else {
+            is_finite(trace / h)
+        };
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
@@ -211,7 +215,11 @@ impl<S: Effect> Declared<S> {
             w,
             h: self.h,
             trusted: self.trusted,
-            safe: if S::INERTIA_IS_CONSTANT { self.safe } else { safe(Vector::<S>::factorise(&scene.inertia(w)).1) },
+            safe: if S::INERTIA_IS_CONSTANT {
+                self.safe
+            } else {
+                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
+            },
         }
     }
 
@@ -351,5 +359,5 @@ fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S
     let zero = Vector::<S>::zero();
     let terms = step_terms::<S>(constants, &zero, &scene.advected());
     let (_, jacobian) = newton_system::<S>(constants, &terms, &zero);
-    (Vector::<S>::solve(&jacobian, &zero).1, Vector::<S>::trace(&jacobian))
+    (Vector::<S>::factorise_with(&jacobian, pattern::<S>()).1, Vector::<S>::trace(&jacobian))
 }
