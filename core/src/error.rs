@@ -18,7 +18,7 @@ pub enum SetupError {
         /// The step, s.
         step: f64,
     },
-    /// The kinetic part is degenerate at the identity: a momentum doesn't determine a velocity.
+    /// The kinetic part is degenerate at rest: a momentum doesn't determine a velocity.
     SingularKinetic {
         /// The determinant of the inertia of the continuous limit.
         determinant: f64,
@@ -50,6 +50,8 @@ pub enum SetupError {
         /// The largest difference of two entries, kg m².
         difference: f64,
     },
+    /// The method has the motion of one free body in it, and the inertia depends on what is advected.
+    VaryingInertia,
     /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
     BiasMismatch,
     /// A splitting with force gradients needs the derivative of the torque.
@@ -76,7 +78,7 @@ impl fmt::Display for SetupError {
             }
             Self::SingularKinetic { determinant } => write!(
                 f,
-                "the kinetic part is singular at the identity (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia"
+                "the kinetic part is singular at rest (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia"
             ),
             Self::NegativeKinetic { pivot } => write!(
                 f,
@@ -100,6 +102,10 @@ impl fmt::Display for SetupError {
             Self::InertiaMismatch { difference } => write!(
                 f,
                 "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
+            ),
+            Self::VaryingInertia => write!(
+                f,
+                "the inertia depends on what is advected, and this method needs one that is the same everywhere; compose the scene's own step instead"
             ),
             Self::BiasMismatch => write!(
                 f,

@@ -53,7 +53,10 @@ fn the_model_is_right_to_the_fourth_power_of_the_angle() {
     let errors = [0.4, 0.2, 0.1, 0.05].map(|size| {
         let xi = axis * size;
         let (_, jacobian) = SixthOrderTop::newton_system(&constants, &terms, &(xi * 0.5));
-        let model = <CayleyRetraction as liestep::groups::Retraction<SO3>>::free_momentum_tangent(&top.inertia(), &xi);
+        let model = <CayleyRetraction as liestep::groups::Retraction<SO3>>::free_momentum_tangent(
+            &top.inertia(&top.advected()),
+            &xi,
+        );
         (model - jacobian).norm() / model.norm()
     });
     let points: Vec<_> = errors.iter().zip([0.4_f64, 0.2, 0.1, 0.05]).map(|(e, size)| (size.ln(), e.ln())).collect();
@@ -150,7 +153,7 @@ where
     let (mut largest, mut counts) = (0.0_f64, [0; 3]);
     for _ in 0..200 {
         let (velocity, w) = (random.direction() * (angle / h), random.direction());
-        let momentum = with.scene().inertia() * velocity;
+        let momentum = with.scene().inertia(&with.scene().advected()) * velocity;
         let guess = velocity * h;
         let (outcome, is_expensive) = needs_jacobian(|| without.step(&momentum, &w, &guess));
         match (with.step(&momentum, &w, &guess), outcome) {
@@ -207,7 +210,7 @@ fn lanes_are_independent() {
         let angles = [0.01, 0.1, 0.3, if round % 2 == 0 { 0.5 } else { 0.85 }];
         let velocity = angles.map(|angle| random.direction() * (angle / h));
         let w = angles.map(|_| random.direction());
-        let momentum = [0, 1, 2, 3].map(|k| alone[k].scene().inertia() * velocity[k]);
+        let momentum = [0, 1, 2, 3].map(|k| alone[k].scene().inertia(&alone[k].scene().advected()) * velocity[k]);
         let guess = velocity.map(|velocity| velocity * h);
         let wide = together.step(&gathered(&momentum), &gathered(&w), &gathered(&guess)).unwrap();
         let outcomes = [0, 1, 2, 3].map(|k| needs_jacobian(|| alone[k].step(&momentum[k], &w[k], &guess[k]).unwrap()));
@@ -235,7 +238,7 @@ fn dual_numbers_are_solved_with_the_jacobian() {
     let top = Top { J_d, weight: Dual64::from(9.81), rho: dual(Vector3::new(0.3, 0.2, 0.4)), up: dual(Vector3::z()) };
     let h = Dual64::from(0.02);
     let velocity = dual(asymmetric_spin(8.0));
-    let momentum = top.inertia() * velocity;
+    let momentum = top.inertia(&top.advected()) * velocity;
     let w = dual(Vector3::new(0.0, 0.6, 0.8));
     let with = DiscreteLiePoisson::new(top, h).unwrap().step(&momentum, &w, &(velocity * h)).unwrap();
     let without = WithoutJacobian::new(top);
@@ -279,7 +282,7 @@ fn first<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64
     h: f64,
     velocity: Vector3<f64>,
 ) -> Result<Vector3<f64>, StepError> {
-    let momentum = lagrangian.inertia() * velocity;
+    let momentum = lagrangian.inertia(&lagrangian.advected()) * velocity;
     let flow = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
     flow.step(&momentum, &Vector3::z(), &(velocity * h)).map(|step| step.coordinates)
 }

@@ -195,6 +195,11 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     }
 
     #[inline]
+    fn inverse_increment(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        -(K::inverse(&(increment + SMatrix::identity())) * increment)
+    }
+
+    #[inline]
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         self.0 * increment
     }
@@ -202,7 +207,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
     #[inline]
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
-        let inverse_increment = -(K::inverse(&(increment + SMatrix::identity())) * increment);
+        let inverse_increment = Self::inverse_increment(increment);
         let covector = Self::dual_hat(momentum);
         let moved = increment.transpose() * covector;
         Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))

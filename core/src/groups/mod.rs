@@ -21,13 +21,15 @@
 //! | [`Heisenberg`] | unitriangular matrices | [`HeisenbergGenerators`] |
 //! | [`R1`], [`R2`], [`R3`] | translations | [`TranslationGenerators`] |
 //!
-//! Any other is declared in the same way, outside of this crate too: see [`Generators`].
+//! Any other is declared in the same way, outside of this crate too: see [`Generators`]. A product of two to four of them
+//! is the tuple, as `(SO3, SO3)` for two bodies: its components are those of its [factors](Factor), one after the other.
 
 mod advected;
 mod exponential;
 mod generators;
 mod heisenberg;
 mod matrix_group;
+mod product;
 mod retraction;
 pub(crate) mod rotation_functions;
 mod se2;
@@ -40,7 +42,8 @@ mod translations;
 
 pub(crate) use advected::homogeneous;
 pub use advected::{
-    Advected, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, inverse_increment,
+    Advected, Configuration, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, Relative,
+    SeenFrom,
 };
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
@@ -49,6 +52,7 @@ pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
 pub(crate) use matrix_group::basis;
 pub use matrix_group::{MatrixGroup, NotInGroup};
+pub use product::Factor;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub(crate) use rotation_functions::rotation_coefficients;
 pub use se2::{SE2, SE2Generators};
@@ -63,7 +67,7 @@ use core::fmt::Debug;
 
 use nalgebra::Matrix3;
 
-use crate::numbers::{Coordinates, Entries, Mask, Real, sum};
+use crate::numbers::{Blocks, Coordinates, Entries, Mask, Real, sum};
 
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
@@ -78,6 +82,9 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// The dimension of the group.
     const DIMENSION: usize;
+
+    /// The components that belong to each factor, where the group is a product.
+    const FACTORS: Blocks = Blocks::WHOLE;
 
     /// The identity `e`.
     fn identity() -> Self;
@@ -127,6 +134,10 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// The increment `D = F − I`.
     fn increment(&self) -> Self::Matrix;
+
+    /// `F⁻¹ − I = −F⁻¹D`, for `F = I + D`, formed without subtracting `I`.
+    #[must_use]
+    fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix;
 
     /// `g F − g = g D`.
     #[must_use]

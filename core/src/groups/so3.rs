@@ -261,6 +261,12 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0 - Matrix3::identity()
     }
 
+    /// `Dᵀ`.
+    #[inline(always)]
+    fn inverse_increment(increment: &Matrix3<T>) -> Matrix3<T> {
+        increment.transpose()
+    }
+
     #[inline(always)]
     fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
         // Of the product of matrices, which isn't always inlined, lanes would have the target's common instructions.

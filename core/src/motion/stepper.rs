@@ -3,7 +3,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup as _, SO3};
 use crate::mechanics::{
-    AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Vector, energy,
+    AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Vector, check_inertia, energy,
     momentum_of_velocity, velocity_of_momentum,
 };
 use crate::motion::declared::Declared;
@@ -99,7 +99,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
+    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
+    /// is advected is degenerate there.
     pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
@@ -114,7 +115,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
+    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
+    /// is advected is degenerate there.
     pub fn start_with_momentum(
         &self,
         attitude: impl Into<Group<S>>,
@@ -129,6 +131,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
+        }
+        if !S::INERTIA_IS_CONSTANT {
+            let w = self.scene.advected().seen_from(&attitude);
+            check_inertia::<Scalar<S>, Vector<S>>(&self.scene.inertia(&w))?;
         }
         Ok(self.begin(attitude, momentum))
     }

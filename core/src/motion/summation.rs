@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::groups::{Advected, LieGroup, SO3};
+use crate::groups::{Advected, Factor, LieGroup, SO3};
 use crate::numbers::{Lanes, Real};
 
 /// How many steps go by between two looks at what roundings have done to the attitude.
@@ -33,6 +33,15 @@ impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
     #[must_use]
     pub fn momentum(&self) -> G::Vector {
         self.momentum
+    }
+
+    /// The momentum of the body that is the factor `K` of a product, in its frame.
+    #[must_use]
+    pub fn momentum_of<const K: usize>(&self) -> <G::Of as LieGroup>::Vector
+    where
+        G: Factor<K>,
+    {
+        G::components(&self.momentum)
     }
 
     /// The advected parameters `w_i = g_i⁻¹ · a_0`.

@@ -2,6 +2,7 @@
 //!
 //! Nothing here knows of groups or of mechanics.
 
+mod blocks;
 mod coordinates;
 mod entries;
 mod exact;
@@ -9,6 +10,7 @@ mod lanes;
 mod scalar;
 mod simd;
 
+pub use blocks::{Blocks, Join, Pattern};
 pub use coordinates::Coordinates;
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};

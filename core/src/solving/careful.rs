@@ -6,11 +6,12 @@
 use core::marker::PhantomData;
 
 use super::iteration::{Lanes, MAX_ITERATIONS, Root, SquareOf, System, is_positive};
-use super::problem::{Problem, newton_system, step_terms};
+use super::problem::{Problem, newton_system, pattern, step_terms};
+use super::reused_jacobian::Iteration;
 use crate::error::StepError;
 use crate::groups::{LieGroup, Retraction};
 use crate::mechanics::{Effect, Group, Square, Vector};
-use crate::numbers::{Coordinates as _, Mask, real, reported};
+use crate::numbers::{Coordinates as _, Mask, Pattern, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// The damped retry shortens its steps, and so needs more of them than [`MAX_ITERATIONS`].
@@ -37,11 +38,15 @@ impl<'a, L: Effect> Seldom<'a, L> {
     }
 
     pub(super) fn careful(&self) -> Careful<'_, Group<L>, L::Retraction> {
-        Careful { equation: self, right_side: self.problem.a, safe: self.problem.safe, retraction: PhantomData }
+        Careful { equation: self, safe: self.problem.safe, retraction: PhantomData }
     }
 }
 
 impl<L: Effect> System<Group<L>> for Seldom<'_, L> {
+    fn pattern(&self) -> Pattern {
+        pattern::<L>()
+    }
+
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         newton_system::<L>(self.problem.constants, &self.terms, half)
     }
@@ -67,7 +72,6 @@ impl<L: Effect> Equation<Group<L>> for Seldom<'_, L> {
 /// A solve of this equation.
 pub(super) struct Careful<'a, G: LieGroup, R> {
     equation: &'a dyn Equation<G>,
-    right_side: G::Vector,
     /// See [`Problem::safe`].
     safe: G::Scalar,
     retraction: PhantomData<R>,
@@ -128,8 +132,8 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
     }
 
     fn update(&self, half: &G::Vector) -> (G::Vector, G::Scalar) {
-        let (residual, jacobian) = self.equation.newton_system(half);
-        G::Vector::solve(&jacobian, &residual)
+        let Iteration { update, det, .. } = Iteration::from(self.equation, half);
+        (update, det)
     }
 
     /// The lanes that have settled on the branch of the identity.
@@ -139,11 +143,12 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
         if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.half)) }
     }
 
-    /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too.
+    /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too, that of each body's
+    /// part where there are several.
     fn look_closer(&self, half: &G::Vector) -> Mask<G::Scalar> {
-        let jacobian = self.equation.momentum_jacobian(half);
-        let (_, det) = G::Vector::solve(&jacobian, &self.right_side);
-        is_positive(det) & is_positive(G::Vector::trace(&jacobian))
+        let (jacobian, pattern) = (self.equation.momentum_jacobian(half), self.equation.pattern());
+        let (_, det) = G::Vector::factorise_with(&jacobian, pattern);
+        is_positive(det) & is_positive(G::Vector::least_trace(&jacobian, pattern.factors))
     }
 
     /// Whether the momentum equation holds; a vanishing update alone doesn't say so.

@@ -1,7 +1,7 @@
 //! Newton's iteration, of the lanes that haven't settled.
 
 use crate::groups::{LieGroup, Retraction};
-use crate::numbers::{Coordinates as _, Mask, Real, nowhere, real};
+use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
 /// Quadratic convergence needs at most nine up to 0.999 of the fold; more means that there is no solution.
@@ -12,6 +12,9 @@ pub(super) type SquareOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordi
 
 /// A momentum equation as Newton's iteration sees it.
 pub(super) trait System<G: LieGroup> {
+    /// What is known of the Jacobian.
+    fn pattern(&self) -> Pattern;
+
     /// The residual and the Jacobian at half the coordinates.
     fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
 

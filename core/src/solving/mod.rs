@@ -20,7 +20,7 @@ pub(crate) use guess::{Continued, DIFFERENCES, History};
 pub use guess::{Guess, Warm};
 pub(crate) use iteration::{Kick, Root};
 pub(crate) use largest_step::{largest_fraction, six_digits};
-pub(crate) use problem::{Problem, newton_system, step_terms};
+pub(crate) use problem::{Problem, newton_system, pattern, step_terms};
 pub(crate) use reused_jacobian::safe;
 pub use solvability::Solvability;
 pub(crate) use solvability::{TurningLimits, turning_limits};

@@ -18,9 +18,9 @@
 use super::careful::Seldom;
 use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
 use crate::error::StepError;
-use crate::groups::Retraction;
+use crate::groups::{LieGroup, Retraction};
 use crate::mechanics::{Effect, Group, Scalar, Square, Vector};
-use crate::numbers::Coordinates as _;
+use crate::numbers::{Coordinates as _, Pattern};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
 /// One momentum equation to be solved.
@@ -43,6 +43,11 @@ pub(super) struct Usual<'a, L: Effect> {
 }
 
 impl<L: Effect> System<Group<L>> for Usual<'_, L> {
+    #[inline(always)]
+    fn pattern(&self) -> Pattern {
+        pattern::<L>()
+    }
+
     #[inline(always)]
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         L::newton_system(self.constants, &self.terms, half)
@@ -132,6 +137,12 @@ impl<L: Effect> Problem<'_, L> {
     pub(crate) fn attempt(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
         Seldom::new(self).careful().attempt(guess)
     }
+}
+
+/// What is known of the Newton matrix of an effect.
+#[inline(always)]
+pub(crate) const fn pattern<L: Effect>() -> Pattern {
+    Pattern { factors: <Group<L> as LieGroup>::FACTORS, apart: L::APART }
 }
 
 /// [`Effect::newton_system`] for what is seldom asked. A scene has it inlined where steps are made and here, and no

@@ -59,14 +59,14 @@ impl<G: LieGroup> Iteration<G> {
     #[inline(always)]
     pub(super) fn from(equation: &(impl System<G> + ?Sized), half: &G::Vector) -> Self {
         let (residual, jacobian) = equation.newton_system(half);
-        let (factors, det) = G::Vector::factorise(&jacobian);
-        Self { update: G::Vector::solve_again(&factors, det, &residual), factors, det }
+        let (factors, det) = G::Vector::factorise_with(&jacobian, equation.pattern());
+        Self { update: G::Vector::solve_again_with(&factors, det, equation.pattern(), &residual), factors, det }
     }
 
     /// The update from another place by the same Jacobian.
     #[inline(always)]
     pub(super) fn simplified(&self, equation: &(impl System<G> + ?Sized), half: &G::Vector) -> G::Vector {
-        G::Vector::solve_again(&self.factors, self.det, &equation.residual(half))
+        G::Vector::solve_again_with(&self.factors, self.det, equation.pattern(), &equation.residual(half))
     }
 }
 

@@ -138,7 +138,7 @@ impl<L: Effect> Problem<'_, L> {
     /// residuals.
     #[inline(always)]
     pub(super) fn iterate_by_secants(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
-        let model = L::Retraction::free_momentum_tangent(&self.scene.inertia(), &(*guess + *guess));
+        let model = L::Retraction::free_momentum_tangent(&self.scene.inertia(self.w), &(*guess + *guess));
         let mut lanes = Lanes::<Group<L>>::starting_at(guess);
         let mut updates = Updates::<L>::none();
         let radius = self.trusted * real(0.5);

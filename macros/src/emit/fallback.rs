@@ -99,12 +99,13 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         #[allow(clippy::all, clippy::pedantic)]
         #effect {
             #types
+            const INERTIA_IS_CONSTANT: #core::primitive::bool = true;
             const DERIVATION: &'static #core::primitive::str = "";
             fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
             fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
             fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
-            fn inertia(&self) -> #square { loop {} }
+            fn inertia(&self, _: &Self::Advected) -> #square { loop {} }
             fn momentum_bias(&self, _: &Self::Advected) -> #vector { loop {} }
             fn potential(&self, _: &Self::Advected) -> #scalar { loop {} }
             fn constants(&self, _: #scalar) -> Self::Constants {}

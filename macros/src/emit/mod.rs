@@ -52,7 +52,7 @@ pub(crate) fn implementation(
         Some(discretisation) => continuous::discretised(&emitter, discretisation),
         None => verbatim::declared(declaration, &header),
     };
-    let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations));
+    let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
     let section = equations.map(|equations| continuous::text::section(declaration, equations));
     let derivation = docs::derivation(declaration, chosen, &texts, section, findings);
     let documentation = format!("```text\n{derivation}```");
@@ -131,7 +131,6 @@ fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream>
 /// The arguments of a method.
 #[derive(Clone, Copy, Debug)]
 enum Takes {
-    Nothing,
     Advected,
     Increment,
 }
@@ -183,7 +182,7 @@ impl Emitter<'_> {
         ];
         let of_effect = [
             ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
-            ("inertia", Takes::Nothing, Form::Square, &d.limit.inertia),
+            ("inertia", Takes::Advected, Form::Square, &d.limit.inertia),
             ("momentum_bias", Takes::Advected, Form::Vector, &d.limit.bias),
             ("potential", Takes::Advected, Form::Scalar, &d.limit.potential),
         ];
@@ -218,7 +217,6 @@ impl Emitter<'_> {
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
         let w = quote_spanned!(span=> w: &<Self as #private::Effect>::Advected);
         let arguments = match takes {
-            Takes::Nothing => TokenStream::new(),
             Takes::Advected => w,
             Takes::Increment => quote_spanned!(span=> f: &#matrix, #w, h: #scalar),
         };

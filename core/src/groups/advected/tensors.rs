@@ -34,14 +34,6 @@ lanes_of_wrapper!(
     [T, const N: usize] MixedTensor<T, N>,
 );
 
-/// `F⁻¹ − I = −F⁻¹D`.
-pub fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
-where
-    G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
-{
-    -(G::from_increment(increment).inverse().matrix() * increment)
-}
-
 macro_rules! kind {
     ($type:ident, $seen:expr, $change:expr, $rate:expr, $through:expr) => {
         impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
@@ -88,7 +80,7 @@ macro_rules! kind {
 kind!(
     ContravariantVector,
     |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v,
-    |v: &SVector<T, N>, d| inverse_increment::<G, T, N>(d) * v,
+    |v: &SVector<T, N>, d| G::inverse_increment(d) * v,
     |v: &SVector<T, N>, x: &SMatrix<T, N, N>| -(x * v),
     |v: &SVector<T, N>, _: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>| inverse * v
 );
@@ -100,7 +92,7 @@ kind!(
         inverse * s * inverse.transpose()
     },
     |s: &SMatrix<T, N, N>, d| {
-        let inverse = inverse_increment::<G, T, N>(d);
+        let inverse = G::inverse_increment(d);
         let change = inverse * s;
         change + (s + change) * inverse.transpose()
     },
@@ -123,7 +115,7 @@ kind!(
     MixedTensor,
     |s: &SMatrix<T, N, N>, g: &G| g.inverse().matrix() * s * g.matrix(),
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
-        let change = inverse_increment::<G, T, N>(d) * s;
+        let change = G::inverse_increment(d) * s;
         change + (s + change) * d
     },
     |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| s * x - x * s,

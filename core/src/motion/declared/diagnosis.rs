@@ -79,7 +79,7 @@ impl<S: Effect> Declared<S> {
                 let factor = (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::DENOMINATORS.cast_signed());
                 Some(newton_system::<S>(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
             };
-            turning_limits::<Group<S>>(&unknown, &scene.inertia())
+            turning_limits::<Group<S>>(&unknown, &scene.inertia(advected))
         };
         at(self.h * real(0.5)).and(at(self.h))
     }

@@ -14,7 +14,7 @@ use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, InLanes, Lanes, Real, is_finite, lanes_of_fields, real, reported};
-use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
+use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, pattern, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -69,7 +69,9 @@ impl<S: Effect> Declared<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia())?;
+        if S::INERTIA_IS_CONSTANT {
+            check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia(&scene.advected()))?;
+        }
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
             return Err(SetupError::NonFiniteConstant);
@@ -78,7 +80,12 @@ impl<S: Effect> Declared<S> {
         let safe = safe(at_rest);
         // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
-        let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
+        // One that depends on where the bodies are may be singular here, and not where they start.
+        let is_in_range = if S::INERTIA_IS_CONSTANT && <Group<S> as LieGroup>::FACTORS.is_whole() {
+            is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any()
+        } else {
+            is_finite(trace / h)
+        };
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
@@ -227,7 +234,11 @@ impl<S: Effect> Declared<S> {
             w,
             h: self.h,
             trusted: self.trusted,
-            safe: self.safe,
+            safe: if S::INERTIA_IS_CONSTANT {
+                self.safe
+            } else {
+                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
+            },
         }
     }
 
@@ -367,5 +378,5 @@ fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S
     let zero = Vector::<S>::zero();
     let terms = step_terms::<S>(constants, &zero, &scene.advected());
     let (_, jacobian) = newton_system::<S>(constants, &terms, &zero);
-    (Vector::<S>::solve(&jacobian, &zero).1, Vector::<S>::trace(&jacobian))
+    (Vector::<S>::factorise_with(&jacobian, pattern::<S>()).1, Vector::<S>::trace(&jacobian))
 }

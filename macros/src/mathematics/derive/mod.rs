@@ -144,6 +144,11 @@ impl Derived {
         self.increment
     }
 
+    /// Whether the inertia depends on what is advected or given.
+    pub(crate) fn inertia_varies(&self) -> bool {
+        self.previous.iter().any(|(w, _)| self.limit.inertia.contains(*w))
+    }
+
     /// Whether all coefficients stayed in the range of exact arithmetic.
     fn is_exact(&self) -> bool {
         let limit = &self.limit;
