@@ -12,6 +12,7 @@ mod any;
 mod declared;
 mod flows;
 mod kept;
+pub mod linearised;
 mod plan;
 mod report;
 mod right_hand_side;

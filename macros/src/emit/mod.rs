@@ -6,6 +6,7 @@ mod code;
 mod continuous;
 mod docs;
 mod fallback;
+mod gradients;
 mod header;
 mod inputs;
 mod own_group;
@@ -70,6 +71,7 @@ pub(crate) fn implementation(
     let (of_role, term) = (header.implementation(name), header.implementation("Effect"));
     let invariance = invariance(declaration, &header);
     let addition = header.addition("Effect");
+    let gradients = gradients::implementation(&emitter);
     let body = &stages.methods;
     let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
@@ -106,6 +108,7 @@ pub(crate) fn implementation(
 
         #continuous
         #invariance
+        #gradients
         #addition
     };
     let implementations = header.enclosing(implementations);
