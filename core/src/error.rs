@@ -56,6 +56,8 @@ pub enum SetupError {
     BiasMismatch,
     /// A splitting with force gradients needs the derivative of the torque.
     NoForceGradient,
+    /// A splitting with force gradients hasn't got the derivatives of its kicks.
+    NoSecondDerivatives,
     /// One of the candidates for an accuracy is another scene than the first.
     PotentialMismatch,
     /// A stepper or a state can't be in a lane beside the others: lanes share the scheme of a method and the number of
@@ -114,6 +116,10 @@ impl fmt::Display for SetupError {
             Self::NoForceGradient => write!(
                 f,
                 "a term of the scene was written without `kick_derivative`, so it has no force gradient; choose a scheme without them, or write it"
+            ),
+            Self::NoSecondDerivatives => write!(
+                f,
+                "the derivatives of force gradients aren't known, so a splitting with them can't be linearised; choose a scheme without them"
             ),
             Self::PotentialMismatch => {
                 write!(

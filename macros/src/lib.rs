@@ -27,6 +27,7 @@ mod program;
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
 ///     velocity = Omega, l = …,        the continuous one, in the velocity's components by that name
 ///     discretise = trapezoid(Cayley), how `l_d` is made of `l`; left out, there are the continuous equations alone
+///     gradients,                      also the derivatives of a step, for `Stepper::linearised`; may be left out
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
 /// struct Name { … }                   the parameters
@@ -98,6 +99,7 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 ///     advected(w = up, …),            as for a Lagrangian
 ///     given(u = torque, …),           as for a Lagrangian
 ///     work = …,                       the virtual work f⁻·eta + f⁺·eta_next, linear in the displacements
+///     gradients,                      as for a Lagrangian
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
 /// struct Name { … }                   the parameters

@@ -13,6 +13,7 @@ mod kinetic_part;
 mod lagrangian;
 mod noether;
 mod operations;
+mod second_derivatives;
 mod sum;
 mod symmetry;
 
@@ -26,5 +27,6 @@ pub use kinetic_part::{KineticPart, WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;
+pub use second_derivatives::{Blocks, SecondDerivatives};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};

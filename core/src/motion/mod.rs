@@ -15,6 +15,7 @@ mod declared;
 mod flows;
 mod integrator;
 mod kept;
+pub mod linearised;
 mod plan;
 mod report;
 mod right_hand_side;

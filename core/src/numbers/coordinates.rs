@@ -81,6 +81,10 @@ pub trait Coordinates<T: Real>:
     /// The trace of a square matrix.
     fn trace(matrix: &Self::Square) -> T;
 
+    /// The transpose of a square matrix.
+    #[must_use]
+    fn transpose(matrix: &Self::Square) -> Self::Square;
+
     /// The smallest pivot of a symmetric matrix in the order of the basis, relative to its entry of the diagonal, up to
     /// the first that isn't positive: above zero where the matrix is positive definite, below where it is negative along
     /// some direction, and there of the order of rounding where it is singular.
@@ -166,6 +170,11 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     #[inline(always)]
     fn trace(matrix: &SMatrix<T, D, D>) -> T {
         sum::<T, D>(|k| matrix[(k, k)])
+    }
+
+    #[inline(always)]
+    fn transpose(matrix: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
+        matrix.transpose()
     }
 
     fn least_pivot(matrix: &SMatrix<T, D, D>) -> T {

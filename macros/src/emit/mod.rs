@@ -6,6 +6,7 @@ mod code;
 mod continuous;
 mod docs;
 mod fallback;
+mod gradients;
 mod header;
 mod inputs;
 mod lanes;
@@ -72,6 +73,7 @@ pub(crate) fn implementation(
     let invariance = invariance(declaration, &header);
     let addition = header.addition("Effect");
     let lanes = lanes::lanes(&header, Some(&declaration.fields));
+    let gradients = gradients::implementation(&emitter);
     let body = &stages.methods;
     let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
@@ -108,6 +110,7 @@ pub(crate) fn implementation(
 
         #continuous
         #invariance
+        #gradients
         #addition
         #lanes
     };

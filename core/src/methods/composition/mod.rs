@@ -5,7 +5,10 @@ mod scheme;
 pub use scheme::CompositionScheme;
 
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector};
+use crate::mechanics::{
+    DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector,
+};
+use crate::motion::linearised::{Event, Linearisable, Pass, Stage as Linear};
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
 };
@@ -226,6 +229,19 @@ impl<S: Effect> Plan<S> for Composed<S> {
 
     fn cost(&self) -> Cost {
         Cost::of_stages(S::OPERATIONS, u32::try_from(self.stages.len()).unwrap_or(u32::MAX))
+    }
+}
+
+impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
+    fn stages(&self) -> usize {
+        self.stages.len()
+    }
+
+    #[inline(always)]
+    fn visit(&self, scene: &S, index: usize, event: &Event<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
+        if let Some(substep) = self.stages.get(index).and_then(|stage| self.substeps.get(stage.substep)) {
+            pass.stage(&Linear::step(scene, substep.step_size(), event, event.before.advected));
+        }
     }
 }
 
