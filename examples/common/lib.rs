@@ -14,11 +14,11 @@ pub mod heavy_top;
 pub mod measure;
 pub mod newton_tolerance;
 pub mod output;
-pub mod plot;
 pub mod progress;
 pub mod run;
-pub mod switched;
 pub mod table;
 mod tenths;
 pub mod top_equations;
 pub mod variational;
+
+pub use liestep_plot as plot;

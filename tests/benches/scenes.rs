@@ -25,8 +25,8 @@ use liestep::effects::{
 };
 use liestep::mechanics::Regular;
 use liestep::prelude::*;
+use liestep_scene::Switched;
 use nalgebra::Vector3;
-use workbench::switched::Switched;
 
 use counting::{Uncounted, built, instructions};
 use stepping::{Count, Time, Visit};

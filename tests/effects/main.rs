@@ -10,5 +10,4 @@ mod forces;
 mod forces_by_hand;
 mod kinetic_terms;
 mod library;
-mod scene_files;
 mod sums;

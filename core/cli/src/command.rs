@@ -1,0 +1,84 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser as _};
+use clap::{Arg, ArgAction, ArgMatches, Command, ValueHint, value_parser};
+use clap_complete::Shell;
+
+use crate::failure::Failure;
+use crate::output::print;
+
+const CODES: &str = "\
+Exit codes:
+  0  all is done
+  1  a file can't be read or is wrong; the message has its line and column
+  2  the command line is wrong
+  3  a run stopped: a step or a start that isn't possible
+  4  a result can't be written or printed";
+
+pub(crate) fn command() -> Command {
+    let scenes = || files("The scene files");
+    Command::new("liestep")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about("Simulates rigid bodies from scene files, by steps that keep what the motion conserves")
+        .after_help(CODES)
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(
+            Command::new("run")
+                .about("Simulates scenes and draws them")
+                .arg(scenes())
+                .arg(out())
+                .arg(flag("csv", "Also write the samples as CSV"))
+                .arg(flag("html", "Also write a page that plays the motion, to be opened in a browser")),
+        )
+        .subcommand(Command::new("check").about("Reads scenes and makes their first step").arg(scenes()))
+        .subcommand(
+            Command::new("sweep")
+                .about("Runs every scene of a file's table `sweep`, and writes a row of CSV for each")
+                .arg(scenes())
+                .arg(out()),
+        )
+        .subcommand(
+            Command::new("derive")
+                .about("Prints what is derived of an effect, or of a scene")
+                .arg(Arg::new("NAME").help("An effect or a scene file; all effects are listed if it is left away")),
+        )
+        .subcommand(
+            Command::new("replay")
+                .about("Makes pages that play recorded runs, to be opened in a browser")
+                .arg(files("Runs that were written by `run --csv`"))
+                .arg(out()),
+        )
+        .subcommand(
+            Command::new("completions")
+                .about("Prints what a shell needs to complete these commands")
+                .arg(Arg::new("SHELL").required(true).value_parser(value_parser!(Shell))),
+        )
+}
+
+fn files(help: &'static str) -> Arg {
+    let named = PathBufValueParser::new();
+    Arg::new("FILE").help(help).required(true).num_args(1..).value_parser(named).value_hint(ValueHint::FilePath)
+}
+
+fn out() -> Arg {
+    // A folder has a name.
+    let named = PathBufValueParser::new()
+        .try_map(|folder: PathBuf| if folder.as_os_str().is_empty() { Err("a folder has a name") } else { Ok(folder) });
+    let out = Arg::new("out").long("out").value_name("DIR").help("The folder for the results").default_value("out");
+    out.value_parser(named).value_hint(ValueHint::DirPath)
+}
+
+fn flag(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).help(help).action(ArgAction::SetTrue)
+}
+
+/// Prints the completions for a shell.
+pub(crate) fn complete(given: &ArgMatches) -> Result<(), Failure> {
+    let Some(shell) = given.get_one::<Shell>("SHELL") else { return Ok(()) };
+    let mut script = Vec::new();
+    clap_complete::generate(*shell, &mut command(), "liestep", &mut script);
+    print(&String::from_utf8_lossy(&script))
+}

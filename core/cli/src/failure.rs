@@ -1,0 +1,44 @@
+//! What went wrong, and how the program ends then.
+
+use std::fmt;
+use std::process::ExitCode;
+
+use liestep_scene::{Kind, Mistake};
+
+/// Why there is no answer: one exit code each, as `liestep --help` lists them.
+pub(crate) enum Failure {
+    /// 1 where a file is wrong, 3 where its run stopped.
+    Scene(Mistake),
+    /// 2, as for all that is wrong with a command line.
+    Command(String),
+    /// 3: of several runs these weren't finished.
+    Runs(String),
+    /// 4.
+    Output(String),
+}
+
+impl Failure {
+    pub(crate) fn code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Scene(mistake) if mistake.kind() == Kind::File => 1,
+            Self::Command(_) => 2,
+            Self::Scene(_) | Self::Runs(_) => 3,
+            Self::Output(_) => 4,
+        })
+    }
+}
+
+impl From<Mistake> for Failure {
+    fn from(mistake: Mistake) -> Self {
+        Self::Scene(mistake)
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(mistake) => mistake.fmt(f),
+            Self::Command(message) | Self::Runs(message) | Self::Output(message) => f.write_str(message),
+        }
+    }
+}

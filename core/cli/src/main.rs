@@ -1,0 +1,153 @@
+//! The program `liestep`: rigid-body scenes from files.
+//!
+//! ```text
+//! cargo install --path core/cli
+//! liestep run examples/scenes/sleeping-top.toml
+//! ```
+//!
+//! `liestep help` lists the commands. Its exit codes are those of [`Failure`].
+
+mod command;
+mod failure;
+mod output;
+mod sweep;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::ArgMatches;
+use liestep_scene::SceneFile;
+
+use failure::Failure;
+use output::{Output, print};
+
+fn main() -> ExitCode {
+    // A wrong command line ends here, with its message and the code 2.
+    let matches = command::command().get_matches();
+    match answer(&matches) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            failure.code()
+        }
+    }
+}
+
+fn answer(matches: &ArgMatches) -> Result<(), Failure> {
+    match matches.subcommand() {
+        Some(("run", given)) => run(given),
+        Some(("check", given)) => check(given),
+        Some(("sweep", given)) => sweep::sweep(given),
+        Some(("derive", given)) => derive(given),
+        Some(("replay", given)) => replay(given),
+        Some(("completions", given)) => command::complete(given),
+        _ => Err(Failure::Command("a command is required; see --help".to_owned())),
+    }
+}
+
+/// The files that a command is given.
+pub(crate) fn files(given: &ArgMatches) -> Vec<&PathBuf> {
+    given.get_many("FILE").map(Iterator::collect).unwrap_or_default()
+}
+
+pub(crate) fn folder(given: &ArgMatches) -> Result<Output, Failure> {
+    let folder: PathBuf = given.get_one::<PathBuf>("out").cloned().unwrap_or_default();
+    Output::new(folder)
+}
+
+/// Reads all files, so a mistake in the last doesn't come after minutes.
+pub(crate) fn scenes(paths: &[&PathBuf]) -> Result<Vec<SceneFile>, Failure> {
+    for (number, path) in paths.iter().enumerate() {
+        if let Some(other) = paths[..number].iter().find(|other| other.file_stem() == path.file_stem()) {
+            let message = format!("{} and {} would be written to the same files", other.display(), path.display());
+            return Err(Failure::Command(message));
+        }
+    }
+    paths.iter().map(|path| liestep_scene::read(path).map_err(Failure::from)).collect()
+}
+
+fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let paths = files(given);
+    let scenes = scenes(&paths)?;
+    let mut output = folder(given)?;
+    for (number, (path, scene)) in (1..).zip(paths.iter().zip(&scenes)) {
+        if paths.len() > 1 {
+            eprintln!("[{number}/{}] {}", paths.len(), path.display());
+        }
+        let run = scene.run()?;
+        let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
+        output.write(&name(path, "svg"), &picture)?;
+        if given.get_flag("csv") {
+            output.write(&name(path, "csv"), &run.table(scene))?;
+        }
+        if given.get_flag("html") {
+            output.write(&name(path, "html"), &scene.page(&run))?;
+        }
+        print(&run.summary(scene))?;
+        if let Some(sweep) = scene.sweep() {
+            eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points().len());
+        }
+    }
+    print(&output.to_string())
+}
+
+/// All files, whatever is wrong with one.
+fn check(given: &ArgMatches) -> Result<(), Failure> {
+    let mut wrong: Option<Failure> = None;
+    for path in files(given) {
+        match checked(path) {
+            Ok(about) => print(&format!("{}: {about}\n", path.display()))?,
+            Err(failure) => {
+                if let Some(before) = wrong.replace(failure) {
+                    eprintln!("error: {before}");
+                }
+            }
+        }
+    }
+    wrong.map_or(Ok(()), Err)
+}
+
+/// What a file has, of which every scene makes its first step.
+fn checked(path: &Path) -> Result<String, Failure> {
+    let scene = liestep_scene::read(path)?;
+    // A search for an accuracy takes as long as a run, and begins with the first step.
+    if !scene.asks_for_accuracy() {
+        scene.first(1)?;
+        for (_, point) in scene.sweep().map(liestep_scene::Sweep::points).unwrap_or_default() {
+            point.first(1)?;
+        }
+    }
+    Ok(scene.about())
+}
+
+fn derive(given: &ArgMatches) -> Result<(), Failure> {
+    let Some(name) = given.get_one::<String>("NAME") else {
+        let names: Vec<_> = liestep_scene::derived().collect();
+        return print(&(names.join("\n") + "\n"));
+    };
+    if let Some(text) = liestep_scene::derivation(name) {
+        return print(&format!("{name}\n\n{text}"));
+    }
+    if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
+        return print(&liestep_scene::read(name)?.derivation());
+    }
+    let names: Vec<_> = liestep_scene::derived().collect();
+    let message = format!("'{name}' is neither a scene file (*.toml) nor one of {}", names.join(", "));
+    Err(Failure::Command(message))
+}
+
+fn replay(given: &ArgMatches) -> Result<(), Failure> {
+    let paths = files(given);
+    let recordings: Vec<_> = paths.iter().map(liestep_scene::Recording::read).collect::<Result<_, _>>()?;
+    let mut output = folder(given)?;
+    for (path, recording) in paths.iter().zip(&recordings) {
+        output.write(&name(path, "html"), &recording.page())?;
+    }
+    print(&output.to_string())
+}
+
+/// The file's name with another ending.
+pub(crate) fn name(path: &Path, extension: &str) -> String {
+    let stem = path.file_stem().unwrap_or(path.as_os_str());
+    format!("{}.{extension}", stem.to_string_lossy())
+}

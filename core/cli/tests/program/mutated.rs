@@ -1,0 +1,159 @@
+//! Mutated scene files: an answer with line and column or a run, nothing else.
+
+use std::fs;
+use std::path::Path;
+
+use liestep_scene::parse;
+
+/// Marsaglia's xorshift.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        usize::try_from(self.0 >> 32).unwrap() % bound.max(1)
+    }
+}
+
+/// The files that are shipped, and one with every key.
+fn seeds() -> Vec<String> {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
+    let mut paths: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    paths.sort();
+    let all = "title = \"all\"\nbody.J = [[3, 0.1, 0], [0.1, 4, 0], [0, 0, 5]]\nbody.kinetic = \"cayley\"\n\
+               [gravity]\nm = 1\ng = 9.81\nrho = [0, 0, 1]\nup = [0, 0, 1]\n\
+               [gravity_gradient]\nGM = 2\nr = 3\ndirection = [1, 0, 0]\n\
+               [dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
+               [spring]\nk = 3\nlength = 0.5\nat = [0, 0, 1]\nanchor = [1, 0.3, 0.5]\n[rotor]\nspin = [0, 0.4, 1]\n\
+               [drag]\nc = 0.1\n[magnetic_damping]\nk = 0.1\nfield = [0, 0.5, 1]\n[torque]\ntorque = [0.1, 0.2, -0.1]\n\
+               [thrust]\nat = [0, 0, \"1 cm\"]\nthrust = [1, 0, 0]\n[start]\nquaternion = [1, 0, 0, 0.5]\nvelocity = [0, 0, 1]\n\
+               [run]\nstep = 0.01\nduration = 1\nmethod = \"step\"\n[output]\ncolumns = [\"time\", \"quaternion\"]\nevery = 3\n\
+               [sweep]\ngravity.m = [1, 2]\nspring.k = { from = 1, to = 2, count = 3 }\n";
+    let split = "title = \"split\"\n[body]\nmoments = [1, 2, 2.5]\n[dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
+                 [start]\neuler = [0, 0, 0]\neuler_rates = [0, 1, 0]\n[run]\nstep = 0.01\nduration = 1\n\
+                 method = { splitting = \"Nyström 6-4\" }\n";
+    // A search for an accuracy that takes no time.
+    let short = |text: String| text.replace("accuracy = 1e-9", "accuracy = 1e-6").replace("\"60 s\"", "0.1");
+    let files = paths.iter().map(|path| short(fs::read_to_string(path).unwrap()));
+    files.chain([all.to_owned(), split.to_owned()]).collect()
+}
+
+/// What a slip of the hand leaves, and what a number can't be.
+const WORDS: [&str; 36] = [
+    "nan",
+    "inf",
+    "-1",
+    "0",
+    "-0.0",
+    "1e308",
+    "1e-308",
+    "1e400",
+    "5e-324",
+    "99999999999999999999",
+    "[]",
+    "[[]]",
+    "{}",
+    "\"\"",
+    "\"1 m\"",
+    "\"1e308 km\"",
+    "true",
+    "=",
+    "\"",
+    "[",
+    "]",
+    "\n",
+    "[run]\n",
+    "\nstep = 1e-9\n",
+    "method",
+    "{ collocation = 8 }",
+    "\"cayley\"",
+    "\"sixth-order\"",
+    "{ composition = \"Kahan-Li 8\" }",
+    "1979-05-27",
+    ".",
+    ",",
+    "\u{0}",
+    "ü",
+    "#",
+    "[1e200, 1, 1e-200]",
+];
+
+fn mutated(seed: &str, random: &mut Random) -> String {
+    let mut letters: Vec<char> = seed.chars().collect();
+    for _ in 0..=random.below(2) {
+        let at = random.below(letters.len());
+        let is_word = |letter: &char| letter.is_alphanumeric() || "._-".contains(*letter);
+        let start = letters[..at].iter().rposition(|letter| !is_word(letter)).map_or(0, |before| before + 1);
+        let end = at + letters[at..].iter().take_while(|letter| is_word(letter)).count();
+        match random.below(8) {
+            0 => drop(letters.drain(at..(at + 1 + random.below(12)).min(letters.len()))),
+            1 => drop(letters.splice(at..at, WORDS[random.below(WORDS.len())].chars())),
+            // A value or a key for another.
+            2 => drop(letters.splice(start..end, WORDS[random.below(WORDS.len())].chars())),
+            3 => {
+                let from = random.below(letters.len());
+                let piece: Vec<_> = letters[from..(from + random.below(40)).min(letters.len())].to_vec();
+                letters.splice(at..at, piece);
+            }
+            4 => {
+                let other = random.below(letters.len());
+                letters.swap(at, other);
+            }
+            // The next number, by another digit.
+            _ => {
+                let digit = letters[at..].iter().position(char::is_ascii_digit);
+                if let Some(digit) = digit {
+                    letters[at + digit] = char::from(b"0123456789"[random.below(10)]);
+                }
+            }
+        }
+        if letters.is_empty() {
+            break;
+        }
+    }
+    letters.into_iter().collect()
+}
+
+/// Runs so many files, and returns how many of them ran.
+fn survive(cases: usize, seed: u64) -> usize {
+    let (seeds, mut random, mut ran) = (seeds(), Random(seed), 0);
+    for case in 0..cases {
+        let text = mutated(&seeds[random.below(seeds.len())], &mut random);
+        let answer = parse("mutated.toml", &text).and_then(|scene| {
+            let run = scene.first(30)?;
+            let numbers = run.table(&scene);
+            assert!(!numbers.contains("NaN") && !numbers.contains("inf"), "{case}: {text}");
+            if case % 20 == 0 {
+                assert!(scene.picture(&run).unwrap().contains("</svg>") && scene.page(&run).contains("</html>"));
+            }
+            Ok(())
+        });
+        match answer {
+            Ok(()) => ran += 1,
+            Err(mistake) => {
+                let (line, column) = mistake.place().unwrap_or_else(|| panic!("{mistake}\n{text}"));
+                let lines: Vec<_> = text.split('\n').collect();
+                assert!((1..=lines.len()).contains(&line), "{mistake}\n{text}");
+                assert!((1..=lines[line - 1].chars().count() + 1).contains(&column), "{mistake}\n{text}");
+                assert!(mistake.to_string().len() < 2000, "{mistake}");
+            }
+        }
+    }
+    ran
+}
+
+#[test]
+fn mutated_files_are_refused_or_run() {
+    let ran = survive(1000, 0x9e37_79b9_7f4a_7c15);
+    assert!((100..900).contains(&ran), "{ran}");
+}
+
+#[test]
+#[ignore = "a minute: cargo test --release -p liestep-cli -- --ignored"]
+fn ten_thousand_mutated_files_are_refused_or_run() {
+    let ran = survive(10_000, 0x2545_f491_4f6c_dd1d);
+    assert!((1000..9000).contains(&ran), "{ran}");
+}

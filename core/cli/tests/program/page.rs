@@ -1,0 +1,105 @@
+//! The page that plays a motion, in a browser where there is one.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::scene_files::{PROGRAM, TOP, folder};
+
+/// Runs the top and returns the text of its page.
+fn page(folder: &Path, title: &str) -> String {
+    fs::write(folder.join("top.toml"), TOP.replace("A heavy top with drag", title)).unwrap();
+    let arguments = ["run", "top.toml", "--csv", "--html", "--out", "."];
+    let output = Command::new(PROGRAM).current_dir(folder).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    fs::read_to_string(folder.join("top.html")).unwrap()
+}
+
+/// Nothing in it is to be loaded, and a title ends no tag.
+#[test]
+fn it_is_complete() {
+    let page = page(&folder("page"), r"</title><script>alert(1)</script> & \u0000");
+    assert!(page.contains("<title>&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt; &amp; \\u{0}</title>"));
+    assert!(page.contains(
+        "content=\"default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:\""
+    ));
+    for word in ["http:", "https:", "//www", "@import", "url(", "src=", "fetch(", "XMLHttpRequest", "import("] {
+        assert!(!page.contains(word), "{word}");
+    }
+    assert_eq!((page.matches("<script>").count(), page.matches("</script>").count()), (1, 1));
+    assert_eq!((page.matches(" href=").count(), page.matches("href=\"data:,\"").count()), (1, 1));
+    assert!(page.len() < 60_000, "{}", page.len());
+}
+
+/// A recorded run is played as the run itself is, but for what a table doesn't say: title and body.
+#[test]
+fn a_table_is_replayed() {
+    let folder = folder("replay");
+    let page = page(&folder, "top");
+    let arguments = ["replay", "top.csv", "--out", "again"];
+    let output = Command::new(PROGRAM).current_dir(&folder).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let again = fs::read_to_string(folder.join("again/top.html")).unwrap();
+    let lists = |page: &str| -> Vec<String> {
+        page.lines().filter(|line| line.len() > 500 && line.contains('"')).map(str::to_owned).collect()
+    };
+    let (first, second) = (lists(&page), lists(&again));
+    assert_eq!(first.len(), 9);
+    assert_eq!(first, second);
+
+    let refused = |table: &str, message: &str| {
+        fs::write(folder.join("wrong.csv"), table).unwrap();
+        let output = Command::new(PROGRAM).current_dir(&folder).args(["replay", "wrong.csv"]).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        assert!(text.starts_with("error: wrong.csv:") && text.contains(message), "{text}");
+    };
+    let names = "time_s,quaternion_w,quaternion_x,quaternion_y,quaternion_z\n";
+    refused("", ":1:1: has no columns time_s");
+    refused("time_s\n0\n", ":1:1: has no columns quaternion_w, quaternion_x, quaternion_y, quaternion_z");
+    refused(names, ":2:1: has no row");
+    refused(&format!("{names}0,1,0,0,0\n0,1,0,0,0\n"), ":3:1: is not later than the row before");
+    refused(&format!("{names}0,1,0,0,0\n1,1,0,0\n"), ":3:1: has 4 values below 5 names");
+    refused(&format!("{names}0,1,0,x,0\n"), ":2:7: isn't a finite number");
+    refused(&format!("{names}0,1,0,nan,0\n"), ":2:7: isn't a finite number");
+    refused(&format!("{names}0,1,1,0,0\n"), ":2:1: the quaternion isn't a unit one");
+}
+
+/// Chromium by one of its names.
+fn browser() -> Option<&'static str> {
+    let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+    names
+        .into_iter()
+        .find(|name| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success()))
+}
+
+/// The script runs to its end, all is drawn, and the picture isn't empty.
+#[test]
+fn a_browser_shows_it() {
+    let Some(browser) = browser() else {
+        println!("skipped: there is no Chromium here (Debian: apt-get install chromium)");
+        return;
+    };
+    let folder = folder("browser");
+    page(&folder, "A heavy top with drag");
+    let shown = |arguments: &[&str]| {
+        let address = format!("file://{}#t=1.5", folder.canonicalize().unwrap().join("top.html").display());
+        let profile = format!("--user-data-dir={}", folder.join("profile").display());
+        let plain =
+            ["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1200,700", "--virtual-time-budget=3000"];
+        let mut command = Command::new(browser);
+        let output =
+            command.current_dir(&folder).args(plain).args(arguments).arg(profile).arg(address).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let document = shown(&["--dump-dom"]);
+    let root = document.lines().find(|line| line.contains("<html")).unwrap();
+    assert!(root.contains("data-frames=\"201\"") && root.contains("data-charts=\"4\""), "{root}");
+    assert!(!root.contains("data-error"), "{root}");
+    assert_eq!(document.matches("<canvas").count(), 5);
+    assert!(document.contains("<output>1.50 s</output>"), "{document}");
+    shown(&["--screenshot=top.png"]);
+    // A page with nothing on it is a tenth of that.
+    assert!(fs::metadata(folder.join("top.png")).unwrap().len() > 40_000);
+}

@@ -1,0 +1,21 @@
+//! Figures as SVG: panels with axes, and paths on a sphere.
+//!
+//! Only the SVG back end is used, and text stays text, so no font is needed where the figures are made.
+
+// What fails is said once, of `Drawn`.
+#![allow(clippy::missing_errors_doc)]
+
+mod canvas;
+mod envelope;
+mod panel;
+mod sketch;
+mod sphere;
+mod style;
+mod thin;
+
+pub use canvas::{Area, Drawn, render};
+pub use panel::{Line, Panel, Vertical};
+pub use plotters::style::RGBColor as Colour;
+pub use sketch::{Sketch, arc};
+pub use sphere::{Path, sphere};
+pub use style::{BLUE, GREEN, INK, ORANGE, PURPLE, heading, legend, px};

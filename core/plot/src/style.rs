@@ -1,0 +1,64 @@
+//! Colours, sizes and lettering.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::canvas::{Area, Drawn};
+
+// Okabe and Ito's palette, which stays distinct under the common forms of colour blindness.
+/// The first of a series.
+pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+/// The second.
+pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+/// The third.
+pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+/// A path.
+pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
+
+/// Letters and axes.
+pub const INK: RGBColor = RGBColor(45, 45, 45);
+pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
+
+/// The back end draws on whole units, so a pixel is made of two of them: lines stay smooth.
+pub(super) const UNITS: u32 = 2;
+
+/// Pixels in the units of the drawing.
+#[must_use]
+pub const fn px(pixels: u32) -> u32 {
+    pixels * UNITS
+}
+
+#[allow(clippy::cast_possible_wrap)] // sizes of a drawing are thousands at most
+pub(super) const fn at(pixels: u32) -> i32 {
+    px(pixels) as i32
+}
+
+/// A text style of so many pixels.
+pub(super) fn letters(size: u32, colour: RGBColor) -> TextStyle<'static> {
+    // The back end divides by this ratio.
+    let size = f64::from(px(size)) * 1.24;
+    ("sans-serif", size).into_font().color(&colour)
+}
+
+/// A title and a fainter line below it.
+pub fn heading(area: &Area<'_>, title: &str, subtitle: &str) -> Drawn {
+    area.draw_text(title, &letters(17, INK), (at(16), at(12)))?;
+    area.draw_text(subtitle, &letters(12, RGBColor(100, 100, 100)), (at(16), at(36)))?;
+    Ok(())
+}
+
+/// Names beside strokes of their colours, in one row that starts `left`, `top` pixels into the area.
+pub fn legend(area: &Area<'_>, (left, top): (u32, u32), entries: &[(&str, RGBColor)]) -> Drawn {
+    let mut x = at(left);
+    let y = at(top);
+    for (name, colour) in entries {
+        let stroke = vec![(x, y), (x + at(18), y)];
+        area.draw(&PathElement::new(stroke, colour.stroke_width(px(2))))?;
+        let text = letters(12, INK).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw_text(name, &text, (x + at(24), y))?;
+        // Without a font a width can only be estimated; 0.55 em is a wide average for sans-serif.
+        let characters = i32::try_from(name.chars().count()).unwrap_or(0);
+        x += at(24 + 18) + characters * at(12) * 55 / 100;
+    }
+    Ok(())
+}

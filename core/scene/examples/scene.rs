@@ -1,0 +1,25 @@
+//! Scene files from a program of one's own: each is read, simulated and drawn, and a page made that plays it.
+//!
+//! ```text
+//! cargo run --release --example scene -- examples/scenes/sleeping-top.toml
+//! ```
+//!
+//! The program `liestep` does the same, and more: `cargo install --path core/cli`.
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = Path::new("out/scene");
+    fs::create_dir_all(folder)?;
+    for path in std::env::args_os().skip(1).map(PathBuf::from) {
+        let scene = liestep_scene::read(&path)?;
+        let run = scene.run()?;
+        println!("{}", run.summary(&scene));
+        let result = folder.join(path.file_name().unwrap_or_default());
+        fs::write(result.with_extension("svg"), scene.picture(&run)?)?;
+        fs::write(result.with_extension("html"), scene.page(&run))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! The derived equations of the effects, as text.
+
+use liestep::effects::{
+    CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, Gravity, GravityGradient, MagneticDamping, PrincipalBody,
+    RigidBody, Rotor, SixthOrderBody, Spring, Thrust, Torque,
+};
+use liestep::mechanics::Effect;
+
+use crate::body::{Distribution, Kinetic};
+use crate::file::SceneFile;
+
+/// An effect of the library: its name in files, and what is derived of it.
+type Derived = (&'static str, &'static str);
+
+const DERIVED: [Derived; 15] = [
+    ("principal-body", <PrincipalBody as Effect>::DERIVATION),
+    ("rigid-body", <RigidBody as Effect>::DERIVATION),
+    ("cayley-body", <CayleyBody as Effect>::DERIVATION),
+    ("geodesic-body", <GeodesicBody as Effect>::DERIVATION),
+    ("fourth-order-body", <FourthOrderBody as Effect>::DERIVATION),
+    ("sixth-order-body", <SixthOrderBody as Effect>::DERIVATION),
+    ("gravity", <Gravity as Effect>::DERIVATION),
+    ("gravity-gradient", <GravityGradient as Effect>::DERIVATION),
+    ("dipole", <Dipole as Effect>::DERIVATION),
+    ("spring", <Spring as Effect>::DERIVATION),
+    ("rotor", <Rotor as Effect>::DERIVATION),
+    ("drag", <Drag as Effect>::DERIVATION),
+    ("magnetic-damping", <MagneticDamping as Effect>::DERIVATION),
+    ("torque", <Torque as Effect>::DERIVATION),
+    ("thrust", <Thrust as Effect>::DERIVATION),
+];
+
+/// The names that [`derivation`] knows: the kinetic terms and the effects.
+pub fn derived() -> impl Iterator<Item = &'static str> {
+    DERIVED.iter().map(|(name, _)| *name)
+}
+
+/// What the library derived of an effect, from its declaration to the constants of a step.
+#[must_use]
+pub fn derivation(name: &str) -> Option<&'static str> {
+    DERIVED.iter().find(|(other, _)| *other == name).map(|(_, text)| *text)
+}
+
+impl SceneFile {
+    /// What was derived of each term of the scene.
+    #[must_use]
+    pub fn derivation(&self) -> String {
+        let body = match (self.body.kinetic, self.body.mass) {
+            (Kinetic::Rigid, Distribution::Principal(_)) => "principal-body",
+            (Kinetic::Rigid, Distribution::Full(_)) => "rigid-body",
+            (Kinetic::Cayley, _) => "cayley-body",
+            (Kinetic::Geodesic, _) => "geodesic-body",
+            (Kinetic::FourthOrder, _) => "fourth-order-body",
+            (Kinetic::SixthOrder, _) => "sixth-order-body",
+        };
+        let names = std::iter::once(body.to_owned()).chain(self.effects().map(|name| name.replace(' ', "-")));
+        let terms = names.filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
+        terms.collect::<Vec<_>>().join("\n")
+    }
+}

@@ -1,0 +1,296 @@
+"use strict";
+// Plays `motion`: times in s, attitudes as unit quaternions w, x, y, z, body to space, and charts over time.
+window.addEventListener("error", event => { document.documentElement.dataset.error = event.message; });
+
+const decode = text => new Float32Array(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
+const times = decode(motion.times), attitudes = decode(motion.attitudes), frames = times.length;
+const start = times[0], end = times[frames - 1];
+for (const chart of motion.charts) for (const line of chart.lines) line.values = decode(line.values);
+
+const COLOURS = ["#0072b2", "#e69f00", "#009e73"], PATH = "#cc79a7", INK = "#2d2d2d", FAINT = "#d8dce2";
+// Of a drum or a box, so that a turn is seen.
+const SHADES = [[86, 146, 190], [226, 232, 238]];
+
+// Vectors.
+const add = (a, b, s = 1) => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const turned = ([w, ...q], v) => { const t = cross(q, v).map(x => 2 * x); return add(add(v, t, w), cross(q, t)); };
+
+// The last frame at or before a time.
+function frameAt(time) {
+  let low = 0, high = frames - 1;
+  while (low < high) { const middle = (low + high + 1) >> 1; if (times[middle] <= time) low = middle; else high = middle - 1; }
+  return low;
+}
+const quaternion = frame => attitudes.subarray(4 * frame, 4 * frame + 4);
+// Between two frames the shorter turn from the one to the other.
+function attitudeAt(time) {
+  const frame = frameAt(time), a = quaternion(frame);
+  if (frame + 1 >= frames) return a;
+  const b = quaternion(frame + 1), part = Math.min(1, Math.max(0, (time - times[frame]) / (times[frame + 1] - times[frame])));
+  const cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3], sign = cosine < 0 ? -1 : 1;
+  const angle = Math.acos(Math.min(1, Math.abs(cosine)));
+  const [left, right] = angle < 1e-6 ? [1 - part, part] : [(1 - part) * angle, part * angle].map(x => Math.sin(x) / Math.sin(angle));
+  const q = a.map((x, k) => left * x + sign * right * b[k]), size = Math.hypot(...q);
+  return q.map(x => x / size);
+}
+
+// A canvas that fills its place, in pixels of the page.
+function canvasIn(place, draw) {
+  const canvas = place.appendChild(document.createElement("canvas")), pen = canvas.getContext("2d");
+  const surface = { canvas, width: 0, height: 0, draw() {
+    const scale = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
+    surface.width = box.width; surface.height = box.height;
+    canvas.width = Math.round(box.width * scale); canvas.height = Math.round(box.height * scale);
+    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    pen.clearRect(0, 0, box.width, box.height);
+    pen.lineJoin = pen.lineCap = "round";
+    draw(pen, surface.width, surface.height);
+  } };
+  return surface;
+}
+function dragged(canvas, move) {
+  canvas.addEventListener("pointerdown", event => { canvas.setPointerCapture(event.pointerId); });
+  canvas.addEventListener("pointermove", event => { if (event.buttons & 1) move(event.movementX, event.movementY, event); });
+}
+
+// The body, its axes and the path of the axis that is followed.
+const tips = Array.from({ length: frames }, (_, frame) => turned(quaternion(frame), motion.axis));
+const camera = { azimuth: 0.6, elevation: 0.45, zoom: 1 };
+let now = start;
+
+function corners() {
+  const [a, b, c] = motion.sides, middle = motion.middle;
+  if (motion.drum === null) {
+    const face = (n, u, v, shade) => ({ shade, points: [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([s, t]) => add(add(add(middle, n), u, s), v, t)) });
+    const both = (n, u, v, shade) => [face(n, u, v, shade), face(n.map(x => -x), v, u, shade + 1)];
+    return [...both(a, b, c, 0), ...both(b, c, a, 0), ...both(c, a, b, 0)];
+  }
+  const n = motion.sides[motion.drum], u = motion.sides[(motion.drum + 1) % 3], v = motion.sides[(motion.drum + 2) % 3];
+  const rim = (turn, side) => add(add(add(middle, n, side), u, Math.cos(turn)), v, Math.sin(turn));
+  const faces = [];
+  for (let k = 0; k < 32; k++) {
+    const [from, to] = [k, k + 1].map(x => x * Math.PI / 16), shade = Math.floor(k / 8);
+    faces.push({ shade, plain: true, points: [rim(from, -1), rim(to, -1), rim(to, 1), rim(from, 1)] });
+    for (const side of [1, -1]) faces.push({ shade, plain: true, points: [add(middle, n, side), rim(from, side), rim(to, side)] });
+  }
+  return faces;
+}
+const FACES = corners();
+
+const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
+  const [sa, ca, se, ce] = [Math.sin(camera.azimuth), Math.cos(camera.azimuth), Math.sin(camera.elevation), Math.cos(camera.elevation)];
+  const right = [-sa, ca, 0], up = [-se * ca, -se * sa, ce], towards = [ce * ca, ce * sa, se];
+  const size = 0.36 * Math.min(width, height) * camera.zoom, centre = [width / 2, height / 2];
+  const place = p => [centre[0] + size * dot(right, p), centre[1] - size * dot(up, p)];
+  const line = (points, colour, thickness) => {
+    pen.beginPath();
+    points.forEach((p, k) => { const [x, y] = place(p); if (k) pen.lineTo(x, y); else pen.moveTo(x, y); });
+    pen.strokeStyle = colour; pen.lineWidth = thickness; pen.stroke();
+  };
+  const name = (text, p, colour) => {
+    const [x, y] = place(p);
+    pen.fillStyle = colour; pen.font = "12px system-ui, sans-serif"; pen.fillText(text, x + 4, y - 4);
+  };
+  // Space: its axes, and the sphere on which the path is.
+  pen.beginPath(); pen.arc(centre[0], centre[1], size, 0, 7); pen.strokeStyle = FAINT; pen.lineWidth = 1; pen.stroke();
+  const circle = (u, v) => line(Array.from({ length: 65 }, (_, k) => add(u.map(x => x * Math.cos(k * Math.PI / 32)), v, Math.sin(k * Math.PI / 32))), FAINT, 1);
+  circle([1, 0, 0], [0, 1, 0]); circle([1, 0, 0], [0, 0, 1]); circle([0, 1, 0], [0, 0, 1]);
+  ["e₁", "e₂", "e₃"].forEach((text, k) => {
+    const e = [0, 1, 2].map(j => j === k ? 1.15 : 0);
+    line([[0, 0, 0], e], "#aab1ba", 1); name(text, e, "#7a828c");
+  });
+  // The path until now; what is older is fainter, and what is behind the sphere too.
+  const last = frameAt(now), first = Math.max(0, last - 3000), attitude = attitudeAt(now), tip = turned(attitude, motion.axis);
+  const chunks = 60, chunk = Math.max(1, Math.ceil((last - first) / chunks));
+  for (let k = first; k < last; k += chunk) {
+    const to = Math.min(last, k + chunk), points = tips.slice(k, to + 1);
+    pen.globalAlpha = (0.25 + 0.75 * (to - first) / (last - first)) * (dot(towards, tips[to]) < 0 ? 0.35 : 1);
+    line(points, PATH, 1.6);
+  }
+  pen.globalAlpha = 1;
+  line([tips[last], tip], PATH, 1.6);
+  // The body: a convex one, so that the faces that look here are all that is seen.
+  const faces = () => FACES.forEach(({ points, shade, plain }) => {
+    const seen = points.map(p => turned(attitude, p)), middle = turned(attitude, motion.middle);
+    let normal = cross(add(seen[1], seen[0], -1), add(seen[2], seen[0], -1));
+    const length = Math.hypot(...normal), outwards = dot(normal, add(seen[0], middle, -1)) < 0 ? -1 : 1;
+    if (length === 0) return;
+    normal = normal.map(x => outwards * x / length);
+    if (dot(normal, towards) <= 0) return;
+    const light = 0.62 + 0.38 * Math.max(0, dot(normal, [0.3, -0.2, 0.93])), colour = SHADES[shade % 2].map(x => Math.round(x * light));
+    pen.beginPath();
+    seen.forEach((p, k) => { const [x, y] = place(p); if (k) pen.lineTo(x, y); else pen.moveTo(x, y); });
+    pen.closePath();
+    pen.fillStyle = pen.strokeStyle = `rgb(${colour})`; pen.lineWidth = 0.7; pen.fill();
+    if (!plain) pen.strokeStyle = "rgba(45, 45, 45, 0.5)";
+    pen.stroke();
+  });
+  // From the pivot to the body and from the body to the tip, before or behind it.
+  const stem = () => { line([[0, 0, 0], turned(attitude, motion.middle)], INK, 2.5); };
+  const pointer = () => {
+    line([turned(attitude, motion.middle), tip], INK, 1.5);
+    const [x, y] = place(tip);
+    pen.beginPath(); pen.arc(x, y, 4, 0, 7); pen.fillStyle = PATH; pen.fill();
+  };
+  const axes = () => ["1", "2", "3"].forEach((text, k) => {
+    const e = turned(attitude, [0, 1, 2].map(j => j === k ? 0.85 : 0));
+    line([[0, 0, 0], e], COLOURS[k], 2); name(text, e, COLOURS[k]);
+  });
+  const behind = dot(towards, turned(attitude, motion.middle)) < 0;
+  if (!behind) stem();
+  if (dot(towards, tip) < 0) pointer();
+  faces();
+  if (behind) stem();
+  axes();
+  if (dot(towards, tip) >= 0) pointer();
+});
+dragged(view.canvas, (x, y) => {
+  camera.azimuth -= x * 0.008;
+  camera.elevation = Math.max(-1.57, Math.min(1.57, camera.elevation + y * 0.008));
+  view.draw();
+});
+view.canvas.addEventListener("wheel", event => {
+  event.preventDefault();
+  camera.zoom = Math.max(0.2, Math.min(20, camera.zoom * Math.exp(-event.deltaY * 0.001)));
+  view.draw();
+}, { passive: false });
+view.canvas.addEventListener("dblclick", () => { Object.assign(camera, { azimuth: 0.6, elevation: 0.45, zoom: 1 }); view.draw(); });
+
+// Charts share one stretch of time.
+const stretch = { from: start, to: end > start ? end : start + 1 };
+const LEFT = 64, RIGHT = 14, TOP = 26, BOTTOM = 24;
+
+function ticks(from, to, about) {
+  const raw = (to - from) / about, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map(x => x * power).find(x => x >= raw) || raw, list = [];
+  for (let k = Math.ceil(from / step); k * step <= to + step * 1e-9; k++) list.push(k * step);
+  return { list, digits: Math.max(0, Math.min(12, -Math.floor(Math.log10(step)))) };
+}
+const decimal = (x, digits) => Math.abs(x) >= 1e5 ? x.toExponential(1) : x.toFixed(digits).replace("-", "−");
+
+const charts = motion.charts.map(chart => {
+  const place = document.getElementById("charts").appendChild(document.createElement("div"));
+  place.className = "chart";
+  // What is zero has no logarithm, and isn't drawn.
+  const height = value => chart.logarithmic ? Math.log10(value) : value;
+  const surface = canvasIn(place, (pen, width, tall) => {
+    const first = Math.max(0, frameAt(stretch.from)), last = Math.min(frames - 1, frameAt(stretch.to) + 1);
+    let low = Infinity, high = -Infinity;
+    for (const line of chart.lines) for (let k = first; k <= last; k++) {
+      if (chart.logarithmic && !(line.values[k] > 0)) continue;
+      const y = height(line.values[k]); low = Math.min(low, y); high = Math.max(high, y);
+    }
+    if (!(high >= low)) { low = chart.logarithmic ? -17 : 0; high = low + 1; }
+    const margin = chart.logarithmic ? 0.15 : 0.06 * (high - low) || 0.5 * Math.abs(high) || 1; low -= margin; high += margin;
+    const wide = width - LEFT - RIGHT, deep = tall - TOP - BOTTOM;
+    const across = time => LEFT + wide * (time - stretch.from) / (stretch.to - stretch.from);
+    const up = y => TOP + deep * (1 - (y - low) / (high - low));
+    pen.font = "11px system-ui, sans-serif"; pen.textBaseline = "middle"; pen.lineWidth = 1;
+    const levels = ticks(low, high, Math.max(2, deep / 28));
+    pen.textAlign = "right";
+    for (const y of levels.list) {
+      if (chart.logarithmic && Math.abs(y - Math.round(y)) > 1e-6) continue;
+      pen.strokeStyle = "#e2e2e2"; pen.beginPath(); pen.moveTo(LEFT, up(y)); pen.lineTo(LEFT + wide, up(y)); pen.stroke();
+      pen.fillStyle = INK; pen.fillText(chart.logarithmic ? "1e" + String(Math.round(y)).replace("-", "−") : decimal(y, levels.digits), LEFT - 6, up(y));
+    }
+    pen.textAlign = "center";
+    const marks = ticks(stretch.from, stretch.to, Math.max(2, wide / 80));
+    for (const t of marks.list) {
+      pen.strokeStyle = "#e2e2e2"; pen.beginPath(); pen.moveTo(across(t), TOP); pen.lineTo(across(t), TOP + deep); pen.stroke();
+      pen.fillStyle = INK; pen.fillText(decimal(t, marks.digits), across(t), TOP + deep + 12);
+    }
+    pen.save(); pen.beginPath(); pen.rect(LEFT, TOP, wide, deep); pen.clip();
+    chart.lines.forEach((line, number) => {
+      pen.strokeStyle = COLOURS[number % 3]; pen.lineWidth = 1.3; pen.beginPath();
+      let column = null, least = 0, most = 0, exit = 0;
+      const flush = x => { pen.lineTo(x, up(least)); pen.lineTo(x, up(most)); pen.lineTo(x, up(exit)); };
+      for (let k = first; k <= last; k++) {
+        if (chart.logarithmic && !(line.values[k] > 0)) continue;
+        const x = Math.round(across(times[k])), y = height(line.values[k]);
+        if (x !== column) { if (column !== null) flush(column); column = x; least = most = y; pen.lineTo(x, up(y)); }
+        least = Math.min(least, y); most = Math.max(most, y); exit = y;
+      }
+      if (column !== null) flush(column);
+      pen.stroke();
+    });
+    pen.strokeStyle = PATH; pen.lineWidth = 1.5; pen.beginPath(); pen.moveTo(across(now), TOP); pen.lineTo(across(now), TOP + deep); pen.stroke();
+    pen.restore();
+    pen.textAlign = "left"; pen.fillStyle = INK; pen.font = "12px system-ui, sans-serif";
+    pen.fillText(`${chart.title}, ${chart.unit}`, LEFT, 12);
+    let x = LEFT + wide; pen.textAlign = "right";
+    const frame = frameAt(now);
+    chart.lines.map((line, number) => [line, COLOURS[number % 3]]).reverse().forEach(([line, colour]) => {
+      const value = line.values[frame], size = Math.abs(value);
+      const shown = chart.logarithmic || (size > 0 && size < 1e-2) || size >= 1e5 ? value.toExponential(1) : Number(value.toPrecision(3));
+      const text = (chart.lines.length > 1 ? line.name + " " : "") + String(shown).replace(/-/g, "−");
+      pen.fillStyle = colour; pen.fillText(text, x, 12); x -= pen.measureText(text).width + 12;
+    });
+  });
+  const timeAt = event => {
+    const box = surface.canvas.getBoundingClientRect();
+    return stretch.from + (stretch.to - stretch.from) * (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
+  };
+  surface.canvas.addEventListener("wheel", event => {
+    event.preventDefault();
+    const about = timeAt(event), factor = Math.exp(event.deltaY * 0.001);
+    zoom(about - (about - stretch.from) * factor, about + (stretch.to - about) * factor);
+  }, { passive: false });
+  dragged(surface.canvas, (x, _, event) => {
+    if (!event.shiftKey) return seek(timeAt(event));
+    const shift = -x * (stretch.to - stretch.from) / Math.max(1, surface.width - LEFT - RIGHT);
+    zoom(stretch.from + shift, stretch.to + shift);
+  });
+  surface.canvas.addEventListener("click", event => { if (!event.shiftKey) seek(timeAt(event)); });
+  surface.canvas.addEventListener("dblclick", () => zoom(start, end));
+  place.title = "Wheel: zoom. Shift and drag: move. Double click: all. Click or drag: go to that time.";
+  return surface;
+});
+function zoom(from, to) {
+  const span = Math.min(Math.max(to - from, (end - start) * 1e-5), end - start || 1);
+  stretch.from = Math.max(start, Math.min(from, end - span)); stretch.to = stretch.from + span;
+  charts.forEach(chart => chart.draw());
+}
+
+// Time.
+const controls = document.getElementById("controls");
+const element = (kind, properties) => controls.appendChild(Object.assign(document.createElement(kind), properties));
+const play = element("button", { textContent: "Play", title: "Space" });
+const slider = element("input", { type: "range", min: 0, max: 1, step: "any", value: 0, ariaLabel: "Time" });
+const clock = element("output", {});
+const speed = element("select", { ariaLabel: "Speed" });
+// A run lasts at most a minute, and a short one as long as it is.
+const usual = 2 ** Math.max(0, Math.ceil(Math.log2((end - start) / 60)));
+for (const factor of [0.1, 0.25, 0.5, 1, 2, 4, 10].map(x => x * usual)) speed.add(new Option(`${factor} ×`, factor, factor === usual, factor === usual));
+let playing = false, before = 0;
+function seek(time) {
+  now = Math.max(start, Math.min(end, time));
+  slider.value = end > start ? (now - start) / (end - start) : 0;
+  clock.textContent = `${now.toFixed(end - start > 1000 ? 0 : 2)} s`;
+  view.draw(); charts.forEach(chart => chart.draw());
+}
+function tick(moment) {
+  if (!playing) return;
+  const passed = Math.min(0.1, (moment - before) / 1000); before = moment;
+  seek(now + passed * Number(speed.value));
+  if (now >= end) return toggle();
+  requestAnimationFrame(tick);
+}
+function toggle() {
+  playing = !playing; play.textContent = playing ? "Pause" : "Play";
+  if (!playing) return;
+  if (now >= end) seek(start);
+  before = performance.now(); requestAnimationFrame(tick);
+}
+play.addEventListener("click", toggle);
+slider.addEventListener("input", () => seek(start + (end - start) * slider.value));
+document.addEventListener("keydown", event => {
+  const step = (end - start) / 200;
+  const action = { " ": toggle, ArrowLeft: () => seek(now - step), ArrowRight: () => seek(now + step), Home: () => seek(start), End: () => seek(end) }[event.key];
+  if (action && event.target.tagName !== "SELECT") { event.preventDefault(); action(); }
+});
+new ResizeObserver(() => seek(now)).observe(document.body);
+// `#t=12.5` opens the page at that time.
+seek(start + (Number(new URLSearchParams(location.hash.slice(1)).get("t")) || 0));
+Object.assign(document.documentElement.dataset, { frames, charts: charts.length });

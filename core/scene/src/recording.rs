@@ -1,0 +1,172 @@
+//! What a page plays: a scene's run, or one that was written as a table.
+
+use std::fs;
+use std::path::Path;
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+use crate::columns::Column;
+use crate::file::SceneFile;
+use crate::mistake::Mistake;
+use crate::page::{Chart, Figure, Page};
+use crate::run::{Run, Sample};
+use crate::tables::short;
+
+/// A motion with what was recorded of it beside the attitude.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    title: String,
+    about: String,
+    figure: Figure,
+    times: Vec<f64>,
+    attitudes: Vec<UnitQuaternion<f64>>,
+    charts: Vec<Chart>,
+}
+
+/// A recording isn't a scene, but it has an end.
+const MOST_BYTES: u64 = 1 << 30;
+
+impl Recording {
+    /// Reads a table that `liestep run --csv` wrote: comma-separated values below names. It needs the time and the
+    /// quaternion; energy, momentum and velocity are drawn where they are there.
+    ///
+    /// # Errors
+    ///
+    /// The first [`Mistake`] in it.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Mistake> {
+        let path = path.as_ref();
+        let length = fs::metadata(path).map_err(|cause| Mistake::unreadable(path, &cause))?.len();
+        if length > MOST_BYTES {
+            return Err(Mistake::at(path, (1, 1), format!("has more than {MOST_BYTES} bytes")));
+        }
+        let bytes = fs::read(path).map_err(|cause| Mistake::unreadable(path, &cause))?;
+        let text = String::from_utf8(bytes).map_err(|error| Mistake::not_text(path, &error))?;
+        let wrong = |line, column, message: String| Mistake::at(path, (line, column), message);
+        let (names, columns) = numbers(&text).map_err(|(line, column, message)| wrong(line, column, message))?;
+        let get = |name: &str| names.iter().position(|other| *other == name).map(|place| columns[place].clone());
+        let all = |column: Column| column.names().iter().map(|name| get(name)).collect::<Option<Vec<_>>>();
+        let missing = |column: Column| {
+            let names = column.names().join(", ");
+            wrong(1, 1, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
+        };
+        let times = get("time_s").ok_or_else(|| missing(Column::Time))?;
+        if times.is_empty() {
+            return Err(wrong(2, 1, "has no row".to_owned()));
+        }
+        if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
+            return Err(wrong(row + 3, 1, "is not later than the row before".to_owned()));
+        }
+        let [w, x, y, z] = &all(Column::Quaternion).ok_or_else(|| missing(Column::Quaternion))?[..] else {
+            return Err(missing(Column::Quaternion));
+        };
+        let attitude = |row: usize| {
+            let quaternion = Quaternion::new(w[row], x[row], y[row], z[row]);
+            UnitQuaternion::try_new(quaternion, 0.5).filter(|unit| (quaternion.norm() - unit.norm()).abs() < 0.01)
+        };
+        let attitudes = (0..times.len())
+            .map(|row| attitude(row).ok_or_else(|| wrong(row + 2, 1, "the quaternion isn't a unit one".to_owned())))
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut charts = vec![tilt(&attitudes, &Vector3::z())];
+        if let Some(energy) = get("energy_J") {
+            charts.push(energy_error(&energy));
+        }
+        if let Some([x, y, z]) = all(Column::SpatialMomentum).as_deref() {
+            let momentum: Vec<_> = (0..times.len()).map(|row| Vector3::new(x[row], y[row], z[row])).collect();
+            charts.push(momentum_error(&momentum));
+        }
+        if let Some([x, y, z]) = all(Column::Velocity).as_deref() {
+            charts.push(rates([x.clone(), y.clone(), z.clone()]));
+        }
+        let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let figure = Figure::of(&Matrix3::identity(), None, &Vector3::z());
+        Ok(Self { title, about: path.display().to_string(), figure, times, attitudes, charts })
+    }
+
+    fn of(scene: &SceneFile, run: &Run) -> Self {
+        let samples = run.samples();
+        let collect = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).collect::<Vec<_>>();
+        let attitudes: Vec<_> = samples.iter().map(|sample| sample.attitude.to_quaternion()).collect();
+        let momentum: Vec<_> = samples.iter().map(Sample::spatial_momentum).collect();
+        let (axis, arm) = (scene.picture.axis.0, scene.gravity.map(|gravity| gravity.rho.value));
+        let charts = vec![
+            tilt(&attitudes, &axis),
+            energy_error(&collect(&|sample| sample.energy)),
+            momentum_error(&momentum),
+            rates([0, 1, 2].map(|k| collect(&|sample| sample.velocity[k]))),
+        ];
+        Self {
+            title: scene.title.clone(),
+            about: format!("{}, {} steps of {} s", scene.sum(), run.steps(), short(run.step())),
+            figure: Figure::of(scene.body.inertia().as_matrix(), arm, &axis),
+            times: collect(&|sample| sample.time),
+            attitudes,
+            charts,
+        }
+    }
+
+    /// One page with all that it needs, which plays the motion in a browser: the body and the path of its axis in space,
+    /// and what was recorded over time.
+    #[must_use]
+    pub fn page(&self) -> String {
+        let Self { title, about, figure, times, attitudes, charts } = self;
+        Page { title, about, figure, times, attitudes, charts }.to_string()
+    }
+}
+
+impl SceneFile {
+    /// As [`Recording::page`], of a run of this scene.
+    #[must_use]
+    pub fn page(&self, run: &Run) -> String {
+        Recording::of(self, run).page()
+    }
+}
+
+fn tilt(attitudes: &[UnitQuaternion<f64>], axis: &Vector3<f64>) -> Chart {
+    let degrees = attitudes.iter().map(|attitude| (attitude * axis).angle(&Vector3::z()).to_degrees());
+    Chart::linear("Tilt of the axis from e₃", "°", vec![("tilt", degrees.collect())])
+}
+
+fn energy_error(energy: &[f64]) -> Chart {
+    let start = energy.first().copied().unwrap_or_default();
+    let error = energy.iter().map(|energy| (energy - start).abs()).collect();
+    Chart::logarithmic("Energy, from its start", "J", vec![("energy", error)])
+}
+
+fn momentum_error(momentum: &[Vector3<f64>]) -> Chart {
+    let start = momentum.first().copied().unwrap_or_default();
+    let error = |length: fn(Vector3<f64>) -> f64| momentum.iter().map(|m| length(m - start)).collect();
+    let lines = vec![("along e₃", error(|m| m.z.abs())), ("all", error(|m| m.norm()))];
+    Chart::logarithmic("Momentum in space, from its start", "kg m²/s", lines)
+}
+
+fn rates(components: [Vec<f64>; 3]) -> Chart {
+    let lines = ["Ω₁", "Ω₂", "Ω₃"].into_iter().zip(components).collect();
+    Chart::linear("Angular velocity in the body", "rad/s", lines)
+}
+
+type Table<'a> = (Vec<&'a str>, Vec<Vec<f64>>);
+
+/// Names and columns of comma-separated values, or line, column and what is wrong.
+fn numbers(text: &str) -> Result<Table<'_>, (usize, usize, String)> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = (1..).zip(text.lines());
+    let names: Vec<&str> = lines.next().map(|(_, line)| line.split(',').map(str::trim).collect()).unwrap_or_default();
+    let mut columns = vec![Vec::new(); names.len()];
+    for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+        let mut place = 1;
+        let mut found = 0;
+        for (column, cell) in line.split(',').enumerate() {
+            let value = cell.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+            let value = value.ok_or_else(|| (number, place, "isn't a finite number".to_owned()))?;
+            if let Some(values) = columns.get_mut(column) {
+                values.push(value);
+            }
+            place += cell.chars().count() + 1;
+            found = column + 1;
+        }
+        if found != names.len() {
+            return Err((number, 1, format!("has {found} values below {} names", names.len())));
+        }
+    }
+    Ok((names, columns))
+}
