@@ -35,6 +35,7 @@ fn setup_errors() {
         SetupError::VaryingInertia,
         SetupError::BiasMismatch,
         SetupError::NoForceGradient,
+        SetupError::NoSecondDerivatives,
         SetupError::PotentialMismatch,
         SetupError::Unlike { lane: 3 },
     ];
@@ -52,6 +53,7 @@ fn setup_errors() {
             SetupError::VaryingInertia => &["inertia", "advected", "same everywhere"],
             SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
+            SetupError::NoSecondDerivatives => &["linearised", "choose a scheme without"],
             SetupError::PotentialMismatch => &["another potential"],
             SetupError::Unlike { .. } => &["lane 3", "another method"],
         };

@@ -84,7 +84,7 @@ fn statements(emitter: &Emitter, linearisation: &Linearisation, outputs: &[NodeI
     };
     let (lets, values) = emitter.statements(graph, outputs, &given);
     let inverse = stages::uses(graph, outputs, emitter.derived.directions.small_inverse).then(
-        || quote_spanned!(span=> let inverse_increment = #private::inverse_increment::<Self::Group, _, _>(increment);),
+        || quote_spanned!(span=> let inverse_increment = <Self::Group as #private::LieGroup>::inverse_increment(increment);),
     );
     (quote_spanned!(span=> #inverse #lets), values)
 }
