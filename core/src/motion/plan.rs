@@ -76,6 +76,9 @@ pub trait Plan<S: Effect> {
         Ok(iterations)
     }
 
+    /// Whether a step is a [`run`](Self::run) of one, to the bit and in what an error leaves: then only that is compiled.
+    const STEPS_BY_RUNS: bool = false;
+
     /// Adds an impulse to the momentum between two steps, and to what is kept of it.
     #[inline(always)]
     fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, impulse: &Vector<S>) {

@@ -22,6 +22,12 @@ impl StepReport {
     pub const fn of(iterations: u32) -> Self {
         Self { iterations, remedy: None }
     }
+
+    /// Of a step that was made as a run of one.
+    #[inline(always)]
+    pub(crate) fn of_run(iterations: u64) -> Self {
+        Self::of(u32::try_from(iterations).unwrap_or(u32::MAX))
+    }
 }
 
 /// What was done in the place of a step that has no solution.

@@ -8,7 +8,7 @@ use crate::mechanics::{
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::{Plan, Steerable};
+use crate::motion::plan::{Plan, Steerable, rare_step};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -147,7 +147,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
     #[inline]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
-        let made = dispatch(Step(self, state));
+        let made = if const { P::STEPS_BY_RUNS } {
+            self.run_unexplained(state, 1).map(StepReport::of_run)
+        } else {
+            dispatch(Step(self, state))
+        };
         match made {
             Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
             made => made,
@@ -200,7 +204,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
         let mut next = state.motion;
         let mut kept = part.keep(scene, &next);
-        part.step(scene, &mut next, &mut kept).map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
+        rare_step(&part, scene, &mut next, &mut kept).map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
         next.steps = state.steps;
         Ok(next)
     }

@@ -179,14 +179,14 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
     #[inline(always)]
     fn step<M: Summation<SO3, S::Advected>>(
         &self,
-        _: &S,
+        scene: &S,
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
-        let iterations = self.advance(kept)?;
-        self.read_off(motion, kept, 1);
-        Ok(StepReport::of(iterations))
+        self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
+
+    const STEPS_BY_RUNS: bool = true;
 
     /// Attitude and momentum are read off at the end.
     #[inline(always)]

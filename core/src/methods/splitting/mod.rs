@@ -315,9 +315,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
         motion: &mut M,
         kept: &mut (),
     ) -> Result<StepReport, StepError> {
-        let iterations = self.run(scene, motion, kept, 1)?;
-        Ok(StepReport::of(u32::try_from(iterations).unwrap_or(u32::MAX)))
+        self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
+
+    const STEPS_BY_RUNS: bool = true;
 
     /// The last drift of a step and the first of the next are made as one.
     #[inline(always)]

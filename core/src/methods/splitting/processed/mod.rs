@@ -192,9 +192,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
-        let iterations = self.run(scene, motion, kept, 1)?;
-        Ok(StepReport::of(u32::try_from(iterations).unwrap_or(u32::MAX)))
+        self.run(scene, motion, kept, 1).map(StepReport::of_run)
     }
+
+    const STEPS_BY_RUNS: bool = true;
 
     #[inline(always)]
     fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
