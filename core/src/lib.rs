@@ -61,6 +61,7 @@
 //! | feature | |
 //! |---|---|
 //! | `dispatch` (default) | lanes and collocation take the vector instructions that the machine is found to have; no digit depends on it |
+//! | `glam033`, `mint` | nalgebra's vectors, matrices and rotations are converted from and to those of glam 0.33 and of mint; attitudes by way of `UnitQuaternion` |
 //! | `serde` | [`Stepper::checkpoint`](motion::Stepper#method.checkpoint): files that a run goes on from, bit for bit |
 //!
 //! # How it is built

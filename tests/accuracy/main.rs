@@ -8,6 +8,7 @@
 mod composition;
 mod conditions;
 mod convergence;
+mod events;
 mod exact_body;
 mod for_accuracy;
 mod gauss;

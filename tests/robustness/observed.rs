@@ -11,7 +11,7 @@ use liestep::mechanics::Sum;
 use liestep::methods::CotangentGauss;
 use liestep::motion::AnyStepper;
 use liestep::prelude::*;
-use liestep::with::{Background, Csv, Ended, Reason, RecordError, Recorder, RunError, Table};
+use liestep::with::{Background, Csv, Ended, Event, Reason, RecordError, Recorder, RunError, Table, sections};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const VELOCITY: Vector3<f64> = Vector3::new(0.5, 2.0, 12.0);
@@ -134,6 +134,93 @@ fn given_times_are_shown_in_order() {
         let error = stepper.observed(&mut start.clone()).at(times, |_| ()).until(1.0).unwrap_err();
         assert!(matches!(error, RunError::Time { .. }), "{error}");
     }
+}
+
+/// What happens in one step is shown in its order, given times among it, and the steps stay what they are.
+#[test]
+fn events_happen_in_their_order() {
+    let (stepper, start) = top(0.05);
+    let (mut state, mut alone) = (start.clone(), start.clone());
+    let seen = RefCell::new(Vec::new());
+    let axis = Vector3::x();
+    let times = (0..200).map(|k| 0.005 * f64::from(k));
+    let normals = [0.0, 0.5, 1.0, 1.5].map(|angle: f64| Vector3::new(angle.cos(), angle.sin(), 0.0));
+    let mut run = stepper.observed(&mut state).at(times, |now| seen.borrow_mut().push((now.time(), 9)));
+    for (k, (normal, event)) in
+        normals.into_iter().zip([Event::rising(), Event::falling(), Event::crossing(), Event::rising()]).enumerate()
+    {
+        let seen = &seen;
+        run = run.event(event, sections::plane(axis, normal), move |now| {
+            assert!(now.attitude().as_matrix().column(0).dot(&normal).abs() < 1e-14, "off the plane");
+            let rises = now.rising().unwrap();
+            assert!(if k == 0 || k == 3 { rises } else { k == 2 || !rises });
+            seen.borrow_mut().push((now.time(), k));
+        });
+    }
+    run.until(1.0).unwrap();
+    stepper.run(&mut alone, 20).unwrap();
+    assert_eq!(state, alone);
+    let seen = seen.into_inner();
+    assert!(seen.is_sorted_by(|a, b| a.0 <= b.0), "{seen:?}");
+    let count = |event| seen.iter().filter(|(_, which)| *which == event).count();
+    // The body turns about twice a second, and a crossing in both directions counts twice.
+    assert!(count(9) == 200 && (1..4).contains(&count(0)) && count(2).abs_diff(2 * count(1)) < 2, "{seen:?}");
+    let events: Vec<_> = seen.iter().filter(|(_, which)| *which != 9).collect();
+    let step = |time: f64| (time / 0.05).floor();
+    let shared = events.windows(2).any(|pair| step(pair[0].0).total_cmp(&step(pair[1].0)).is_eq());
+    assert!(shared, "no two events in a step: {seen:?}");
+}
+
+#[test]
+fn an_event_may_end_the_run() {
+    let (stepper, start) = top(0.01);
+    let mut state = start.clone();
+    let mut at = Vec::new();
+    let ended = stepper
+        .observed(&mut state)
+        .event(Event::crossing(), |now| now.time() - 0.05, |_| ())
+        .event(Event::falling().terminal(), |now| 0.103 - now.time(), |now| at.push(**now))
+        .event(Event::rising(), |now| now.time() - 0.109, |_| -> () { panic!("it is later") })
+        .every(1, |now| assert!(now.steps() < 11, "the run has ended"))
+        .until(1.0)
+        .unwrap();
+    let Reason::Event { event: 1, time } = ended.reason else { panic!("{ended:?}") };
+    assert!((time - 0.103).abs() < 1e-17 && state.steps() == 11, "{time}");
+    let expected = liestep::motion::Integrator::state_at(&stepper, &start, 0.103).unwrap();
+    assert!((at[0].momentum() - expected.momentum()).norm() < 1e-13);
+    // And goes on behind it.
+    let ended =
+        stepper.observed(&mut state).event(Event::crossing(), |now| now.time() - 0.103, |_| -> () { panic!("again") });
+    assert_eq!(ended.steps(5).unwrap().reason, Reason::Done);
+
+    // A zero at a step, to the bit, is one crossing; one at the start is none.
+    let count = RefCell::new(0);
+    stepper
+        .observed(&mut start.clone())
+        .event(Event::crossing(), |now| now.time() - stepper.step_size() * 7.0, |_| *count.borrow_mut() += 1)
+        .event(Event::crossing(), |now| now.time(), |_| -> () { panic!("at the start") })
+        .event(
+            Event::crossing(),
+            |now| (now.time() - stepper.step_size() * 7.0).powi(2),
+            |_| -> () { panic!("it touches") },
+        )
+        .until(0.2)
+        .unwrap();
+    assert_eq!(count.into_inner(), 1);
+
+    let mut state = start.clone();
+    let run = stepper.observed(&mut state).event(Event::rising(), |now| (0.055 - now.time()).sqrt(), |_| ());
+    let error = run.until(1.0).unwrap_err();
+    assert!(matches!(error, RunError::NotANumber { event: 0, time } if (0.055..0.061).contains(&time)), "{error}");
+    let flat = |bound| {
+        let mut state = start.clone();
+        stepper.observed(&mut state).event(Event::rising().curvature(bound), |_| 0.0, |_| ()).until(0.1)
+    };
+    for bound in [1.0, 1e300, f64::INFINITY, f64::NAN] {
+        let error = flat(bound).unwrap_err();
+        assert!(matches!(error, RunError::TooManyLooks { event: 0, time: 0.0 }), "{error}");
+    }
+    assert_eq!(flat(0.0).unwrap().steps, 10);
 }
 
 /// A pendulum that falls until it is too fast for its steps: rows up to there are written, and the state is the last that

@@ -6,6 +6,7 @@
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod compensated;
+mod frames;
 mod record;
 mod remedies;
 mod run;
@@ -14,6 +15,7 @@ pub mod sections;
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{Carried, Compensable, Compensated};
+pub use frames::Frames;
 pub use record::{Background, Column, Csv, RecordError, Recorder, Sink, SinkError, Table};
 pub use remedies::{Instead, OrElse, Substeps};
 pub use run::{Ended, Event, Reason, Run, RunError};

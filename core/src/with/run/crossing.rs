@@ -3,6 +3,7 @@
 use super::event::side;
 
 /// What is known of the function, and how closely it is looked at.
+#[derive(Clone, Copy)]
 pub(super) struct Looks {
     /// Its values at 0 and 1.
     pub(super) ends: [f64; 2],

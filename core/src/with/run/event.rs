@@ -62,10 +62,12 @@ impl Event {
     }
 }
 
+type Function<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>;
+
 /// An event, and what is done when it happens.
 pub(super) struct Watched<'a, I: Integrator> {
     event: Event,
-    function: Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>,
+    function: Function<'a, I>,
     then: Observer<'a, I>,
     /// At the end of the last step.
     value: f64,

@@ -1,0 +1,112 @@
+//! Motion at the times of a renderer: whole steps are made as time goes by, and what is left of it is a part of one.
+
+use core::fmt;
+
+use crate::error::StepError;
+use crate::motion::{Integrator, Motion, ScalarIn, StateIn};
+use crate::numbers::real;
+
+/// A motion that is shown at times of its viewer's: frames of a game, samples of a loudspeaker, slow motion.
+///
+/// The steps have their fixed length whatever the frames', so the motion is the same at all rates, to the bit. What of the
+/// time isn't a whole step goes on counting, and the frame shows the motion then: a [`part`](Integrator::part) of a step
+/// ahead of the last one made, neither behind it nor interpolated, so that nothing lags, attitudes are rotations, and
+/// momentum maps are kept.
+///
+/// # Examples
+///
+/// A spinning top at 60 frames a second, one of which comes late.
+///
+/// ```
+/// use liestep::effects::{Gravity, RigidBody};
+/// use liestep::nalgebra::{UnitQuaternion, Vector3};
+/// use liestep::with::Frames;
+/// use liestep::{NonstandardInertia, Stepper};
+///
+/// let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))? };
+/// let top = body + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let stepper = Stepper::new(top, 0.01)?.or_substeps(16);
+/// let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.3, 0.0, 0.0));
+/// let state = stepper.start(tilted, Vector3::new(0.0, 0.0, 20.0))?;
+///
+/// let mut frames = Frames::new(stepper, state);
+/// for frame in 0..120 {
+///     let elapsed = if frame == 60 { 0.1 } else { 1.0 / 60.0 };
+///     let now = frames.advance(elapsed)?;
+///     let shown: UnitQuaternion<f64> = now.attitude().into(); // for the renderer
+///     assert!((shown * Vector3::z()).z > 0.9);
+/// }
+/// assert!((frames.time() - (119.0 / 60.0 + 0.1)).abs() < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Frames<I: Integrator> {
+    integrator: I,
+    state: StateIn<I>,
+    /// What of the time isn't a whole step, in steps.
+    left: f64,
+    most_steps: u64,
+}
+
+/// After a pause no more than so many steps are made up for in one frame, unless another number is asked for.
+const MOST_STEPS: u64 = 1000;
+
+impl<I: Integrator> Frames<I>
+where
+    ScalarIn<I>: Into<f64>,
+{
+    /// The motion from this state.
+    pub fn new(integrator: I, state: StateIn<I>) -> Self {
+        Self { integrator, state, left: 0.0, most_steps: MOST_STEPS }
+    }
+
+    /// Makes at most so many steps in one frame, where 1000 are the rule; time beyond that isn't made up for, as after a
+    /// debugger has held the program.
+    #[must_use]
+    pub fn with_at_most(mut self, steps: u64) -> Self {
+        self.most_steps = steps;
+        self
+    }
+
+    /// Goes on by the time of a frame, s, and returns the motion then.
+    ///
+    /// A time that isn't positive, or isn't a number, is none.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] where there is no step. The state is then the last that there is, and the time of the frame is lost.
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
+    pub fn advance(&mut self, elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
+        let h: f64 = self.integrator.step_size().into();
+        let due = self.left + elapsed.max(0.0) / h.abs();
+        // A step of zero makes none.
+        let due = if due.is_finite() { due } else { self.most_steps as f64 };
+        let whole = due.floor().min(self.most_steps as f64);
+        self.left = 0.0;
+        for _ in 0..whole as u64 {
+            self.integrator.step(&mut self.state)?;
+        }
+        self.left = if due - whole < 1.0 { due - whole } else { 0.0 };
+        self.integrator.part(&self.state, real(self.left))
+    }
+
+    /// The time that is shown, s.
+    pub fn time(&self) -> f64 {
+        self.integrator.time(&self.state).into() + self.left * self.integrator.step_size().into()
+    }
+
+    /// The last step that was made.
+    pub fn state(&self) -> &StateIn<I> {
+        &self.state
+    }
+
+    /// What steps the motion.
+    pub fn integrator(&self) -> &I {
+        &self.integrator
+    }
+}
+
+impl<I: Integrator> fmt::Debug for Frames<I> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Frames").field("steps", &self.state.steps).field("left", &self.left).finish_non_exhaustive()
+    }
+}
