@@ -1,0 +1,238 @@
+//! What is to be computed: members, steps, and what is kept of them.
+
+use core::fmt;
+
+use liestep::motion::{Batchable, Integrator};
+use simba::simd::AutoF64x8;
+
+use crate::digest::Digest;
+use crate::draw::Member;
+use crate::group::{Grouped, Start, in_lanes, one_by_one};
+use crate::reduce::Reduction;
+use crate::{Failure, Table};
+
+/// A member at one time: what is kept is computed from it.
+#[derive(Debug)]
+pub struct Run<'a, M: Integrator> {
+    /// The member's number.
+    pub member: u64,
+    /// Its stepper, with its scene.
+    pub stepper: &'a M,
+    /// Its state.
+    pub state: &'a M::State,
+}
+
+type Make<M> = dyn Fn(&Member<'_>) -> Result<Start<M>, Failure> + Send + Sync;
+type Value<M> = dyn Fn(&Run<'_, M>) -> f64 + Send + Sync;
+type Values<M> = dyn Fn(&Run<'_, M>, &mut Vec<f64>) + Send + Sync;
+
+/// Many motions of one kind: who they are, how long they take, and what is kept of them.
+///
+/// It is a plan, and is run by [`run`](Self::run). What comes out depends on the plan alone: not on how many threads or
+/// processes there are, who of them has what, in which order, or how often a run was interrupted. Each member moves, bit
+/// for bit, as its stepper [runs](Integrator::run) it alone, in pieces of [`PIECE`](Self::PIECE) steps from one kept
+/// time to the next; but for a splitting pieces don't matter.
+pub struct Ensemble<M: Integrator> {
+    pub(crate) name: String,
+    pub(crate) members: u64,
+    pub(crate) steps: u64,
+    pub(crate) seed: u64,
+    pub(crate) table: Option<Table>,
+    pub(crate) every: Option<u64>,
+    pub(crate) chunk: Option<u64>,
+    pub(crate) make: Box<Make<M>>,
+    pub(crate) grouped: Grouped<M>,
+    pub(crate) names: Vec<String>,
+    pub(crate) columns: Vec<Box<Values<M>>>,
+    pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
+}
+
+impl<M: Integrator> Ensemble<M> {
+    /// How many steps a member makes between two looks whether it can go on. One that can't makes the last piece again,
+    /// step by step.
+    pub const PIECE: u64 = 64;
+
+    /// So many members of so many steps, eight at a time in [lanes](liestep::numbers::Real#lanes).
+    ///
+    /// The name tells one ensemble from another in the files. `make` is a member's stepper and its start, or why there is
+    /// none; it has to give the same each time.
+    ///
+    /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Any other
+    /// is taken by [`one_by_one`](Self::one_by_one).
+    pub fn new(
+        name: &str,
+        members: u64,
+        steps: u64,
+        make: impl Fn(&Member<'_>) -> Result<Start<M>, Failure> + Send + Sync + 'static,
+    ) -> Self
+    where
+        M: Batchable<AutoF64x8> + 'static,
+    {
+        Self::of(name, members, steps, Box::new(make), in_lanes::<M>)
+    }
+
+    /// As [`new`](Self::new), for any stepper: members take their turns.
+    pub fn one_by_one(
+        name: &str,
+        members: u64,
+        steps: u64,
+        make: impl Fn(&Member<'_>) -> Result<Start<M>, Failure> + Send + Sync + 'static,
+    ) -> Self
+    where
+        M: Clone + 'static,
+    {
+        Self::of(name, members, steps, Box::new(make), one_by_one::<M>)
+    }
+
+    fn of(name: &str, members: u64, steps: u64, make: Box<Make<M>>, grouped: Grouped<M>) -> Self {
+        Self {
+            name: name.to_owned(),
+            members,
+            steps,
+            seed: 0,
+            table: None,
+            every: None,
+            chunk: None,
+            make,
+            grouped,
+            names: Vec::new(),
+            columns: Vec::new(),
+            reductions: Vec::new(),
+        }
+    }
+
+    /// What members draw their numbers with; zero if nothing is said.
+    #[must_use]
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// The table of which member `k` reads row `k`, by [`Member::cell`].
+    #[must_use]
+    pub fn over(mut self, table: Table) -> Self {
+        self.table = Some(table);
+        self
+    }
+
+    /// Keeps the columns at the start, after each so many steps and at the end; if nothing is said, at the end only.
+    ///
+    /// # Panics
+    ///
+    /// Where the number is zero.
+    #[must_use]
+    pub fn every(mut self, steps: u64) -> Self {
+        assert!(steps > 0, "columns are kept after each so many steps, and that isn't none");
+        self.every = Some(steps);
+        self
+    }
+
+    /// So many members to a chunk, which is what one worker makes at a time and one file holds.
+    ///
+    /// If nothing is said it is about a second's work of one core, a million rows at most.
+    ///
+    /// # Panics
+    ///
+    /// Where the number is zero.
+    #[must_use]
+    pub fn chunks_of(mut self, members: u64) -> Self {
+        assert!(members > 0, "a chunk has members");
+        self.chunk = Some(members);
+        self
+    }
+
+    /// Keeps columns of these names.
+    #[must_use]
+    pub fn keep<const N: usize>(
+        mut self,
+        names: [&str; N],
+        values: impl Fn(&Run<'_, M>) -> [f64; N] + Send + Sync + 'static,
+    ) -> Self {
+        self.names.extend(names.map(str::to_owned));
+        self.columns.push(Box::new(move |run, row| row.extend(values(run))));
+        self
+    }
+
+    /// Reduces a value of every member that has come to its end.
+    #[must_use]
+    pub fn reduce(
+        mut self,
+        name: &str,
+        reduction: Reduction,
+        value: impl Fn(&Run<'_, M>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.reductions.push((name.to_owned(), reduction, Box::new(value)));
+        self
+    }
+
+    /// How many chunks there are.
+    #[must_use]
+    pub fn chunks(&self) -> u64 {
+        self.members.div_ceil(self.members_of_chunk())
+    }
+
+    pub(crate) fn members_of_chunk(&self) -> u64 {
+        // What a core makes in a second of the steps of (3.13) in lanes.
+        const STEPS: u64 = 1 << 25;
+        const ROWS: u64 = 1 << 20;
+        self.chunk.unwrap_or_else(|| {
+            let rows = self.every.map_or(1, |every| self.steps / every + 2);
+            let members = (STEPS / self.steps.max(1)).min(ROWS / rows.min(ROWS)).clamp(1, 1 << 16);
+            members.next_multiple_of(crate::group::LANES as u64)
+        })
+    }
+
+    pub(crate) fn member(&self, number: u64) -> Member<'_> {
+        Member { number, seed: self.seed, table: self.table.as_ref() }
+    }
+
+    /// What tells this plan from another: all its numbers and names, its table, and what is kept of its first member at
+    /// the start and after a piece, as a function can't be compared.
+    #[must_use]
+    pub fn fingerprint(&self) -> u64 {
+        let mut digest = Digest::default();
+        digest.text(&self.name);
+        let table = self.table.as_ref().map_or(0, Table::digest);
+        let every = self.every.unwrap_or(0);
+        for number in [self.members, self.steps, self.seed, every, self.members_of_chunk(), table] {
+            digest.number(number);
+        }
+        self.names.iter().for_each(|name| digest.text(name));
+        for (name, reduction, _) in &self.reductions {
+            digest.text(name);
+            digest.text(&reduction.begin().to_line());
+        }
+        match (self.make)(&self.member(0)) {
+            Ok((stepper, mut state)) => {
+                for steps in [0, Self::PIECE.min(self.steps)] {
+                    if stepper.run(&mut state, steps).is_err() {
+                        digest.number(steps);
+                    }
+                    let run = Run { member: 0, stepper: &stepper, state: &state };
+                    let mut row = Vec::new();
+                    self.columns.iter().for_each(|values| values(&run, &mut row));
+                    row.extend(self.reductions.iter().map(|(_, _, value)| value(&run)));
+                    for value in row {
+                        digest.number(value.to_bits());
+                    }
+                }
+            }
+            Err(failure) => digest.text(&failure.to_line()),
+        }
+        digest.value()
+    }
+}
+
+impl<M: Integrator> fmt::Debug for Ensemble<M> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, members, steps, seed, every, names, .. } = self;
+        f.debug_struct("Ensemble")
+            .field("name", name)
+            .field("members", members)
+            .field("steps", steps)
+            .field("seed", seed)
+            .field("every", every)
+            .field("columns", names)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,82 @@
+//! Ensembles: many motions of one kind, run on all cores or on a cluster.
+//!
+//! Members are drawn by a seed or read from a table, run eight at a time in SIMD lanes and on all cores, and kept in
+//! files that any kill leaves whole. What comes out is a function of the plan alone, to the last bit.
+//!
+//! ```
+//! use liestep::effects::{Gravity, PrincipalBody};
+//! use liestep::mechanics::DiagonalNonstandardInertia;
+//! use liestep::{SO3, Stepper};
+//! use liestep_ensemble::{Ensemble, Local, Reduction, Store};
+//! use nalgebra::Vector3;
+//!
+//! let ensemble = Ensemble::new("tilted tops", 100, 1_000, |member| {
+//!     let moments = Vector3::new(3.0, 3.0, member.normal("J_3", 4.0, 0.1));
+//!     let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
+//!     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+//!     let stepper = Stepper::new(body + gravity, 0.01)?;
+//!     let tilt = member.uniform("tilt", 0.2..0.6);
+//!     let state = stepper.start(SO3::exp(Vector3::x() * tilt), Vector3::new(0.0, 0.0, 12.0))?;
+//!     Ok((stepper, state))
+//! })
+//! .seed(7)
+//! .keep(["x", "y", "z"], |run| (run.state.attitude().as_matrix() * Vector3::z()).into())
+//! .reduce("energy", Reduction::Moments, |run| run.stepper.energy(run.state));
+//! # let out = std::env::temp_dir().join(format!("liestep-ensemble-page-{}", std::process::id()));
+//! # let _ = std::fs::remove_dir_all(&out);
+//!
+//! let report = ensemble.run(&Local::threads(0), &Store::folder(&out)?)?; // goes on where it was
+//! assert_eq!((report.finished, report.failed), (100, 0));
+//! println!("{:?}", report.reduced("energy"));
+//! # std::fs::remove_dir_all(&out)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What it is made of
+//!
+//! ```text
+//! Ensemble       members, steps, seed or table, what is kept           → fingerprint
+//! member k       a function of the seed and k, or of row k
+//! chunk c        a function of the plan and c: members in lanes, those that fail with their errors
+//! Store          a folder of shards, one to a chunk: written whole or not at all
+//! Engine         who makes which chunk: threads here, shares of a job array, MPI
+//! ```
+//!
+//! | | |
+//! |---|---|
+//! | draw members | [`Member`] |
+//! | read members from a table | [`Table`], [`Ensemble::over`] |
+//! | keep columns at the end, or at times | [`Ensemble::keep`], [`Ensemble::every`] |
+//! | moments and histograms of the ends | [`Ensemble::reduce`] |
+//! | find out who failed, when and why | [`Store::shards`], [`Failed`] |
+//! | read the files elsewhere | [`Store`] |
+//! | use several machines | [`engines`] |
+//!
+//! # Not here
+//!
+//! Points where a motion crosses a surface aren't found: between steps there is no state yet. Columns at times have the
+//! nodes of the motion only.
+
+mod chunk;
+mod digest;
+mod draw;
+mod engine;
+pub mod engines;
+mod ensemble;
+mod failure;
+mod group;
+mod reduce;
+mod report;
+mod shard;
+mod store;
+mod table;
+
+pub use draw::Member;
+pub use engine::{Engine, Local, MakeChunk, share_of};
+pub use ensemble::{Ensemble, Run};
+pub use failure::{Failed, Failure};
+pub use reduce::{Histogram, Moments, Reduced, Reduction};
+pub use report::{Progress, Report};
+pub use shard::{Rows, Shard, Status};
+pub use store::{Fault, Store, StoreError};
+pub use table::{Table, TableError};

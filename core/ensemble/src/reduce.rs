@@ -1,0 +1,233 @@
+//! What is made of all members while they run.
+//!
+//! A chunk's share is made in the order of its members, and the shares are merged in the order of the chunks, so that the
+//! bits of a sum don't depend on who made which.
+
+use core::ops::Range;
+use core::str::FromStr;
+
+/// How values are reduced.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reduction {
+    /// Count, mean, variance and range.
+    Moments,
+    /// Counts of equal parts of a range.
+    Histogram {
+        /// From where to where.
+        range: Range<f64>,
+        /// In how many parts.
+        bins: usize,
+    },
+}
+
+/// Values reduced.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reduced {
+    /// By [`Reduction::Moments`].
+    Moments(Moments),
+    /// By [`Reduction::Histogram`].
+    Histogram(Histogram),
+}
+
+/// Count, mean, variance and range of values; those that aren't finite are counted apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moments {
+    /// How many were finite.
+    pub count: u64,
+    /// How many weren't.
+    pub not_finite: u64,
+    /// The mean of the finite ones; zero of none.
+    pub mean: f64,
+    /// The sum of squares about the mean.
+    pub squares: f64,
+    /// The least, or infinity.
+    pub least: f64,
+    /// The largest, or minus infinity.
+    pub largest: f64,
+}
+
+impl Moments {
+    const NONE: Self =
+        Self { count: 0, not_finite: 0, mean: 0.0, squares: 0.0, least: f64::INFINITY, largest: f64::NEG_INFINITY };
+
+    /// The variance of the distribution that the values are a sample of; NaN of fewer than two.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // members
+    pub fn variance(&self) -> f64 {
+        if self.count < 2 { f64::NAN } else { self.squares / (self.count - 1) as f64 }
+    }
+
+    /// T. F. Chan, G. H. Golub, R. J. `LeVeque`, *Updating formulae and a pairwise algorithm for computing sample variances*,
+    /// 1979.
+    #[allow(clippy::cast_precision_loss)] // members
+    fn merge(&mut self, other: &Self) {
+        self.not_finite += other.not_finite;
+        if other.count == 0 {
+            return;
+        }
+        let count = self.count + other.count;
+        let (difference, share) = (other.mean - self.mean, other.count as f64 / count as f64);
+        self.squares += other.squares + difference * difference * self.count as f64 * share;
+        self.mean += difference * share;
+        self.count = count;
+        self.least = self.least.min(other.least);
+        self.largest = self.largest.max(other.largest);
+    }
+
+    fn add(&mut self, value: f64) {
+        let mut one = Self::NONE;
+        if value.is_finite() {
+            one = Self { count: 1, mean: value, least: value, largest: value, ..one };
+        } else {
+            one.not_finite = 1;
+        }
+        self.merge(&one);
+    }
+}
+
+/// Counts of values in equal parts of a range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    /// From where to where.
+    pub range: Range<f64>,
+    /// Of each part, its beginning included.
+    pub counts: Vec<u64>,
+    /// Of values below the range.
+    pub below: u64,
+    /// Of values from its end on.
+    pub above: u64,
+    /// Of what isn't a number.
+    pub not_a_number: u64,
+}
+
+impl Histogram {
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the range
+    fn add(&mut self, value: f64) {
+        let place = (value - self.range.start) / (self.range.end - self.range.start) * self.counts.len() as f64;
+        if place.is_nan() {
+            self.not_a_number += 1;
+        } else if place < 0.0 {
+            self.below += 1;
+        } else if let Some(count) = self.counts.get_mut(place as usize) {
+            *count += 1;
+        } else {
+            self.above += 1;
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.counts.iter_mut().zip(&other.counts).for_each(|(count, other)| *count += other);
+        self.below += other.below;
+        self.above += other.above;
+        self.not_a_number += other.not_a_number;
+    }
+}
+
+impl Reduction {
+    /// Of no values.
+    pub(crate) fn begin(&self) -> Reduced {
+        match self {
+            Self::Moments => Reduced::Moments(Moments::NONE),
+            Self::Histogram { range, bins } => Reduced::Histogram(Histogram {
+                range: range.clone(),
+                counts: vec![0; *bins],
+                below: 0,
+                above: 0,
+                not_a_number: 0,
+            }),
+        }
+    }
+}
+
+impl Reduced {
+    pub(crate) fn add(&mut self, value: f64) {
+        match self {
+            Self::Moments(moments) => moments.add(value),
+            Self::Histogram(histogram) => histogram.add(value),
+        }
+    }
+
+    /// Both have to be of one reduction.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        match (self, other) {
+            (Self::Moments(own), Self::Moments(other)) => own.merge(other),
+            (Self::Histogram(own), Self::Histogram(other)) => own.merge(other),
+            _ => {}
+        }
+    }
+
+    /// As numbers in a line; floats to their last bit.
+    pub(crate) fn to_line(&self) -> String {
+        match self {
+            Self::Moments(Moments { count, not_finite, mean, squares, least, largest }) => {
+                format!("moments {count} {not_finite} {mean:?} {squares:?} {least:?} {largest:?}")
+            }
+            Self::Histogram(Histogram { range, counts, below, above, not_a_number }) => {
+                let line = format!("histogram {:?} {:?} {below} {above} {not_a_number}", range.start, range.end);
+                core::iter::once(line).chain(counts.iter().map(|count| format!(" {count}"))).collect()
+            }
+        }
+    }
+
+    pub(crate) fn of_line(line: &str) -> Option<Self> {
+        let mut words = line.split(' ');
+        Some(match words.next()? {
+            "moments" => Self::Moments(Moments {
+                count: next(&mut words)?,
+                not_finite: next(&mut words)?,
+                mean: next(&mut words)?,
+                squares: next(&mut words)?,
+                least: next(&mut words)?,
+                largest: next(&mut words)?,
+            }),
+            "histogram" => Self::Histogram(Histogram {
+                range: next(&mut words)?..next(&mut words)?,
+                below: next(&mut words)?,
+                above: next(&mut words)?,
+                not_a_number: next(&mut words)?,
+                counts: words.map(|word| word.parse().ok()).collect::<Option<_>>()?,
+            }),
+            _ => return None,
+        })
+    }
+}
+
+fn next<'a, T: FromStr>(words: &mut impl Iterator<Item = &'a str>) -> Option<T> {
+    words.next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Reduced, Reduction};
+
+    #[test]
+    fn moments_are_those_of_the_values() {
+        let mut all = Reduction::Moments.begin();
+        for value in [1.0, 2.0, f64::NAN, 6.0] {
+            all.add(value);
+        }
+        let mut more = Reduction::Moments.begin();
+        for value in [-1.0, 7.0] {
+            more.add(value);
+        }
+        all.merge(&Reduction::Moments.begin());
+        all.merge(&more);
+        let Reduced::Moments(moments) = &all else { panic!("they are moments") };
+        assert_eq!((moments.count, moments.not_finite, moments.least, moments.largest), (5, 1, -1.0, 7.0));
+        // Of 1, 2, 6, −1 and 7: the mean 3, and 4 + 1 + 9 + 16 + 16 about it.
+        assert!((moments.mean - 3.0).abs() < 1e-15 && (moments.variance() - 46.0 / 4.0).abs() < 1e-14);
+        assert_eq!(Reduced::of_line(&all.to_line()), Some(all));
+    }
+
+    #[test]
+    fn a_histogram_counts_from_the_beginning_of_each_part() {
+        let mut histogram = Reduction::Histogram { range: -1.0..1.0, bins: 4 }.begin();
+        for value in [-1.0, -0.6, -0.5, 0.99, 1.0, -1.5, f64::NAN, f64::INFINITY] {
+            histogram.add(value);
+        }
+        assert_eq!(histogram.to_line(), "histogram -1.0 1.0 1 2 1 2 1 0 1");
+        assert_eq!(Reduced::of_line(&histogram.to_line()), Some(histogram.clone()));
+        histogram.merge(&histogram.clone());
+        assert_eq!(histogram.to_line(), "histogram -1.0 1.0 2 4 2 4 2 0 2");
+    }
+}

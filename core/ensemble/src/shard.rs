@@ -1,0 +1,189 @@
+//! What is kept of a chunk, and how it is written: a file of Arrow IPC.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::sync::Arc;
+
+use arrow_array::cast::AsArray as _;
+use arrow_array::types::{Float64Type, UInt8Type, UInt64Type};
+use arrow_array::{ArrayRef, Float64Array, RecordBatch, UInt8Array, UInt64Array};
+use arrow_ipc::reader::FileReader;
+use arrow_ipc::writer::FileWriter;
+use arrow_schema::{ArrowError, DataType, Field, Schema};
+
+use crate::failure::{Failed, Failure};
+use crate::reduce::Reduced;
+
+/// What has become of a member by the time of a row; in a file its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// 0: it was on its way.
+    Going,
+    /// 1: it was at its end.
+    Finished,
+    /// 2: its next step had no solution.
+    Stopped,
+    /// 3: it couldn't be made; its columns are NaN.
+    Impossible,
+}
+
+impl Status {
+    const ALL: [Self; 4] = [Self::Going, Self::Finished, Self::Stopped, Self::Impossible];
+}
+
+/// Rows, column by column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rows {
+    /// Whose they are.
+    pub member: Vec<u64>,
+    /// After how many steps.
+    pub step: Vec<u64>,
+    /// What had become of the member.
+    pub status: Vec<Status>,
+    /// What was kept.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Rows {
+    pub(crate) fn of_columns(count: usize) -> Self {
+        Self { member: vec![], step: vec![], status: vec![], columns: vec![vec![]; count] }
+    }
+
+    pub(crate) fn push(&mut self, member: u64, step: u64, status: Status, row: impl Iterator<Item = f64>) {
+        self.member.push(member);
+        self.step.push(step);
+        self.status.push(status);
+        self.columns.iter_mut().zip(row).for_each(|(column, value)| column.push(value));
+    }
+
+    pub(crate) fn append(&mut self, mut other: Self) {
+        self.member.append(&mut other.member);
+        self.step.append(&mut other.step);
+        self.status.append(&mut other.status);
+        self.columns.iter_mut().zip(&mut other.columns).for_each(|(column, other)| column.append(other));
+    }
+}
+
+/// What is kept of a chunk.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shard {
+    /// The [fingerprint](crate::Ensemble::fingerprint) of the plan.
+    pub plan: u64,
+    /// The number of the chunk.
+    pub chunk: u64,
+    /// The names of the columns.
+    pub names: Vec<String>,
+    /// By member and then by time.
+    pub rows: Rows,
+    /// How many members came to their ends.
+    pub finished: u64,
+    /// Those that didn't.
+    pub failures: Vec<Failed>,
+    /// What the ends were reduced to, in the order of the plan.
+    pub reduced: Vec<Reduced>,
+}
+
+/// The key of the schema's metadata that holds what isn't in rows. One only: the order of several isn't fixed.
+const KEY: &str = "liestep-ensemble";
+/// Another layout has another number.
+const FORMAT: &str = "format 1";
+
+impl Shard {
+    /// The file's bytes, the same each time.
+    pub(crate) fn to_bytes(&self) -> Result<Vec<u8>, ArrowError> {
+        let mut fields = vec![
+            Field::new("member", DataType::UInt64, false),
+            Field::new("step", DataType::UInt64, false),
+            Field::new("status", DataType::UInt8, false),
+        ];
+        fields.extend(self.names.iter().map(|name| Field::new(name, DataType::Float64, false)));
+        let metadata = HashMap::from([(KEY.to_owned(), self.summary())]);
+        let schema = Arc::new(Schema::new_with_metadata(fields, metadata));
+        let Rows { member, step, status, columns } = &self.rows;
+        let mut arrays: Vec<ArrayRef> = vec![
+            Arc::new(UInt64Array::from(member.clone())),
+            Arc::new(UInt64Array::from(step.clone())),
+            Arc::new(status.iter().map(|status| Some(*status as u8)).collect::<UInt8Array>()),
+        ];
+        arrays.extend(columns.iter().map(|column| Arc::new(Float64Array::from(column.clone())) as ArrayRef));
+        let mut bytes = Vec::new();
+        let mut writer = FileWriter::try_new(&mut bytes, &schema)?;
+        writer.write(&RecordBatch::try_new(schema, arrays)?)?;
+        writer.finish()?;
+        drop(writer);
+        Ok(bytes)
+    }
+
+    /// What a file holds that was written by [`to_bytes`](Self::to_bytes), and why it wasn't.
+    pub(crate) fn of_bytes(bytes: &[u8]) -> Result<Self, String> {
+        let reader = FileReader::try_new(Cursor::new(bytes), None).map_err(|error| error.to_string())?;
+        let schema = reader.schema();
+        let summary = schema.metadata().get(KEY).ok_or("it has no summary of a chunk")?;
+        let names: Vec<String> = schema.fields().iter().skip(3).map(|field| field.name().clone()).collect();
+        let mut shard = Self::of_summary(summary, names).ok_or("its summary can't be read")?;
+        for batch in reader {
+            shard.append(&batch.map_err(|error| error.to_string())?).ok_or("its columns are of other types")?;
+        }
+        Ok(shard)
+    }
+
+    fn append(&mut self, batch: &RecordBatch) -> Option<()> {
+        let [member, step, status, columns @ ..] = batch.columns() else { return None };
+        self.rows.member.extend(member.as_primitive_opt::<UInt64Type>()?.values());
+        self.rows.step.extend(step.as_primitive_opt::<UInt64Type>()?.values());
+        for status in status.as_primitive_opt::<UInt8Type>()?.values() {
+            self.rows.status.push(*Status::ALL.get(usize::from(*status))?);
+        }
+        for (column, more) in self.rows.columns.iter_mut().zip(columns) {
+            column.extend(more.as_primitive_opt::<Float64Type>()?.values());
+        }
+        Some(())
+    }
+
+    /// All that isn't in rows, line by line.
+    fn summary(&self) -> String {
+        let mut lines = vec![
+            FORMAT.to_owned(),
+            format!("plan {:016x}", self.plan),
+            format!("chunk {}", self.chunk),
+            format!("finished {}", self.finished),
+        ];
+        lines.extend(self.reduced.iter().map(|reduced| format!("reduced {}", reduced.to_line())));
+        lines.extend(
+            self.failures
+                .iter()
+                .map(|Failed { member, steps, failure }| format!("failed {member} {steps} {}", failure.to_line())),
+        );
+        lines.join("\n")
+    }
+
+    fn of_summary(summary: &str, names: Vec<String>) -> Option<Self> {
+        let mut lines = summary.lines();
+        if lines.next()? != FORMAT {
+            return None;
+        }
+        let mut value = |key: &str| lines.next()?.strip_prefix(key)?.strip_prefix(' ').map(str::to_owned);
+        let mut shard = Self {
+            plan: u64::from_str_radix(&value("plan")?, 16).ok()?,
+            chunk: value("chunk")?.parse().ok()?,
+            finished: value("finished")?.parse().ok()?,
+            rows: Rows::of_columns(names.len()),
+            names,
+            failures: Vec::new(),
+            reduced: Vec::new(),
+        };
+        for line in lines {
+            match line.split_once(' ')? {
+                ("reduced", reduced) => shard.reduced.push(Reduced::of_line(reduced)?),
+                ("failed", failed) => {
+                    let (member, rest) = failed.split_once(' ')?;
+                    let (steps, failure) = rest.split_once(' ')?;
+                    let (member, steps) = (member.parse().ok()?, steps.parse().ok()?);
+                    shard.failures.push(Failed { member, steps, failure: Failure::of_line(failure)? });
+                }
+                _ => return None,
+            }
+        }
+        Some(shard)
+    }
+}

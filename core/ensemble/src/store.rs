@@ -1,0 +1,236 @@
+//! A folder of shards, each of which is there whole or not at all.
+
+use core::fmt;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use crate::digest::Digest;
+use crate::shard::Shard;
+
+/// A folder that shards are written to and read from, `00000/00000012-0123456789abcdef.arrow`: a thousand to a folder,
+/// named by the number of the chunk and by a digest of the whole file.
+///
+/// A file is written beside, brought to the disk, and then renamed; the folder is brought to the disk, too. So whatever
+/// ends a run, a shard is there whole or not at all, and the next run makes what is missing. Several processes may write
+/// to one folder, on a shared file system too.
+///
+/// Every file is Arrow IPC and can be read without this library: `polars.read_ipc("out/*/*.arrow")`. Its columns are
+/// `member`, `step`, `status` (a [`Status`](crate::Status)) and those that are [kept](crate::Ensemble::keep).
+#[derive(Clone, Debug)]
+pub struct Store {
+    folder: PathBuf,
+}
+
+/// A file that isn't what it should be, with its path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// Its end is missing.
+    Truncated(PathBuf),
+    /// It has changed since it was written.
+    Altered(PathBuf),
+    /// It is whole, but of another plan.
+    Foreign(PathBuf),
+    /// It can't be read as a shard.
+    Unreadable(PathBuf, String),
+}
+
+/// Why shards can't be read or written.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum StoreError {
+    /// The file system says no: a full disk, a folder that mustn't be written to, …
+    Io {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        error: std::io::Error,
+    },
+    /// The folder has shards of another plan, which are left alone.
+    Foreign {
+        /// One of them.
+        path: PathBuf,
+    },
+    /// A shard can't be put into its format.
+    Unwritable {
+        /// Why.
+        reason: String,
+    },
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Truncated(path) => write!(f, "{} is truncated", path.display()),
+            Self::Altered(path) => write!(f, "{} has been altered: its digest is another", path.display()),
+            Self::Foreign(path) => write!(f, "{} is of another plan", path.display()),
+            Self::Unreadable(path, reason) => write!(f, "{} can't be read: {reason}", path.display()),
+        }
+    }
+}
+
+impl fmt::Display for StoreError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Io { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Foreign { path } => write!(
+                f,
+                "{} is of another plan (other members, steps, columns or a changed program); take another folder, or delete that file",
+                path.display()
+            ),
+            Self::Unwritable { reason } => write!(f, "a shard can't be written: {reason}"),
+        }
+    }
+}
+
+impl core::error::Error for StoreError {}
+
+/// What Arrow IPC files end with.
+const END: &[u8] = b"ARROW1";
+const PER_FOLDER: u64 = 1000;
+
+impl Store {
+    /// This folder, which is made where there is none.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError::Io`] where it can't be made.
+    pub fn folder(path: impl Into<PathBuf>) -> Result<Self, StoreError> {
+        let folder = path.into();
+        fs::create_dir_all(&folder).map_err(|error| StoreError::Io { path: folder.clone(), error })?;
+        Ok(Self { folder })
+    }
+
+    /// The files of shards by the numbers of their chunks, in the order of the numbers. Of the contents nothing is known.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError::Io`] where a folder can't be read.
+    pub fn files(&self) -> Result<Vec<(u64, PathBuf)>, StoreError> {
+        let mut files = Vec::new();
+        for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
+            let named = entries(&folder)?.into_iter().filter_map(|path| Some((name_of(&path)?.0, path)));
+            files.extend(named);
+        }
+        files.sort();
+        Ok(files)
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// A [`Fault`] where it is truncated, altered or no shard.
+    pub fn read(path: &Path) -> Result<Shard, Fault> {
+        let unreadable = |reason: &str| Fault::Unreadable(path.to_owned(), reason.to_owned());
+        let bytes = fs::read(path).map_err(|error| unreadable(&error.to_string()))?;
+        let (chunk, digest) = name_of(path).ok_or_else(|| unreadable("its name isn't a shard's"))?;
+        if Digest::of(&bytes) != digest {
+            let is_whole = bytes.ends_with(END);
+            return Err(if is_whole { Fault::Altered(path.to_owned()) } else { Fault::Truncated(path.to_owned()) });
+        }
+        let shard = Shard::of_bytes(&bytes).map_err(|reason| unreadable(&reason))?;
+        if shard.chunk == chunk { Ok(shard) } else { Err(Fault::Altered(path.to_owned())) }
+    }
+
+    /// The shards of a plan, one after another in the order of their chunks, and what is wrong with other files.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError::Io`] where a folder can't be read.
+    pub fn shards(&self, plan: u64) -> Result<impl Iterator<Item = Result<Shard, Fault>>, StoreError> {
+        let read = move |(_, path): (u64, PathBuf)| {
+            let shard = Self::read(&path)?;
+            if shard.plan == plan { Ok(shard) } else { Err(Fault::Foreign(path)) }
+        };
+        Ok(self.files()?.into_iter().map(read))
+    }
+
+    /// Writes a shard: whole, or not at all.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError`] where that can't be done. Other shards are as they were.
+    pub fn write(&self, shard: &Shard) -> Result<(), StoreError> {
+        let bytes = shard.to_bytes().map_err(|error| StoreError::Unwritable { reason: error.to_string() })?;
+        let folder = self.folder.join(format!("{:05}", shard.chunk / PER_FOLDER));
+        let name = format!("{:08}-{:016x}.arrow", shard.chunk, Digest::of(&bytes));
+        let beside = folder.join(format!("{name}.{}.part", std::process::id()));
+        let io = |path: &Path| {
+            let path = path.to_owned();
+            move |error| StoreError::Io { path, error }
+        };
+        if !folder.is_dir() {
+            fs::create_dir_all(&folder).map_err(io(&folder))?;
+            bring_to_disk(&self.folder).map_err(io(&self.folder))?;
+        }
+        let write = || -> std::io::Result<()> {
+            let mut file = File::create(&beside)?;
+            file.write_all(&bytes)?;
+            file.sync_all()?;
+            fs::rename(&beside, folder.join(&name))
+        };
+        if let Err(error) = write() {
+            // On a full disk it is in the way.
+            let _ = fs::remove_file(&beside);
+            return Err(StoreError::Io { path: beside, error });
+        }
+        bring_to_disk(&folder).map_err(io(&folder))
+    }
+
+    /// Removes what killed runs have left half-written; only where nobody writes any more.
+    pub(crate) fn sweep(&self) -> Result<(), StoreError> {
+        for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
+            for path in entries(&folder)? {
+                if path.extension().is_some_and(|extension| extension == "part") {
+                    let _ = fs::remove_file(path);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes through all files: what `look` makes of each shard by its chunk, and what is wrong with the others.
+    pub(crate) fn survey<T>(
+        &self,
+        plan: u64,
+        mut look: impl FnMut(Shard) -> T,
+    ) -> Result<(BTreeMap<u64, T>, Vec<Fault>), StoreError> {
+        let (mut found, mut faults) = (BTreeMap::new(), Vec::new());
+        for shard in self.shards(plan)? {
+            match shard {
+                Ok(shard) => drop(found.insert(shard.chunk, look(shard))),
+                Err(Fault::Foreign(path)) => return Err(StoreError::Foreign { path }),
+                Err(fault) => faults.push(fault),
+            }
+        }
+        Ok((found, faults))
+    }
+
+    /// Removes files that are named in faults: their chunks are made anew.
+    pub(crate) fn remove(faults: &[Fault]) -> Result<(), StoreError> {
+        for fault in faults {
+            let (Fault::Truncated(path) | Fault::Altered(path) | Fault::Unreadable(path, _)) = fault else { continue };
+            fs::remove_file(path).map_err(|error| StoreError::Io { path: path.clone(), error })?;
+        }
+        Ok(())
+    }
+}
+
+/// The number and the digest in a shard's name.
+fn name_of(path: &Path) -> Option<(u64, u64)> {
+    let (chunk, digest) = path.file_name()?.to_str()?.strip_suffix(".arrow")?.split_once('-')?;
+    Some((chunk.parse().ok()?, u64::from_str_radix(digest, 16).ok()?))
+}
+
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let io = |error| StoreError::Io { path: folder.to_owned(), error };
+    fs::read_dir(folder).map_err(io)?.map(|entry| entry.map(|entry| entry.path()).map_err(io)).collect()
+}
+
+/// A new name in a folder is on the disk when the folder is. Elsewhere than on Unix folders can't be opened.
+fn bring_to_disk(folder: &Path) -> std::io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}

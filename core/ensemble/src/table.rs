@@ -1,0 +1,151 @@
+//! Tables that members are read from.
+
+use core::fmt;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use arrow_array::cast::AsArray as _;
+use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type, UInt32Type, UInt64Type};
+use arrow_array::{Array as _, ArrayRef};
+use arrow_ipc::reader::FileReader;
+use arrow_schema::{ArrowError, DataType};
+
+use crate::Failure;
+use crate::digest::Digest;
+
+/// Columns of numbers by their names, a row for each member.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    columns: BTreeMap<String, Vec<f64>>,
+    rows: u64,
+}
+
+/// Why a file isn't a table of numbers.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum TableError {
+    /// It can't be read, or isn't Arrow IPC.
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A cell of a column of numbers is empty.
+    Empty {
+        /// The column.
+        column: String,
+        /// The first such row, from zero.
+        row: usize,
+    },
+    /// Two columns differ in length.
+    Uneven {
+        /// The one that differs from those before.
+        column: String,
+    },
+}
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { path, reason } => write!(f, "{} isn't an Arrow IPC file: {reason}", path.display()),
+            Self::Empty { column, row } => {
+                write!(f, "the column `{column}` has no number in row {row}; fill it, or leave the row out")
+            }
+            Self::Uneven { column } => write!(f, "the column `{column}` has another length than those before it"),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}
+
+impl Table {
+    /// Of columns of one length.
+    ///
+    /// # Errors
+    ///
+    /// [`TableError::Uneven`] where they differ in length.
+    pub fn new(columns: impl IntoIterator<Item = (String, Vec<f64>)>) -> Result<Self, TableError> {
+        let mut table = Self { columns: BTreeMap::new(), rows: 0 };
+        for (column, numbers) in columns {
+            if !table.columns.is_empty() && table.rows != numbers.len() as u64 {
+                return Err(TableError::Uneven { column });
+            }
+            table.rows = numbers.len() as u64;
+            table.columns.insert(column, numbers);
+        }
+        Ok(table)
+    }
+
+    /// The columns of numbers of an Arrow IPC file, as polars and pandas write it; others are left out.
+    ///
+    /// # Errors
+    ///
+    /// [`TableError`] where the file can't be read, or a number is missing.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, TableError> {
+        let path = path.as_ref();
+        let unreadable = |reason: String| TableError::Unreadable { path: path.to_owned(), reason };
+        let file = std::fs::File::open(path).map_err(|error| unreadable(error.to_string()))?;
+        let reader = FileReader::try_new_buffered(file, None).map_err(|error| unreadable(error.to_string()))?;
+        let names: Vec<String> = reader.schema().fields().iter().map(|field| field.name().clone()).collect();
+        let mut columns: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+        for batch in reader {
+            let batch = batch.map_err(|error: ArrowError| unreadable(error.to_string()))?;
+            for (name, array) in names.iter().zip(batch.columns()) {
+                let Some(numbers) = numbers(array) else { continue };
+                let column = columns.entry(name.clone()).or_default();
+                if let Some(row) = (0..array.len()).find(|&row| array.is_null(row)) {
+                    return Err(TableError::Empty { column: name.clone(), row: column.len() + row });
+                }
+                column.extend(numbers);
+            }
+        }
+        Self::new(columns)
+    }
+
+    /// The number of rows.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// The numbers of a column, if there is one of this name.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns.get(name).map(Vec::as_slice)
+    }
+
+    pub(crate) fn cell(&self, column: &str, row: u64) -> Result<f64, Failure> {
+        let numbers = self.column(column).ok_or_else(|| {
+            let known: Vec<&str> = self.columns.keys().map(String::as_str).collect();
+            Failure::Other(format!("the table has no column `{column}` but {}", known.join(", ")))
+        })?;
+        let number = usize::try_from(row).ok().and_then(|row| numbers.get(row));
+        number.copied().ok_or_else(|| Failure::Other(format!("the table has no row {row} but {}", self.rows)))
+    }
+
+    pub(crate) fn digest(&self) -> u64 {
+        let mut digest = Digest::default();
+        for (name, numbers) in &self.columns {
+            digest.text(name);
+            for number in numbers {
+                digest.number(number.to_bits());
+            }
+        }
+        digest.value()
+    }
+}
+
+/// Of a column of numbers.
+#[allow(clippy::cast_precision_loss)] // counts and identifiers
+fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
+    Some(match array.data_type() {
+        DataType::Float64 => array.as_primitive::<Float64Type>().values().to_vec(),
+        DataType::Float32 => array.as_primitive::<Float32Type>().values().iter().map(|&n| f64::from(n)).collect(),
+        DataType::Int64 => array.as_primitive::<Int64Type>().values().iter().map(|&n| n as f64).collect(),
+        DataType::UInt64 => array.as_primitive::<UInt64Type>().values().iter().map(|&n| n as f64).collect(),
+        DataType::Int32 => array.as_primitive::<Int32Type>().values().iter().map(|&n| f64::from(n)).collect(),
+        DataType::UInt32 => array.as_primitive::<UInt32Type>().values().iter().map(|&n| f64::from(n)).collect(),
+        _ => return None,
+    })
+}

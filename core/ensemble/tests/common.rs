@@ -1,0 +1,78 @@
+//! What the tests share: a small ensemble of tops, some of which fail, and folders.
+
+#![allow(dead_code, unreachable_pub, missing_docs)] // each test has its own part of it
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use liestep::effects::{Gravity, PrincipalBody};
+use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
+use liestep::{SO3, Stepper};
+use liestep_ensemble::{Ensemble, Failure, Member, Reduction};
+use nalgebra::Vector3;
+
+pub type Top = Stepper<Sum<PrincipalBody, Gravity>>;
+pub type State = <Top as liestep::motion::Integrator>::State;
+
+/// A top with moments and a spin drawn. Member 3 is no body, and members 5, 15, 25 … fall too fast for the step.
+pub fn top(member: &Member<'_>) -> Result<(Top, State), Failure> {
+    let third = if member.number() == 3 { 9.0 } else { member.normal("J_3", 4.0, 0.1) };
+    let body =
+        PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.1, third))? };
+    let m = if member.number() % 10 == 5 { 1e3 } else { 1.0 };
+    let stepper = Stepper::new(body + Gravity { m, g: 9.81, rho: Vector3::z(), up: Vector3::z() }, 0.02)?;
+    let tilted = SO3::exp(Vector3::x() * member.uniform("tilt", 0.2..0.6));
+    let state = stepper.start(tilted, Vector3::new(0.1, 0.0, member.uniform("spin", 1.0..8.0)))?;
+    Ok((stepper, state))
+}
+
+pub fn axis(state: &State) -> [f64; 3] {
+    (state.attitude().as_matrix() * Vector3::z()).into()
+}
+
+/// In chunks of twenty, which isn't a number of lanes.
+pub fn tops(members: u64, steps: u64) -> Ensemble<Top> {
+    with_columns(Ensemble::new("tops", members, steps, top))
+}
+
+pub fn with_columns(ensemble: Ensemble<Top>) -> Ensemble<Top> {
+    ensemble
+        .seed(7)
+        .chunks_of(20)
+        .keep(["x", "y", "z"], |run| axis(run.state))
+        .keep(["energy"], |run| [run.stepper.energy(run.state)])
+        .reduce("z", Reduction::Moments, |run| axis(run.state)[2])
+        .reduce("zs", Reduction::Histogram { range: -1.0..1.0, bins: 8 }, |run| axis(run.state)[2])
+}
+
+/// A folder of this process, empty; removed at the end.
+pub struct Folder(pub PathBuf);
+
+impl Folder {
+    pub fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("liestep-ensemble-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&path);
+        Self(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// All files below a folder with their contents.
+pub fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            let inner = contents(&path).into_iter();
+            found.extend(inner.map(|(name, bytes)| (Path::new(path.file_name().unwrap()).join(name), bytes)));
+        } else {
+            found.insert(path.file_name().unwrap().into(), std::fs::read(&path).unwrap());
+        }
+    }
+    found
+}

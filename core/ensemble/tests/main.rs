@@ -1,0 +1,340 @@
+//! What comes out of an ensemble is a function of its plan, and what is wrong with it is named.
+
+mod common;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+use common::{Folder, Top, axis, contents, top, tops, with_columns};
+use liestep::effects::RigidBody;
+use liestep::mechanics::InertiaError;
+use liestep::methods::CompositionScheme;
+use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
+use liestep_ensemble::{
+    Ensemble, Failed, Failure, Fault, Histogram, Local, Reduced, Report, Shard, Status, Store, StoreError, Table,
+    share_of,
+};
+use nalgebra::Vector3;
+
+const MEMBERS: u64 = 130;
+const STEPS: u64 = 150;
+
+fn run(ensemble: &Ensemble<Top>, engine: &Local<'_>, folder: &Folder) -> Report {
+    ensemble.run(engine, &Store::folder(&folder.0).unwrap()).unwrap()
+}
+
+fn shards(ensemble: &Ensemble<Top>, folder: &Folder) -> Vec<Shard> {
+    let store = Store::folder(&folder.0).unwrap();
+    store.shards(ensemble.fingerprint()).unwrap().map(|shard| shard.unwrap()).collect()
+}
+
+#[test]
+fn files_and_sums_are_the_same_for_threads_shares_and_one_by_one() {
+    let ensemble = tops(MEMBERS, STEPS);
+    let folder = Folder::new("one");
+    let report = run(&ensemble, &Local::threads(1), &folder);
+    assert_eq!((report.chunks, report.made, report.missing), (7, 7, 0));
+    assert_eq!((report.finished, report.failed), (MEMBERS - 14, 14));
+    let expected = contents(&folder.0);
+    assert_eq!(expected.len(), 7);
+    for threads in [2, 7] {
+        let folder = Folder::new(&format!("{threads}"));
+        assert_eq!(run(&ensemble, &Local::threads(threads), &folder), report);
+        assert!(contents(&folder.0) == expected, "{threads} threads");
+    }
+    let folder = Folder::new("shares");
+    for (share, missing) in [(2, 5), (0, 2), (1, 0)] {
+        let part = run(&ensemble, &Local::threads(2).share(share, 3), &folder);
+        assert_eq!(part.missing, missing, "share {share}");
+    }
+    assert!(contents(&folder.0) == expected, "shares");
+    // The same plan, without lanes.
+    let folder = Folder::new("one-by-one");
+    let alone = with_columns(Ensemble::one_by_one("tops", MEMBERS, STEPS, top));
+    assert_eq!(run(&alone, &Local::threads(2), &folder), report);
+    assert!(contents(&folder.0) == expected, "one by one");
+    // And what is there isn't made again.
+    let again = run(&ensemble, &Local::threads(2), &folder);
+    assert_eq!((again.made, again.finished, again.reduced("z")), (0, report.finished, report.reduced("z")));
+}
+
+/// Each member as its stepper moves it, step by step, with nothing of the ensemble's.
+#[test]
+fn members_are_what_they_are_alone() {
+    let ensemble = tops(MEMBERS, STEPS).every(60);
+    let folder = Folder::new("alone");
+    run(&ensemble, &Local::threads(2), &folder);
+    let mut rows = Vec::new();
+    let mut failures = Vec::new();
+    for shard in shards(&ensemble, &folder) {
+        let columns = &shard.rows.columns;
+        rows.extend((0..shard.rows.member.len()).map(|row| {
+            let values = [0, 1, 2, 3].map(|column| columns[column][row].to_bits());
+            (shard.rows.member[row], shard.rows.step[row], shard.rows.status[row], values)
+        }));
+        failures.extend(shard.failures);
+    }
+    let mut expected = Vec::new();
+    let mut expected_failures = Vec::new();
+    // An ensemble of no steps hands its members on.
+    let starts = Arc::new(Mutex::new(Vec::new()));
+    let kept = Arc::clone(&starts);
+    let probe = Ensemble::new("tops", MEMBERS, 0, move |member| {
+        let made = top(member);
+        kept.lock().unwrap().push((member.number(), made.clone()));
+        made
+    });
+    let _ = probe.seed(7).chunks_of(MEMBERS).chunk(0, &|| false);
+    // The first is asked for once more, by the fingerprint.
+    for (member, made) in starts.lock().unwrap().drain(..).skip(1) {
+        let (stepper, mut state) = match made {
+            Ok(made) => made,
+            Err(failure) => {
+                expected.push((member, 0, Status::Impossible, [f64::NAN.to_bits(); 4]));
+                expected_failures.push(Failed { member, steps: 0, failure });
+                continue;
+            }
+        };
+        let mut keep = |step, status, state: &common::State| {
+            let [x, y, z] = axis(state);
+            expected.push((member, step, status, [x, y, z, stepper.energy(state)].map(f64::to_bits)));
+        };
+        keep(0, Status::Going, &state);
+        let mut stopped = None;
+        for step in 1..=STEPS {
+            if let Err(error) = stepper.step(&mut state) {
+                stopped = Some((step - 1, error));
+                break;
+            }
+            if step == 60 || step == 120 {
+                keep(step, Status::Going, &state);
+            }
+        }
+        match stopped {
+            None => keep(STEPS, Status::Finished, &state),
+            Some((steps, error)) => {
+                keep(steps, Status::Stopped, &state);
+                expected_failures.push(Failed { member, steps, failure: error.into() });
+            }
+        }
+    }
+    assert_eq!(rows, expected);
+    assert_eq!(failures, expected_failures);
+    // They are read back as the library's own errors.
+    assert_eq!(failures.len(), 14);
+    assert!(matches!(
+        failures[0],
+        Failed { member: 3, failure: Failure::Inertia(InertiaError::TriangleInequality { .. }), .. }
+    ));
+    assert!(failures[1..].iter().all(|failed| failed.member % 10 == 5
+        && failed.steps > 0
+        && matches!(failed.failure, Failure::Step(StepError::BeyondSolvable { largest, step, .. }) if largest < step)));
+}
+
+/// What a reader of the files alone makes of them.
+#[test]
+fn sums_are_those_of_the_files() {
+    let ensemble = tops(MEMBERS, STEPS);
+    let folder = Folder::new("sums");
+    let report = run(&ensemble, &Local::threads(2), &folder);
+    let mut ends = Vec::new();
+    for (_, path) in Store::folder(&folder.0).unwrap().files().unwrap() {
+        let table = Table::read(path).unwrap();
+        let (z, steps) = (table.column("z").unwrap(), table.column("step").unwrap());
+        assert!(table.column("status").is_none(), "a small whole number isn't a column of a table");
+        ends.extend(z.iter().zip(steps).filter(|(_, steps)| **steps > 149.5).map(|(z, _)| *z));
+    }
+    assert_eq!(ends.len() as u64, report.finished);
+    let Some(Reduced::Moments(moments)) = report.reduced("z") else { panic!("{report:?}") };
+    #[allow(clippy::cast_precision_loss)] // a hundred
+    let mean = ends.iter().sum::<f64>() / ends.len() as f64;
+    assert!((moments.mean - mean).abs() < 1e-14, "{moments:?}, {mean}");
+    let squares: f64 = ends.iter().map(|z| (z - mean).powi(2)).sum();
+    assert!((moments.squares - squares).abs() < 1e-13, "{moments:?}, {squares}");
+    let Some(Reduced::Histogram(Histogram { counts, below, above, .. })) = report.reduced("zs") else {
+        panic!("{report:?}")
+    };
+    assert_eq!((counts.iter().sum::<u64>(), *below, *above), (report.finished, 0, 0));
+    assert_eq!(counts[7], ends.iter().filter(|z| **z >= 0.75).count() as u64);
+    assert!(report.reduced("y").is_none());
+}
+
+/// A cut file, a bit that has turned over, a file of another plan, and one that isn't a shard.
+#[test]
+fn damaged_files_are_named_and_made_anew() {
+    let ensemble = tops(MEMBERS, STEPS);
+    let folder = Folder::new("damaged");
+    run(&ensemble, &Local::threads(2), &folder);
+    let expected = contents(&folder.0);
+    let store = Store::folder(&folder.0).unwrap();
+    let files = store.files().unwrap();
+    let (cut, turned) = (files[1].1.clone(), files[4].1.clone());
+    let bytes = std::fs::read(&cut).unwrap();
+    std::fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
+    let whole = std::fs::read(&turned).unwrap();
+    for place in [0, 9, whole.len() / 3, whole.len() - 20] {
+        let mut bytes = whole.clone();
+        bytes[place] ^= 4;
+        std::fs::write(&turned, bytes).unwrap();
+        assert_eq!(Store::read(&turned), Err(Fault::Altered(turned.clone())), "byte {place}");
+    }
+    let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
+    let faults = vec![Fault::Truncated(cut.clone()), Fault::Altered(turned.clone())];
+    assert_eq!(named, faults);
+    assert!(named[0].to_string().contains("truncated") && named[1].to_string().contains("digest"));
+    let report = run(&ensemble, &Local::threads(2), &folder);
+    assert_eq!((report.made, report.missing, &report.faults), (2, 0, &faults));
+    assert!(contents(&folder.0) == expected);
+    // Of another plan: nothing is touched.
+    let foreign = tops(MEMBERS, STEPS).seed(8);
+    let other = Folder::new("foreign");
+    run(&foreign, &Local::threads(2), &other);
+    let (_, from) = Store::folder(&other.0).unwrap().files().unwrap().remove(2);
+    let to = folder.0.join("00000").join(from.file_name().unwrap());
+    std::fs::copy(&from, &to).unwrap();
+    let refused = ensemble.run(&Local::threads(2), &store).unwrap_err();
+    assert!(matches!(&refused, StoreError::Foreign { path } if *path == to), "{refused}");
+    assert!(to.exists());
+    let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
+    assert_eq!(named, [Fault::Foreign(to.clone())]);
+    std::fs::remove_file(&to).unwrap();
+    // The right name, and no shard.
+    let empty = folder.0.join("00000").join("00000002-cbf29ce484222325.arrow");
+    std::fs::write(&empty, b"").unwrap();
+    assert!(matches!(Store::read(&empty), Err(Fault::Unreadable(..))));
+}
+
+/// Whatever changes what comes out is another plan: also a function that is another, which only its values tell.
+#[test]
+fn another_plan_has_another_fingerprint() {
+    let plans = [
+        tops(MEMBERS, STEPS),
+        tops(MEMBERS + 1, STEPS),
+        tops(MEMBERS, STEPS + 1),
+        tops(MEMBERS, STEPS).seed(8),
+        tops(MEMBERS, STEPS).every(10),
+        tops(MEMBERS, STEPS).chunks_of(21),
+        tops(MEMBERS, STEPS).keep(["w"], |_| [1.0]),
+        tops(MEMBERS, STEPS).keep(["w"], |_| [2.0]),
+        tops(MEMBERS, STEPS).over(Table::new([("m".to_owned(), vec![1.0])]).unwrap()),
+        tops(MEMBERS, STEPS).over(Table::new([("m".to_owned(), vec![2.0])]).unwrap()),
+        with_columns(Ensemble::new("other tops", MEMBERS, STEPS, top)),
+        with_columns(Ensemble::new("tops", MEMBERS, STEPS, |member| {
+            let (stepper, state) = top(member)?;
+            let heavier = *stepper.scene();
+            let stepper = Stepper::new(heavier, 0.01)?;
+            Ok((stepper, state))
+        })),
+    ];
+    let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
+    assert_eq!(fingerprints[0], tops(MEMBERS, STEPS).fingerprint());
+    fingerprints.sort_unstable();
+    fingerprints.dedup();
+    assert_eq!(fingerprints.len(), plans.len());
+}
+
+/// What can't be written is an error, and what has been written stays.
+#[test]
+fn a_shard_that_cannot_be_written_loses_no_other() {
+    let ensemble = tops(MEMBERS, STEPS);
+    let folder = Folder::new("full");
+    let store = Store::folder(&folder.0).unwrap();
+    run(&ensemble, &Local::threads(1), &folder);
+    let expected = contents(&folder.0);
+    let (_, last) = store.files().unwrap().pop().unwrap();
+    // In the way of its name there is a folder.
+    std::fs::remove_file(&last).unwrap();
+    std::fs::create_dir(&last).unwrap();
+    let error = ensemble.run(&Local::threads(2), &store).unwrap_err();
+    assert!(matches!(error, StoreError::Io { .. }), "{error}");
+    std::fs::remove_dir(&last).unwrap();
+    assert_eq!(contents(&folder.0).len(), 6, "nothing is left of it");
+    let report = run(&ensemble, &Local::threads(2), &folder);
+    assert_eq!((report.made, report.missing), (1, 0));
+    assert!(contents(&folder.0) == expected);
+}
+
+#[test]
+fn a_run_can_be_watched_and_stopped() {
+    let ensemble = tops(MEMBERS, STEPS);
+    let folder = Folder::new("stopped");
+    let store = Store::folder(&folder.0).unwrap();
+    let stop = AtomicBool::new(false);
+    let seen = Mutex::new(Vec::new());
+    let watch = |progress: liestep_ensemble::Progress| {
+        seen.lock().unwrap().push((progress.done, progress.chunks));
+        stop.store(progress.done == 3, Ordering::Relaxed);
+    };
+    let report = ensemble.run_telling(&Local::threads(1).stopped_by(&stop), &store, &watch).unwrap();
+    assert_eq!(*seen.lock().unwrap(), [(1, 7), (2, 7), (3, 7)]);
+    assert_eq!((report.made, report.missing), (3, 4));
+    assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 4);
+}
+
+/// Rows of a table are members; one too many has no row, and says so.
+#[test]
+fn members_are_read_from_a_table() {
+    let spins = Table::new([("spin".to_owned(), vec![5.0, 6.0, 7.0])]).unwrap();
+    let ensemble = Ensemble::new("spins", 4, 10, |member| {
+        let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.0, 3.0))? };
+        let stepper = Stepper::new(body, 0.01)?;
+        let state = stepper.start(SO3::identity(), Vector3::z() * member.cell("spin")?)?;
+        Ok((stepper, state))
+    });
+    let ensemble = ensemble.over(spins).keep(["spin"], |run| [run.stepper.velocity(run.state).z]);
+    let shard = ensemble.chunk(0, &|| false).unwrap();
+    for (found, expected) in shard.rows.columns[0].iter().zip([5.0_f64, 6.0, 7.0]) {
+        assert!((found - expected).abs() < 1e-13);
+    }
+    let [failed] = shard.failures.as_slice() else { panic!("{:?}", shard.failures) };
+    assert!(failed.member == 3 && failed.failure.to_string().contains("no row 3"), "{failed:?}");
+    let uneven = Table::new([("a".to_owned(), vec![1.0]), ("b".to_owned(), vec![])]);
+    assert!(uneven.is_err_and(|error| error.to_string().contains("`b`")));
+    assert!(Table::read("Cargo.toml").is_err_and(|error| error.to_string().contains("Cargo.toml")));
+}
+
+/// A declaration of `f64` alone, and a composition of members that can't be in one batch.
+#[test]
+#[allow(non_snake_case)] // the letters of the field
+fn other_scenes_and_methods() {
+    #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
+    #[derive(Clone)]
+    struct Body {
+        J_d: NonstandardInertia,
+    }
+
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).unwrap();
+    let alone = Ensemble::one_by_one("bodies", 3, 100, move |member| {
+        let stepper = Stepper::new(Body { J_d }, 0.01)?;
+        let state = stepper.start(SO3::identity(), member.direction("Omega"))?;
+        Ok((stepper, state))
+    });
+    let energy = alone.keep(["energy"], |run| [run.stepper.energy(run.state)]).every(50).chunk(0, &|| false).unwrap();
+    let energy = &energy.rows.columns[0];
+    assert!(energy.chunks(3).all(|run| (run[0] - run[2]).abs() < 1e-14), "{energy:?}");
+    let composed = |alone: bool| {
+        let make = move |member: &liestep_ensemble::Member<'_>| {
+            // By two methods in turn: no two neighbours agree.
+            let schemes = [CompositionScheme::SUZUKI_4, CompositionScheme::KAHAN_LI_6];
+            let scheme = schemes[usize::from(member.number() % 3 == 1)];
+            let stepper = Stepper::composed(RigidBody { J_d }, 0.02, scheme)?;
+            let state = stepper.start(SO3::identity(), member.direction("Omega") * 3.0)?;
+            Ok((stepper, state))
+        };
+        let made = if alone {
+            Ensemble::one_by_one("composed", 20, 50, make)
+        } else {
+            Ensemble::new("composed", 20, 50, make)
+        };
+        made.keep(["x", "y", "z"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
+    };
+    assert_eq!(composed(false), composed(true));
+}
+
+#[test]
+fn shares_are_read_from_command_lines() {
+    assert_eq!(share_of("2/8"), Ok((2, 8)));
+    for wrong in ["8/8", "1", "a/b", "-1/2", "1/0", ""] {
+        assert!(share_of(wrong).is_err_and(|message| message.contains("i/n")), "{wrong}");
+    }
+}
