@@ -49,7 +49,7 @@ impl Recording {
             let names = column.names().join(", ");
             wrong(1, 1, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
         };
-        let times = get("time_s").ok_or_else(|| missing(Column::Time))?;
+        let times = get("t").ok_or_else(|| missing(Column::Time))?;
         if times.is_empty() {
             return Err(wrong(2, 1, "has no row".to_owned()));
         }
@@ -67,7 +67,7 @@ impl Recording {
             .map(|row| attitude(row).ok_or_else(|| wrong(row + 2, 1, "the quaternion isn't a unit one".to_owned())))
             .collect::<Result<Vec<_>, _>>()?;
         let mut charts = vec![tilt(&attitudes, &Vector3::z())];
-        if let Some(energy) = get("energy_J") {
+        if let Some(energy) = get("energy") {
             charts.push(energy_error(&energy));
         }
         if let Some([x, y, z]) = all(Column::SpatialMomentum).as_deref() {

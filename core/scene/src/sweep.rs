@@ -23,7 +23,7 @@ impl SceneFile {
     #[must_use]
     pub fn end_names(&self) -> Vec<&'static str> {
         let columns = self.columns().iter().flat_map(|column| column.names()).copied();
-        columns.chain(["greatest_energy_error_J", "greatest_momentum_error_kg_m2_per_s"]).collect()
+        columns.chain(["greatest_energy_error", "greatest_momentum_error"]).collect()
     }
 
     /// The scene's columns at the end of a run, and how far energy and angular momentum in space were from their start.

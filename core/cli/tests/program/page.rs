@@ -54,9 +54,9 @@ fn a_table_is_replayed() {
         assert_eq!(output.status.code(), Some(1), "{text}");
         assert!(text.starts_with("error: wrong.csv:") && text.contains(message), "{text}");
     };
-    let names = "time_s,quaternion_w,quaternion_x,quaternion_y,quaternion_z\n";
-    refused("", ":1:1: has no columns time_s");
-    refused("time_s\n0\n", ":1:1: has no columns quaternion_w, quaternion_x, quaternion_y, quaternion_z");
+    let names = "t,q_w,q_x,q_y,q_z\n";
+    refused("", ":1:1: has no columns t;");
+    refused("t\n0\n", ":1:1: has no columns q_w, q_x, q_y, q_z;");
     refused(names, ":2:1: has no row");
     refused(&format!("{names}0,1,0,0,0\n0,1,0,0,0\n"), ":3:1: is not later than the row before");
     refused(&format!("{names}0,1,0,0,0\n1,1,0,0\n"), ":3:1: has 4 values below 5 names");

@@ -539,7 +539,7 @@ fn sweeps() {
     printed(&folder, &["sweep", "sweep.toml", "--out", "."]);
     let table = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     let mut lines = table.lines();
-    assert!(lines.next().unwrap().starts_with("gravity.m,drag.c,time_s,omega_x_rad_per_s,"));
+    assert!(lines.next().unwrap().starts_with("gravity.m,drag.c,t,velocity_x,"));
     let points: Vec<_> = lines.map(|line| line.split(',').take(2).collect::<Vec<_>>().join(" ")).collect();
     assert_eq!(points, ["1 kg 0.001", "1 kg 0.0015", "1 kg 0.002", "1.5 0.001", "1.5 0.0015", "1.5 0.002"]);
     let row: Vec<f64> = table.lines().nth(6).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
