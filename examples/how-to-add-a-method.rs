@@ -36,7 +36,7 @@ impl<S: DiscreteLagrangian> Compensable for Verlet<S> {}
 
 impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Verlet<S> {
     fn new(scene: &S, h: f64) -> Result<Self, SetupError> {
-        let (inertia, moments) = (scene.inertia(), scene.inertia().diagonal());
+        let (inertia, moments) = (scene.inertia(&scene.advected()), scene.inertia(&scene.advected()).diagonal());
         if inertia != Matrix3::from_diagonal(&moments) {
             return Err(SetupError::Parameter { field: "J_d", cause: "is not diagonal" });
         }

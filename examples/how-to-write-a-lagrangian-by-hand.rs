@@ -69,6 +69,7 @@ impl Effect for Body {
 
     const PARTS: Parts = Parts { unknown: true, kick_before: false, kick_after: false };
     const DENOMINATORS: u32 = 1;
+    const INERTIA_IS_CONSTANT: bool = true;
     const DERIVATION: &'static str = "the free rigid body (3.13), by hand";
 
     fn validate(&self) -> Result<(), SetupError> {
@@ -87,7 +88,7 @@ impl Effect for Body {
         Matrix3::from_diagonal_element(p.trace()) - p
     }
 
-    fn inertia(&self) -> Matrix3<f64> {
+    fn inertia(&self, (): &()) -> Matrix3<f64> {
         *self.inertia.to_inertia().as_matrix()
     }
 
@@ -100,7 +101,7 @@ impl Effect for Body {
     }
 
     fn constants(&self, h: f64) -> Self::Constants {
-        (self.inertia(), 0.5 * h)
+        (self.inertia(&()), 0.5 * h)
     }
 
     fn kick_before(_: &Self::Constants, (): &()) -> Vector3<f64> {

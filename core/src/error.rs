@@ -18,7 +18,7 @@ pub enum SetupError {
         /// The step, s.
         step: f64,
     },
-    /// The kinetic part is degenerate at the identity: a momentum doesn't determine a velocity.
+    /// The kinetic part is degenerate at rest: a momentum doesn't determine a velocity.
     SingularKinetic {
         /// The determinant of the inertia of the continuous limit.
         determinant: f64,
@@ -50,12 +50,22 @@ pub enum SetupError {
         /// The largest difference of two entries, kg m².
         difference: f64,
     },
+    /// The method has the motion of one free body in it, and the inertia depends on what is advected.
+    VaryingInertia,
     /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
     BiasMismatch,
     /// A splitting with force gradients needs the derivative of the torque.
     NoForceGradient,
+    /// A splitting with force gradients hasn't got the derivatives of its kicks.
+    NoSecondDerivatives,
     /// One of the candidates for an accuracy is another scene than the first.
     PotentialMismatch,
+    /// A stepper or a state can't be in a lane beside the others: lanes share the scheme of a method and the number of
+    /// steps made, for example.
+    Unlike {
+        /// The first such lane.
+        lane: usize,
+    },
 }
 
 impl fmt::Display for SetupError {
@@ -70,7 +80,7 @@ impl fmt::Display for SetupError {
             }
             Self::SingularKinetic { determinant } => write!(
                 f,
-                "the kinetic part is singular at the identity (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia"
+                "the kinetic part is singular at rest (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia"
             ),
             Self::NegativeKinetic { pivot } => write!(
                 f,
@@ -95,6 +105,10 @@ impl fmt::Display for SetupError {
                 f,
                 "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
             ),
+            Self::VaryingInertia => write!(
+                f,
+                "the inertia depends on what is advected, and this method needs one that is the same everywhere; compose the scene's own step instead"
+            ),
             Self::BiasMismatch => write!(
                 f,
                 "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them"
@@ -103,12 +117,20 @@ impl fmt::Display for SetupError {
                 f,
                 "a term of the scene was written without `kick_derivative`, so it has no force gradient; choose a scheme without them, or write it"
             ),
+            Self::NoSecondDerivatives => write!(
+                f,
+                "the derivatives of force gradients aren't known, so a splitting with them can't be linearised; choose a scheme without them"
+            ),
             Self::PotentialMismatch => {
                 write!(
                     f,
                     "one of the methods to choose from has another potential than the first; build all of them from one scene"
                 )
             }
+            Self::Unlike { lane } => write!(
+                f,
+                "the body of lane {lane} can't be stepped beside those before it: they have another method, or have made another number of steps; put like bodies together"
+            ),
         }
     }
 }

@@ -43,6 +43,8 @@
 //! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |
 //! | hand the equations of motion to an ODE solver, or integrate them on any group | [`motion::RightHandSide`], [`methods::CotangentGauss`] |
 //! | step, run, force, save and resume a motion | [`Stepper`], [`State`] |
+//! | record a run, stop it, be called at given times | [`Stepper::observed`](motion::Stepper#method.observed), [`with::Recorder`] |
+//! | read a motion between its steps | [`motion::Integrator::state_at`] |
 //! | be more accurate | [`methods`]: orders 4 to 16 |
 //! | say how accurate, and not how | [`accuracy`] |
 //! | go on where a step has no solution, or lose less to rounding | [`with`] |

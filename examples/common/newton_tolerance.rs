@@ -129,6 +129,7 @@ pub fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
     momentum: &Vector3<f64>,
     w: &Vector3<f64>,
 ) -> f64 {
-    let rates = lagrangian.inertia().lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
+    let rates =
+        lagrangian.inertia(&lagrangian.advected()).lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
     0.5 * rates.dot(momentum) + lagrangian.potential(w)
 }

@@ -41,6 +41,7 @@ files! {
     "free flip": "free_asymmetric_J123_intermediate",
     "free symmetric": "free_axisymmetric_Jd221",
     "golden steps": "golden_steps",
+    "several bodies": "several_bodies",
 }
 
 /// A file as it stands, by its name above.

@@ -35,7 +35,16 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
         None => None,
     };
     let discrete = match (&declared, declaration.discretisation()) {
-        (Some(equations), None) => return Some(emit::continuous(item, &declaration, equations)),
+        (Some(equations), None) => {
+            if let Some(key) = declaration.gradients {
+                errors.push(
+                    key,
+                    "`gradients` are those of a step: write `discretise = …`, which makes one, or remove it",
+                );
+                return None;
+            }
+            return Some(emit::continuous(item, &declaration, equations));
+        }
         (Some(_), Some(asked)) => judged::discretised(&declaration, &tree, asked, errors)?,
         (None, _) => tree.clone(),
     };

@@ -27,6 +27,7 @@ mod program;
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
 ///     velocity = Omega, l = …,        the continuous one, in the velocity's components by that name
 ///     discretise = trapezoid(Cayley), how `l_d` is made of `l`; left out, there are the continuous equations alone
+///     gradients,                      also the derivatives of a step, for `Stepper::linearised`; may be left out
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
 /// struct Name { … }                   the parameters
@@ -74,8 +75,8 @@ mod program;
 /// `given(…)` names, a scalar, a vector or a matrix that the group doesn't move.
 ///
 /// As `h → 0`, with `F = exp(hξ̂)`, a Lagrangian goes like `h`: a kinetic part is a square of `F - I` over `h`, and a
-/// potential has a factor `h`. A term that goes otherwise is an error, as is one that is the same for all `F`, a kinetic
-/// part that depends on an advected name, and one that isn't smooth at `F = I`. A correction that vanishes with a higher
+/// potential has a factor `h`. A term that goes otherwise is an error, as is one that is the same for all `F`, and one that
+/// isn't smooth at `F = I`. An inertia may depend on what is advected. A correction that vanishes with a higher
 /// power says so by `h.powi(n)`: `h.powi(3) * w.dot(&rho).powi(2)`.
 ///
 /// A Lagrangian without a kinetic part, like a potential, can't move by itself, but adds to one that can:
@@ -98,6 +99,7 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 ///     advected(w = up, …),            as for a Lagrangian
 ///     given(u = torque, …),           as for a Lagrangian
 ///     work = …,                       the virtual work f⁻·eta + f⁺·eta_next, linear in the displacements
+///     gradients,                      as for a Lagrangian
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
 /// struct Name { … }                   the parameters

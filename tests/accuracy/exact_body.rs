@@ -4,9 +4,9 @@ use checks::random::Random;
 use checks::structure::poisson::TOLERANCE;
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::methods::{ExactBody, KineticFlow, SplittingScheme, SymmetricBody, Turn};
-use liestep::numbers::Real;
+use liestep::numbers::{Lanes, Real};
 use liestep::prelude::*;
-use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
+use nalgebra::{Matrix3, RealField, Rotation3, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use workbench::measure::relative;
 
@@ -325,7 +325,7 @@ fn single_precision_is_as_good_as_it_can_be() {
 fn each_lane_moves_as_alone() {
     fn assert_independent<T, const LANES: usize>()
     where
-        T: Real<Element: Real + RealField> + From<[T::Element; LANES]>,
+        T: Real<Element: Real + RealField>,
     {
         let mut random = Random::new(68);
         let converted = |v: Vector3<f64>| v.map(nalgebra::convert::<f64, T::Element>);
@@ -342,14 +342,14 @@ fn each_lane_moves_as_alone() {
                     size *= 0.5;
                     converted(random.direction() * size)
                 });
-                let together = ExactBody::<T>::new(&bodies.into());
-                let momentum = Vector3::from_fn(|i, _| T::from(momenta.map(|p| p[i])));
+                let together = ExactBody::<T>::new(&Lanes::gathered(&bodies).unwrap());
+                let momentum = Vector3::gathered(&momenta).unwrap();
                 let turn = drifted(&together, nalgebra::convert(0.3), &momentum);
                 for k in 0..LANES {
                     let alone = ExactBody::<T::Element>::new(&bodies[k]);
                     let single = drifted(&alone, nalgebra::convert(0.3), &momenta[k]);
-                    assert_eq!(turn.increment.extract(k), single.increment, "{fastest}, lane {k}");
-                    assert_eq!(turn.change.extract(k), single.change, "{fastest}, lane {k}");
+                    assert_eq!(turn.increment.lane(k), single.increment, "{fastest}, lane {k}");
+                    assert_eq!(turn.change.lane(k), single.change, "{fastest}, lane {k}");
                 }
             }
         }
@@ -363,12 +363,12 @@ fn each_lane_moves_as_alone() {
 #[test]
 fn lanes_may_have_their_moments_in_any_order() {
     let moments = [[1.6, 2.6, 3.0], [2.6, 1.6, 3.0], [3.0, 1.6, 2.6], [2.0, 2.0, 2.0]];
-    let together = ExactBody::<WideF64x4>::new(&moments.map(body).into());
+    let together = ExactBody::<WideF64x4>::new(&Lanes::gathered(&moments.map(body)).unwrap());
     let p = Vector3::new(1.0, -2.0, 3.0);
     let turn = drifted(&together, nalgebra::convert(0.3), &p.map(nalgebra::convert::<f64, WideF64x4>));
     for (k, moments) in moments.into_iter().enumerate() {
         let alone = drifted(&exact(moments), 0.3, &p);
-        assert!((turn.increment.extract(k) - alone.increment).norm() < 1e-15, "{moments:?}");
+        assert!((turn.increment.lane(k) - alone.increment).norm() < 1e-15, "{moments:?}");
     }
 }
 

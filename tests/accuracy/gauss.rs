@@ -121,7 +121,7 @@ fn p1_collocation_is_a_poisson_map() {
 #[test]
 fn p1_collocation_of_the_reduced_equations_is_not_poisson() {
     let top = HeavyTop::asymmetric();
-    let inverse = top.inertia().try_inverse().unwrap();
+    let inverse = top.inertia(&top.advected()).try_inverse().unwrap();
     let h = 0.3;
     let step = |momentum: &Vector3<f64>, w: &Vector3<f64>| {
         let rate = |(momentum, w): (Vector3<f64>, Vector3<f64>)| {

@@ -6,8 +6,9 @@ use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::effects::Gravity;
 use liestep::mechanics::DiagonalNonstandardInertia;
 use liestep::methods::{ExactBody, KineticFlow, ProcessedScheme, SplittingScheme};
+use liestep::numbers::Lanes;
 use liestep::prelude::*;
-use nalgebra::{SimdValue as _, Vector3};
+use nalgebra::Vector3;
 use simba::simd::WideF64x4;
 use workbench::measure::{order, relative};
 
@@ -147,24 +148,21 @@ fn each_lane_moves_as_alone() {
     let inertia = Inertia::from_principal_moments(moments.into()).unwrap();
     let rho = Vector3::new(0.1, 0.2, 0.3);
     let alone = PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho, up: Vector3::z() };
-    let wide = |v: Vector3<f64>| v.map(nalgebra::convert::<f64, WideF64x4>);
-    let gravity =
-        Gravity { m: nalgebra::convert(1.0), g: nalgebra::convert(9.81), rho: wide(rho), up: wide(Vector3::z()) };
-    let together = PrincipalBody { J_d: [J_d; 4].into() } + gravity;
+    let together = Lanes::splat(&alone);
     let mut random = Random::new(73);
     let starts: [(SO3, Vector3<f64>); 4] = core::array::from_fn(|_| (random.rotation(), random.vector() * 3.0));
     for scheme in [ProcessedScheme::SIX_A, ProcessedScheme::FOUR_A] {
-        let flow = ExactBody::<WideF64x4>::new(&[inertia; 4].into());
+        let flow = ExactBody::<WideF64x4>::new(&Lanes::splat(&inertia));
         let stepper = Stepper::processed(together, nalgebra::convert(0.1), flow, scheme).unwrap();
-        let attitude: SO3<WideF64x4> = starts.map(|(attitude, _)| attitude).into();
-        let velocity = Vector3::from_fn(|i, _| WideF64x4::from(starts.map(|(_, velocity)| velocity[i])));
+        let attitude = SO3::gathered(&starts.map(|(attitude, _)| attitude)).unwrap();
+        let velocity = Vector3::gathered(&starts.map(|(_, velocity)| velocity)).unwrap();
         let mut state = stepper.start(attitude, velocity).unwrap();
         stepper.run(&mut state, 20).unwrap();
         let single = Stepper::processed(alone, 0.1, ExactBody::new(&inertia), scheme).unwrap();
         for (k, (attitude, velocity)) in starts.into_iter().enumerate() {
             let mut of_lane = single.start(attitude, velocity).unwrap();
             single.run(&mut of_lane, 20).unwrap();
-            assert_eq!(state.momentum().extract(k), of_lane.momentum(), "{}, lane {k}", scheme.name());
+            assert_eq!(state.momentum().lane(k), of_lane.momentum(), "{}, lane {k}", scheme.name());
         }
     }
 }

@@ -4,9 +4,9 @@ use checks::random::Random;
 use checks::structure::poisson::TOLERANCE;
 use declarations::{HeavyTop, Motion};
 use liestep::methods::{KineticFlow, PreprocessedOrder, SplitBody, SplittingScheme, SymmetricBody, Turn};
-use liestep::numbers::Real;
+use liestep::numbers::{Lanes, Real};
 use liestep::prelude::*;
-use nalgebra::{Matrix3, RealField, Rotation3, SimdValue, Vector3};
+use nalgebra::{Matrix3, RealField, Rotation3, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 use workbench::measure::{order, relative};
 
@@ -274,7 +274,7 @@ fn single_precision_is_as_good_as_it_can_be() {
 fn each_lane_moves_as_alone() {
     fn assert_independent<T, const LANES: usize>()
     where
-        T: Real<Element: Real + RealField> + From<[T::Element; LANES]>,
+        T: Real<Element: Real + RealField>,
     {
         let mut random = Random::new(55);
         let converted = |v: Vector3<f64>| v.map(nalgebra::convert::<f64, T::Element>);
@@ -288,14 +288,14 @@ fn each_lane_moves_as_alone() {
                 size *= 0.5;
                 converted(random.direction() * size)
             });
-            let together = SplitBody::<9, T>::new(&bodies.into()).unwrap();
-            let momentum = Vector3::from_fn(|i, _| T::from(momenta.map(|p| p[i])));
+            let together = SplitBody::<9, T>::new(&Lanes::gathered(&bodies).unwrap()).unwrap();
+            let momentum = Vector3::gathered(&momenta).unwrap();
             let turn = drifted(&together, nalgebra::convert(0.3), &momentum);
             for k in 0..LANES {
                 let alone = SplitBody::<9, T::Element>::new(&bodies[k]).unwrap();
                 let single = drifted(&alone, nalgebra::convert(0.3), &momenta[k]);
-                assert_eq!(turn.increment.extract(k), single.increment, "{fastest}, lane {k}");
-                assert_eq!(turn.change.extract(k), single.change, "{fastest}, lane {k}");
+                assert_eq!(turn.increment.lane(k), single.increment, "{fastest}, lane {k}");
+                assert_eq!(turn.change.lane(k), single.change, "{fastest}, lane {k}");
             }
         }
     }
@@ -315,7 +315,7 @@ fn other_axes_are_refused() {
     );
     let lanes = [MOMENTS[0], MOMENTS[0], MOMENTS[1], MOMENTS[0]].map(body);
     assert_eq!(
-        SplitBody::<9, WideF64x4>::new(&lanes.into()).unwrap_err(),
+        SplitBody::<9, WideF64x4>::new(&Lanes::gathered(&lanes).unwrap()).unwrap_err(),
         SetupError::Parameter { field: "inertia", cause: "has its moments in another order in other lanes" },
     );
 }

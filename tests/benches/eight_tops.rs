@@ -2,7 +2,7 @@
 //!
 //! They differ in body, tilt and spin about the looping case of \[RDAE, figure 3.8\].
 
-use liestep::numbers::Real;
+use liestep::numbers::{Lanes, Real};
 use liestep::prelude::*;
 use nalgebra::{RealField, UnitQuaternion, Vector3};
 
@@ -42,19 +42,7 @@ pub(crate) fn top<E: Real + RealField>(number: usize) -> (Top<E>, SO3<E>, Vector
 }
 
 /// The tops from `first` on, one in each lane, with their attitudes and velocities.
-pub(crate) fn lanes<T, const N: usize>(first: usize) -> (Top<T>, SO3<T>, Vector3<T>)
-where
-    T: Real<Element: Real + RealField> + From<[T::Element; N]>,
-{
-    let all: [_; N] = core::array::from_fn(|lane| top::<T::Element>(first + lane));
-    let gather = |entry: &dyn Fn(usize) -> T::Element| T::from(core::array::from_fn(entry));
-    let vector = |of: &dyn Fn(usize) -> Vector3<T::Element>| Vector3::from_fn(|i, _| gather(&|lane| of(lane)[i]));
-    let wide = Top {
-        J_d: all.each_ref().map(|lane| lane.0.J_d).into(),
-        weight: gather(&|lane| all[lane].0.weight),
-        rho: vector(&|lane| all[lane].0.rho),
-        up: vector(&|lane| all[lane].0.up),
-    };
-    let attitude: SO3<T> = all.each_ref().map(|lane| lane.1).into();
-    (wide, attitude, vector(&|lane| all[lane].2))
+pub(crate) fn lanes<T: Real<Element: Real + RealField>>(first: usize) -> (Top<T>, SO3<T>, Vector3<T>) {
+    let all: Vec<_> = (first..first + T::LANES).map(top::<T::Element>).collect();
+    Lanes::gathered(&all).expect("they share nothing")
 }

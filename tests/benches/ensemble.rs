@@ -23,9 +23,9 @@ mod eight_tops;
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::numbers::Real;
+use liestep::numbers::{Lanes as _, Real};
 use liestep::prelude::*;
-use nalgebra::{RealField, SimdValue, Vector3};
+use nalgebra::{RealField, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
 
 use eight_tops::{TOPS, Top, top};
@@ -38,11 +38,8 @@ const ROUNDS: usize = 4_000;
 type Running<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
 
 /// The tops from `first` on, one in each lane.
-fn lanes<T, const N: usize>(first: usize) -> Running<T>
-where
-    T: Real<Element: Real + RealField> + From<[T::Element; N]>,
-{
-    let (wide, attitude, velocity) = eight_tops::lanes::<T, N>(first);
+fn lanes<T: Real<Element: Real + RealField>>(first: usize) -> Running<T> {
+    let (wide, attitude, velocity) = eight_tops::lanes::<T>(first);
     let stepper = Stepper::new(wide, nalgebra::convert(0.01)).expect("a usable step");
     let state = stepper.start(attitude, velocity).expect("a usable start");
     (stepper, state)
@@ -75,8 +72,8 @@ fn assert_same<T, const LANES: usize, const N: usize>(
     run(&mut scalars, 1000);
     for (number, (_, scalar)) in scalars.iter().enumerate() {
         let state = &wide[number / LANES].1;
-        assert_eq!(state.momentum().extract(number % LANES), scalar.momentum(), "top {number}");
-        assert_eq!(state.advected().extract(number % LANES), scalar.advected(), "top {number}");
+        assert_eq!(state.momentum().lane(number % LANES), scalar.momentum(), "top {number}");
+        assert_eq!(state.advected().lane(number % LANES), scalar.advected(), "top {number}");
     }
 }
 
@@ -108,9 +105,9 @@ fn compare<T, const LANES: usize, const N: usize>(
 fn count(kernel: &str, steps: u32) {
     match kernel {
         "f64" => run(black_box(&mut core::array::from_fn::<_, TOPS, _>(single::<f64>)), steps),
-        "f64-lanes" => run(black_box(&mut [lanes::<AutoF64x8, 8>(0)]), steps),
+        "f64-lanes" => run(black_box(&mut [lanes::<AutoF64x8>(0)]), steps),
         "f32" => run(black_box(&mut core::array::from_fn::<_, TOPS, _>(single::<f32>)), steps),
-        "f32-lanes" => run(black_box(&mut [lanes::<WideF32x8, 8>(0)]), steps),
+        "f32-lanes" => run(black_box(&mut [lanes::<WideF32x8>(0)]), steps),
         _ => panic!("the kernels are f64, f64-lanes, f32 and f32-lanes, not {kernel}"),
     }
 }
@@ -124,8 +121,8 @@ fn main() {
         return count(kernel, steps.parse().expect("a number of steps"));
     }
     println!("{:<20}{:>12}{:>12}{:>12}", "10⁶ steps a second", "alone", "in lanes", "ratio");
-    compare::<AutoF64x8, 8, 1>("f64, AutoF64x8", [lanes::<AutoF64x8, 8>(0)], core::array::from_fn(single));
-    let two = [lanes::<WideF64x4, 4>(0), lanes::<WideF64x4, 4>(4)];
+    compare::<AutoF64x8, 8, 1>("f64, AutoF64x8", [lanes::<AutoF64x8>(0)], core::array::from_fn(single));
+    let two = [lanes::<WideF64x4>(0), lanes::<WideF64x4>(4)];
     compare::<WideF64x4, 4, 2>("f64, two WideF64x4", two, core::array::from_fn(single));
-    compare::<WideF32x8, 8, 1>("f32, WideF32x8", [lanes::<WideF32x8, 8>(0)], core::array::from_fn(single));
+    compare::<WideF32x8, 8, 1>("f32, WideF32x8", [lanes::<WideF32x8>(0)], core::array::from_fn(single));
 }

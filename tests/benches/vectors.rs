@@ -131,12 +131,12 @@ fn collocation<const PAIRS: usize>(least: [f64; 2]) -> Row {
 }
 
 /// Eight tops in lanes of this type, stepped in these ways.
-fn in_lanes<T, const N: usize>(name: &str, gain: f64) -> Vec<Row>
+fn in_lanes<T>(name: &str, gain: f64) -> Vec<Row>
 where
-    T: Real<Element: Real + nalgebra::RealField> + From<[T::Element; N]> + 'static,
+    T: Real<Element: Real + nalgebra::RealField> + 'static,
     Top<T>: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = Vector3<T>> + liestep::mechanics::Regular,
 {
-    let (scene, attitude, velocity) = lanes::<T, N>(0);
+    let (scene, attitude, velocity) = lanes::<T>(0);
     let h = || nalgebra::convert::<f64, T>(0.05);
     let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
     let row = |way: &str, batches, gain| Row { name: format!("{name}: {way}"), batches, least: [gain, 0.0] };
@@ -169,9 +169,9 @@ fn fastest<const N: usize>(batches: &mut [Batch; N]) -> [f64; N] {
 
 fn rows() -> Vec<Row> {
     let mut rows = vec![collocation::<2>([1.3, 0.0]), collocation::<4>([1.5, 1.15])];
-    rows.extend(in_lanes::<AutoF64x8, 8>("8 lanes, AutoF64x8", 1.25));
-    rows.extend(in_lanes::<WideF64x4, 4>("4 lanes, WideF64x4", 0.0));
-    rows.extend(in_lanes::<AutoF64x4, 4>("4 lanes, AutoF64x4", 0.0));
+    rows.extend(in_lanes::<AutoF64x8>("8 lanes, AutoF64x8", 1.25));
+    rows.extend(in_lanes::<WideF64x4>("4 lanes, WideF64x4", 0.0));
+    rows.extend(in_lanes::<AutoF64x4>("4 lanes, AutoF64x4", 0.0));
     rows
 }
 
@@ -205,7 +205,7 @@ fn gains() -> Result<(), Box<dyn Error>> {
 
 /// The exact motion of a body in eight lanes, against eight alone.
 fn alone() {
-    let wide = lanes::<AutoF64x8, 8>(0);
+    let wide = lanes::<AutoF64x8>(0);
     let scheme = SplittingScheme::FORCE_GRADIENT_5;
     let body = ExactBody::new(&NonstandardInertia::from(wide.0.J_d).to_inertia());
     let stepper = Stepper::split(wide.0, nalgebra::convert(0.05), body, scheme).expect("a usable step");

@@ -48,6 +48,7 @@ macro_rules! staged_as {
         type Advected = <$inner as Effect>::Advected;
 
         const PARTS: Parts = <$inner>::PARTS;
+        const INERTIA_IS_CONSTANT: bool = <$inner>::INERTIA_IS_CONSTANT;
         const DERIVATION: &'static str = <$inner>::DERIVATION;
 
         fn validate(&self) -> Result<(), SetupError> {
@@ -92,8 +93,8 @@ impl<L: Effect> Effect for WithJacobian<L> {
 
     staged_as!(L);
 
-    fn inertia(&self) -> Square<Self> {
-        self.0.inertia()
+    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
+        self.0.inertia(w)
     }
 
     fn constants(&self, h: Self::Scalar) -> Self::Constants {
@@ -153,7 +154,7 @@ pub struct WithoutJacobian<L, T: Real>(pub L, pub Matrix3<T>);
 
 impl<T: Real, L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy> WithoutJacobian<L, T> {
     pub fn new(lagrangian: L) -> Self {
-        Self(lagrangian, lagrangian.inertia())
+        Self(lagrangian, lagrangian.inertia(&lagrangian.advected()))
     }
 }
 
@@ -177,7 +178,7 @@ where
 
     const JACOBIAN_IS_EXPENSIVE: bool = true;
 
-    fn inertia(&self) -> Matrix3<T> {
+    fn inertia(&self, _: &Self::Advected) -> Matrix3<T> {
         self.1
     }
 

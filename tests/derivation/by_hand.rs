@@ -69,6 +69,7 @@ impl Effect for HandWrittenTop {
     type StepTerms = Vector3<f64>;
 
     const DENOMINATORS: u32 = 1;
+    const INERTIA_IS_CONSTANT: bool = true;
     const DERIVATION: &'static str = "the heavy top (3.13), by hand";
 
     fn validate(&self) -> Result<(), SetupError> {
@@ -91,7 +92,7 @@ impl Effect for HandWrittenTop {
         Matrix3::from_diagonal_element(p.trace()) - p
     }
 
-    fn inertia(&self) -> Matrix3<f64> {
+    fn inertia(&self, _: &Vector3<f64>) -> Matrix3<f64> {
         *self.inertia.to_inertia().as_matrix()
     }
 

@@ -3,8 +3,8 @@
 use checks::any_scalar::Top;
 use checks::random::Random;
 use liestep::methods::CompositionScheme;
-use liestep::motion::Motion;
-use liestep::numbers::Real;
+use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::numbers::{Lanes, Real};
 use liestep::prelude::*;
 use nalgebra::{Matrix3, RealField, SimdValue, UnitQuaternion, Vector3};
 use simba::simd::{AutoF64x8, WideF32x8, WideF64x4};
@@ -30,15 +30,6 @@ fn lane<E: Real + RealField>(random: &mut Random, speed: f64) -> Lane<E> {
     Lane { top, attitude, velocity: vector(random.direction() * speed) }
 }
 
-/// The scalar of `N` lanes of `E`.
-trait Wide<const N: usize>: Real<Element: Real + RealField> + From<[Self::Element; N]> {}
-
-impl<T: Real<Element: Real + RealField> + From<[T::Element; N]>, const N: usize> Wide<N> for T {}
-
-fn gathered<T: Wide<N>, const N: usize>(lane: impl Fn(usize) -> Vector3<T::Element>) -> Vector3<T> {
-    Vector3::from_fn(|i, _| T::from(core::array::from_fn(|k| lane(k)[i])))
-}
-
 type Running<T> = (Stepper<Top<T>>, liestep::State<SO3<T>, Vector3<T>>);
 
 fn start<T: Real>(top: Top<T>, h: f64, attitude: SO3<T>, velocity: Vector3<T>) -> Running<T> {
@@ -47,39 +38,38 @@ fn start<T: Real>(top: Top<T>, h: f64, attitude: SO3<T>, velocity: Vector3<T>) -
     (stepper, state)
 }
 
-fn together<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64) -> Running<T> {
-    let top = Top {
-        J_d: lanes.each_ref().map(|lane| lane.top.J_d).into(),
-        weight: T::from(lanes.each_ref().map(|lane| lane.top.weight)),
-        rho: gathered::<T, N>(|k| lanes[k].top.rho),
-        up: gathered::<T, N>(|k| lanes[k].top.up),
-    };
-    let attitude: SO3<T> = lanes.each_ref().map(|lane| lane.attitude).into();
-    start(top, h, attitude, gathered::<T, N>(|k| lanes[k].velocity))
+fn together<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> Running<T> {
+    let top = Top::gathered(&of_each(lanes, |lane| lane.top)).unwrap();
+    let attitude = SO3::gathered(&of_each(lanes, |lane| lane.attitude)).unwrap();
+    start(top, h, attitude, Vector3::gathered(&of_each(lanes, |lane| lane.velocity)).unwrap())
 }
 
-fn alone<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64) -> [Running<T::Element>; N] {
-    lanes.each_ref().map(|lane| start(lane.top, h, lane.attitude, lane.velocity))
+fn alone<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> Vec<Running<T::Element>> {
+    of_each(lanes, |lane| start(lane.top, h, lane.attitude, lane.velocity))
 }
+
+fn of_each<L, V>(lanes: &[L], value: impl Fn(&L) -> V) -> Vec<V> {
+    lanes.iter().map(value).collect()
+}
+
+/// The scalar of several lanes.
+trait Wide: Real<Element: Real + RealField> {}
+
+impl<T: Real<Element: Real + RealField>> Wide for T {}
 
 /// Each lane against a scalar run of its own, after every step; how often the lanes' iteration counts differed.
-fn assert_independent<T: Wide<N>, const N: usize>(lanes: &[Lane<T::Element>; N], h: f64, steps: u32) -> u32 {
-    let (stepper, mut state) = together::<T, N>(lanes, h);
-    let mut singles = alone::<T, N>(lanes, h);
+fn assert_independent<T: Wide>(lanes: &[Lane<T::Element>], h: f64, steps: u32) -> u32 {
+    let (stepper, mut state) = together::<T>(lanes, h);
+    let mut singles = alone::<T>(lanes, h);
     let mut unequal = 0;
     for step in 0..steps {
         let report = stepper.step(&mut state).unwrap();
-        let iterations = singles.each_mut().map(|(stepper, state)| stepper.step(state).unwrap().iterations);
+        let counted = singles.iter_mut().map(|(stepper, state)| stepper.step(state).unwrap().iterations);
+        let iterations: Vec<u32> = counted.collect();
         unequal += u32::from(iterations.iter().any(|count| *count != iterations[0]));
         assert_eq!(report.iterations, iterations.into_iter().max().unwrap(), "step {step}");
         for (k, (_, single)) in singles.iter().enumerate() {
-            assert_eq!(
-                state.attitude().as_matrix().extract(k),
-                *single.attitude().as_matrix(),
-                "step {step}, lane {k}"
-            );
-            assert_eq!(state.momentum().extract(k), single.momentum(), "step {step}, lane {k}");
-            assert_eq!(state.advected().extract(k), single.advected(), "step {step}, lane {k}");
+            assert_eq!(state.lane(k), *single, "step {step}, lane {k}");
         }
     }
     unequal
@@ -95,9 +85,9 @@ fn spread<E: Real + RealField, const N: usize>(seed: u64, fastest: f64) -> [Lane
 #[test]
 fn each_lane_moves_as_alone() {
     let unequal = [
-        assert_independent::<WideF64x4, 4>(&spread(1, 32.0), 0.01, 2000),
-        assert_independent::<AutoF64x8, 8>(&spread(2, 32.0), 0.01, 2000),
-        assert_independent::<WideF32x8, 8>(&spread(3, 6.0), 0.1, 2000),
+        assert_independent::<WideF64x4>(&spread::<_, 4>(1, 32.0), 0.01, 2000),
+        assert_independent::<AutoF64x8>(&spread::<_, 8>(2, 32.0), 0.01, 2000),
+        assert_independent::<WideF32x8>(&spread::<_, 8>(3, 6.0), 0.1, 2000),
     ];
     assert!(unequal.iter().all(|&steps| steps > 100), "{unequal:?}");
 }
@@ -111,15 +101,15 @@ fn composed_and_compensated_lanes_move_as_alone() {
         let state = composition.adopt(&state);
         (composition, state)
     };
-    let (wide, all) = together::<AutoF64x8, 8>(&lanes, 0.01);
+    let (wide, all) = together::<AutoF64x8>(&lanes, 0.01);
     let step = wide.step_size();
     let wide_composition = Stepper::composed(*wide.scene(), step, CompositionScheme::SUZUKI_4).unwrap();
     let wide = wide.compensated();
     let (mut all, mut compensated_all) = (wide_composition.adopt(&all), wide.adopt(&all));
-    let mut compositions = alone::<AutoF64x8, 8>(&lanes, 0.01).map(composed);
-    let mut singles = alone::<AutoF64x8, 8>(&lanes, 0.01).map(|(stepper, state)| {
-        let carrying = stepper.compensated();
-        let state = carrying.adopt(&state);
+    let mut compositions: Vec<_> = alone::<AutoF64x8>(&lanes, 0.01).into_iter().map(composed).collect();
+    let mut singles = of_each(&alone::<AutoF64x8>(&lanes, 0.01), |(stepper, state)| {
+        let carrying = stepper.clone().compensated();
+        let state = carrying.adopt(state);
         (carrying, state)
     });
     for number in 0..1500 {
@@ -128,12 +118,8 @@ fn composed_and_compensated_lanes_move_as_alone() {
         for (k, ((composition, one), (single, compensated))) in compositions.iter_mut().zip(&mut singles).enumerate() {
             composition.step(one).unwrap();
             single.step(compensated).unwrap();
-            let pairs: [(&Motion<_, _>, &Motion<_, _>); 2] = [(&all, one), (&compensated_all, compensated)];
-            for (wide, single) in pairs {
-                let momentum = wide.momentum().extract(k);
-                assert_eq!(momentum, single.momentum(), "step {number}, lane {k}");
-                assert_eq!(wide.attitude().as_matrix().extract(k), *single.attitude().as_matrix());
-            }
+            assert_eq!(all.lane(k), *one, "step {number}, lane {k}");
+            assert_eq!(compensated_all.lane(k), *compensated, "step {number}, lane {k}");
         }
     }
 }
@@ -159,8 +145,9 @@ fn spinning(times: f64) -> [Lane<f64>; 8] {
 fn lanes_that_have_settled_wait_for_others() {
     for (times, h, most) in [(20.0, 0.02, 2), (40.0, 0.06, 3)] {
         let lanes = spinning(times);
-        let unequal = assert_independent::<AutoF64x8, 8>(&lanes, h, 500);
-        let iterations = alone::<AutoF64x8, 8>(&lanes, h).map(|(stepper, mut state)| {
+        let unequal = assert_independent::<AutoF64x8>(&lanes, h, 500);
+        let iterations = of_each(&alone::<AutoF64x8>(&lanes, h), |(stepper, state)| {
+            let mut state = *state;
             let reports = (0..500).map(|_| stepper.step(&mut state).unwrap().iterations);
             reports.skip(10).max().unwrap()
         });
@@ -176,26 +163,27 @@ fn a_lane_near_a_quarter_turn_changes_no_other() {
     lanes[1].top.J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
     lanes[1].top.weight = 0.01;
     lanes[1].velocity = Vector3::z() * 9.5;
-    assert_independent::<WideF64x4, 4>(&lanes, 0.1, 200);
+    assert_independent::<WideF64x4>(&lanes, 0.1, 200);
 }
 
 /// A guess on another branch makes its lane start anew from the identity, and no other.
 #[test]
 fn a_lane_with_a_bad_guess_changes_no_other() {
     let lanes: [Lane<f64>; 4] = spread(4, 32.0);
-    let (stepper, state) = together::<WideF64x4, 4>(&lanes, 0.01);
-    let singles = alone::<WideF64x4, 4>(&lanes, 0.01);
+    let (stepper, state) = together::<WideF64x4>(&lanes, 0.01);
+    let singles = alone::<WideF64x4>(&lanes, 0.01);
     let mut random = Random::new(5);
     let mut anew = 0;
     for _ in 0..100 {
         // Cayley coordinates of turns up to 175°.
         let bad = random.vector() * 50.0;
         let guess = |k: usize| if k == 0 { bad } else { lanes[k].velocity * 0.01 };
-        let wide = stepper.flow().step(&state.momentum(), &state.advected(), &gathered::<WideF64x4, 4>(guess)).unwrap();
+        let guesses = Vector3::gathered(&[0, 1, 2, 3].map(guess)).unwrap();
+        let wide = stepper.flow().step(&state.momentum(), &state.advected(), &guesses).unwrap();
         for (k, (stepper, state)) in singles.iter().enumerate() {
             let single = stepper.flow().step(&state.momentum(), &state.advected(), &guess(k)).unwrap();
-            assert_eq!(wide.coordinates.extract(k), single.coordinates, "lane {k}, guess {bad}");
-            assert_eq!(wide.momentum.extract(k), single.momentum, "lane {k}, guess {bad}");
+            assert_eq!(wide.coordinates.lane(k), single.coordinates, "lane {k}, guess {bad}");
+            assert_eq!(wide.momentum.lane(k), single.momentum, "lane {k}, guess {bad}");
             assert!(k == 0 || single.iterations < 10);
             anew += u32::from(single.iterations > 20);
         }
@@ -208,7 +196,7 @@ fn a_lane_with_a_bad_guess_changes_no_other() {
 fn an_unsolvable_lane_leaves_all_as_they_were() {
     let mut lanes: [Lane<f64>; 4] = spread(6, 32.0);
     lanes[1].velocity = Vector3::new(20.0, 20.0, 300.0);
-    let (stepper, mut state) = together::<WideF64x4, 4>(&lanes, 0.01);
+    let (stepper, mut state) = together::<WideF64x4>(&lanes, 0.01);
     let before = state;
     let refused = stepper.step(&mut state);
     assert!(
@@ -218,14 +206,14 @@ fn an_unsolvable_lane_leaves_all_as_they_were() {
     assert_eq!(state, before);
     // Without it the others move.
     lanes[1].velocity = Vector3::x();
-    assert_independent::<WideF64x4, 4>(&lanes, 0.01, 10);
+    assert_independent::<WideF64x4>(&lanes, 0.01, 10);
 }
 
 /// What one lane can't use is refused for all.
 #[test]
 fn a_lane_that_is_not_finite_is_refused() {
     let lanes: [Lane<f64>; 4] = spread(7, 32.0);
-    let (stepper, state) = together::<WideF64x4, 4>(&lanes, 0.01);
+    let (stepper, state) = together::<WideF64x4>(&lanes, 0.01);
     let mut momentum = state.momentum();
     momentum.x.replace(3, f64::NAN);
     assert!(stepper.start_with_momentum(state.attitude(), momentum).is_err());
@@ -236,6 +224,109 @@ fn a_lane_that_is_not_finite_is_refused() {
     for bad in [0.0, f64::NAN] {
         assert!(Stepper::new(top, WideF64x4::from([0.01, 0.01, bad, 0.01])).is_err(), "{bad}");
     }
+}
+
+/// Steppers and states that are made one by one, put together, taken apart again, and one of them through a file.
+#[test]
+fn lanes_are_put_together_and_taken_apart_on_the_way() {
+    let lanes: [Lane<f64>; 8] = spread(13, 32.0);
+    let mut singles = alone::<AutoF64x8>(&lanes, 0.01);
+    let run = |singles: &mut [Running<f64>], steps| {
+        singles.iter_mut().for_each(|(stepper, state)| stepper.run(state, steps).map(drop).unwrap());
+    };
+    run(&mut singles, 37);
+    let stepper: Stepper<Top<AutoF64x8>> = Lanes::gathered(&of_each(&singles, |single| single.0.clone())).unwrap();
+    let mut state: liestep::State<SO3<AutoF64x8>, Vector3<AutoF64x8>> =
+        Lanes::gathered(&of_each(&singles, |single| single.1)).unwrap();
+    stepper.run(&mut state, 50).unwrap();
+    let taken = stepper.lane(3);
+    let stored = serde_json::to_string(&taken.checkpoint(&state.lane(3))).unwrap();
+    let resumed = taken.resume(&serde_json::from_str(&stored).unwrap()).unwrap();
+    state = Lanes::splat(&state.lane(0));
+    run(&mut singles, 50);
+    for (k, (_, single)) in singles.iter().enumerate() {
+        assert!(state.set_lane(k, if k == 3 { &resumed } else { single }));
+    }
+    stepper.run(&mut state, 50).unwrap();
+    run(&mut singles, 50);
+    for (k, (_, single)) in singles.iter().enumerate() {
+        assert_eq!(state.lane(k), *single, "lane {k}");
+    }
+    // Lanes count their steps together.
+    run(&mut singles[..1], 1);
+    assert!(!state.set_lane(0, &singles[0].1));
+}
+
+/// Bodies that stop, each at its own step: they and the others are what they are alone, to the bit.
+fn assert_stops<M>(bodies: &[(M, M::State)], pieces: [u64; 3], stopped: &[usize])
+where
+    M: Batchable<WideF64x4, State: PartialEq + core::fmt::Debug>,
+{
+    let mut batch = Batch::<WideF64x4, M>::new(bodies).unwrap();
+    let mut alone: Vec<(M::State, Option<StepError>)> = of_each(bodies, |body| (body.1.clone(), None));
+    for steps in pieces {
+        batch.run(steps);
+        for ((stepper, _), (state, error)) in bodies.iter().zip(&mut alone) {
+            for _ in 0..steps {
+                if error.is_none() {
+                    *error = Integrator::step(stepper, state).err();
+                }
+            }
+        }
+    }
+    for (k, (state, error)) in alone.iter().enumerate() {
+        assert_eq!(batch.state(k), *state, "body {k}");
+        assert_eq!(batch.error(k), error.as_ref(), "body {k}");
+        assert_eq!(error.is_some(), stopped.contains(&k), "body {k}: {error:?}");
+    }
+}
+
+/// Tops, every other of which is so heavy that it soon falls too fast for a step of 0.02 s.
+fn failing(seed: u64, count: u32) -> Vec<Lane<f64>> {
+    let mut random = Random::new(seed);
+    let tops = (0..count).map(|number| {
+        let mut lane: Lane<f64> = lane(&mut random, 2.0);
+        lane.top.rho = Vector3::z();
+        if number % 2 == 1 {
+            lane.top.weight = 1.5e4 * f64::from(number);
+        }
+        lane
+    });
+    tops.collect()
+}
+
+#[test]
+fn a_lane_that_fails_stops_and_the_others_go_on() {
+    let lanes = failing(14, 4);
+    let declared = alone::<WideF64x4>(&lanes, 0.02);
+    assert_stops(&declared, [5, 40, 300], &[1, 3]);
+    let compensated = of_each(&declared, |(stepper, state)| {
+        let compensated = stepper.clone().compensated();
+        let state = compensated.adopt(state);
+        (compensated, state)
+    });
+    assert_stops(&compensated, [5, 40, 300], &[1, 3]);
+    let composed = of_each(&declared, |(stepper, state)| {
+        let composed = Stepper::composed(*stepper.scene(), 0.02, CompositionScheme::SUZUKI_4).unwrap();
+        let state = composed.adopt(state);
+        (composed, state)
+    });
+    assert_stops(&composed, [5, 40, 300], &[1, 3]);
+    // Fewer bodies than lanes, one body, and those that all stop.
+    assert_stops(&declared[..3], [5, 40, 300], &[1]);
+    assert_stops(&declared[2..3], [5, 40, 300], &[]);
+    assert_stops(&declared[1..2], [5, 40, 300], &[0]);
+}
+
+#[test]
+fn bodies_that_are_unlike_are_refused_by_their_lane() {
+    let lanes: [Lane<f64>; 4] = spread(15, 4.0);
+    let mut bodies = alone::<WideF64x4>(&lanes, 0.01);
+    let (stepper, state) = &mut bodies[2];
+    stepper.step(state).unwrap();
+    let refused = |bodies: &[Running<f64>]| Batch::<WideF64x4, _>::new(bodies).map(drop).unwrap_err();
+    assert_eq!(refused(&bodies), SetupError::Unlike { lane: 2 });
+    assert_eq!(refused(&[]), SetupError::Unlike { lane: 0 });
 }
 
 /// The logarithmic kinetic term of Bobenko and Suris, with a spring and an oscillating field.
@@ -266,15 +357,11 @@ fn smooth_functions_in_lanes() {
     let mut random = Random::new(9);
     let k = [1.0, 1.5, 2.0, 3.0];
     let (rho, velocity) = (k.map(|_| random.vector()), k.map(|k| random.direction() * 4.0 / k));
-    let wide = smooth(
-        WideF64x4::from(k),
-        gathered::<WideF64x4, 4>(|lane| rho[lane]),
-        gathered::<WideF64x4, 4>(|lane| velocity[lane]),
-    );
+    let wide = smooth(WideF64x4::from(k), Vector3::gathered(&rho).unwrap(), Vector3::gathered(&velocity).unwrap());
     for lane in 0..4 {
         let (attitude, momentum) = smooth(k[lane], rho[lane], velocity[lane]);
         // A hundred steps' roundings.
-        assert!((wide.0.extract(lane) - attitude).norm() < 1e-13, "lane {lane}");
-        assert!((wide.1.extract(lane) - momentum).norm() < 1e-13 * momentum.norm(), "lane {lane}");
+        assert!((wide.0.lane(lane) - attitude).norm() < 1e-13, "lane {lane}");
+        assert!((wide.1.lane(lane) - momentum).norm() < 1e-13 * momentum.norm(), "lane {lane}");
     }
 }

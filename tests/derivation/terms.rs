@@ -324,7 +324,7 @@ fn continuous_limit() {
     let system: Everything<f64> = everything(3);
     let mut r = Random::new(5);
     let (xi, w) = (r.vector(), (r.vector(), r.vector()));
-    let limit = 0.5 * xi.dot(&(system.inertia() * xi)) + system.momentum_bias(&w).dot(&xi) - system.potential(&w);
+    let limit = 0.5 * xi.dot(&(system.inertia(&w) * xi)) + system.momentum_bias(&w).dot(&xi) - system.potential(&w);
     let error = |h: f64| {
         let f = SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(xi * h));
         (system.l_d(f.as_matrix(), &w, h) / h - limit).abs()

@@ -37,6 +37,7 @@ impl Effect for Drag {
 
     const PARTS: Parts = Parts { unknown: true, kick_before: false, kick_after: true };
     const DENOMINATORS: u32 = 1;
+    const INERTIA_IS_CONSTANT: bool = true;
     const DERIVATION: &'static str = "viscous drag, by hand";
 
     fn validate(&self) -> Result<(), SetupError> {
@@ -58,7 +59,7 @@ impl Effect for Drag {
         Matrix3::from_columns(&[moved(0), moved(1), moved(2)])
     }
 
-    fn inertia(&self) -> Matrix3<f64> {
+    fn inertia(&self, (): &()) -> Matrix3<f64> {
         Matrix3::zeros()
     }
 
@@ -122,7 +123,7 @@ fn derived_and_by_hand_agree() {
         assert!((a.momentum() - b.momentum()).norm() < 1e-13);
         assert!((a.attitude().as_matrix() - b.attitude().as_matrix()).norm() < 1e-13);
     }
-    assert!(a.momentum().norm() < 0.5 * (body().inertia() * VELOCITY).norm());
+    assert!(a.momentum().norm() < 0.5 * (body().inertia(&()) * VELOCITY).norm());
 }
 
 /// `d|p|²/dt = −2c p·Ω`; about a principal axis the velocity decays like `exp(−ct/J)`, and the error is of order `h²`.

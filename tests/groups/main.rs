@@ -7,6 +7,7 @@ mod built_in_groups;
 mod laws;
 mod laws_can_fail;
 mod points;
+mod products;
 mod reduction;
 mod retraction_laws;
 mod so3_laws;

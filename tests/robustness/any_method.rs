@@ -4,13 +4,14 @@
 
 use checks::random::Random;
 use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
+use liestep::groups::Advected;
 use liestep::mechanics::{DiscreteLagrangian, Effect};
 use liestep::methods::{
     CompositionScheme, ExactBody, PreprocessedOrder, ProcessedScheme, SplitBody, SplittingScheme, SymmetricBody,
 };
-use liestep::motion::{Plan, Remedy};
+use liestep::motion::{AnyStepper, Integrator as _, Plan, Remedy, StepReport};
 use liestep::prelude::*;
-use liestep::with::{Checkpoint, CheckpointError, Compensable};
+use liestep::with::{Checkpoint, CheckpointError, Compensable, Recorder, Table};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
@@ -31,6 +32,16 @@ where
     stepper.start(attitude(), VELOCITY).unwrap()
 }
 
+/// One copy of a step for all that is asserted of it: they are most of what this file compiles to.
+#[inline(never)]
+fn step<S, P>(stepper: &Stepper<S, P>, state: &mut State<S, P>) -> Result<StepReport, StepError>
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    stepper.step(state)
+}
+
 /// How far two motions are from each other.
 fn apart<S, P, K>(a: &State<S, P>, b: &liestep::State<SO3, S::Advected, K>) -> f64
 where
@@ -49,7 +60,7 @@ where
     let start = started(stepper);
     let (mut stepped, mut run) = (start, start);
     for _ in 0..20 {
-        stepper.step(&mut stepped).unwrap();
+        step(stepper, &mut stepped).unwrap();
     }
     stepper.run(&mut run, 20).unwrap();
     // Splittings join the flows at the ends of two steps.
@@ -69,12 +80,12 @@ where
     let mut plain = started(stepper);
     let mut forced = plain;
     for _ in 0..5 {
-        stepper.step(&mut plain).unwrap();
+        step(stepper, &mut plain).unwrap();
         stepper.step_forced(&mut forced, &Vector3::zeros()).unwrap();
     }
     assert_eq!(format!("{plain:?}"), format!("{forced:?}"), "{name}: no force");
     let before = forced.momentum();
-    stepper.step(&mut plain).unwrap();
+    step(stepper, &mut plain).unwrap();
     let torque = Vector3::new(0.3, -0.2, 0.5);
     stepper.step_forced(&mut forced, &torque).unwrap();
     let impulse = torque * stepper.step_size();
@@ -83,7 +94,7 @@ where
     let allowed = 2.0 * impulse.norm() * VELOCITY.norm() * stepper.step_size();
     assert!((gained - impulse).norm() < allowed, "{name}: {gained} for {impulse}, from {before}");
     // The next step goes on from what was pushed.
-    stepper.step(&mut forced).unwrap();
+    step(stepper, &mut forced).unwrap();
     assert!((forced.momentum() - plain.momentum()).norm() > 0.5 * impulse.norm(), "{name}: the push is lost");
     assert!(matches!(
         stepper.step_forced(&mut forced, &Vector3::from_element(f64::NAN)),
@@ -102,11 +113,11 @@ where
     stepper.run(&mut state, 7).unwrap();
     let mut adopted = other.adopt(&state);
     assert_eq!((adopted.attitude(), adopted.momentum()), (state.attitude(), state.momentum()), "{name}");
-    other.step(&mut adopted).unwrap();
+    step(&other, &mut adopted).unwrap();
     let mut back = stepper.adopt(&adopted);
-    stepper.step(&mut back).unwrap();
-    stepper.step(&mut state).unwrap();
-    stepper.step(&mut state).unwrap();
+    step(stepper, &mut back).unwrap();
+    step(stepper, &mut state).unwrap();
+    step(stepper, &mut state).unwrap();
     assert!(apart::<S, P, _>(&back, &state) < 1e-4, "{name}: adopt");
 }
 
@@ -121,11 +132,11 @@ where
     let back = stepper.inverse().unwrap();
     let mut state = start;
     for _ in 0..10 {
-        stepper.step(&mut state).unwrap();
+        step(stepper, &mut state).unwrap();
     }
     let mut state = back.adopt(&state);
     for _ in 0..10 {
-        back.step(&mut state).unwrap();
+        step(&back, &mut state).unwrap();
     }
     assert!(apart::<S, P, _>(&start, &state) < 1e-12, "{name}: inverse");
 }
@@ -144,7 +155,7 @@ where
         let stored: Checkpoint<f64> = serde_json::from_str(&text).unwrap();
         let (mut resumed, mut on) = (stepper.resume(&stored).unwrap(), state);
         for _ in 0..10 {
-            assert_eq!(stepper.step(&mut on), stepper.step(&mut resumed), "{name}");
+            assert_eq!(step(stepper, &mut on), step(stepper, &mut resumed), "{name}");
         }
         assert_eq!(format!("{on:?}"), format!("{resumed:?}"), "{name}: resumed");
     }
@@ -163,6 +174,49 @@ where
     own.push(stepper.checkpoint(&state));
 }
 
+/// A recorder is shown the steps of `run`, to the bit; between two steps there is a path from the one to the other that
+/// stays in the group and keeps the vertical momentum.
+fn assert_is_observed<A: Advected<SO3>>(name: &str, stepper: &AnyStepper<SO3, A>) {
+    let start = stepper.start(attitude(), VELOCITY).unwrap();
+    let (mut observed, mut stepped) = (start.clone(), start.clone());
+    let mut recorder = Recorder::new(stepper, Table::new());
+    let ended = stepper.observed(&mut observed).every(7, |now| recorder.record(now)).until(0.28).unwrap();
+    assert_eq!(ended.steps, 28, "{name}");
+    let table = recorder.finish().unwrap();
+    for row in table.rows() {
+        let velocity = stepper.velocity(&stepped);
+        let numbers = [stepper.time(&stepped), velocity.x, velocity.y, velocity.z, stepper.energy(&stepped)];
+        assert_eq!([row[0], row[5], row[6], row[7], row[11]], numbers, "{name}: recorded");
+        stepper.run(&mut stepped, 7).unwrap();
+    }
+    assert_eq!(table.rows().len(), 5, "{name}");
+
+    let mut next = start.clone();
+    stepper.step(&mut next).unwrap();
+    let at = |fraction| stepper.part(&start, fraction).unwrap();
+    let distance = |a: SO3, b: SO3| (a.as_matrix() - b.as_matrix()).norm();
+    assert_eq!((at(0.0).attitude(), at(0.0).momentum()), (start.attitude(), start.momentum()), "{name}: at the start");
+    assert!(distance(at(1.0).attitude(), next.attitude()) < 1e-14, "{name}: at the end");
+    assert!(relative(&at(1.0).momentum(), &next.momentum()) < 1e-13, "{name}: at the end");
+    let vertical = start.momentum_along(&Vector3::z());
+    for fraction in [-1.0, -0.3, 1e-40, 1e-9, 0.1, 0.5, 0.9] {
+        let between = at(fraction);
+        assert!(between.orthogonality_defect() < 4e-15, "{name}: at {fraction}");
+        assert!((between.momentum_along(&Vector3::z()) - vertical).abs() < 2e-14, "{name}: at {fraction}");
+        // A path of the motion's velocity.
+        let turned = distance(between.attitude(), start.attitude()) / std::f64::consts::SQRT_2;
+        let expected = VELOCITY.norm() * 0.01 * f64::abs(fraction);
+        assert!((turned - expected).abs() < 0.1 * expected + 1e-15, "{name}: turned by {turned} at {fraction}");
+    }
+    let later = stepper.state_at(&start, 0.107).unwrap();
+    stepper.run(&mut next, 9).unwrap();
+    let part = stepper.part(&next, 0.7).unwrap();
+    // Runs of a splitting join the flows at the ends of two steps.
+    assert!(distance(later.attitude(), part.attitude()) < 1e-9, "{name}: later");
+    let back = stepper.state_at(&stepper.adopt(&next), -0.1).unwrap();
+    assert!(distance(back.attitude(), start.attitude()) < 1e-9, "{name}: back");
+}
+
 /// All that goes with every plan.
 fn assert_all<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
@@ -179,19 +233,20 @@ where
 /// A plan, and the same with remedies around it, which change nothing where there is a step.
 fn assert_with_remedies<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
-    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone,
-    P: Plan<S> + Clone,
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone + 'static,
+    P: Plan<S, Kept: 'static> + Clone + 'static,
 {
     assert_all(name, stepper, own);
+    assert_is_observed(name, &stepper.clone().or_substeps(2).into_any());
     let substeps = stepper.clone().or_substeps(8);
     assert_all(&format!("{name}, or substeps"), &substeps, own);
     let fallback = stepper.clone().or_fallback(stepper.clone()).unwrap();
     assert_all(&format!("{name}, or fallback"), &fallback, own);
     let (mut plain, mut first, mut second) = (started(stepper), started(&substeps), started(&fallback));
     for _ in 0..10 {
-        let report = stepper.step(&mut plain).unwrap();
-        assert_eq!(substeps.step(&mut first).unwrap(), report, "{name}");
-        assert_eq!(fallback.step(&mut second).unwrap(), report, "{name}");
+        let report = step(stepper, &mut plain).unwrap();
+        assert_eq!(step(&substeps, &mut first).unwrap(), report, "{name}");
+        assert_eq!(step(&fallback, &mut second).unwrap(), report, "{name}");
     }
     assert_eq!(format!("{plain:?}"), format!("{first:?}"), "{name}");
     assert_eq!(format!("{plain:?}"), format!("{second:?}"), "{name}");
@@ -200,8 +255,8 @@ where
 /// And compensated, before and after.
 fn assert_everything<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
-    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone,
-    P: Plan<S> + Compensable + Clone,
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone + 'static,
+    P: Plan<S, Kept: 'static> + Compensable + Clone + 'static,
 {
     assert_with_remedies(name, stepper, own);
     let compensated = stepper.clone().compensated();

@@ -8,6 +8,7 @@ mod checkpoints;
 mod command_lines;
 mod compensated;
 mod long_drifts;
+mod observed;
 mod policies;
 mod random_inputs;
 mod secants;

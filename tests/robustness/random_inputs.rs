@@ -251,7 +251,7 @@ fn outcome(inputs: &mut Inputs) -> &'static str {
     };
     assert!(h.is_finite() && finite(&[m, g]) && finite(top.rho.as_slice()) && finite(top.up.as_slice()));
 
-    let inertia = top.inertia();
+    let inertia = top.inertia(&top.advected());
     let attitude = inputs.attitude();
     // Turns of a thousandth to ten of the largest that can be solved.
     let size = inertia.amax() / h.abs().max(1e-6) * inputs.between(1e-3, 10.0);

@@ -9,8 +9,9 @@ use liestep::groups::{CayleyRetraction, LieGroup as _};
 use liestep::laws::samples::derivative;
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia, Regular, Residual};
 use liestep::motion::DiscreteLiePoisson;
+use liestep::numbers::Lanes;
 use liestep::{SO3, StepError, Stepper, lagrangian};
-use nalgebra::{SimdValue as _, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use num_dual::Dual64;
 use simba::simd::WideF64x4;
 use workbench::measure::slope;
@@ -52,7 +53,10 @@ fn the_model_is_right_to_the_fourth_power_of_the_angle() {
     let errors = [0.4, 0.2, 0.1, 0.05].map(|size| {
         let xi = axis * size;
         let (_, jacobian) = SixthOrderTop::newton_system(&constants, &terms, &(xi * 0.5));
-        let model = <CayleyRetraction as liestep::groups::Retraction<SO3>>::free_momentum_tangent(&top.inertia(), &xi);
+        let model = <CayleyRetraction as liestep::groups::Retraction<SO3>>::free_momentum_tangent(
+            &top.inertia(&top.advected()),
+            &xi,
+        );
         (model - jacobian).norm() / model.norm()
     });
     let points: Vec<_> = errors.iter().zip([0.4_f64, 0.2, 0.1, 0.05]).map(|(e, size)| (size.ln(), e.ln())).collect();
@@ -149,7 +153,7 @@ where
     let (mut largest, mut counts) = (0.0_f64, [0; 3]);
     for _ in 0..200 {
         let (velocity, w) = (random.direction() * (angle / h), random.direction());
-        let momentum = with.scene().inertia() * velocity;
+        let momentum = with.scene().inertia(&with.scene().advected()) * velocity;
         let guess = velocity * h;
         let (outcome, is_expensive) = needs_jacobian(|| without.step(&momentum, &w, &guess));
         match (with.step(&momentum, &w, &guess), outcome) {
@@ -197,12 +201,7 @@ fn a_wrong_model_is_not_used() {
 fn lanes_are_independent() {
     let h = 0.02;
     let bodies = [0.0, 0.5, 1.0, 1.5].map(|extra| top(Vector3::new(2.0 + extra, 3.0, 4.0), 9.81, Vector3::z()));
-    let bodies_together = Top::<WideF64x4> {
-        J_d: bodies.map(|body| body.J_d).into(),
-        weight: bodies.map(|body| body.weight).into(),
-        rho: gathered(|k| bodies[k].rho),
-        up: gathered(|k| bodies[k].up),
-    };
+    let bodies_together = Top::<WideF64x4>::gathered(&bodies).unwrap();
     let together = DiscreteLiePoisson::new(WithoutJacobian::new(bodies_together), WideF64x4::from([h; 4])).unwrap();
     let alone = bodies.map(|body| DiscreteLiePoisson::new(WithoutJacobian::new(body), h).unwrap());
     let mut random = Random::new(4);
@@ -211,14 +210,14 @@ fn lanes_are_independent() {
         let angles = [0.01, 0.1, 0.3, if round % 2 == 0 { 0.5 } else { 0.85 }];
         let velocity = angles.map(|angle| random.direction() * (angle / h));
         let w = angles.map(|_| random.direction());
-        let momentum = [0, 1, 2, 3].map(|k| alone[k].scene().inertia() * velocity[k]);
+        let momentum = [0, 1, 2, 3].map(|k| alone[k].scene().inertia(&alone[k].scene().advected()) * velocity[k]);
         let guess = velocity.map(|velocity| velocity * h);
-        let wide = together.step(&gathered(|k| momentum[k]), &gathered(|k| w[k]), &gathered(|k| guess[k])).unwrap();
+        let wide = together.step(&gathered(&momentum), &gathered(&w), &gathered(&guess)).unwrap();
         let outcomes = [0, 1, 2, 3].map(|k| needs_jacobian(|| alone[k].step(&momentum[k], &w[k], &guess[k]).unwrap()));
         let singles = outcomes.map(|(single, _)| single);
         for (k, single) in singles.iter().enumerate() {
-            assert_eq!(wide.coordinates.extract(k), single.coordinates, "lane {k} in round {round}");
-            assert_eq!(wide.momentum.extract(k), single.momentum, "lane {k} in round {round}");
+            assert_eq!(wide.coordinates.lane(k), single.coordinates, "lane {k} in round {round}");
+            assert_eq!(wide.momentum.lane(k), single.momentum, "lane {k} in round {round}");
         }
         unequal += u32::from(singles.iter().any(|single| single.iterations != singles[0].iterations));
         with_jacobian += u32::from(outcomes[3].1 && !outcomes[0].1);
@@ -226,8 +225,8 @@ fn lanes_are_independent() {
     assert!(unequal > 100 && with_jacobian > 50, "{unequal} {with_jacobian}");
 }
 
-fn gathered(lane: impl Fn(usize) -> Vector3<f64>) -> Vector3<WideF64x4> {
-    Vector3::from_fn(|i, _| WideF64x4::from([0, 1, 2, 3].map(|k| lane(k)[i])))
+fn gathered(lanes: &[Vector3<f64>; 4]) -> Vector3<WideF64x4> {
+    Lanes::gathered(lanes).unwrap()
 }
 
 /// Derivatives that a dual number carries are solved to rounding too, as Newton's iteration solves them.
@@ -239,7 +238,7 @@ fn dual_numbers_are_solved_with_the_jacobian() {
     let top = Top { J_d, weight: Dual64::from(9.81), rho: dual(Vector3::new(0.3, 0.2, 0.4)), up: dual(Vector3::z()) };
     let h = Dual64::from(0.02);
     let velocity = dual(asymmetric_spin(8.0));
-    let momentum = top.inertia() * velocity;
+    let momentum = top.inertia(&top.advected()) * velocity;
     let w = dual(Vector3::new(0.0, 0.6, 0.8));
     let with = DiscreteLiePoisson::new(top, h).unwrap().step(&momentum, &w, &(velocity * h)).unwrap();
     let without = WithoutJacobian::new(top);
@@ -283,7 +282,7 @@ fn first<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64
     h: f64,
     velocity: Vector3<f64>,
 ) -> Result<Vector3<f64>, StepError> {
-    let momentum = lagrangian.inertia() * velocity;
+    let momentum = lagrangian.inertia(&lagrangian.advected()) * velocity;
     let flow = DiscreteLiePoisson::new(lagrangian.clone(), h).unwrap();
     flow.step(&momentum, &Vector3::z(), &(velocity * h)).map(|step| step.coordinates)
 }

@@ -66,6 +66,11 @@ fn spring() {
 }
 
 #[test]
+fn sliding_top() {
+    assert_bounded(&samples::sliding_top(), samples::on_so3());
+}
+
+#[test]
 fn magnet() {
     assert_bounded(&samples::magnet(), samples::on_so3());
 }

@@ -36,7 +36,7 @@ fn assert_limit<L: System<N, D> + Clone, const N: usize, const D: usize>(system:
     let state = stepper.start(attitude, velocity).unwrap();
     let (momentum, w) = (state.momentum(), state.advected());
     let l = |xi: &SVector<f64, D>| limit(|h| system.l_d(&along::<L::Group, N, D>(xi, h).matrix(), &w, h) / h);
-    let scale = system.inertia().norm() + system.potential(&w).abs() + momentum.norm();
+    let scale = system.inertia(&system.advected()).norm() + system.potential(&w).abs() + momentum.norm();
 
     let slope = SVector::<f64, D>::from_fn(|k, _| derivative(|t| l(&(velocity + axis(k, t)))));
     let missed = (slope - momentum).norm() / scale;

@@ -12,5 +12,6 @@ mod order;
 mod poisson;
 mod reversal;
 mod samples;
+mod several_bodies;
 mod symmetry;
 mod unreduced;

@@ -149,6 +149,51 @@ fn spring() {
     });
 }
 
+/// Against the equations of motion with `J(w) = J + m (ρ × w)(ρ × w)ᵀ`, typed by hand.
+#[test]
+fn sliding_top() {
+    let top = samples::sliding_top();
+    let inertia = ordinary(top.J_d.as_matrix());
+    let (attitude, velocity) = samples::on_so3();
+    let momentum = |velocity: &Vector3<f64>, w: &Vector3<f64>| {
+        let lever = top.rho.cross(w);
+        inertia * velocity + lever * (top.m * lever.dot(velocity))
+    };
+    let rate = |(p, w): (Vector3<f64>, Vector3<f64>)| {
+        let lever = top.rho.cross(&w);
+        let omega = (inertia + lever * lever.transpose() * top.m).try_inverse().unwrap() * p;
+        let arm = omega.cross(&top.rho);
+        let slope = arm * (top.m * w.dot(&arm)) - top.rho * (top.m * top.g);
+        (p.cross(&omega) + slope.cross(&w), w.cross(&omega))
+    };
+    let start = attitude.inverse().as_matrix() * top.up;
+    let mut exact = (momentum(&velocity, &start), start);
+    let steps = 2000;
+    let h = 1.0 / f64::from(steps);
+    let at =
+        |(p, w): (Vector3<f64>, Vector3<f64>), (dp, dw): (Vector3<f64>, Vector3<f64>), s: f64| (p + dp * s, w + dw * s);
+    for _ in 0..steps {
+        let first = rate(exact);
+        let second = rate(at(exact, first, 0.5 * h));
+        let third = rate(at(exact, second, 0.5 * h));
+        let fourth = rate(at(exact, third, h));
+        for (slope, part) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
+            exact = at(exact, slope, part * h / 6.0);
+        }
+    }
+    let errors = [80_u32, 160, 320].map(|steps| {
+        let stepper = liestep::Stepper::new(top.clone(), 1.0 / f64::from(steps)).unwrap();
+        let mut state = stepper.start(attitude, velocity).unwrap();
+        stepper.run(&mut state, u64::from(steps)).unwrap();
+        (state.momentum() - exact.0).norm() + (state.advected() - exact.1).norm()
+    });
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.02, "{order}");
+    }
+}
+
 #[test]
 fn magnet() {
     let body = samples::magnet();

@@ -15,7 +15,7 @@ fn reverses<L: System<N, D> + Clone, const N: usize, const D: usize>(system: &L,
 
 every_system! {
     reverses: heavy_top full_top free_body cayley_top log_top fourth_order_top sixth_order_top fourth_order_body
-    satellite orbiting_body spring magnet underwater_body tethered_plate elastic_flow
+    satellite orbiting_body spring sliding_top magnet underwater_body tethered_plate elastic_flow
 }
 
 /// A potential at one end of the step isn't self-adjoint.

@@ -5,7 +5,7 @@
 
 use declarations::{
     CayleyTop, ElasticFlow, FourthOrderBody, FourthOrderTop, FreeBody, FullTop, HeavyTop, LogTop, LogTraceTop, Magnet,
-    OrbitingBody, Satellite, SixthOrderTop, Spring, TetheredPlate, Top, UnderwaterBody,
+    OrbitingBody, Satellite, SixthOrderTop, SlidingTop, Spring, TetheredPlate, Top, UnderwaterBody,
 };
 use liestep::groups::{CovariantTensor, SL2};
 use liestep::prelude::*;
@@ -29,7 +29,7 @@ macro_rules! every_system {
     ($check:ident) => {
         every_system! {
             $check: heavy_top full_top free_body log_trace_top cayley_top log_top fourth_order_top sixth_order_top
-            fourth_order_body satellite orbiting_body spring magnet underwater_body tethered_plate elastic_flow
+            fourth_order_body satellite orbiting_body spring sliding_top magnet underwater_body tethered_plate elastic_flow
         }
     };
 }
@@ -135,6 +135,10 @@ pub fn orbiting_body() -> OrbitingBody {
 pub fn spring() -> Spring {
     let (rho, anchor) = (Vector3::new(0.3, 0.2, 0.8), Vector3::new(1.0, 0.2, -1.2));
     Spring { J_d: turned_inertia(), k: 12.0, length: 0.7, rho, anchor }
+}
+
+pub fn sliding_top() -> SlidingTop {
+    SlidingTop { J_d: turned_inertia(), m: 1.2, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.9), up: Vector3::z() }
 }
 
 pub fn magnet() -> Magnet {

@@ -68,6 +68,12 @@ fn magnet() {
     assert_conserved(&magnet, samples::on_so3(), 1);
 }
 
+/// The turns about the vertical.
+#[test]
+fn sliding_top() {
+    assert_conserved(&samples::sliding_top(), samples::on_so3(), 1);
+}
+
 /// The turns about the centre: the angular momentum of orbit and spin together.
 #[test]
 fn orbiting_body() {

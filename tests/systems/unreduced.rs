@@ -52,7 +52,7 @@ fn map<L: System<N, D>, const N: usize, const D: usize>(
 fn assert_variational<L: System<N, D> + Clone, const N: usize, const D: usize>(l: &L, name: &str) {
     let mut random = Random::new(14);
     let flow = DiscreteLiePoisson::new(l.clone(), H).unwrap();
-    let scale = l.inertia().norm() / H;
+    let scale = l.inertia(&l.advected()).norm() / H;
     let close = |what: &str, a: SVector<f64, D>, b: SVector<f64, D>| {
         let error = (a - b).norm() / scale;
         assert!(error < DIFFERENCES, "{name}: {what}: off by {error:e}");

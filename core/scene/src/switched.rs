@@ -22,6 +22,7 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
     type StepTerms = Option<E::StepTerms>;
 
     const PARTS: Parts = E::PARTS;
+    const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
     const DENOMINATORS: u32 = E::DENOMINATORS;
     const OPERATIONS: Operations = E::OPERATIONS;
     const DERIVATION: &'static str = E::DERIVATION;
@@ -45,8 +46,8 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
         self.0.as_ref().map_or_else(Matrix3::zeros, |effect| effect.momentum_jacobian(f, w, h))
     }
 
-    fn inertia(&self) -> Matrix3<f64> {
-        self.0.as_ref().map_or_else(Matrix3::zeros, E::inertia)
+    fn inertia(&self, w: &E::Advected) -> Matrix3<f64> {
+        self.0.as_ref().map_or_else(Matrix3::zeros, |effect| effect.inertia(w))
     }
 
     fn momentum_bias(&self, w: &E::Advected) -> Vector3<f64> {

@@ -212,7 +212,7 @@ impl<A: Advected<SO3> + 'static> Candidates<SO3, A> {
     {
         let candidates = Self::of(scene.clone(), order);
         // What these methods ask of a scene.
-        let Ok(inertia) = Inertia::new(scene.inertia()) else { return candidates };
+        let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else { return candidates };
         let body = ExactBody::new(&inertia);
         if Stepper::split(scene.clone(), 1.0, body, SplittingScheme::STRANG).is_err() {
             return candidates;
@@ -312,11 +312,15 @@ fn count(stages: usize) -> u32 {
     u32::try_from(stages).unwrap_or(u32::MAX)
 }
 
+/// The inertia's columns at several places.
 fn inertia<L: Effect<Scalar = f64>>(scene: &L) -> Vec<f64> {
     let mut entries = Vec::new();
-    for k in 0..<Group<L> as LieGroup>::DIMENSION {
-        let column: Vector<L> = scene.inertia() * <Vector<L> as crate::numbers::Coordinates<Scalar<L>>>::axis(k);
-        crate::numbers::Entries::each(&column, &mut |entry| entries.push(entry));
+    for place in places::<L>() {
+        let inertia = scene.inertia(&scene.advected().seen_from(&place));
+        for k in 0..<Group<L> as LieGroup>::DIMENSION {
+            let column: Vector<L> = inertia * <Vector<L> as crate::numbers::Coordinates<Scalar<L>>>::axis(k);
+            crate::numbers::Entries::each(&column, &mut |entry| entries.push(entry));
+        }
     }
     entries
 }
@@ -332,19 +336,22 @@ struct Seen {
     bias: Vec<f64>,
 }
 
-/// At places enough to tell the potentials of a body apart.
-fn seen<L: Effect<Scalar = f64>>(scene: &L) -> Vec<Seen> {
+/// Enough to tell the potentials of a body apart.
+fn places<L: Effect<Scalar = f64>>() -> impl Iterator<Item = Group<L>> {
     use crate::numbers::Coordinates as _;
     let dimension = <Group<L> as LieGroup>::DIMENSION;
     let turned = (0..dimension).map(|k| L::Retraction::retract(&(Vector::<L>::axis(k) * 0.7)));
-    let places = core::iter::once(Group::<L>::identity()).chain(turned);
+    core::iter::once(Group::<L>::identity()).chain(turned)
+}
+
+fn seen<L: Effect<Scalar = f64>>(scene: &L) -> Vec<Seen> {
     let look = |place| {
         let w = scene.advected().seen_from(&place);
         let mut bias = Vec::new();
         crate::numbers::Entries::each(&scene.momentum_bias(&w), &mut |entry| bias.push(entry));
         Seen { potential: scene.potential(&w), bias }
     };
-    places.map(look).collect()
+    places::<L>().map(look).collect()
 }
 
 /// The largest difference.

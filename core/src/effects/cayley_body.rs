@@ -11,6 +11,7 @@ use liestep_macros::lagrangian;
 /// with one moment far below the others, a fast step may still be refused.
 #[lagrangian(
     group = SO3,
+    gradients,
     l_d = {
         let x = vee(F - F.transpose()) / (1.0 + F.trace());
         2.0 * x.dot(&(J * x)) / h

@@ -6,7 +6,7 @@ use crate::groups::SO3;
 use liestep_macros::lagrangian;
 
 /// A magnetic moment fixed in the body, in a uniform field: the energy `−m·B`.
-#[lagrangian(group = SO3, advected(b = field), l_d = 0.5 * h * b.dot(&(moment + F * moment)))]
+#[lagrangian(group = SO3, gradients, advected(b = field), l_d = 0.5 * h * b.dot(&(moment + F * moment)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dipole<T = f64> {
     /// Magnetic moment, body frame, A m².

@@ -16,6 +16,7 @@ use liestep_macros::force;
 /// end takes away (`y ≥ x/2` below); halves at any strength, `b = x/2`, would turn a spin over once `x > 2`.
 #[force(
     group = SO3,
+    gradients,
     work = {
         let y = 0.5 * c * h * inverse(J).trace();
         let end = 0.5 * c / (1.0 + y * y);

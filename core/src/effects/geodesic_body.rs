@@ -11,6 +11,7 @@ use liestep_macros::lagrangian;
 /// quarter a step; the energy of a free body oscillates.
 #[lagrangian(
     group = SO3,
+    gradients,
     l_d = {
         let xi = log(F);
         xi.dot(&(J * xi)) / (2.0 * h)

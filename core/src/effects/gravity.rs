@@ -6,7 +6,7 @@ use crate::groups::SO3;
 use liestep_macros::lagrangian;
 
 /// The weight of a body that turns about a fixed point: the potential term of (3.13).
-#[lagrangian(group = SO3, advected(w = up), l_d = -0.5 * h * m * g * w.dot(&(rho + F * rho)))]
+#[lagrangian(group = SO3, gradients, advected(w = up), l_d = -0.5 * h * m * g * w.dot(&(rho + F * rho)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gravity<T = f64> {
     /// Mass, kg.

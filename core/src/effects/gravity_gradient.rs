@@ -13,6 +13,7 @@ use liestep_macros::lagrangian;
 /// [`step_with`](crate::Stepper::step_with) gives each step the direction in its middle.
 #[lagrangian(
     group = SO3,
+    gradients,
     advected(n = direction),
     l_d = {
         let after = F.transpose() * n;

@@ -17,6 +17,7 @@ use liestep_macros::force;
 /// where it doesn't.
 #[force(
     group = SO3,
+    gradients,
     advected(b = field),
     work = {
         let y = 0.5 * h * k * b.norm_squared() * inverse(J).trace();

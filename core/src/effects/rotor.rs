@@ -9,7 +9,7 @@ use liestep_macros::lagrangian;
 ///
 /// The body's inertia holds the rotor's, but for its moment about the axis. The momentum of the state is the whole
 /// system's, `JΩ + s`.
-#[lagrangian(group = SO3, l_d = spin.dot(&vee(F)))]
+#[lagrangian(group = SO3, gradients, l_d = spin.dot(&vee(F)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotor<T = f64> {
     /// The rotor's momentum about its axis, body frame, kg m²/s.

@@ -10,6 +10,7 @@ use liestep_macros::lagrangian;
 /// The force has no direction where the two points meet, so they mustn't.
 #[lagrangian(
     group = SO3,
+    gradients,
     advected(a = anchor),
     l_d = -0.25 * h * k * (((at - a).norm() - length).powi(2) + ((F * at - a).norm() - length).powi(2)),
 )]

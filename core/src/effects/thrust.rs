@@ -9,7 +9,7 @@ use liestep_macros::force;
 /// `at × thrust` about the point that the body turns about.
 ///
 /// A follower force has no potential, so the energy may grow or fall, and no momentum is conserved.
-#[force(group = SO3, work = 0.5 * h * at.cross(&thrust).dot(&(eta + eta_next)))]
+#[force(group = SO3, gradients, work = 0.5 * h * at.cross(&thrust).dot(&(eta + eta_next)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thrust<T = f64> {
     /// Where the engine is, body frame, m.

@@ -6,7 +6,7 @@ use crate::groups::SO3;
 use liestep_macros::force;
 
 /// A torque from within the body, as of a thruster that is fixed to it.
-#[force(group = SO3, work = 0.5 * h * torque.dot(&(eta + eta_next)))]
+#[force(group = SO3, gradients, work = 0.5 * h * torque.dot(&(eta + eta_next)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Torque<T = f64> {
     /// Torque, body frame, N m.

@@ -32,9 +32,11 @@ fn setup_errors() {
         SetupError::NotInGroup { defect: 0.125 },
         SetupError::NotSeparable { defect: 0.25 },
         SetupError::InertiaMismatch { difference: 0.5 },
+        SetupError::VaryingInertia,
         SetupError::BiasMismatch,
         SetupError::NoForceGradient,
         SetupError::PotentialMismatch,
+        SetupError::Unlike { lane: 3 },
     ];
     for error in errors {
         let parts: &[&str] = match error {
@@ -47,9 +49,11 @@ fn setup_errors() {
             SetupError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "more than rounding"],
             SetupError::NotSeparable { .. } => &["K(F) − (h/2) (V(w) + V(F⁻¹·w))", "2.5e-1", "more than rounding"],
             SetupError::InertiaMismatch { .. } => &["another body", "5e-1"],
+            SetupError::VaryingInertia => &["inertia", "advected", "same everywhere"],
             SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
             SetupError::PotentialMismatch => &["another potential"],
+            SetupError::Unlike { .. } => &["lane 3", "another method"],
         };
         assert_says(&error.to_string(), parts);
     }

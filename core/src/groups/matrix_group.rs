@@ -7,7 +7,7 @@ use nalgebra::{RealField, SMatrix, SVector};
 
 use super::LieGroup;
 use super::generators::{Generators, dynamic, squared_lengths, structure_constants};
-use crate::numbers::{real, reported};
+use crate::numbers::{Lanes, Real, real, reported};
 
 /// An element of the matrix group that `K` declares by its [`Generators`].
 ///
@@ -195,6 +195,11 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     }
 
     #[inline]
+    fn inverse_increment(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        -(K::inverse(&(increment + SMatrix::identity())) * increment)
+    }
+
+    #[inline]
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         self.0 * increment
     }
@@ -202,7 +207,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
     #[inline]
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
-        let inverse_increment = -(K::inverse(&(increment + SMatrix::identity())) * increment);
+        let inverse_increment = Self::inverse_increment(increment);
         let covector = Self::dual_hat(momentum);
         let moved = increment.transpose() * covector;
         Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))
@@ -211,6 +216,22 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     /// NaN where an entry isn't finite, whether or not the relation depends on it.
     fn defect(&self) -> T {
         K::relation(&self.0) + self.0.sum() * T::zero()
+    }
+}
+
+impl<K, T: Real<Element: Real>, const N: usize, const D: usize> Lanes for MatrixGroup<K, T, N, D> {
+    type Lane = MatrixGroup<K, T::Element, N, D>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self::from_matrix_unchecked(Lanes::splat(&lane.0))
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        MatrixGroup::from_matrix_unchecked(Lanes::lane(&self.0, k))
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        Lanes::set_lane(&mut self.0, k, &lane.0)
     }
 }
 

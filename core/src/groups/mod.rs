@@ -21,13 +21,15 @@
 //! | [`Heisenberg`] | unitriangular matrices | [`HeisenbergGenerators`] |
 //! | [`R1`], [`R2`], [`R3`] | translations | [`TranslationGenerators`] |
 //!
-//! Any other is declared in the same way, outside of this crate too: see [`Generators`].
+//! Any other is declared in the same way, outside of this crate too: see [`Generators`]. A product of two to four of them
+//! is the tuple, as `(SO3, SO3)` for two bodies: its components are those of its [factors](Factor), one after the other.
 
 mod advected;
 mod exponential;
 mod generators;
 mod heisenberg;
 mod matrix_group;
+mod product;
 mod retraction;
 pub(crate) mod rotation_functions;
 mod se2;
@@ -40,7 +42,8 @@ mod translations;
 
 pub(crate) use advected::homogeneous;
 pub use advected::{
-    Advected, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, inverse_increment,
+    Advected, Configuration, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, Relative,
+    SeenFrom,
 };
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
@@ -49,6 +52,7 @@ pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
 pub(crate) use matrix_group::basis;
 pub use matrix_group::{MatrixGroup, NotInGroup};
+pub use product::Factor;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub(crate) use rotation_functions::rotation_coefficients;
 pub use se2::{SE2, SE2Generators};
@@ -63,7 +67,7 @@ use core::fmt::Debug;
 
 use nalgebra::Matrix3;
 
-use crate::numbers::{Coordinates, Entries, Mask, Real, sum};
+use crate::numbers::{Blocks, Coordinates, Entries, Mask, Real, sum};
 
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
@@ -78,6 +82,9 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// The dimension of the group.
     const DIMENSION: usize;
+
+    /// The components that belong to each factor, where the group is a product.
+    const FACTORS: Blocks = Blocks::WHOLE;
 
     /// The identity `e`.
     fn identity() -> Self;
@@ -128,6 +135,10 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// The increment `D = F − I`.
     fn increment(&self) -> Self::Matrix;
 
+    /// `F⁻¹ − I = −F⁻¹D`, for `F = I + D`, formed without subtracting `I`.
+    #[must_use]
+    fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix;
+
     /// `g F − g = g D`.
     #[must_use]
     fn change(&self, increment: &Self::Matrix) -> Self::Matrix;
@@ -149,6 +160,32 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// holds for it.
     fn from_rotation(_rotation: Matrix3<Self::Scalar>) -> Option<Self> {
         None
+    }
+
+    /// The names of the numbers by which a table shows an element: on SO(3) those of its unit quaternion, elsewhere the
+    /// entries of the matrix, row by row.
+    #[must_use]
+    fn number_names() -> Vec<String> {
+        let mut entries = 0;
+        Self::identity().matrix().each(&mut |_| entries += 1);
+        let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
+        (0..entries).map(|entry| format!("g_{}{}", entry / rows + 1, entry % rows + 1)).collect()
+    }
+
+    /// Writes these numbers over those of the element before, or over zeros: of two quaternions it is the nearer one.
+    fn write_numbers(&self, numbers: &mut [Self::Scalar]) {
+        let mut places = numbers.iter_mut();
+        self.matrix().each(&mut |entry| {
+            if let Some(place) = places.next() {
+                *place = entry;
+            }
+        });
+    }
+
+    /// The names of the components of algebra elements and covectors: `x`, `y`, `z` on SO(3), elsewhere numbers from one.
+    #[must_use]
+    fn component_names() -> Vec<String> {
+        (1..=Self::DIMENSION).map(|component| component.to_string()).collect()
     }
 
     /// How far the matrix is from satisfying the relation of the group; zero on it.

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vec
 
 use super::LieGroup;
 use super::rotation_functions::{rotation_exp, rotation_log};
-use crate::numbers::{Mask, Real, gathered, real};
+use crate::numbers::{Mask, Real, lanes_of_wrapper, real};
 
 /// The rotation group SO(3): `F Fᵀ = I`, `det F = 1`.
 ///
@@ -167,15 +167,7 @@ impl<T: Real> From<Rotation3<T>> for SO3<T> {
     }
 }
 
-/// One attitude in each lane.
-impl<T, const LANES: usize> From<[SO3<T::Element>; LANES]> for SO3<T>
-where
-    T: Real<Element: Real> + From<[T::Element; LANES]>,
-{
-    fn from(lanes: [SO3<T::Element>; LANES]) -> Self {
-        Self(gathered(&lanes.map(|lane| lane.0)))
-    }
-}
+lanes_of_wrapper!([T] SO3<T>);
 
 impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
     type Error = NotARotation;
@@ -269,6 +261,12 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0 - Matrix3::identity()
     }
 
+    /// `Dᵀ`.
+    #[inline(always)]
+    fn inverse_increment(increment: &Matrix3<T>) -> Matrix3<T> {
+        increment.transpose()
+    }
+
     #[inline(always)]
     fn change(&self, increment: &Matrix3<T>) -> Matrix3<T> {
         // Of the product of matrices, which isn't always inlined, lanes would have the target's common instructions.
@@ -291,6 +289,21 @@ impl<T: Real> LieGroup for SO3<T> {
         Some(Self(rotation))
     }
 
+    fn number_names() -> Vec<String> {
+        ["q_w", "q_x", "q_y", "q_z"].map(str::to_owned).into()
+    }
+
+    fn write_numbers(&self, numbers: &mut [T]) {
+        let quaternion = quaternion(&self.0);
+        let before = numbers.iter().zip(&quaternion).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+        let sign = (-T::one()).select(before.simd_lt(T::zero()), T::one());
+        numbers.iter_mut().zip(quaternion).for_each(|(number, part)| *number = part * sign);
+    }
+
+    fn component_names() -> Vec<String> {
+        ["x", "y", "z"].map(str::to_owned).into()
+    }
+
     /// `‖RᵀR − I‖` in the Frobenius norm.
     fn defect(&self) -> T {
         let gram = self.0.transpose() * self.0 - Matrix3::identity();
@@ -307,6 +320,33 @@ impl<T: Real> LieGroup for SO3<T> {
             (Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry))), far)
         })
     }
+}
+
+/// The unit quaternion of a rotation, real part first, from its largest part. Every lane has its own.
+fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
+    let one = T::one();
+    let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
+    let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
+    // Four times the square of a part, and that part times all.
+    let parts = [
+        (one + r.m11 + r.m22 + r.m33, [wx, wy, wz]),
+        (one + r.m11 - r.m22 - r.m33, [wx, xy, xz]),
+        (one - r.m11 + r.m22 - r.m33, [wy, xy, yz]),
+        (one - r.m11 - r.m22 + r.m33, [wz, xz, yz]),
+    ];
+    let mut largest = parts[0].0;
+    let mut products = [largest, wx, wy, wz];
+    for (place, (square, others)) in parts.into_iter().enumerate().skip(1) {
+        let larger = square.simd_gt(largest);
+        largest = square.select(larger, largest);
+        let mut others = others.into_iter();
+        for (k, product) in products.iter_mut().enumerate() {
+            let part = if k == place { square } else { others.next().unwrap_or(one) };
+            *product = part.select(larger, *product);
+        }
+    }
+    let scale = real::<T>(0.5) / largest.simd_sqrt();
+    products.map(|product| product * scale)
 }
 
 /// `Aᵀ v`, unrolled.
@@ -332,6 +372,27 @@ mod tests {
         assert_eq!(SO3::from(Rotation3::from(attitude)), attitude);
         let back = attitude.compose(&attitude.inverse());
         assert!((back.as_matrix() - SO3::identity().as_matrix()).norm() < 1e-15);
+    }
+
+    /// Near every half turn and far from it, and with the sign of the one before.
+    #[test]
+    fn a_rotation_is_shown_by_its_quaternion() {
+        use crate::groups::LieGroup as _;
+        let mut numbers = [0.0; 4];
+        let mut before: Option<[f64; 4]> = None;
+        for turn in 0..2000 {
+            let turn = f64::from(turn);
+            let axis = Vector3::new((0.01 * turn).sin(), (0.017 * turn).cos(), (0.003 * turn).sin());
+            let quaternion = UnitQuaternion::from_scaled_axis(axis.normalize() * (0.01 * turn));
+            SO3::from(quaternion).write_numbers(&mut numbers);
+            let expected = [quaternion.w, quaternion.i, quaternion.j, quaternion.k];
+            let sign = if numbers.iter().zip(expected).map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+            let error = numbers.iter().zip(expected).map(|(a, b)| (a - sign * b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-15, "{error}");
+            let moved = before.map_or(0.0, |before| (0..4).map(|k| (numbers[k] - before[k]).abs()).fold(0.0, f64::max));
+            assert!(moved < 0.1, "it jumps");
+            before = Some(numbers);
+        }
     }
 
     /// The matrix of a top's Euler angles, typed from its three factors.

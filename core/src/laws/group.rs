@@ -170,6 +170,8 @@ pub fn increments<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
         let change = f.adjoint_transpose(&momentum) - momentum;
         let by_increment = G::adjoint_transpose_increment(&d, &momentum);
         assert_close(&by_increment, &change, allowed, "Ad*_F μ − μ from D");
+        let inverse = G::from_increment(&G::inverse_increment(&d));
+        assert_close(&inverse.matrix(), &f.inverse().matrix(), allowed, "I + E = F⁻¹");
     }
     // With `‖D‖ = 10⁻¹²` the second order is 10⁻²⁴, and a subtraction of one would leave 10⁻¹⁶.
     for _ in 0..20 {

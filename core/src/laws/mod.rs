@@ -22,7 +22,7 @@ pub use crate::{advected_laws, lie_group_laws, retraction_laws};
 /// | `brackets_are_derivatives` | `ad` and `ad*` are the derivatives of `Ad` and `Ad*` at the identity |
 /// | `variations` | `δξ = η' + ad_ξ η` for `g exp(εη)` |
 /// | `lie_poisson_brackets` | antisymmetry, Jacobi, `{f, h} = ⟨δf, ad*_{δh} μ⟩`, `Ad*_F` is a Poisson map |
-/// | `increments` | `g + gD = gF`, `Ad*_F μ − μ` from `D`, to all digits for a small `D` |
+/// | `increments` | `g + gD = gF`, `F⁻¹` and `Ad*_F μ − μ` from `D`, to all digits for a small `D` |
 /// | `the_relation_tells` | a matrix off the group has a defect |
 ///
 /// Invoke it in a test module of its own, one for each group.

@@ -7,7 +7,7 @@ use crate::groups::{Advected, LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Coordinates, Real, real, reported};
+use crate::numbers::{Blocks, Coordinates, Real, real, reported};
 use nalgebra::SimdBool as _;
 
 /// The scalar of an effect.
@@ -118,6 +118,15 @@ pub trait Effect {
     /// [`DENOMINATORS`](Self::DENOMINATORS) must be zero. The macro decides it by counting operations.
     const JACOBIAN_IS_EXPENSIVE: bool = false;
 
+    /// Whether [`inertia`](Self::inertia) is the same for all `w`. Then it is checked once, when a stepper is built, and
+    /// methods that have the motion of one free body in them may be used.
+    const INERTIA_IS_CONSTANT: bool;
+
+    /// Unknowns between which the Jacobian of [`newton_system`](Self::newton_system) is zero for all values: where nothing
+    /// but potentials of the ends of a step couples bodies, each is solved for itself. The blocks end where factors of the
+    /// group end; one block is always right.
+    const APART: Blocks = Blocks::WHOLE;
+
     /// How much arithmetic its share of a step is; the macro counts it.
     const OPERATIONS: Operations = Operations::UNCOUNTED;
 
@@ -150,8 +159,9 @@ pub trait Effect {
     /// equation (2.7), [`legendre_minus`](crate::mechanics::DiscreteLagrangian::legendre_minus), along `F ↦ exp(t E_j) F`.
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self>;
 
-    /// The matrix `J` of the continuous limit `l(ξ, w) = ½ ξ·Jξ + s·ξ − V`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`.
-    fn inertia(&self) -> Square<Self>;
+    /// The matrix `J(w)` of the continuous limit `l(ξ, w) = ½ ξ·Jξ + s·ξ − V`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`; of
+    /// a body alone it is the same for all `w`.
+    fn inertia(&self, w: &Self::Advected) -> Square<Self>;
 
     /// The covector `s` of the continuous limit: what is linear in the velocity.
     fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self>;
@@ -221,7 +231,8 @@ pub trait Effect {
 /// An effect with a kinetic part, so that it can be stepped; every such [`Effect`] is.
 ///
 /// This is the first half of what the literature calls a regular Lagrangian. The other half, that the inertia isn't
-/// singular, depends on the parameters and is checked by [`Stepper::new`](crate::motion::Stepper::new).
+/// singular, depends on the parameters and is checked by [`Stepper::new`](crate::motion::Stepper::new); where it depends
+/// on `w`, by [`Stepper::start`](crate::motion::Stepper::start).
 pub trait Regular: Effect {}
 
 impl<E: Effect> Regular for E where E::Kinetic: Moves<E> {}
@@ -239,19 +250,24 @@ impl<E: ?Sized> Moves<E> for WithKinetic {}
 
 /// `μ = Jξ + s(w)`: the momentum of the body velocity `ξ`.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    effect.inertia() * *velocity + effect.momentum_bias(w)
+    effect.inertia(w) * *velocity + effect.momentum_bias(w)
 }
 
 /// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`.
 pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    Vector::<E>::solve(&effect.inertia(), &(*momentum - effect.momentum_bias(w))).0
+    Vector::<E>::solve(&effect.inertia(w), &(*momentum - effect.momentum_bias(w))).0
 }
 
 /// `½ ξ·Jξ + V(w)`, the energy of the continuous limit.
 pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Scalar<E> {
     let velocity = velocity_of_momentum(effect, momentum, w);
-    let kinetic = velocity.dot(&(effect.inertia() * velocity)) * crate::numbers::real(0.5);
+    let kinetic = velocity.dot(&(effect.inertia(w) * velocity)) * crate::numbers::real(0.5);
     kinetic + effect.potential(w)
+}
+
+/// The inertia, if it is the same wherever the body is.
+pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
+    if E::INERTIA_IS_CONSTANT { Ok(effect.inertia(&effect.advected())) } else { Err(SetupError::VaryingInertia) }
 }
 
 /// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.

@@ -15,7 +15,7 @@ use core::fmt;
 
 use nalgebra::{Matrix3, RealField, Vector3};
 
-use crate::numbers::{Real, gathered, real, reported};
+use crate::numbers::{Real, lanes_of_wrapper, real, reported};
 
 /// Why a matrix isn't the inertia of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -299,21 +299,7 @@ impl<T: Real> From<DiagonalNonstandardInertia<T>> for NonstandardInertia<T> {
     }
 }
 
-macro_rules! from_lanes {
-    ($($type:ident),+) => {$(
-        /// One body in each lane.
-        impl<T, const LANES: usize> From<[$type<T::Element>; LANES]> for $type<T>
-        where
-            T: Real<Element: Real> + From<[T::Element; LANES]>,
-        {
-            fn from(lanes: [$type<T::Element>; LANES]) -> Self {
-                Self(gathered(&lanes.map(|lane| lane.0)))
-            }
-        }
-    )+};
-}
-
-from_lanes!(NonstandardInertia, DiagonalNonstandardInertia, Inertia);
+lanes_of_wrapper!([T] NonstandardInertia<T>, [T] DiagonalNonstandardInertia<T>, [T] Inertia<T>);
 
 fn nonstandard_diagonal<T: RealField + Copy>(moments: &Vector3<T>) -> Vector3<T> {
     Vector3::from_element(moments.sum() * real(0.5)) - moments

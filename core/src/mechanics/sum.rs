@@ -9,7 +9,7 @@ use crate::mechanics::effect::{Effect, Matrix, Parts, Residual, Square, Vector};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Coordinates as _, real};
+use crate::numbers::{Blocks, Coordinates as _, InLanes, Lanes, real};
 
 /// The sum of two effects of one group; what `+` makes of them.
 ///
@@ -48,6 +48,26 @@ impl<A, B> Sum<A, B> {
     pub const fn new(first: A, second: B) -> Self {
         Self { first, second }
     }
+}
+
+impl<A: Lanes, B: Lanes> Lanes for Sum<A, B> {
+    type Lane = Sum<A::Lane, B::Lane>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self { first: A::splat(&lane.first), second: B::splat(&lane.second) }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        Sum { first: self.first.lane(k), second: self.second.lane(k) }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.first.set_lane(k, &lane.first) && self.second.set_lane(k, &lane.second)
+    }
+}
+
+impl<W, A: InLanes<W>, B: InLanes<W>> InLanes<W> for Sum<A, B> {
+    type Together = Sum<A::Together, B::Together>;
 }
 
 /// The group `G` itself: what the effects `A` and `B` have to share to add. It is there for its message.
@@ -92,12 +112,18 @@ where
         (true, _) => A::DENOMINATORS,
         (false, _) => B::DENOMINATORS,
     };
+    const APART: Blocks = match (A::PARTS.unknown, B::PARTS.unknown) {
+        (true, true) => A::APART.or(B::APART),
+        (true, false) => A::APART,
+        (false, _) => B::APART,
+    };
     // The one unknown part's own kernel is run; two are added with their Jacobians.
     const JACOBIAN_IS_EXPENSIVE: bool = match (A::PARTS.unknown, B::PARTS.unknown) {
         (true, true) => false,
         (true, false) => A::JACOBIAN_IS_EXPENSIVE,
         (false, _) => B::JACOBIAN_IS_EXPENSIVE,
     };
+    const INERTIA_IS_CONSTANT: bool = A::INERTIA_IS_CONSTANT && B::INERTIA_IS_CONSTANT;
     const OPERATIONS: Operations = Operations {
         step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),
         iteration: match (A::PARTS.unknown, B::PARTS.unknown) {
@@ -132,8 +158,8 @@ where
         self.first.momentum_jacobian(f, &w.0, h) + self.second.momentum_jacobian(f, &w.1, h)
     }
 
-    fn inertia(&self) -> Square<Self> {
-        self.first.inertia() + self.second.inertia()
+    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
+        self.first.inertia(&w.0) + self.second.inertia(&w.1)
     }
 
     fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {

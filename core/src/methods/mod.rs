@@ -20,6 +20,6 @@ pub use gauss::{Collocated, CotangentGauss, Gauss};
 pub use preprocessed::{Preprocessed, PreprocessedOrder};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{
-    ExactBody, Flow, Inside, KineticFlow, PreprocessedFlow, Processed, ProcessedScheme, Split, SplitBody,
-    SplittingScheme, SymmetricBody, Turn,
+    DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, PreprocessedFlow, Processed, ProcessedScheme, Split,
+    SplitBody, SplittingScheme, SymmetricBody, Turn,
 };

@@ -74,6 +74,8 @@ trait Erased<G: LieGroup, A> {
     fn start(&self, attitude: G, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError>;
     fn step(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept) -> Result<StepReport, StepError>;
     fn run(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, run: (u64, bool)) -> Result<u64, StepError>;
+    fn part(&self, motion: &Motion<G, A>, kept: &AnyKept, fraction: G::Scalar) -> Result<Motion<G, A>, StepError>;
+    fn adopt(&self, motion: &Motion<G, A>) -> AnyState<G, A>;
     fn step_size(&self) -> G::Scalar;
     fn velocity(&self, motion: &Motion<G, A>) -> G::Vector;
     fn energy(&self, motion: &Motion<G, A>) -> G::Scalar;
@@ -115,7 +117,7 @@ where
 
     fn step(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
         let mut state = own(self, motion, kept);
-        let report = self.step(&mut state)?;
+        let report = self.step_called(&mut state)?;
         back(state, motion, kept);
         Ok(report)
     }
@@ -130,6 +132,20 @@ where
         let iterations = if explain { self.run(&mut state, steps)? } else { self.run_unexplained(&mut state, steps)? };
         back(state, motion, kept);
         Ok(iterations)
+    }
+
+    fn part(
+        &self,
+        motion: &Motion<Group<S>, S::Advected>,
+        kept: &AnyKept,
+        fraction: Scalar<S>,
+    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        self.fraction_of_a_step(&own(self, motion, kept), fraction)
+    }
+
+    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> AnyState<Group<S>, S::Advected> {
+        let State { motion, kept } = self.adopt(motion);
+        State { motion, kept: AnyKept(Box::new(kept)) }
     }
 
     fn step_size(&self) -> Scalar<S> {
@@ -188,6 +204,21 @@ impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
     /// As [`Stepper::run_unexplained`].
     pub(crate) fn run_unexplained(&self, state: &mut AnyState<G, A>, steps: u64) -> Result<u64, StepError> {
         self.0.run(&mut state.motion, &mut state.kept, (steps, false))
+    }
+
+    /// As [`Integrator::part`](crate::motion::Integrator::part).
+    pub(crate) fn fraction_of_a_step(
+        &self,
+        state: &AnyState<G, A>,
+        fraction: G::Scalar,
+    ) -> Result<Motion<G, A>, StepError> {
+        self.0.part(&state.motion, &state.kept, fraction)
+    }
+
+    /// As [`Stepper::adopt`].
+    #[must_use]
+    pub fn adopt(&self, motion: &Motion<G, A>) -> AnyState<G, A> {
+        self.0.adopt(motion)
     }
 
     /// The step `h`, s.

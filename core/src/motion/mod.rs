@@ -3,15 +3,19 @@
 //! A [`Stepper`] is a scene and a [`Plan`], the method with its constants folded; a [`State`] is a [`Motion`] and what
 //! the plan keeps from step to step. [`Declared`] is the plan of the scene's own step; the others are in
 //! [`methods`](crate::methods), and what is put around a plan in [`with`](crate::with). A [`RightHandSide`] is the
-//! continuous motion, for an ODE solver of another library.
+//! continuous motion, for an ODE solver of another library. What steps is an [`Integrator`], whatever its method: with
+//! it a motion is read between its steps, and [recorded and stopped](crate::with).
 
 // First, as on its page in the documentation.
 mod stepper;
 
 mod any;
+mod batch;
 mod declared;
 mod flows;
+mod integrator;
 mod kept;
+pub mod linearised;
 mod plan;
 mod report;
 mod right_hand_side;
@@ -19,17 +23,19 @@ mod state;
 mod summation;
 
 pub use any::{AnyKept, AnyState, AnyStepper};
+pub use batch::{Batch, Batchable};
 pub use declared::Declared;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub(crate) use flows::Stepped;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, Increment, reconstruct};
+pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
 pub(crate) use kept::{count, counted};
+pub(crate) use plan::rare_step;
 pub use plan::{Cost, Plan, Steerable};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
 pub use state::State;
-#[cfg(feature = "serde")]
 pub(crate) use stepper::StateOf;
 pub use stepper::Stepper;
 pub use summation::{Motion, Proceeded, Summation};

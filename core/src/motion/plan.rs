@@ -112,7 +112,7 @@ pub trait Plan<S: Effect> {
         let solvable = |fraction: f64| {
             self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
                 let (mut motion, mut kept) = (*motion, part.keep(scene, motion));
-                part.step(scene, &mut motion, &mut kept).is_ok()
+                rare_step(&part, scene, &mut motion, &mut kept).is_ok()
             })
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.step_size() * real(fraction))
@@ -124,6 +124,18 @@ pub trait Plan<S: Effect> {
 
     /// How much arithmetic a step is, about.
     fn cost(&self) -> Cost;
+}
+
+/// [`Plan::step`] where steps are rare: compiled once, and not anew into each of its callers.
+#[cold]
+#[inline(never)]
+pub(crate) fn rare_step<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
+    plan: &P,
+    scene: &S,
+    motion: &mut M,
+    kept: &mut P::Kept,
+) -> Result<StepReport, StepError> {
+    plan.step(scene, motion, kept)
 }
 
 /// A plan whose steps see what is advected in the motion and nowhere else, so that each can be

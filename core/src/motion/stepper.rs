@@ -3,7 +3,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup as _, SO3};
 use crate::mechanics::{
-    AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Vector, energy,
+    AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Vector, check_inertia, energy,
     momentum_of_velocity, velocity_of_momentum,
 };
 use crate::motion::declared::Declared;
@@ -12,9 +12,9 @@ use crate::motion::plan::{Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
-use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, real, reported};
+use crate::numbers::{Coordinates as _, InLanes, Kernel, Lanes, Vectors, dispatch, real, reported};
 use crate::solving::Solvability;
-use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The state of a scene `S` that is stepped by the plan `P`.
 pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as Plan<S>>::Kept>;
@@ -80,7 +80,8 @@ impl<S: Effect> Stepper<S> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part.
+    /// [`SetupError`] for a parameter or a step that can't be used, and for a degenerate kinetic part. Of several lanes
+    /// it doesn't tell which: steppers that are made one by one and [gathered](Lanes::gathered) do.
     pub fn new(scene: S, h: Scalar<S>) -> Result<Self, SetupError>
     where
         S: Regular,
@@ -98,7 +99,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
+    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
+    /// is advected is degenerate there.
     pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
@@ -113,7 +115,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group or something isn't finite.
+    /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
+    /// is advected is degenerate there.
     pub fn start_with_momentum(
         &self,
         attitude: impl Into<Group<S>>,
@@ -128,6 +131,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
+        }
+        if !S::INERTIA_IS_CONSTANT {
+            let w = self.scene.advected().seen_from(&attitude);
+            check_inertia::<Scalar<S>, Vector<S>>(&self.scene.inertia(&w))?;
         }
         Ok(self.begin(attitude, momentum))
     }
@@ -145,6 +152,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
             made => made,
         }
+    }
+
+    /// [`step`](Self::step), called: one copy of it for all that is put around a step.
+    #[inline(never)]
+    pub(crate) fn step_called(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
+        self.step(state)
     }
 
     /// So many steps, of which the states between aren't asked for; returns all their iterations. On an error the state
@@ -171,12 +184,33 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         dispatch(Run(self, state, steps))
     }
 
+    /// The motion after a step of this fraction of `h`; see [`Integrator::part`](crate::motion::Integrator::part).
+    pub(crate) fn fraction_of_a_step(
+        &self,
+        state: &StateOf<S, P>,
+        fraction: Scalar<S>,
+    ) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        // Nothing of a change so small would be seen, and of a step so small constants may leave the scalar's range.
+        let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
+        if fraction.simd_abs().simd_lt(least).all() {
+            return Ok(state.motion);
+        }
+        let scene = &self.scene;
+        let part = self.plan.refolded(scene, self.step_size() * fraction);
+        let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
+        let mut next = state.motion;
+        let mut kept = part.keep(scene, &next);
+        part.step(scene, &mut next, &mut kept).map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
+        next.steps = state.steps;
+        Ok(next)
+    }
+
     /// The states after each step from here on; after an error, nothing more.
     pub fn steps(&self, state: StateOf<S, P>) -> impl Iterator<Item = Result<StateOf<S, P>, StepError>> {
         let mut current = Some(state);
         core::iter::from_fn(move || {
             let mut next = current.take()?;
-            Some(self.step(&mut next).map(|_| {
+            Some(self.step_called(&mut next).map(|_| {
                 current = Some(next);
                 next
             }))
@@ -226,7 +260,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let half = *force * (self.step_size() * real(0.5));
         let mut next = *state;
         self.plan.push(&mut next.motion, &mut next.kept, &half);
-        let report = self.step(&mut next)?;
+        let report = self.step_called(&mut next)?;
         self.plan.push(&mut next.motion, &mut next.kept, &half);
         if !next.motion.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -283,7 +317,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let mut next = *state;
         let State { motion, kept } = &mut next;
         self.plan.see(motion, kept, values.seen_from(&motion.attitude));
-        let report = self.step(&mut next)?;
+        let report = self.step_called(&mut next)?;
         let State { motion, kept } = &mut next;
         self.plan.see(motion, kept, self.scene.advected().seen_from(&motion.attitude));
         *state = next;
@@ -456,6 +490,31 @@ impl<S: Effect> Stepper<S> {
     pub fn solvability(&self, motion: &Motion<Group<S>, S::Advected>) -> Solvability {
         self.plan.solvability(&self.scene, &motion.momentum, &motion.advected)
     }
+}
+
+/// Each lane steps as the stepper that was put into it, to the bit: constants are gathered, not folded again.
+impl<S: Effect + Lanes<Lane: Effect>, P: Lanes> Lanes for Stepper<S, P> {
+    type Lane = Stepper<S::Lane, P::Lane>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self { scene: Lanes::splat(&lane.scene), plan: Lanes::splat(&lane.plan) }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        Stepper { scene: self.scene.lane(k), plan: self.plan.lane(k) }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.scene.set_lane(k, &lane.scene) && self.plan.set_lane(k, &lane.plan)
+    }
+}
+
+impl<W, S, P> InLanes<W> for Stepper<S, P>
+where
+    S: Effect + InLanes<W, Together: Effect>,
+    P: InLanes<W>,
+{
+    type Together = Stepper<S::Together, P::Together>;
 }
 
 /// A step of this state.

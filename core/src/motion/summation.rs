@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::groups::{Advected, LieGroup, SO3};
-use crate::numbers::Real;
+use crate::groups::{Advected, Factor, LieGroup, SO3};
+use crate::numbers::{Lanes, Real};
 
 /// How many steps go by between two looks at what roundings have done to the attitude.
 ///
@@ -35,6 +35,15 @@ impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
         self.momentum
     }
 
+    /// The momentum of the body that is the factor `K` of a product, in its frame.
+    #[must_use]
+    pub fn momentum_of<const K: usize>(&self) -> <G::Of as LieGroup>::Vector
+    where
+        G: Factor<K>,
+    {
+        G::components(&self.momentum)
+    }
+
     /// The advected parameters `w_i = g_i⁻¹ · a_0`.
     #[must_use]
     pub fn advected(&self) -> A {
@@ -57,6 +66,40 @@ impl<G: LieGroup, A: Advected<G>> Motion<G, A> {
     #[must_use]
     pub fn orthogonality_defect(&self) -> G::Scalar {
         self.attitude.defect()
+    }
+}
+
+/// Lanes count their steps together.
+impl<G, A> Lanes for Motion<G, A>
+where
+    G: LieGroup<Vector: Lanes<Lane = <G::Lane as LieGroup>::Vector>> + Lanes<Lane: LieGroup>,
+    A: Lanes,
+{
+    type Lane = Motion<G::Lane, A::Lane>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self {
+            attitude: Lanes::splat(&lane.attitude),
+            momentum: Lanes::splat(&lane.momentum),
+            advected: Lanes::splat(&lane.advected),
+            steps: lane.steps,
+        }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        Motion {
+            attitude: self.attitude.lane(k),
+            momentum: self.momentum.lane(k),
+            advected: self.advected.lane(k),
+            steps: self.steps,
+        }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.steps == lane.steps
+            && self.attitude.set_lane(k, &lane.attitude)
+            && self.momentum.set_lane(k, &lane.momentum)
+            && self.advected.set_lane(k, &lane.advected)
     }
 }
 

@@ -5,6 +5,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 
 use nalgebra::{SMatrix, SVector, SimdBool as _};
 
+use crate::numbers::blocks::{self, Blocks, Pattern};
 use crate::numbers::entries::Entries;
 use crate::numbers::scalar::{Mask, Real};
 
@@ -66,8 +67,23 @@ pub trait Coordinates<T: Real>:
         (Self::solve_again(&factors, det, right_side), det)
     }
 
+    /// As [`factorise`](Self::factorise), of a matrix with this pattern. What is apart is solved apart. Of a
+    /// product of groups `det A` is relative to the product of the diagonal, and negative where the determinant is that
+    /// belongs to one of the factors, once those before it are eliminated: two of them don't hide each other.
+    fn factorise_with(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T);
+
+    /// The solution from what [`factorise_with`](Self::factorise_with) has made.
+    fn solve_again_with(factors: &Self::Square, det: T, pattern: Pattern, right_side: &Self) -> Self;
+
+    /// The least of the traces of the blocks.
+    fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T;
+
     /// The trace of a square matrix.
     fn trace(matrix: &Self::Square) -> T;
+
+    /// The transpose of a square matrix.
+    #[must_use]
+    fn transpose(matrix: &Self::Square) -> Self::Square;
 
     /// The smallest pivot of a symmetric matrix in the order of the basis, relative to its entry of the diagonal, up to
     /// the first that isn't positive: above zero where the matrix is positive definite, below where it is negative along
@@ -134,8 +150,31 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     }
 
     #[inline(always)]
+    fn factorise_with(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
+        if pattern.factors.is_whole() { Self::factorise(matrix) } else { blocks::factorise(matrix, pattern) }
+    }
+
+    #[inline(always)]
+    fn solve_again_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern, b: &Self) -> Self {
+        if pattern.factors.is_whole() {
+            Self::solve_again(factors, det, b)
+        } else {
+            blocks::solve_again(factors, pattern, b)
+        }
+    }
+
+    fn least_trace(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {
+        blocks::least_trace(matrix, blocks)
+    }
+
+    #[inline(always)]
     fn trace(matrix: &SMatrix<T, D, D>) -> T {
         sum::<T, D>(|k| matrix[(k, k)])
+    }
+
+    #[inline(always)]
+    fn transpose(matrix: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
+        matrix.transpose()
     }
 
     fn least_pivot(matrix: &SMatrix<T, D, D>) -> T {
@@ -182,7 +221,7 @@ fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D>
 }
 
 #[inline(always)]
-fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let det = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
     let mut adjugate = SMatrix::zeros();
     adjugate[(0, 0)] = m[(1, 1)];
@@ -194,7 +233,7 @@ fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D
 
 /// Its rows are cross products of columns.
 #[inline(always)]
-fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+pub(super) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
     let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
     let c21 = m(2, 3) * m(3, 1) - m(2, 1) * m(3, 3);

@@ -2,19 +2,24 @@
 //!
 //! Nothing here knows of groups or of mechanics.
 
+mod blocks;
 mod coordinates;
 mod entries;
 mod exact;
+mod lanes;
 mod scalar;
 mod simd;
 
+pub use blocks::{Blocks, Join, Pattern};
 pub use coordinates::Coordinates;
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
+pub use lanes::{InLanes, Lanes};
+pub(crate) use lanes::{lanes_of_fields, lanes_of_wrapper};
 pub use scalar::real;
 pub use scalar::{Mask, Real};
-pub(crate) use scalar::{gathered, is_finite, largest_lane, nowhere, reported};
+pub(crate) use scalar::{is_finite, largest_lane, nowhere, reported};
 
 pub use simd::Vectors;
 pub(crate) use simd::{Kernel, dispatch};

@@ -1,6 +1,6 @@
 //! The scalars that the steppers run on.
 
-use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
+use nalgebra::{SimdBool as _, SimdRealField, SimdValue};
 
 /// A real scalar: `f64`, `f32`, a dual number, or several of them in SIMD lanes.
 ///
@@ -15,14 +15,14 @@ use nalgebra::{SMatrix, SimdBool as _, SimdRealField, SimdValue};
 /// # Lanes
 ///
 /// With a scalar of several lanes, such as `AutoF64x8` of the crate simba, one stepper moves as many bodies at once.
-/// Values of all lanes are made from arrays of the lanes' values, inertias and attitudes too, and read by
-/// [`SimdValue::extract`]:
+/// [`Lanes`](crate::numbers::Lanes) puts scenes, steppers and states of single bodies together and takes them apart, and
+/// a [`Batch`](crate::motion::Batch) does it for a run in which each body may stop by itself:
 ///
 /// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled.
 ///   Logarithms and exponentials in a Lagrangian are the exception, which round by the lane that is farthest from the
 ///   identity, and sines and cosines, which differ by roundings where the lanes compute them in their own way.
 /// - Every lane's step is solved, or the whole step is an error and the state of all lanes is what it was. An error's
-///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is.
+///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is. In a `Batch` only the lane itself stops.
 /// - The group is [`SO3`](crate::groups::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::groups::MatrixGroup) inverts matrices by
 ///   pivots and asks for `RealField`, of which lanes aren't one.
 ///
@@ -53,16 +53,6 @@ pub(crate) fn nowhere<T: Real>() -> Mask<T> {
 #[must_use]
 pub fn real<T: Real>(value: f64) -> T {
     nalgebra::convert(value)
-}
-
-/// The matrix whose lanes are the matrices given.
-pub(crate) fn gathered<T, const LANES: usize, const R: usize, const C: usize>(
-    lanes: &[SMatrix<T::Element, R, C>; LANES],
-) -> SMatrix<T, R, C>
-where
-    T: Real<Element: Real> + From<[T::Element; LANES]>,
-{
-    SMatrix::from_fn(|i, j| T::from(core::array::from_fn(|lane| lanes[lane][(i, j)])))
 }
 
 /// Whether every lane is finite: zero times an infinity or a NaN is NaN.

@@ -20,9 +20,11 @@ const DEPARTURE: f64 = 0.5;
 /// smooth on the scale of a radian, apart from potentials with features narrower than that, and nothing rests on this
 /// alone.
 pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants) -> Scalar<L> {
-    let inertia = lagrangian.inertia();
-    let standing: Vec<L::StepTerms> = elements::<L>()
-        .map(|g| step_terms::<L>(constants, &Vector::<L>::zero(), &lagrangian.advected().seen_from(&g)))
+    let standing: Vec<(Square<L>, L::StepTerms)> = elements::<L>()
+        .map(|g| {
+            let w = lagrangian.advected().seen_from(&g);
+            (lagrangian.inertia(&w), step_terms::<L>(constants, &Vector::<L>::zero(), &w))
+        })
         .collect();
     let directions = directions::<L>();
     let mut trusted = real::<Scalar<L>>(0.0);
@@ -30,8 +32,8 @@ pub(crate) fn trusted_radius<L: Effect>(lagrangian: &L, constants: &L::Constants
     for radius in RADII {
         for direction in &directions {
             let xi = *direction * real::<Scalar<L>>(radius);
-            let model = L::Retraction::free_momentum_tangent(&inertia, &xi);
-            for terms in &standing {
+            for (inertia, terms) in &standing {
+                let model = L::Retraction::free_momentum_tangent(inertia, &xi);
                 let (_, jacobian) = newton_system::<L>(constants, terms, &(xi * real(0.5)));
                 is_near = is_near & is_nearly::<L>(&model, &jacobian);
             }

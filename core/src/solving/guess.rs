@@ -2,7 +2,7 @@
 
 use nalgebra::SimdBool as _;
 
-use crate::numbers::{Coordinates, Mask, Real};
+use crate::numbers::{Coordinates, Lanes, Mask, Real, lanes_of_fields};
 
 /// Of increments at equal times eight tell the next to some `(h ω)⁸` for the fastest frequency `ω` in them. Each more
 /// would double the roundings in the guess, and gains little where `h ω` is near one.
@@ -171,6 +171,32 @@ impl<V: Copy> History<V> {
         }
         self.increments = (self.increments + 1).min(DIFFERENCES + 1);
         guess
+    }
+}
+
+lanes_of_fields!(
+    impl[V: Lanes] Guess<V> => Guess<V::Lane>, as Guess { lanes: [half, next], scalars: [], shared: [] }
+);
+
+lanes_of_fields!(
+    impl[V: Lanes] Warm<V> => Warm<V::Lane>, as Warm { lanes: [guess, history], scalars: [], shared: [] }
+);
+
+/// Lanes count their increments together.
+impl<V: Lanes> Lanes for History<V> {
+    type Lane = History<V::Lane>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self { differences: lane.differences.each_ref().map(V::splat), increments: lane.increments }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        History { differences: self.differences.each_ref().map(|d| d.lane(k)), increments: self.increments }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        let mut differences = self.differences.iter_mut().zip(&lane.differences);
+        self.increments == lane.increments && differences.all(|(together, lane)| together.set_lane(k, lane))
     }
 }
 

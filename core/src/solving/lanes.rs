@@ -8,9 +8,10 @@
 
 use core::hint::black_box;
 
-use super::problem::{Lanes, MAX_ITERATIONS, Problem, Root, settled};
-use super::reused_jacobian::{has_no_derivatives, has_sufficed, may_suffice};
-use crate::mechanics::{Effect, Scalar, Vector};
+use super::iteration::{Lanes, MAX_ITERATIONS, Root, settled};
+use super::problem::{Problem, Usual};
+use super::reused_jacobian::{Iteration, has_no_derivatives, has_sufficed, may_suffice};
+use crate::mechanics::{Effect, Group, Scalar, Vector};
 use crate::numbers::Coordinates as _;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _};
 
@@ -19,14 +20,14 @@ impl<L: Effect> Problem<'_, L> {
     #[inline(always)]
     pub(super) fn solve_together<const REUSE: bool>(
         &self,
-        terms: &L::StepTerms,
+        equation: &Usual<'_, L>,
         guess: &Vector<L>,
         largest: Scalar<L>,
-    ) -> Option<Root<L>> {
-        let made = self.newton(terms, guess);
+    ) -> Option<Root<Group<L>>> {
+        let made = Iteration::from(equation, guess);
         let half = *guess - made.update;
         let first = made.update.dot(&made.update);
-        let settled = settled::<L>(&made.update, &half);
+        let settled = settled::<Group<L>>(&made.update, &half);
         if settled.all() {
             return self.usual(&half, made.det, 1, largest);
         }
@@ -34,7 +35,7 @@ impl<L: Effect> Problem<'_, L> {
         if REUSE && has_no_derivatives::<Scalar<L>>() {
             let is_near = may_suffice(first, half.dot(&half)) & made.det.simd_gt(self.safe) & !settled;
             if is_near.all() {
-                let second = self.simplified(terms, &half, &made);
+                let second = made.simplified(equation, &half);
                 let half = half - second;
                 if has_sufficed(first, second.dot(&second), half.dot(&half)).all() {
                     return self.usual(&half, made.det, 2, largest);
@@ -46,12 +47,12 @@ impl<L: Effect> Problem<'_, L> {
         let made = black_box(made);
         let mut lanes = Lanes::starting_at(guess);
         lanes.advance(&made.update, made.det, &made.update);
-        let mut again = self.reuse_jacobian::<REUSE>(terms, &made, &mut lanes);
+        let mut again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
         for iteration in 1..=MAX_ITERATIONS {
             if lanes.settled.all() {
                 return self.usual(&lanes.half, lanes.det, iteration + u32::from(again), largest);
             }
-            again = self.iterate_once::<REUSE>(terms, &mut lanes);
+            again = lanes.iterate_once::<REUSE>(equation, self.safe);
         }
         None
     }

@@ -1,10 +1,13 @@
 //! Solving the momentum equation (2.7) for the increment `F`, and what is known of its solutions.
 //!
-//! [`problem`] is Newton's iteration, [`reused_jacobian`], [`secants`] and [`lanes`] its cheaper and its wider forms,
-//! [`branch`] the check that the solution is the one that continues `F = I`. Nothing here knows of states or of time.
+//! [`problem`] is the solve that a step usually makes, by Newton's [`iteration`]; [`reused_jacobian`], [`secants`] and
+//! [`lanes`] are its cheaper and its wider forms, [`careful`] has the fallbacks, and [`branch`] the check that the solution
+//! is the one that continues `F = I`. Nothing here knows of states or of time.
 
 mod branch;
+mod careful;
 mod guess;
+mod iteration;
 mod lanes;
 mod largest_step;
 mod problem;
@@ -15,8 +18,9 @@ mod solvability;
 pub(crate) use branch::trusted_radius;
 pub(crate) use guess::{Continued, DIFFERENCES, History};
 pub use guess::{Guess, Warm};
+pub(crate) use iteration::{Kick, Root};
 pub(crate) use largest_step::{largest_fraction, six_digits};
-pub(crate) use problem::{Kick, Problem, Root, newton_system, step_terms};
+pub(crate) use problem::{Problem, newton_system, pattern, step_terms};
 pub(crate) use reused_jacobian::safe;
 pub use solvability::Solvability;
 pub(crate) use solvability::{TurningLimits, turning_limits};

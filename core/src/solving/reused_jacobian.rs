@@ -20,8 +20,8 @@
 
 use core::any::TypeId;
 
-use super::problem::{Lanes, Problem};
-use crate::mechanics::{Effect, Scalar, Square, Vector};
+use super::iteration::{Lanes, SquareOf, System};
+use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
 
@@ -34,7 +34,7 @@ const SAFE: f64 = 1.0 / 16.0;
 /// one wastes a residual in a narrow range of updates.
 const TYPICAL_CURVATURE: f64 = 1.0 / 16.0;
 
-/// The determinant that [`Problem::safe`] is, from that of the Jacobian at rest.
+/// The determinant that [`Problem::safe`](super::Problem::safe) is, from that of the Jacobian at rest.
 pub(crate) fn safe<T: Real>(at_rest: T) -> T {
     at_rest * real(SAFE)
 }
@@ -48,59 +48,64 @@ pub(super) fn has_no_derivatives<T: Real>() -> bool {
 }
 
 /// A Newton iteration: its update, and its Jacobian in factors, for another update.
-pub(super) struct Iteration<L: Effect> {
-    pub(super) update: Vector<L>,
-    factors: Square<L>,
-    pub(super) det: Scalar<L>,
+pub(super) struct Iteration<G: LieGroup> {
+    pub(super) update: G::Vector,
+    factors: SquareOf<G>,
+    pub(super) det: G::Scalar,
 }
 
-impl<L: Effect> Problem<'_, L> {
+impl<G: LieGroup> Iteration<G> {
+    /// The iteration from there.
+    #[inline(always)]
+    pub(super) fn from(equation: &(impl System<G> + ?Sized), half: &G::Vector) -> Self {
+        let (residual, jacobian) = equation.newton_system(half);
+        let (factors, det) = G::Vector::factorise_with(&jacobian, equation.pattern());
+        Self { update: G::Vector::solve_again_with(&factors, det, equation.pattern(), &residual), factors, det }
+    }
+
+    /// The update from another place by the same Jacobian.
+    #[inline(always)]
+    pub(super) fn simplified(&self, equation: &(impl System<G> + ?Sized), half: &G::Vector) -> G::Vector {
+        G::Vector::solve_again_with(&self.factors, self.det, equation.pattern(), &equation.residual(half))
+    }
+}
+
+impl<G: LieGroup> Lanes<G> {
     /// An iteration of the lanes that haven't settled. With `REUSE`, the lanes that it has brought near enough make one
     /// more with the same Jacobian. Where steps are so long that they seldom can, asking costs more than it saves.
     /// Returns whether a lane has settled by that.
     #[inline(always)]
-    pub(super) fn iterate_once<const REUSE: bool>(&self, terms: &L::StepTerms, lanes: &mut Lanes<L>) -> bool {
-        let made = self.newton(terms, &lanes.half);
-        lanes.advance(&made.update, made.det, &made.update);
-        self.reuse_jacobian::<REUSE>(terms, &made, lanes)
-    }
-
-    /// An iteration from there.
-    #[inline(always)]
-    pub(super) fn newton(&self, terms: &L::StepTerms, half: &Vector<L>) -> Iteration<L> {
-        let (residual, jacobian) = L::newton_system(self.constants, terms, half);
-        let (factors, det) = Vector::<L>::factorise(&jacobian);
-        Iteration { update: Vector::<L>::solve_again(&factors, det, &residual), factors, det }
-    }
-
-    /// The update from there by the Jacobian that another was made with.
-    #[inline(always)]
-    pub(super) fn simplified(&self, terms: &L::StepTerms, half: &Vector<L>, made: &Iteration<L>) -> Vector<L> {
-        let residual = L::newton_residual(self.constants, terms, half).momentum_defect;
-        Vector::<L>::solve_again(&made.factors, made.det, &residual)
+    pub(super) fn iterate_once<const REUSE: bool>(
+        &mut self,
+        equation: &(impl System<G> + ?Sized),
+        safe: G::Scalar,
+    ) -> bool {
+        let made = Iteration::from(equation, &self.half);
+        self.advance(&made.update, made.det, &made.update);
+        self.reuse_jacobian::<REUSE>(equation, &made, safe)
     }
 
     /// The second part of [`iterate_once`](Self::iterate_once).
     #[inline(always)]
     pub(super) fn reuse_jacobian<const REUSE: bool>(
-        &self,
-        terms: &L::StepTerms,
-        made: &Iteration<L>,
-        lanes: &mut Lanes<L>,
+        &mut self,
+        equation: &(impl System<G> + ?Sized),
+        made: &Iteration<G>,
+        safe: G::Scalar,
     ) -> bool {
-        if !REUSE || !has_no_derivatives::<Scalar<L>>() || lanes.settled.all() {
+        if !REUSE || !has_no_derivatives::<G::Scalar>() || self.settled.all() {
             return false;
         }
         let before = made.update.dot(&made.update);
-        let is_near = may_suffice(before, lanes.half.dot(&lanes.half)) & made.det.simd_gt(self.safe) & !lanes.settled;
+        let is_near = may_suffice(before, self.half.dot(&self.half)) & made.det.simd_gt(safe) & !self.settled;
         if !is_near.any() {
             return false;
         }
-        let second = self.simplified(terms, &lanes.half, made);
-        let next = lanes.half - second;
-        lanes.half = next.select(is_near, lanes.half);
+        let second = made.simplified(equation, &self.half);
+        let next = self.half - second;
+        self.half = next.select(is_near, self.half);
         let settled = is_near & has_sufficed(before, second.dot(&second), next.dot(&next));
-        lanes.settled = lanes.settled | settled;
+        self.settled = self.settled | settled;
         settled.any()
     }
 }

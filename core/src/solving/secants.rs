@@ -36,10 +36,11 @@
 //!   motion with a symmetry, such as a planar pendulum's, lie in one plane, and say nothing about the directions across
 //!   it. But what the samples of the ball have missed is seen by these.
 
-use super::problem::{Lanes, Problem};
+use super::iteration::Lanes;
+use super::problem::Problem;
 use super::reused_jacobian::has_no_derivatives;
 use crate::groups::Retraction as _;
-use crate::mechanics::{Effect, Residual, Scalar, Vector};
+use crate::mechanics::{Effect, Group, Residual, Scalar, Vector};
 use crate::numbers::{Coordinates as _, Mask, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
@@ -136,9 +137,9 @@ impl<L: Effect> Problem<'_, L> {
     /// From the guess until no lane goes on; `settled` are those whose solution is beyond doubt. With the number of
     /// residuals.
     #[inline(always)]
-    pub(super) fn iterate_by_secants(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<L>, u32) {
-        let model = L::Retraction::free_momentum_tangent(&self.scene.inertia(), &(*guess + *guess));
-        let mut lanes = Lanes::<L>::starting_at(guess);
+    pub(super) fn iterate_by_secants(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
+        let model = L::Retraction::free_momentum_tangent(&self.scene.inertia(self.w), &(*guess + *guess));
+        let mut lanes = Lanes::<Group<L>>::starting_at(guess);
         let mut updates = Updates::<L>::none();
         let radius = self.trusted * real(0.5);
         let in_ball = |half: &Vector<L>| half.dot(half).simd_lt(radius * radius);

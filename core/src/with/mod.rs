@@ -1,13 +1,19 @@
-//! What is put around a method: compensated sums, remedies for steps without a solution, checkpoints.
+//! What is put around a method: compensated sums, remedies for steps without a solution, checkpoints; runs that are
+//! observed, recorded and stopped, and events in them.
 //!
 //! Each goes with every method for which it makes sense, and with each other.
 
 #[cfg(feature = "serde")]
 mod checkpoint;
 mod compensated;
+mod record;
 mod remedies;
+mod run;
+pub mod sections;
 
 #[cfg(feature = "serde")]
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{Carried, Compensable, Compensated};
+pub use record::{Background, Column, Csv, RecordError, Recorder, Sink, SinkError, Table};
 pub use remedies::{Instead, OrElse, Substeps};
+pub use run::{Ended, Event, Reason, Run, RunError};

@@ -19,7 +19,7 @@ pub struct Moments {
 impl Moments {
     /// The same body as the declared one.
     pub fn of(body: &PrincipalBody) -> Self {
-        let moments = body.inertia().diagonal();
+        let moments = body.inertia(&body.advected()).diagonal();
         Self { moments, inverses: moments.map(f64::recip) }
     }
 

@@ -58,7 +58,7 @@ pub struct SymmetricTop {
 impl SymmetricTop {
     /// Of a top whose first two moments are equal, with its centre of mass on the third axis.
     pub fn of(top: &HeavyTop) -> Self {
-        let moments = top.inertia().diagonal();
+        let moments = top.inertia(&top.advected()).diagonal();
         Self { across: moments.x, along: moments.z, weight: top.m * top.g * top.rho.z }
     }
 

@@ -26,7 +26,7 @@ pub struct Body {
 impl Body {
     /// The same body and the same weight as the declared top's.
     pub fn of(top: &HeavyTop) -> Self {
-        let inverse_moments = top.inertia().diagonal().map(f64::recip);
+        let inverse_moments = top.inertia(&top.advected()).diagonal().map(f64::recip);
         Self { inverse_moments, lever: top.rho * (top.m * top.g) }
     }
 }

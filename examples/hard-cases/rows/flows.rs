@@ -40,7 +40,10 @@ where
         error = greater(error, relative(&attitude.matrix(), &state.attitude().matrix()));
         (f, w) = on_increments.step(&f, &w)?;
         let momentum = lagrangian.legendre_minus(&f.matrix(), &w, h);
-        error = greater(error, (momentum - state.momentum()).norm() * h / lagrangian.inertia().norm());
+        error = greater(
+            error,
+            (momentum - state.momentum()).norm() * h / lagrangian.inertia(&lagrangian.advected()).norm(),
+        );
         let (mut apart, mut size) = (0.0, 1.0);
         let _ = w.zip(&state.advected(), &mut |a, b| {
             apart += (a - b) * (a - b);

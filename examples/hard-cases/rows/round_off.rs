@@ -113,7 +113,7 @@ pub(crate) fn r1(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
 pub(crate) fn r2(effort: Effort, curves: &mut Curves) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
     let motion = Motion::looping();
-    let kinetic = SymmetricBody::new(&Inertia::new(motion.top.inertia())?)?;
+    let kinetic = SymmetricBody::new(&Inertia::new(motion.top.inertia(&motion.top.advected()))?)?;
     let splitting = Stepper::split(motion.top.clone(), 0.02, kinetic, SplittingScheme::NYSTROM_11)?;
     let start = splitting.start(motion.attitude, motion.velocity)?;
     let mut state = start;

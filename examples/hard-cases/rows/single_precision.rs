@@ -32,7 +32,7 @@ where
 {
     // Those that the program has, not those it was to have; and in double precision, so that what is measured isn't the
     // rounding of the measurement.
-    let inverse = body.inertia().cast::<f64>().try_inverse().ok_or("a singular inertia")?;
+    let inverse = body.inertia(&body.advected()).cast::<f64>().try_inverse().ok_or("a singular inertia")?;
     let stepper = Stepper::new(body, single(h))?;
     let mut state = stepper.start(SO3::identity(), Vector3::from(velocity).cast::<f32>())?;
     let kept = |state: &State<SO3<f32>, ()>| {

@@ -34,7 +34,7 @@ impl Seen {
     {
         let flow = DiscreteLiePoisson::new(lagrangian.clone(), STEP)?;
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            let momentum = lagrangian.inertia() * axis * (0.5 / STEP);
+            let momentum = lagrangian.inertia(&lagrangian.advected()) * axis * (0.5 / STEP);
             let off = |found: &SO3| (found.log() - axis * 30.0_f64.to_radians()).norm();
             let guess = |degrees: f64| L::Retraction::local_coordinates(&rotation(&axis, degrees)).ok_or("half a turn");
             self.traps += 1;

@@ -73,6 +73,8 @@ pub(crate) struct Declaration {
     pub(crate) expression: Option<Expr>,
     /// Of a continuous Lagrangian `l`, what it is written and discretised with.
     pub(crate) continuous: Option<Continuous>,
+    /// Where the derivatives of a step are asked for.
+    pub(crate) gradients: Option<Span>,
     pub(crate) fields: Vec<Field>,
     /// The fields whose type has no meaning.
     pub(crate) unreadable: Vec<String>,

@@ -66,7 +66,9 @@ pub(crate) fn readings_without(
     };
     let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
         let (group, advected, names) = (declaration.group.clone(), advected.clone(), names.clone());
-        let declared = Declared { group, symbols, lets, expression, increment, step, advected, displacements };
+        let has_gradients = declaration.gradients.is_some();
+        let declared =
+            Declared { group, symbols, lets, expression, increment, step, advected, displacements, has_gradients };
         Lowered { declared, names }
     };
     let multiplied_out = attempt(None);

@@ -30,6 +30,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let effect = header.implementation("Effect");
     let addition = header.addition("Effect");
+    let lanes = super::lanes::lanes(&header, None);
     let core = quote_spanned!(span=> #private::core);
     let of_increment = [
         ("right_momentum", &vector),
@@ -98,12 +99,13 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         #[allow(clippy::all, clippy::pedantic)]
         #effect {
             #types
+            const INERTIA_IS_CONSTANT: #core::primitive::bool = true;
             const DERIVATION: &'static #core::primitive::str = "";
             fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
             fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
             fn advected(&self) -> Self::Advected { loop {} }
             fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
-            fn inertia(&self) -> #square { loop {} }
+            fn inertia(&self, _: &Self::Advected) -> #square { loop {} }
             fn momentum_bias(&self, _: &Self::Advected) -> #vector { loop {} }
             fn potential(&self, _: &Self::Advected) -> #scalar { loop {} }
             fn constants(&self, _: #scalar) -> Self::Constants {}
@@ -114,6 +116,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         }
 
         #addition
+        #lanes
     };
     header.enclosing(implementations)
 }

@@ -17,8 +17,8 @@ pub(crate) struct Header {
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
     pub(crate) parameter: Option<Ident>,
-    name: Ident,
-    generics: syn::Generics,
+    pub(super) name: Ident,
+    pub(super) generics: syn::Generics,
     advected: Vec<FieldKind>,
     size: usize,
     dimension: usize,

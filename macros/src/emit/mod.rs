@@ -6,8 +6,10 @@ mod code;
 mod continuous;
 mod docs;
 mod fallback;
+mod gradients;
 mod header;
 mod inputs;
+mod lanes;
 mod own_group;
 mod page;
 mod stages;
@@ -51,7 +53,7 @@ pub(crate) fn implementation(
         Some(discretisation) => continuous::discretised(&emitter, discretisation),
         None => verbatim::declared(declaration, &header),
     };
-    let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations));
+    let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
     let section = equations.map(|equations| continuous::text::section(declaration, equations));
     let derivation = docs::derivation(declaration, chosen, &texts, section, findings);
     let documentation = format!("```text\n{derivation}```");
@@ -70,6 +72,8 @@ pub(crate) fn implementation(
     let (of_role, term) = (header.implementation(name), header.implementation("Effect"));
     let invariance = invariance(declaration, &header);
     let addition = header.addition("Effect");
+    let lanes = lanes::lanes(&header, Some(&declaration.fields));
+    let gradients = gradients::implementation(&emitter);
     let body = &stages.methods;
     let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
@@ -106,7 +110,9 @@ pub(crate) fn implementation(
 
         #continuous
         #invariance
+        #gradients
         #addition
+        #lanes
     };
     let implementations = header.enclosing(implementations);
     quote_spanned!(span=> #item #implementations)
@@ -128,7 +134,6 @@ fn invariance(declaration: &Declaration, header: &Header) -> Option<TokenStream>
 /// The arguments of a method.
 #[derive(Clone, Copy, Debug)]
 enum Takes {
-    Nothing,
     Advected,
     Increment,
 }
@@ -180,7 +185,7 @@ impl Emitter<'_> {
         ];
         let of_effect = [
             ("momentum_jacobian", Takes::Increment, Form::Square, &d.jacobian),
-            ("inertia", Takes::Nothing, Form::Square, &d.limit.inertia),
+            ("inertia", Takes::Advected, Form::Square, &d.limit.inertia),
             ("momentum_bias", Takes::Advected, Form::Vector, &d.limit.bias),
             ("potential", Takes::Advected, Form::Scalar, &d.limit.potential),
         ];
@@ -215,7 +220,6 @@ impl Emitter<'_> {
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
         let w = quote_spanned!(span=> w: &<Self as #private::Effect>::Advected);
         let arguments = match takes {
-            Takes::Nothing => TokenStream::new(),
             Takes::Advected => w,
             Takes::Increment => quote_spanned!(span=> f: &#matrix, #w, h: #scalar),
         };

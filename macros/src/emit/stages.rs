@@ -141,7 +141,7 @@ fn in_coordinates(
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let retraction = quote_spanned!(span=> <Self::Retraction as #private::Retraction<Self::Group>>);
     let inverse = uses(&kernel.graph, system, emitter.derived.directions.small_inverse).then(
-        || quote_spanned!(span=> let inverse_increment = #private::inverse_increment::<Self::Group, _, _>(&increment);),
+        || quote_spanned!(span=> let inverse_increment = <Self::Group as #private::LieGroup>::inverse_increment(&increment);),
     );
     (
         quote_spanned!(span=> let increment = #retraction::increment_of_half(half); #inverse),
@@ -156,10 +156,13 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
         [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero());
     let denominators = Literal::u32_unsuffixed(kernel.denominators);
     let u32 = quote_spanned!(span=> #private::core::primitive::u32);
+    let bool = quote_spanned!(span=> #private::core::primitive::bool);
+    let is_constant = !derived.inertia_varies();
     let [step, iteration] = kernel.operations().map(Literal::u32_unsuffixed);
     quote_spanned! {span=>
         const PARTS: #private::Parts = #private::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
+        const INERTIA_IS_CONSTANT: #bool = #is_constant;
         const OPERATIONS: #private::Operations = #private::Operations { step: #step, iteration: #iteration };
     }
 }

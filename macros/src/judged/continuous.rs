@@ -27,8 +27,8 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
         let found = verify::kinetic_hessian(declaration, &lowered.names, &derived);
         explain::continuous_kinetic_part(&found, declaration, errors)?;
     }
-    if let Some(discretisation) = declaration.discretisation().filter(|_| derived.inverse != Inverse::Constant) {
-        explain::not_discretised(derived.inverse, discretisation, errors);
+    if let Some(discretisation) = declaration.discretisation().filter(|_| derived.inverse == Inverse::Nonlinear) {
+        explain::not_discretised(discretisation, errors);
         return None;
     }
     checked(declaration, Some(tree), lowered.names, derived, errors)

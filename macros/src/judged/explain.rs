@@ -5,13 +5,12 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use super::choose::Chosen;
 use super::discretise::Misfit;
 use super::verify::{self, KineticPart, TermMistake, Unconfirmed};
 use crate::declared::check;
 use crate::declared::errors::Errors;
 use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Tree};
-use crate::mathematics::derive::{ForceError, Inverse, LimitError, Refusal};
+use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 
 /// Reports the terms that can't be meant; `None` where there are some.
 pub(crate) fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
@@ -176,15 +175,9 @@ pub(super) fn continuous_kinetic_part(
 }
 
 /// Reports a Lagrangian that a step has no inertia for.
-pub(super) fn not_discretised(inverse: Inverse, discretisation: Discretisation, errors: &mut Errors) {
-    let what = match inverse {
-        Inverse::Varying => "the second derivative of `l` by the velocity depends on what is advected",
-        Inverse::Constant | Inverse::Nonlinear => "`l` isn't quadratic in the velocity",
-    };
-    let message = format!(
-        "{what}, and a step needs one inertia for all places and velocities: leave `discretise` out, and integrate the \
-         continuous equations"
-    );
+pub(super) fn not_discretised(discretisation: Discretisation, errors: &mut Errors) {
+    let message = "`l` isn't quadratic in the velocity, and a step needs one inertia for all velocities: leave \
+                   `discretise` out, and integrate the continuous equations";
     errors.push_between(discretisation.place, message);
 }
 
@@ -240,33 +233,6 @@ pub(super) fn not_self_adjoint(asked: Discretisation, errors: &mut Errors) {
 pub(super) fn unconfirmed_term(term: &str, declaration: &Declaration, errors: &mut Errors) {
     let message = format!("the derived {term} disagrees with what is declared: please report this declaration");
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
-}
-
-/// Reports a kinetic part that isn't the same for all values of the advected parameters.
-pub(super) fn advected_in_kinetic_part(
-    declaration: &Declaration,
-    tree: &Rc<Tree>,
-    chosen: &Chosen,
-    errors: &mut Errors,
-) -> Option<()> {
-    let mut advected = declaration.advected.iter().enumerate();
-    let found = advected.find(|(index, _)| {
-        let symbol = chosen.lowered.names.get(&Name::Advected(*index));
-        symbol.is_some_and(|&id| chosen.derived.limit.inertia.contains(id))
-    });
-    let Some(w) = found.map(|(_, w)| w.plain_name()) else { return Some(()) };
-    let message = format!(
-        "the kinetic part depends on `{w}` here: the inertia has to be the same wherever the body is; write it with \
-         fields of the body"
-    );
-    let terms = verify::kinetic_with_advected(declaration, tree);
-    for term in &terms {
-        errors.push_between([term.span, term.end], &message);
-    }
-    if terms.is_empty() {
-        errors.push_over(declaration.expression.as_ref().map(check::value), message);
-    }
-    None
 }
 
 /// Reports what the self-check doesn't confirm.

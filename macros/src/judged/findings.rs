@@ -25,7 +25,6 @@ pub(crate) fn findings(
     let Chosen { lowered, derived, kernel } = chosen;
     // What has no kinetic part at all is a term of a scene.
     if derived.limit.has_kinetic {
-        explain::advected_in_kinetic_part(declaration, tree, chosen, errors)?;
         explain::kinetic_part(&verify::kinetic_part(declaration, tree, lowered, derived), declaration, errors)?;
     }
     let verified = match declaration.role {

@@ -132,7 +132,7 @@ pub(crate) fn diamond_matrix(graph: &mut Graph, derived: &Continuous) -> Vec<Nod
 }
 
 /// The constant matrix `E_k`.
-fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
+pub(super) fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
     Entries::new(group.size, group.size, |row, column| {
         let entry = entries.get(row * group.size + column).copied();
@@ -256,7 +256,7 @@ fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
 }
 
 /// `D` by its entries, and `F = I + D`.
-fn by_increment(
+pub(super) fn by_increment(
     graph: &mut Graph,
     derived: &Derived,
     mut entry: impl FnMut(&mut Graph, usize, usize) -> NodeId,
@@ -268,7 +268,7 @@ fn by_increment(
 }
 
 /// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
-fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
+pub(super) fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
     let (size, directions) = (derived.group.size, &derived.directions);
     let small = Entries::new(size, size, |row, column| {
         graph.input(Input { symbol: directions.small_inverse, row, column }, Stage::Iteration)

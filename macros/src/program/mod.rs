@@ -1,7 +1,7 @@
 //! Programs: matrix expressions as straight-line scalar code, with stages, shared subexpressions and counts.
 //!
 //! `scalarise` takes matrices to their entries, `graph` keeps equal operations once, `expand` multiplies out, `closed`
-//! has the `let`s that stay closed, `kernel` the step, and `count` what it costs.
+//! has the `let`s that stay closed, `kernel` the step, `tangent` its derivatives, and `count` what it costs.
 //!
 //! Deliberately not here: tokens, the group of the user's declaration by any name, and the choice between two programs
 //! of different declarations. The room knows `mathematics`.
@@ -13,6 +13,7 @@ mod graph;
 mod index;
 mod kernel;
 mod scalarise;
+mod tangent;
 #[cfg(test)]
 mod tests;
 
@@ -21,3 +22,4 @@ pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
 pub(crate) use kernel::{Candidate, Kernel, along_directions, components, diamond_matrix, kernel, square};
 pub(crate) use scalarise::Scalariser;
+pub(crate) use tangent::Linearisation;

@@ -27,7 +27,7 @@ pub fn error_of_return<L: System<N, D> + Clone, const N: usize, const D: usize>(
         let there = step(&forth, &momentum, &w);
         let returned = step(&back, &there.momentum, &there.advected);
         // Rounding is that of the parts of `μ`, which are of the order of `J/h` times the increment.
-        let size = lagrangian.inertia().norm() * velocity.norm() + momentum.norm();
+        let size = lagrangian.inertia(&lagrangian.advected()).norm() * velocity.norm() + momentum.norm();
         let (numbers, before) = (returned.advected.numbers(), w.numbers());
         let missed: f64 = numbers.iter().zip(&before).map(|(a, b)| (a - b).powi(2)).sum();
         let length: f64 = 1.0 + before.iter().map(|number| number * number).sum::<f64>();

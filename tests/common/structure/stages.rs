@@ -65,7 +65,7 @@ pub fn assert_step<L: System<N, D> + Clone, const N: usize, const D: usize>(l: &
             let increment = along::<L::Group, N, D>(&velocity, h).matrix();
             let momentum = l.legendre_minus(&increment, &w, h);
             let step = step(&flow, &momentum, &w);
-            let (f, scale) = (step.element(), l.inertia().norm() / h + momentum.norm());
+            let (f, scale) = (step.element(), l.inertia(&l.advected()).norm() / h + momentum.norm());
             let solved = (l.legendre_minus(&f.matrix(), &w, h) - momentum).norm();
             assert!(solved <= ROUNDING * scale, "μ: off by {solved:e} of {scale:e}");
             let after = (l.legendre_plus(&f.matrix(), &w, h) - step.momentum).norm();

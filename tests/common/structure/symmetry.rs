@@ -44,7 +44,7 @@ pub fn drift<L: System<N, D>, const N: usize, const D: usize>(
     let lagrangian = flow.scene();
     let symmetries = symmetries::<L, N, D>(lagrangian);
     let mut w = lagrangian.advected().seen_from(&attitude);
-    let mut momentum = lagrangian.inertia() * velocity + lagrangian.momentum_bias(&w);
+    let mut momentum = lagrangian.inertia(&lagrangian.advected()) * velocity + lagrangian.momentum_bias(&w);
     let in_space = |attitude: &L::Group, momentum: &SVector<f64, D>| attitude.inverse().adjoint_transpose(momentum);
     let start = in_space(&attitude, &momentum);
     let (mut change, mut missed) = (0.0_f64, 0.0_f64);

@@ -33,7 +33,7 @@ pub fn parting<L: System<N, D> + Clone, const N: usize, const D: usize>(l: &L, h
         let (numbers, expected) = (DVector::from_vec(w.numbers()), DVector::from_vec(seen.numbers()));
         let places = by_increments.matrix() - by_momenta.matrix();
         worst = worst
-            .max(apart.norm() / (l.inertia().norm() / h + momentum.norm()))
+            .max(apart.norm() / (l.inertia(&l.advected()).norm() / h + momentum.norm()))
             .max((numbers - &expected).norm() / (1.0 + expected.norm()))
             .max(places.norm() / by_momenta.matrix().norm());
     }

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, Vector1};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Entries, Real, is_finite, lanes_of_wrapper};
 
 /// A value that a step may be [given](crate::Stepper::step_with) anew: what `given(u = torque)` makes of the field
 /// `torque`, a scalar as a 1 × 1 matrix, a vector or a matrix.
@@ -21,6 +21,8 @@ impl<T: Real> Given<T> {
         Self(Vector1::new(value))
     }
 }
+
+lanes_of_wrapper!([T, const R: usize, const C: usize] Given<T, R, C>);
 
 impl<T: Real, const R: usize, const C: usize> Entries<T> for Given<T, R, C> {
     fn from_entries(next: &mut impl FnMut() -> T) -> Self {

@@ -14,6 +14,9 @@
 //! | `V ⊗ V*` | [`MixedTensor`] | `F⁻¹ S F` | a velocity gradient |
 //! | a trivial representation | [`Given`] | `x` | a torque or a field's strength that each step is given anew |
 //!
+//! Of several bodies, on a product of groups, each parameter is [seen from one](SeenFrom), or is a body as [another
+//! sees it](Relative) or as it [is in space](Configuration).
+//!
 //! `V` is the space that the group's matrices act on, `F` the matrix itself. Points are moved by groups of affine maps,
 //! as SE(2) and SE(3) are, and written in homogeneous coordinates; vectors with another last coordinate move by the
 //! same matrices, but keep no distances.
@@ -22,11 +25,12 @@ use core::fmt::Debug;
 
 mod given;
 mod points;
+mod several;
 mod tensors;
 
 pub use given::Given;
 pub(crate) use points::homogeneous;
-pub use tensors::inverse_increment;
+pub use several::{Configuration, Relative, SeenFrom};
 pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
 
 use nalgebra::{SMatrix, SVector};

@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Advected;
 use crate::groups::LieGroup;
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Entries, Real, is_finite, lanes_of_wrapper};
 
 /// An element of `V`, moved by `ρ(f)⁻¹`: what is fixed in space, as the body sees it.
 ///
@@ -27,13 +27,12 @@ pub struct CovariantTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixedTensor<T, const N: usize>(pub SMatrix<T, N, N>);
 
-/// `F⁻¹ − I = −F⁻¹D`.
-pub fn inverse_increment<G, T: Real, const N: usize>(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N>
-where
-    G: LieGroup<Scalar = T, Matrix = SMatrix<T, N, N>>,
-{
-    -(G::from_increment(increment).inverse().matrix() * increment)
-}
+lanes_of_wrapper!(
+    [T, const N: usize] ContravariantVector<T, N>,
+    [T, const N: usize] ContravariantTensor<T, N>,
+    [T, const N: usize] CovariantTensor<T, N>,
+    [T, const N: usize] MixedTensor<T, N>,
+);
 
 macro_rules! kind {
     ($type:ident, $seen:expr, $change:expr, $rate:expr, $through:expr) => {
@@ -81,7 +80,7 @@ macro_rules! kind {
 kind!(
     ContravariantVector,
     |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v,
-    |v: &SVector<T, N>, d| inverse_increment::<G, T, N>(d) * v,
+    |v: &SVector<T, N>, d| G::inverse_increment(d) * v,
     |v: &SVector<T, N>, x: &SMatrix<T, N, N>| -(x * v),
     |v: &SVector<T, N>, _: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>| inverse * v
 );
@@ -93,7 +92,7 @@ kind!(
         inverse * s * inverse.transpose()
     },
     |s: &SMatrix<T, N, N>, d| {
-        let inverse = inverse_increment::<G, T, N>(d);
+        let inverse = G::inverse_increment(d);
         let change = inverse * s;
         change + (s + change) * inverse.transpose()
     },
@@ -116,7 +115,7 @@ kind!(
     MixedTensor,
     |s: &SMatrix<T, N, N>, g: &G| g.inverse().matrix() * s * g.matrix(),
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
-        let change = inverse_increment::<G, T, N>(d) * s;
+        let change = G::inverse_increment(d) * s;
         change + (s + change) * d
     },
     |s: &SMatrix<T, N, N>, x: &SMatrix<T, N, N>| s * x - x * s,

@@ -5,11 +5,14 @@ mod scheme;
 pub use scheme::CompositionScheme;
 
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector};
+use crate::mechanics::{
+    DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector,
+};
+use crate::motion::linearised::{Event, Linearisable, Pass, Stage as Linear};
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
 };
-use crate::numbers::{Coordinates, Mask, Real, real};
+use crate::numbers::{Coordinates, InLanes, Lanes, Mask, Real, lanes_of_fields, real};
 use crate::solving::Guess;
 use nalgebra::SimdBool as _;
 
@@ -138,6 +141,29 @@ impl<S: Effect> Composed<S> {
 
 impl<S: Effect> Steerable for Composed<S> {}
 
+lanes_of_fields!(
+    impl[S] Composed<S> => Composed<S::Lane>, as Composed
+    where [
+        S: Effect + Lanes<Lane: Effect<Scalar = <S::Scalar as nalgebra::SimdValue>::Element>>,
+        S::Scalar: Real<Element: Real>,
+        Declared<S>: Lanes<Lane = Declared<S::Lane>>
+    ]
+    { lanes: [substeps, stages], scalars: [h], shared: [scheme] }
+);
+
+impl<W, S> InLanes<W> for Composed<S>
+where
+    S: Effect + InLanes<W, Together: Effect>,
+    Composed<S::Together>: Lanes<Lane = Self>,
+{
+    type Together = Composed<S::Together>;
+}
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] Stage<T> => Stage<T::Element>, as Stage
+    { lanes: [], scalars: [scale, last, earlier], shared: [substep] }
+);
+
 impl<S: Effect> Plan<S> for Composed<S> {
     type Kept = Guess<Vector<S>>;
 
@@ -166,7 +192,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
         for stage in &self.stages {
             let (now, declared) = (next.now(), &self.substeps[stage.substep]);
             let turned = |increment: &Matrix<S>| next.turned(increment);
-            let stepped = if M::CARRIES {
+            let stepped = if const { M::CARRIES } {
                 declared.step_from::<true>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
             } else {
                 declared.step_from::<false>(scene, &now.momentum, &now.advected, &guess.next, &turned)?
@@ -203,6 +229,19 @@ impl<S: Effect> Plan<S> for Composed<S> {
 
     fn cost(&self) -> Cost {
         Cost::of_stages(S::OPERATIONS, u32::try_from(self.stages.len()).unwrap_or(u32::MAX))
+    }
+}
+
+impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
+    fn stages(&self) -> usize {
+        self.stages.len()
+    }
+
+    #[inline(always)]
+    fn visit(&self, scene: &S, index: usize, event: &Event<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
+        if let Some(substep) = self.stages.get(index).and_then(|stage| self.substeps.get(stage.substep)) {
+            pass.stage(&Linear::step(scene, substep.step_size(), event, event.before.advected));
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use super::coefficients::Coefficients;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, check_inertia};
+use crate::motion::{Integrator, Motion, State, StepReport};
 use crate::numbers::Coordinates;
 
 /// A step of order `4 PAIRS`, by Gauss collocation with `2 PAIRS` stages in attitude and conjugate momentum, for any
@@ -143,9 +144,44 @@ where
         attitude: &L::Group,
         momentum: &SVector<f64, D>,
     ) -> Result<(L::Group, SVector<f64, D>), StepError> {
+        self.step_of(self.h, attitude, momentum).map(|(attitude, momentum, _)| (attitude, momentum))
+    }
+
+    /// A motion from an attitude (body to space) and a body velocity, to be [observed](CotangentGauss::observed).
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where the attitude isn't in the group or the velocity isn't finite.
+    pub fn start(
+        &self,
+        attitude: impl Into<L::Group>,
+        velocity: SVector<f64, D>,
+    ) -> Result<State<L::Group, L::Advected, ()>, SetupError> {
+        let attitude = attitude.into();
+        let defect = attitude.defect();
+        // As `Stepper::start_with_momentum`.
+        let is_in_group = defect <= f64::EPSILON * 1e4;
+        if !is_in_group {
+            return Err(SetupError::NotInGroup { defect });
+        }
+        let advected = self.advected(&attitude);
+        let momentum = self.lagrangian.momentum(&velocity, &advected);
+        if !Coordinates::is_finite(&momentum) {
+            return Err(SetupError::NonFinite { what: "velocity" });
+        }
+        Ok(State { motion: Motion { attitude, momentum, advected, steps: 0 }, kept: () })
+    }
+
+    /// A step of any length, and its iterations.
+    fn step_of(
+        &self,
+        h: f64,
+        attitude: &L::Group,
+        momentum: &SVector<f64, D>,
+    ) -> Result<(L::Group, SVector<f64, D>, u32), StepError> {
         let start = [attitude.matrix(), lifted::<L::Group, N, D>(attitude, momentum)];
         let rate = self.rate(&start)?;
-        let weights = self.coefficients.weights.map(|weight| self.h * weight);
+        let weights = self.coefficients.weights.map(|weight| h * weight);
         let mut stages: Stages<PAIRS, N> = [weights.map(|weight| rate.map(|part| part * weight)); 2];
         let mut before = f64::INFINITY;
         let mut settled = false;
@@ -169,7 +205,7 @@ where
         if !Coordinates::is_finite(&momentum) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        Ok((L::Group::from_matrix_unchecked(end[0]), momentum))
+        Ok((L::Group::from_matrix_unchecked(end[0]), momentum, iterations))
     }
 
     /// The next iterate of the stages.
@@ -207,6 +243,54 @@ where
         let hat = L::Group::hat(&velocity);
         let force = inverse.transpose() * self.lagrangian.diamond_matrix(&velocity, &w);
         Ok([g * hat, force - p * hat.transpose()])
+    }
+}
+
+/// The attitudes of a run are the products of its steps as they are rounded.
+impl<L, const PAIRS: usize, const N: usize, const D: usize> Integrator for CotangentGauss<L, PAIRS, N>
+where
+    L: ContinuousLagrangian<Scalar = f64>,
+    L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
+{
+    type Group = L::Group;
+    type Advected = L::Advected;
+    type State = State<L::Group, L::Advected, ()>;
+
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        let (attitude, momentum, iterations) = self.step_of(self.h, &state.attitude, &state.momentum)?;
+        state.motion = Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps + 1 };
+        Ok(StepReport::of(iterations))
+    }
+
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        let (mut next, mut iterations) = (*state, 0);
+        for _ in 0..steps {
+            iterations += u64::from(Integrator::step(self, &mut next)?.iterations);
+        }
+        *state = next;
+        Ok(iterations)
+    }
+
+    fn part(&self, state: &Self::State, fraction: f64) -> Result<Motion<L::Group, L::Advected>, StepError> {
+        let (attitude, momentum, _) = self.step_of(self.h * fraction, &state.attitude, &state.momentum)?;
+        Ok(Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps })
+    }
+
+    fn adopt(&self, motion: &Motion<L::Group, L::Advected>) -> Self::State {
+        State { motion: Motion { advected: self.advected(&motion.attitude), steps: 0, ..*motion }, kept: () }
+    }
+
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn velocity(&self, motion: &Motion<L::Group, L::Advected>) -> SVector<f64, D> {
+        let velocity = self.lagrangian.velocity(&motion.momentum, &motion.advected);
+        velocity.unwrap_or_else(|_| SVector::from_element(f64::NAN))
+    }
+
+    fn energy(&self, motion: &Motion<L::Group, L::Advected>) -> f64 {
+        self.lagrangian.hamiltonian(&motion.momentum, &motion.advected).unwrap_or(f64::NAN)
     }
 }
 

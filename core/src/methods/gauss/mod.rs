@@ -18,7 +18,7 @@ use stages::{Stages, WeightedRates};
 
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
-use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor};
+use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
 use crate::motion::{Cost, Declared, Motion, Plan, StepReport, Stepper, Summation};
 use crate::numbers::{Vectors, two_sum};
@@ -124,6 +124,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     };
 
     fn new(scene: &S, h: f64) -> Result<Self, SetupError> {
+        constant_inertia(scene)?;
         let lift = Lift::new(scene, torque(scene)?);
         let coefficients = Coefficients::new();
         let weights = [coefficients.weights.map(|weight| h * weight); 2];

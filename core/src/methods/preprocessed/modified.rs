@@ -5,6 +5,7 @@ use nalgebra::{SimdBool as _, Vector3};
 use super::coefficients::{TERMS, series, sum};
 use crate::effects::PrincipalBody;
 use crate::error::StepError;
+use crate::groups::SO3;
 use crate::mechanics::{DiagonalNonstandardInertia, Effect as _};
 use crate::numbers::{Real, real};
 use crate::solving::{Problem, Root, safe};
@@ -30,12 +31,7 @@ impl<T: Real> ModifiedBody<T> {
 
     /// The increment over the time `h`, s, from the body momentum `y`; the guess is of half the coordinates.
     #[inline(always)]
-    pub(crate) fn solve(
-        &self,
-        h: T,
-        y: &Vector3<T>,
-        half_guess: &Vector3<T>,
-    ) -> Result<Root<PrincipalBody<T>>, StepError> {
+    pub(crate) fn solve(&self, h: T, y: &Vector3<T>, half_guess: &Vector3<T>) -> Result<Root<SO3<T>>, StepError> {
         let (yy, half_squared) = (y.component_mul(y), h * h * real(0.5));
         let energy = yy.dot(&self.inverse_moments) * half_squared;
         let casimir = (yy.x + yy.y + yy.z) * half_squared;

@@ -204,7 +204,7 @@ where
     }
 
     fn inertia(flow: &Self) -> Matrix3<T> {
-        Effect::inertia(flow)
+        Effect::inertia(flow, &())
     }
 
     fn momentum_bias(flow: &Self) -> Vector3<T> {
@@ -227,11 +227,11 @@ where
     }
 }
 
-/// `J⁻¹`, symmetric but for the rounding of its columns.
+/// `J⁻¹` of a constant inertia, symmetric but for the rounding of its columns.
 pub(crate) fn inverse_inertia<T: Real, L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>>(
     lagrangian: &L,
 ) -> Matrix3<T> {
-    let inertia = lagrangian.inertia();
+    let inertia = lagrangian.inertia(&lagrangian.advected());
     let column = |k: usize| Vector3::solve(&inertia, &Matrix3::identity().column(k).into_owned()).0;
     Matrix3::from_columns(&[column(0), column(1), column(2)])
 }

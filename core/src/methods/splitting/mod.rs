@@ -5,6 +5,7 @@ mod bias;
 mod exact_body;
 mod kick;
 mod kinetic_flow;
+mod linearised;
 mod preprocessed_flow;
 mod processed;
 mod quaternion;
@@ -16,6 +17,7 @@ pub use exact_body::ExactBody;
 pub(crate) use kick::{has_force_gradient, torque};
 pub(crate) use kinetic_flow::inverse_inertia;
 pub use kinetic_flow::{KineticFlow, SymmetricBody, Turn};
+pub use linearised::DifferentiableFlow;
 pub use preprocessed_flow::PreprocessedFlow;
 pub use processed::{Inside, Processed, ProcessedScheme};
 pub use scheme::{Flow, SplittingScheme};
@@ -23,7 +25,9 @@ pub use split_body::SplitBody;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
-use crate::mechanics::{DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor};
+use crate::mechanics::{
+    DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, constant_inertia,
+};
 use crate::motion::{
     Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
 };
@@ -115,7 +119,7 @@ impl<S: Effect> Stepper<S> {
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotSeparable`], [`SetupError::InertiaMismatch`] and [`SetupError::BiasMismatch`] where the
+    /// [`SetupError::NotSeparable`], [`SetupError::VaryingInertia`], [`SetupError::InertiaMismatch`] and [`SetupError::BiasMismatch`] where the
     /// Lagrangian can't be split or the flow isn't that of its body; [`SetupError::NoForceGradient`] where the scheme
     /// asks for one and the scene was written without; otherwise as [`Stepper::new`].
     pub fn split<K>(
@@ -148,7 +152,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 
     /// All shares apart.
     fn folded(scene: &S, h: Scalar<S>, kinetic: K, scheme: SplittingScheme) -> Result<Self, SetupError> {
-        let inertia = scene.inertia();
+        let inertia = constant_inertia(scene)?;
         let differences = (inertia - K::inertia(&kinetic)).map(nalgebra::SimdComplexField::simd_abs);
         let difference = differences.fold(real(0.0), nalgebra::SimdPartialOrd::simd_max);
         if !difference.simd_le(inertia.trace() * Scalar::<S>::simd_default_epsilon() * real(64.0)).all() {

@@ -21,7 +21,7 @@ impl<S: Effect> Declared<S> {
         momentum: &Vector<S>,
         advected: &S::Advected,
         half_guess: &Vector<S>,
-    ) -> Result<Root<S>, StepError> {
+    ) -> Result<Root<Group<S>>, StepError> {
         let is_finite = momentum.is_finite() && advected.is_finite();
         if is_finite && self.solvability(scene, momentum, advected) == Solvability::Impossible {
             let largest = self.largest_solvable(scene, momentum, advected);
@@ -79,7 +79,7 @@ impl<S: Effect> Declared<S> {
                 let factor = (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::DENOMINATORS.cast_signed());
                 Some(newton_system::<S>(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
             };
-            turning_limits::<Group<S>>(&unknown, &scene.inertia())
+            turning_limits::<Group<S>>(&unknown, &scene.inertia(advected))
         };
         at(self.h * real(0.5)).and(at(self.h))
     }
@@ -106,8 +106,7 @@ impl<S: Effect> Declared<S> {
             let a = kicked::<S>(&constants, momentum, advected);
             let problem =
                 Problem { scene, constants: &constants, a, w: advected, h, trusted: self.trusted, safe: self.safe };
-            let terms = step_terms::<S>(&constants, &a, advected);
-            problem.attempt(&terms, &Vector::<S>::zero()).is_ok()
+            problem.attempt(&Vector::<S>::zero()).is_ok()
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))
     }

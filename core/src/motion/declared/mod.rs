@@ -13,8 +13,8 @@ use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
-use crate::numbers::{Coordinates as _, is_finite, real, reported};
-use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
+use crate::numbers::{Coordinates as _, InLanes, Lanes, Real, is_finite, lanes_of_fields, real, reported};
+use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, pattern, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -27,6 +27,26 @@ pub struct Declared<S: Effect> {
     trusted: Scalar<S>,
     /// What the Jacobian's determinant has to exceed for a solve to do without a second one.
     safe: Scalar<S>,
+}
+
+lanes_of_fields!(
+    impl[S] Declared<S> => Declared<S::Lane>, as Declared
+    where [
+        S: Effect<Scalar: Real<Element: Real>, Constants: Lanes<Lane = <S::Lane as Effect>::Constants>>
+            + Lanes<Lane: Effect<Scalar = Element<S>>>
+    ]
+    { lanes: [constants], scalars: [h, largest_target, trusted, safe], shared: [] }
+);
+
+/// The scalar of one lane.
+type Element<S> = <Scalar<S> as nalgebra::SimdValue>::Element;
+
+impl<W, S> InLanes<W> for Declared<S>
+where
+    S: Effect + InLanes<W, Together: Effect>,
+    Declared<S::Together>: Lanes<Lane = Self>,
+{
+    type Together = Declared<S::Together>;
 }
 
 impl<S: Effect> Declared<S> {
@@ -49,7 +69,9 @@ impl<S: Effect> Declared<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia())?;
+        if S::INERTIA_IS_CONSTANT {
+            check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia(&scene.advected()))?;
+        }
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
             return Err(SetupError::NonFiniteConstant);
@@ -58,14 +80,19 @@ impl<S: Effect> Declared<S> {
         let safe = safe(at_rest);
         // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
-        let is_in_range = is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any();
+        // One that depends on where the bodies are may be singular here, and not where they start.
+        let is_in_range = if S::INERTIA_IS_CONSTANT && <Group<S> as LieGroup>::FACTORS.is_whole() {
+            is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any()
+        } else {
+            is_finite(trace / h)
+        };
         if h != real(0.0) && !is_in_range {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
         // Without a step there is nothing to solve, which the careful solve sees to.
         let largest = trace / h * real(2.0 * RATIO) / Scalar::<S>::simd_default_epsilon();
         let largest_target = if h == real(0.0) { h } else { largest * largest };
-        let is_expensive = S::JACOBIAN_IS_EXPENSIVE && h != real(0.0);
+        let is_expensive = const { S::JACOBIAN_IS_EXPENSIVE } && h != real(0.0);
         let trusted = if is_expensive { trusted_radius(scene, &constants) } else { real(0.0) };
         Ok(Self { h, constants, largest_target, trusted, safe })
     }
@@ -82,8 +109,7 @@ impl<S: Effect> Declared<S> {
             return Ok(Group::<S>::identity());
         }
         let problem = self.problem(scene, momentum, advected);
-        let terms = step_terms::<S>(&self.constants, &problem.a, advected);
-        problem.attempt(&terms, &(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
+        problem.attempt(&(*guess * real(0.5))).map(|root| Group::<S>::from_increment(&root.increment))
     }
 
     /// One step from `(μ, w)` and a guess of half the coordinates of `F`; `turned` gives `w⁺` of `F − I`, and `CARRIES`
@@ -156,7 +182,7 @@ impl<S: Effect> Declared<S> {
         momentum: &Vector<S>,
         advected: &S::Advected,
         a: &Vector<S>,
-        root: &Root<S>,
+        root: &Root<Group<S>>,
         next: S::Advected,
     ) -> Stepped<S> {
         let Root { half, increment, iterations, far, ref kick } = *root;
@@ -164,19 +190,19 @@ impl<S: Effect> Declared<S> {
         if CARRIES {
             // In `a` the kick is rounded to the digits of the momentum, which is what a carry is to make good.
             let mut kicks = None;
-            if S::PARTS.kick_before {
+            if const { S::PARTS.kick_before } {
                 kicks = Some(S::kick_before(&self.constants, advected));
             }
-            if S::PARTS.kick_after {
+            if const { S::PARTS.kick_after } {
                 let after = self.kick_after(&increment, &next, kick);
                 kicks = Some(kicks.map_or(after, |before| before + after));
             }
             change = kicks.map_or(change, |kicks| change + kicks);
         } else {
-            if S::PARTS.kick_before {
+            if const { S::PARTS.kick_before } {
                 change = change + (*a - *momentum);
             }
-            if S::PARTS.kick_after {
+            if const { S::PARTS.kick_after } {
                 change = change + self.kick_after(&increment, &next, kick);
             }
         }
@@ -187,9 +213,9 @@ impl<S: Effect> Declared<S> {
 
     /// `kick_after(F, w⁺)`, in the lanes that have come by it from what the solve has found.
     #[inline(always)]
-    fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<S>) -> Vector<S> {
+    fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<Group<S>>) -> Vector<S> {
         let direct = || S::kick_after(&self.constants, increment, next);
-        if !S::JACOBIAN_IS_EXPENSIVE || !kick.found.any() {
+        if const { !S::JACOBIAN_IS_EXPENSIVE } || !kick.found.any() {
             return direct();
         }
         let mut found = kick.value + Group::<S>::adjoint_transpose_increment(increment, &kick.value);
@@ -208,13 +234,17 @@ impl<S: Effect> Declared<S> {
             w,
             h: self.h,
             trusted: self.trusted,
-            safe: self.safe,
+            safe: if S::INERTIA_IS_CONSTANT {
+                self.safe
+            } else {
+                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
+            },
         }
     }
 
     #[cold]
     fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Stepped<S> {
-        let Root { half, increment, iterations, far, .. } = Root::<S>::at(&Vector::<S>::zero(), 0);
+        let Root { half, increment, iterations, far, .. } = Root::at::<S::Retraction>(&Vector::<S>::zero(), 0);
         let step = Increment { coordinates: half, increment, momentum: *momentum, advected: *advected, iterations };
         Stepped { step, change: Vector::<S>::zero(), half, far }
     }
@@ -246,7 +276,7 @@ impl<S: Effect> Plan<S> for Declared<S> {
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
         let turned = |increment: &Matrix<S>| motion.turned(increment);
-        let stepped = if M::CARRIES {
+        let stepped = if const { M::CARRIES } {
             self.step_directly::<true>(scene, &now.momentum, &now.advected, &guess, &turned)
         } else {
             self.step_directly::<false>(scene, &now.momentum, &now.advected, &guess, &turned)
@@ -283,7 +313,7 @@ impl<S: Effect> Declared<S> {
     ) -> Result<StepReport, StepError> {
         let (now, guess) = (motion.now(), kept.guess(<Group<S> as LieGroup>::DIMENSION));
         let turned = |increment: &Matrix<S>| motion.turned(increment);
-        let stepped = if M::CARRIES {
+        let stepped = if const { M::CARRIES } {
             self.step_carefully::<true>(scene, &now.momentum, &now.advected, &guess, &turned)?
         } else {
             self.step_carefully::<false>(scene, &now.momentum, &now.advected, &guess, &turned)?
@@ -336,7 +366,7 @@ pub(crate) fn half_coordinates<S: Effect>(
 /// `a = μ + kick_before(w)`.
 #[inline(always)]
 fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
-    if S::PARTS.kick_before { *momentum + S::kick_before(constants, w) } else { *momentum }
+    if const { S::PARTS.kick_before } { *momentum + S::kick_before(constants, w) } else { *momentum }
 }
 
 /// The Newton Jacobian is that at rest and, from the right side, a matrix of rank one. Up to this part of `1/ε` times
@@ -348,5 +378,5 @@ fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S
     let zero = Vector::<S>::zero();
     let terms = step_terms::<S>(constants, &zero, &scene.advected());
     let (_, jacobian) = newton_system::<S>(constants, &terms, &zero);
-    (Vector::<S>::solve(&jacobian, &zero).1, Vector::<S>::trace(&jacobian))
+    (Vector::<S>::factorise_with(&jacobian, pattern::<S>()).1, Vector::<S>::trace(&jacobian))
 }

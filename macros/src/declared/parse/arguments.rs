@@ -26,6 +26,8 @@ pub(super) struct Arguments {
     pub(super) root: Option<Path>,
     /// With its key.
     pub(super) generators: Option<(Ident, ExprArray)>,
+    /// Its key.
+    pub(super) gradients: Option<Ident>,
     /// Whether an argument has come without a name, which one message says.
     has_nameless: bool,
 }
@@ -50,7 +52,7 @@ fn skip_argument(input: ParseStream) {
 }
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
-    let mut known = vec!["group", "advected", "given", role.key(), "generators", "crate"];
+    let mut known = vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"];
     if role == Role::Lagrangian {
         known.extend(["l", "velocity", "discretise"]);
     }
@@ -101,6 +103,13 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             equals(&key, input)?;
             without_quotes(&key, input)?;
             arguments.discretisation = Some((key, discretisation(input)?));
+        }
+        "gradients" => {
+            once(arguments.gradients.is_some());
+            if !input.is_empty() && !input.peek(Token![,]) {
+                return Err(syn::Error::new(input.span(), "`gradients` stands alone: remove what follows it"));
+            }
+            arguments.gradients = Some(key);
         }
         "generators" => {
             once(arguments.generators.is_some());

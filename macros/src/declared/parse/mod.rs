@@ -120,6 +120,7 @@ pub(crate) fn as_far_as_readable(
         advected,
         expression: expression.filter(|_| has_meaning),
         continuous,
+        gradients: arguments.gradients.map(|key| key.span()),
         fields,
         unreadable,
         scalar,

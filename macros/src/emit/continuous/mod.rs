@@ -17,15 +17,21 @@ use crate::program::{Graph, along_directions, diamond_matrix};
 /// The item with the continuous equations alone.
 pub(crate) fn alone(item: &TokenStream, declaration: &Declaration, equations: &Equations) -> TokenStream {
     let header = Header::new(declaration);
-    let implementation = implementation(declaration, &header, equations);
+    let implementation = implementation(declaration, &header, equations, false);
     let addition = header.addition("ContinuousLagrangian");
     let item = page::documented(item, &text::page(declaration, equations));
     let implementations = header.enclosing(quote_spanned!(Span::mixed_site()=> #implementation #addition));
     quote_spanned!(Span::mixed_site()=> #item #implementations)
 }
 
-/// The continuous equations of a declared `l`, or of the limit of `l_d`.
-pub(super) fn implementation(declaration: &Declaration, header: &Header, equations: &Equations) -> TokenStream {
+/// The continuous equations of a declared `l`, or of the limit of `l_d`; of what has a step the inertia is that of the
+/// effect.
+pub(super) fn implementation(
+    declaration: &Declaration,
+    header: &Header,
+    equations: &Equations,
+    has_step: bool,
+) -> TokenStream {
     let (span, derived, private) = (Span::mixed_site(), &equations.derived, &header.private);
     let code = Code { declaration, header, names: &equations.names, symbols: &derived.symbols, directions: None };
     let texts = text::equations(declaration, equations);
@@ -37,7 +43,7 @@ pub(super) fn implementation(declaration: &Declaration, header: &Header, equatio
     };
     let methods: TokenStream = [
         method("momentum", 1, Form::Vector, &derived.momentum),
-        method("velocity_hessian", 2, Form::Square, &derived.hessian),
+        if has_step { of_effect(header) } else { method("velocity_hessian", 2, Form::Square, &derived.hessian) },
         method("diamond_rate", 1, Form::Vector, &derived.diamond),
         method("momentum_advection", 1, Form::Vector, &derived.advection),
         code.diamond_matrix(equations),
@@ -83,6 +89,16 @@ pub(super) fn implementation(declaration: &Declaration, header: &Header, equatio
 
             #l
             #methods
+        }
+    }
+}
+
+/// The second derivative by the velocity, which the step has as its inertia.
+fn of_effect(header: &Header) -> TokenStream {
+    let (private, vector, square) = (&header.private, header.vector(), header.square());
+    quote_spanned! {Span::mixed_site()=>
+        fn velocity_hessian(&self, _: &#vector, w: &Self::Advected) -> #square {
+            #private::Effect::inertia(self, w)
         }
     }
 }

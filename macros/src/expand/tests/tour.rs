@@ -30,7 +30,7 @@ const POTENTIALS: [&str; 9] = [
 ];
 
 /// Kinetic parts that are wrong, and the beginning of what is said.
-const WRONG_BODIES: [(&str, &str); 7] = [
+const WRONG_BODIES: [(&str, &str); 6] = [
     ("(F * J_d * F.transpose()).trace() / (2.0 * h)", "this is the same for all `F`, so it does nothing"),
     (
         "((F - I) * J_d * (F - I).transpose()).trace() / 2.0",
@@ -46,7 +46,6 @@ const WRONG_BODIES: [(&str, &str); 7] = [
         "the kinetic part is negative: check its sign, and the `.transpose()`",
     ),
     ("(F - I).norm() * A.trace() / h", "the kinetic part has no second derivative at `F = I`"),
-    ("w.dot(&rho) * ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)", "the kinetic part depends on `w` here"),
 ];
 
 /// Potentials that are wrong.

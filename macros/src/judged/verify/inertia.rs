@@ -92,8 +92,10 @@ pub(super) fn classified(
 
 /// Whether all that the kinetic part depends on is one field whose type promises a positive matrix.
 fn has_a_sign(declaration: &Declaration, is_used: &dyn Fn(Name) -> bool) -> bool {
+    let is_advected = (0..declaration.advected.len()).any(|index| is_used(Name::Advected(index)));
     let used: Vec<_> = (0..declaration.fields.len()).filter(|&index| is_used(Name::Field(index))).collect();
     match used.as_slice() {
+        _ if is_advected => false,
         [] => true,
         [one] => declaration
             .fields

@@ -73,38 +73,10 @@ pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>)
     singular(tree, &Points::new(declaration).at_rest)
 }
 
-/// The terms whose kinetic part depends on an advected parameter.
-pub(crate) fn kinetic_with_advected(declaration: &Declaration, tree: &Rc<Tree>) -> Vec<Rc<Tree>> {
-    let points = Points::new(declaration);
-    let [there, back] = [Rational::ONE, -Rational::ONE].map(|sign| {
-        [&points.at_rest, &points.elsewhere].map(|values| {
-            let mut values = values.clone();
-            values.insert(Name::Increment, motion(&points.velocity, sign));
-            values
-        })
-    });
-    let rest = [&points.at_rest, &points.elsewhere];
-    let (mut open, mut found, mut splits) = (vec![tree.clone()], Vec::new(), 0..MOST_SPLITS);
-    while let Some(tree) = open.pop() {
-        if let Some(parts) = splits.next().and_then(|_| split(&tree)) {
-            open.extend(parts.into_iter().rev());
-            continue;
-        }
-        let value = |values: &Values| Evaluation::new(values).of(&tree).first();
-        let two = Series::ONE + Series::ONE;
-        let curvature = |at: usize| value(&there[at]) + value(&back[at]) - two * value(rest[at]);
-        if (curvature(0) - curvature(1)).order().is_some_and(|order| order <= 1) {
-            found.push(tree);
-        }
-    }
-    found
-}
-
 type Values = BTreeMap<Name, Value<Series>>;
 
 /// Numbers for all names, with `h` as it is.
 struct Points {
-    velocity: Value<Series>,
     /// At some `F`, and at another.
     turned: Values,
     turned_further: Values,
@@ -163,7 +135,6 @@ impl Points {
             turned_further: with_increment(turn(0.2)),
             moving: with_increment(motion(&velocity, Rational::ONE)),
             elsewhere,
-            velocity,
             at_rest: at_rest.clone(),
         }
     }

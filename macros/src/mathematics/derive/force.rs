@@ -53,6 +53,7 @@ pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result
     let jacobian = momentum_equation::jacobian(&context, &momentum, &[]);
     let parts = transport::parts(&context, &momentum, &before);
     let cleared = cayley::cleared(&context, &parts.unknown);
+    let ends = context.ends(&[], [&momentum, &after]);
     let after = context.substituted(&after, &transport::previous(&context).into_iter().collect());
     let none = || Expression::zero((1, 1));
     Ok(Derived {
@@ -76,6 +77,7 @@ pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result
         kick_after: parts.kick_after.plus(after),
         half_step: context.half_step(),
         cleared,
+        ends,
         directions,
         symbols,
     })

@@ -46,6 +46,8 @@ pub(crate) struct Declared {
     pub(crate) advected: Vec<(SymbolId, Variance)>,
     /// Those of a force's virtual work; a Lagrangian has none.
     pub(crate) displacements: Option<Displacements>,
+    /// Whether the derivatives of a step are asked for.
+    pub(crate) has_gradients: bool,
 }
 
 /// Why nothing can be derived.
@@ -136,12 +138,28 @@ pub(crate) struct Derived {
     pub(crate) half_step: Expression,
     /// The momentum equation in Cayley coordinates without denominators, where it is polynomial in `F`.
     pub(crate) cleared: Option<Cleared>,
+    /// Where the derivatives of a step are asked for, the momenta that they are those of.
+    pub(crate) ends: Option<Ends>,
+}
+
+/// The shares in the momenta at both ends of a step, as functions of `D = F − I`, `w` and the parameters.
+#[derive(Clone, Debug)]
+pub(crate) struct Ends {
+    /// `μ` of (2.7), and `μ⁺` of (2.6).
+    pub(crate) momenta: [Expression; 2],
+    /// `E·w` for each advected parameter.
+    pub(crate) moved: Vec<(SymbolId, Expression)>,
 }
 
 impl Derived {
     /// The increment `F`.
     pub(crate) fn increment(&self) -> SymbolId {
         self.increment
+    }
+
+    /// Whether the inertia depends on what is advected or given.
+    pub(crate) fn inertia_varies(&self) -> bool {
+        self.previous.iter().any(|(w, _)| self.limit.inertia.contains(*w))
     }
 
     /// Whether all coefficients stayed in the range of exact arithmetic.
@@ -163,7 +181,8 @@ impl Derived {
             &self.unknown,
             &self.kick_after,
         ];
-        let all = all.into_iter().chain(&self.kick_derivative);
+        let ends = self.ends.iter().flat_map(|ends| &ends.momenta);
+        let all = all.into_iter().chain(&self.kick_derivative).chain(ends);
         let cleared = self.cleared.iter().flat_map(|cleared| [&cleared.residual, &cleared.jacobian]);
         let closed =
             self.closed.iter().flat_map(|one| [&one.value, &one.pairing, &one.tangent.1, &one.multiplier_tangent.1]);
@@ -199,6 +218,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
         .then(|| kick_derivative::kick_derivative(&context, &parts.kick_before));
     let flow = closed.is_empty().then(|| transport::increments(&context, &momentum, &left_momentum));
     let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
+    let ends = context.ends(&closed, [&momentum, &left_momentum]);
     let unknown =
         if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
     Ok(Derived {
@@ -221,6 +241,7 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
         previous: transport::previous(&context),
         half_step: context.half_step(),
         cleared,
+        ends,
         closed,
         directions,
         symbols,
@@ -260,6 +281,20 @@ impl Context<'_> {
 
     fn half_step(&self) -> Expression {
         self.symbol(self.declared.step).scaled(Rational::new(1, 2))
+    }
+
+    /// Where the derivatives of a step are asked for; closed `let`s stay as they are.
+    fn ends(&self, closed: &[Closed], momenta: [&Expression; 2]) -> Option<Ends> {
+        let small = |momentum: &Expression| {
+            if closed.is_empty() { transport::in_small_increment(self, momentum) } else { momentum.clone() }
+        };
+        let direction = self.symbol(self.directions.first);
+        let moved = self
+            .declared
+            .advected
+            .iter()
+            .map(|&(w, variance)| (w, action::infinitesimal(self.symbols, variance, &direction, &self.symbol(w))));
+        self.declared.has_gradients.then(|| Ends { momenta: momenta.map(small), moved: moved.collect() })
     }
 
     fn product(&self, left: &Expression, right: &Expression) -> Expression {

@@ -1,0 +1,183 @@
+//! What is advected where there are several bodies: seen from one of them, or one of them itself.
+//!
+//! | parameter | spatial value | `f⁻¹ · w` |
+//! |---|---|---|
+//! | [`SeenFrom<A, W>`](SeenFrom) | that of `W` | by `f_A` alone |
+//! | [`Relative<A, B, M>`](Relative) | `I` | `f_A⁻¹ Q f_B` |
+//! | [`Configuration<B, M>`](Configuration) | `I` | `R f_B` |
+
+use nalgebra::SMatrix;
+
+use super::Advected;
+use crate::groups::{Factor, LieGroup};
+use crate::numbers::{Entries, Real, is_finite};
+
+/// What the body that is the factor `A` of a product sees; the others don't move it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenFrom<const A: usize, W>(pub W);
+
+/// The configuration `Q = g_A⁻¹ g_B` of the body `B` as the body `A` sees it: of two bodies that turn, the matrix that
+/// brings a vector from `B` to `A`. Its spatial value is the identity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relative<const A: usize, const B: usize, M>(pub M);
+
+/// The configuration `g_B` of the body `B` itself, seen from space. Its spatial value is the identity.
+///
+/// What depends on it isn't the same for a whole that is turned or moved in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Configuration<const B: usize, M>(pub M);
+
+impl<const A: usize, const B: usize, T: Real, const N: usize> Default for Relative<A, B, SMatrix<T, N, N>> {
+    fn default() -> Self {
+        Self(SMatrix::identity())
+    }
+}
+
+impl<const B: usize, T: Real, const N: usize> Default for Configuration<B, SMatrix<T, N, N>> {
+    fn default() -> Self {
+        Self(SMatrix::identity())
+    }
+}
+
+macro_rules! entries {
+    ($type:ident, $($place:ident),+) => {
+        impl<$(const $place: usize,)+ S, W: Entries<S>> Entries<S> for $type<$($place,)+ W> {
+            fn from_entries(next: &mut impl FnMut() -> S) -> Self {
+                Self(Entries::from_entries(next))
+            }
+
+            #[inline(always)]
+            fn each(&self, visit: &mut impl FnMut(S)) {
+                self.0.each(visit);
+            }
+
+            #[inline(always)]
+            fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
+                Self(self.0.zip(&other.0, combine))
+            }
+        }
+    };
+}
+
+entries!(SeenFrom, A);
+entries!(Relative, A, B);
+entries!(Configuration, B);
+
+impl<const A: usize, G: Factor<A>, W: Advected<G::Of>> Advected<G> for SeenFrom<A, W> {
+    #[inline]
+    fn seen_from(&self, attitude: &G) -> Self {
+        Self(self.0.seen_from(&attitude.factor()))
+    }
+
+    #[inline(always)]
+    fn change(&self, increment: &G::Matrix) -> Self {
+        Self(self.0.change(&G::of_matrix(increment)))
+    }
+
+    #[inline(always)]
+    fn rate(&self, velocity: &G::Matrix) -> Self {
+        Self(self.0.rate(&G::of_matrix(velocity)))
+    }
+
+    fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self {
+        Self(self.0.seen_through(&G::of_matrix(matrix), &G::of_matrix(inverse)))
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.0.is_finite()
+    }
+}
+
+/// The matrices of the factor `K`.
+type Of<G, const K: usize> = <<G as Factor<K>>::Of as LieGroup>::Matrix;
+
+impl<const A: usize, const B: usize, G, T, const N: usize> Advected<G> for Relative<A, B, SMatrix<T, N, N>>
+where
+    T: Real,
+    G: Factor<A, Of: LieGroup<Matrix = SMatrix<T, N, N>>> + Factor<B> + LieGroup<Scalar = T>,
+    <G as Factor<B>>::Of: LieGroup<Matrix = Of<G, A>>,
+{
+    #[inline]
+    fn seen_from(&self, attitude: &G) -> Self {
+        let (from, to) = (Factor::<A>::factor(attitude), Factor::<B>::factor(attitude));
+        Self(product(&product(&from.inverse().matrix(), &self.0), &to.matrix()))
+    }
+
+    /// `E Q + (Q + E Q) D_B` with `E = F_A⁻¹ − I`.
+    #[inline(always)]
+    fn change(&self, increment: &G::Matrix) -> Self {
+        let (from, to) = (<G as Factor<A>>::of_matrix(increment), <G as Factor<B>>::of_matrix(increment));
+        let turned = product(&<G as Factor<A>>::Of::inverse_increment(&from), &self.0);
+        Self(turned + product(&(self.0 + turned), &to))
+    }
+
+    /// `Q ξ̂_B − ξ̂_A Q`.
+    #[inline(always)]
+    fn rate(&self, velocity: &G::Matrix) -> Self {
+        let (from, to) = (<G as Factor<A>>::of_matrix(velocity), <G as Factor<B>>::of_matrix(velocity));
+        Self(product(&self.0, &to) - product(&from, &self.0))
+    }
+
+    fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self {
+        let (from, to) = (<G as Factor<A>>::of_matrix(inverse), <G as Factor<B>>::of_matrix(matrix));
+        Self(product(&product(&from, &self.0), &to))
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        all_finite(&self.0)
+    }
+}
+
+impl<const B: usize, G, T: Real, const N: usize> Advected<G> for Configuration<B, SMatrix<T, N, N>>
+where
+    G: Factor<B, Of: LieGroup<Matrix = SMatrix<T, N, N>>> + LieGroup<Scalar = T>,
+{
+    #[inline]
+    fn seen_from(&self, attitude: &G) -> Self {
+        Self(product(&self.0, &attitude.factor().matrix()))
+    }
+
+    /// `R D`.
+    #[inline(always)]
+    fn change(&self, increment: &G::Matrix) -> Self {
+        Self(product(&self.0, &G::of_matrix(increment)))
+    }
+
+    /// `R ξ̂`.
+    #[inline(always)]
+    fn rate(&self, velocity: &G::Matrix) -> Self {
+        Self(product(&self.0, &G::of_matrix(velocity)))
+    }
+
+    fn seen_through(&self, matrix: &G::Matrix, _: &G::Matrix) -> Self {
+        Self(product(&self.0, &G::of_matrix(matrix)))
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        all_finite(&self.0)
+    }
+}
+
+/// `A B`, unrolled; of nalgebra's product, which isn't always inlined, lanes would have the target's common instructions.
+#[inline(always)]
+fn product<T: Real, const N: usize>(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    let mut product = SMatrix::zeros();
+    for column in 0..N {
+        for row in 0..N {
+            let mut sum = a[(row, 0)] * b[(0, column)];
+            for k in 1..N {
+                sum += a[(row, k)] * b[(k, column)];
+            }
+            product[(row, column)] = sum;
+        }
+    }
+    product
+}
+
+#[inline(always)]
+fn all_finite<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> bool {
+    matrix.iter().all(|&entry| is_finite(entry))
+}

@@ -1,0 +1,306 @@
+//! Products of groups: several bodies.
+
+use super::{LieGroup, Retraction};
+use crate::numbers::{Blocks, Coordinates, Join, Mask, nowhere};
+use nalgebra::SimdBool as _;
+
+/// The factor `K` of a product of groups, counted from zero.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::SO3;
+/// use liestep::groups::{Factor, LieGroup};
+/// use nalgebra::Vector6;
+///
+/// type Bodies = (SO3, SO3);
+/// let momentum = Vector6::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0);
+/// assert_eq!(<Bodies as Factor<1>>::components(&momentum), nalgebra::Vector3::new(4.0, 5.0, 6.0));
+/// assert_eq!(Bodies::DIMENSION, 6);
+/// ```
+pub trait Factor<const K: usize>: LieGroup {
+    /// The group.
+    type Of: LieGroup<Scalar = Self::Scalar>;
+
+    /// The factor of an element.
+    fn factor(&self) -> Self::Of;
+
+    /// The factor's matrix.
+    fn of_matrix(matrix: &Self::Matrix) -> <Self::Of as LieGroup>::Matrix;
+
+    /// The factor's components of an element of the algebra, or of a covector.
+    fn components(joined: &Self::Vector) -> <Self::Of as LieGroup>::Vector;
+}
+
+/// What stands side by side.
+type Joined<A, B, T> = <A as Join<T, B>>::Joined;
+
+/// For each factor its type, its place, and a name for its part; then how their components are joined, and how they are
+/// taken apart again into these names.
+macro_rules! product {
+    (
+        $($group:ident $place:tt $part:ident),+;
+        $scalar:ident: $vector:ty where [$($bound:tt)*];
+        join $join:expr;
+        split $joined:ident $split:block;
+        squares $squares:expr;
+        dimension $dimension:expr;
+        factors $factors:expr;
+    ) => {
+        impl<$($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> LieGroup for ($($group,)+)
+        where
+            $($bound)*
+        {
+            type Scalar = $scalar;
+            type Vector = $vector;
+            type Matrix = ($($group::Matrix,)+);
+
+            const DIMENSION: usize = $dimension;
+            const FACTORS: Blocks = $factors;
+
+            fn identity() -> Self {
+                ($($group::identity(),)+)
+            }
+
+            fn compose(&self, right: &Self) -> Self {
+                ($(self.$place.compose(&right.$place),)+)
+            }
+
+            fn inverse(&self) -> Self {
+                ($(self.$place.inverse(),)+)
+            }
+
+            fn matrix(&self) -> Self::Matrix {
+                ($(self.$place.matrix(),)+)
+            }
+
+            #[inline(always)]
+            fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
+                ($($group::from_matrix_unchecked(matrix.$place),)+)
+            }
+
+            #[inline(always)]
+            fn hat($joined: &Self::Vector) -> Self::Matrix {
+                let ($($part,)+) = $split;
+                ($($group::hat(&$part),)+)
+            }
+
+            #[inline(always)]
+            fn vee(matrix: &Self::Matrix) -> Self::Vector {
+                let ($($part,)+) = ($($group::vee(&matrix.$place),)+);
+                $join
+            }
+
+            fn adjoint(&self, $joined: &Self::Vector) -> Self::Vector {
+                let ($($part,)+) = $split;
+                let ($($part,)+) = ($(self.$place.adjoint(&$part),)+);
+                $join
+            }
+
+            #[inline(always)]
+            fn adjoint_transpose(&self, $joined: &Self::Vector) -> Self::Vector {
+                let ($($part,)+) = $split;
+                let ($($part,)+) = ($(self.$place.adjoint_transpose(&$part),)+);
+                $join
+            }
+
+            fn lie_bracket($joined: &Self::Vector, eta: &Self::Vector) -> Self::Vector {
+                let first = $split;
+                let $joined = eta;
+                let second = $split;
+                let ($($part,)+) = ($($group::lie_bracket(&first.$place, &second.$place),)+);
+                $join
+            }
+
+            fn lie_bracket_transpose($joined: &Self::Vector, momentum: &Self::Vector) -> Self::Vector {
+                let first = $split;
+                let $joined = momentum;
+                let second = $split;
+                let ($($part,)+) = ($($group::lie_bracket_transpose(&first.$place, &second.$place),)+);
+                $join
+            }
+
+            #[inline(always)]
+            fn from_increment(increment: &Self::Matrix) -> Self {
+                ($($group::from_increment(&increment.$place),)+)
+            }
+
+            #[inline(always)]
+            fn increment(&self) -> Self::Matrix {
+                ($(self.$place.increment(),)+)
+            }
+
+            #[inline(always)]
+            fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
+                ($($group::inverse_increment(&increment.$place),)+)
+            }
+
+            #[inline(always)]
+            fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
+                ($(self.$place.change(&increment.$place),)+)
+            }
+
+            #[inline(always)]
+            fn advance(&self, increment: &Self::Matrix) -> Self {
+                ($(self.$place.advance(&increment.$place),)+)
+            }
+
+            #[inline(always)]
+            fn adjoint_transpose_increment(increment: &Self::Matrix, $joined: &Self::Vector) -> Self::Vector {
+                let ($($part,)+) = $split;
+                let ($($part,)+) = ($($group::adjoint_transpose_increment(&increment.$place, &$part),)+);
+                $join
+            }
+
+            /// The sum of those of the factors.
+            fn defect(&self) -> $scalar {
+                $scalar::zero() $(+ self.$place.defect())+
+            }
+
+            fn restored(&self) -> Option<(Self, Mask<$scalar>)> {
+                let (mut element, mut far) = (*self, nowhere::<$scalar>());
+                $(if let Some((restored, lanes)) = self.$place.restored() {
+                    element.$place = restored;
+                    far = far | lanes;
+                })+
+                far.any().then_some((element, far))
+            }
+        }
+
+        /// Factor by factor.
+        impl<R, $($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Retraction<($($group,)+)> for R
+        where
+            $(R: Retraction<$group>,)+
+            $($bound)*
+        {
+            #[inline(always)]
+            fn increment($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
+                let ($($part,)+) = $split;
+                ($(<R as Retraction<$group>>::increment(&$part),)+)
+            }
+
+            #[inline(always)]
+            fn increment_of_half($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
+                let ($($part,)+) = $split;
+                ($(<R as Retraction<$group>>::increment_of_half(&$part),)+)
+            }
+
+            fn local_coordinates(element: &($($group,)+)) -> Option<<($($group,)+) as LieGroup>::Vector> {
+                let ($($part,)+) = ($(<R as Retraction<$group>>::local_coordinates(&element.$place)?,)+);
+                Some($join)
+            }
+
+            fn tangent(
+                $joined: &<($($group,)+) as LieGroup>::Vector,
+            ) -> <<($($group,)+) as LieGroup>::Vector as Coordinates<$scalar>>::Square {
+                let ($($part,)+) = $split;
+                let ($($part,)+) = ($(<R as Retraction<$group>>::tangent(&$part),)+);
+                $squares
+            }
+
+            #[inline(always)]
+            fn is_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
+                let ($($part,)+) = $split;
+                !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_near_identity(&$part))+
+            }
+
+            #[inline(always)]
+            fn is_half_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
+                let ($($part,)+) = $split;
+                !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_near_identity(&$part))+
+            }
+
+            #[inline(always)]
+            fn is_half_well_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
+                let ($($part,)+) = $split;
+                !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_well_near_identity(&$part))+
+            }
+        }
+
+        product!(@factors [$($group $place $part),+] [$($group $place $part),+] $scalar $joined $split [$($bound)*]);
+    };
+    (@factors [$($own:ident $place:tt $part:ident),+] $all:tt $scalar:ident $joined:ident $split:block $bound:tt) => {
+        $(product!(@factor $own $place $part $all $scalar $joined $split $bound);)+
+    };
+    (
+        @factor $own:ident $own_place:tt $own_part:ident [$($group:ident $place:tt $part:ident),+]
+        $scalar:ident $joined:ident $split:block [$($bound:tt)*]
+    ) => {
+        impl<$($group: LieGroup<Scalar = $scalar>,)+ $scalar: crate::numbers::Real> Factor<$own_place> for ($($group,)+)
+        where
+            $($bound)*
+        {
+            type Of = $own;
+
+            #[inline(always)]
+            fn factor(&self) -> $own {
+                self.$own_place
+            }
+
+            #[inline(always)]
+            fn of_matrix(matrix: &Self::Matrix) -> $own::Matrix {
+                matrix.$own_place
+            }
+
+            #[inline(always)]
+            fn components($joined: &Self::Vector) -> $own::Vector {
+                let ($($part,)+) = $split;
+                let _ = ($(&$part,)+);
+                $own_part
+            }
+        }
+    };
+}
+
+product! {
+    A 0 a, B 1 b;
+    T: Joined<A::Vector, B::Vector, T> where [A::Vector: Join<T, B::Vector>];
+    join a.join(&b);
+    split joined { A::Vector::split(joined) };
+    squares <A::Vector as Join<T, B::Vector>>::join_squares(&a, &b);
+    dimension A::DIMENSION + B::DIMENSION;
+    factors A::FACTORS.then(A::DIMENSION, B::FACTORS);
+}
+
+product! {
+    A 0 a, B 1 b, C 2 c;
+    T: Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T> where [
+        A::Vector: Join<T, B::Vector>,
+        Joined<A::Vector, B::Vector, T>: Join<T, C::Vector>,
+    ];
+    join a.join(&b).join(&c);
+    split joined {
+        let (others, c) = Joined::<A::Vector, B::Vector, T>::split(joined);
+        let (a, b) = A::Vector::split(&others);
+        (a, b, c)
+    };
+    squares {
+        let others = <A::Vector as Join<T, B::Vector>>::join_squares(&a, &b);
+        <Joined<A::Vector, B::Vector, T> as Join<T, C::Vector>>::join_squares(&others, &c)
+    };
+    dimension A::DIMENSION + B::DIMENSION + C::DIMENSION;
+    factors A::FACTORS.then(A::DIMENSION, B::FACTORS.then(B::DIMENSION, C::FACTORS));
+}
+
+product! {
+    A 0 a, B 1 b, C 2 c, D 3 d;
+    T: Joined<Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T>, D::Vector, T> where [
+        A::Vector: Join<T, B::Vector>,
+        Joined<A::Vector, B::Vector, T>: Join<T, C::Vector>,
+        Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T>: Join<T, D::Vector>,
+    ];
+    join a.join(&b).join(&c).join(&d);
+    split joined {
+        let (three, d) = Joined::<Joined<A::Vector, B::Vector, T>, C::Vector, T>::split(joined);
+        let (two, c) = Joined::<A::Vector, B::Vector, T>::split(&three);
+        let (a, b) = A::Vector::split(&two);
+        (a, b, c, d)
+    };
+    squares {
+        let two = <A::Vector as Join<T, B::Vector>>::join_squares(&a, &b);
+        let three = <Joined<A::Vector, B::Vector, T> as Join<T, C::Vector>>::join_squares(&two, &c);
+        <Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T> as Join<T, D::Vector>>::join_squares(&three, &d)
+    };
+    dimension A::DIMENSION + B::DIMENSION + C::DIMENSION + D::DIMENSION;
+    factors A::FACTORS.then(A::DIMENSION, B::FACTORS.then(B::DIMENSION, C::FACTORS.then(C::DIMENSION, D::FACTORS)));
+}

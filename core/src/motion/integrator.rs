@@ -1,0 +1,305 @@
+//! What all that steps has in common: what is written for it goes with every method.
+
+use core::ops::{ControlFlow, Deref};
+
+use crate::error::StepError;
+use crate::groups::{Advected, LieGroup};
+use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::motion::any::{AnyState, AnyStepper};
+use crate::motion::plan::Plan;
+use crate::motion::report::StepReport;
+use crate::motion::stepper::{StateOf, Stepper};
+use crate::motion::summation::Motion;
+use crate::numbers::real;
+
+/// Something that steps a motion by a fixed step: a [`Stepper`] with any plan, an [`AnyStepper`], a
+/// [`CotangentGauss`](crate::methods::CotangentGauss).
+///
+/// Recording, events and frames are written for this trait, and so go with every method. Its methods are those of
+/// [`Stepper`], but for two, which are the dense output: [`part`](Self::part) and [`state_at`](Self::state_at).
+pub trait Integrator {
+    /// The group.
+    type Group: LieGroup;
+    /// The advected parameters.
+    type Advected: Advected<Self::Group>;
+    /// Its state: a motion, and what is kept from step to step.
+    type State: Clone + Deref<Target = Motion<Self::Group, Self::Advected>>;
+
+    /// One step; on an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::step`].
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError>;
+
+    /// So many steps; returns all their iterations. On an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::run`].
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError>;
+
+    /// As [`run`](Self::run), but says only whether it could be done; where not, the state may be anywhere.
+    #[must_use]
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> bool {
+        self.run(state, steps).is_ok()
+    }
+
+    /// The motion a fraction of a step after this state, which stays where it is.
+    ///
+    /// It is a step of the same method with that fraction of `h`. So it has the method's order and keeps what its steps
+    /// keep, to rounding: the group, the momentum maps, and for a given fraction the Poisson structure. It costs one step,
+    /// and the folding of its constants. All fractions from 0 to 1 are a path that joins this state to the next, to
+    /// rounding; where a remedy made the step it may jump, by as much as the two steps differ. A negative fraction is a
+    /// step back. The count of steps is that of the state.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::step`].
+    fn part(
+        &self,
+        state: &Self::State,
+        fraction: ScalarIn<Self>,
+    ) -> Result<Motion<Self::Group, Self::Advected>, StepError>;
+
+    /// The state of another motion, to go on from its attitude and momentum; see [`Stepper::adopt`].
+    fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> Self::State;
+
+    /// The step `h`, s.
+    fn step_size(&self) -> ScalarIn<Self>;
+
+    /// The body velocity, on SO(3) in rad/s; NaN where a momentum has none.
+    fn velocity(&self, motion: &Motion<Self::Group, Self::Advected>) -> <Self::Group as LieGroup>::Vector;
+
+    /// The energy, J; NaN where a momentum has none.
+    fn energy(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self>;
+
+    /// The time since the start, `n h`, s.
+    #[allow(clippy::cast_precision_loss)] // as `Stepper::time`
+    fn time(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self> {
+        self.step_size() * real(motion.steps as f64)
+    }
+
+    /// The motion at any time, s, from a state that stays where it is: whole steps, of `h` or back of `−h`, and a
+    /// [`part`](Self::part) of one.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::NonFinite`] for a time that isn't finite, or so far away that its steps can't be counted; otherwise as
+    /// [`Stepper::step`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::motion::Integrator as _;
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))? };
+    /// let stepper = Stepper::new(body, 0.01)?;
+    /// let state = stepper.start(SO3::identity(), Vector3::new(0.1, 2.0, 0.2))?;
+    /// let between = stepper.state_at(&state, 0.123)?;
+    /// assert!((between.spatial_momentum() - state.spatial_momentum()).norm() < 1e-14);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
+    fn state_at(&self, state: &Self::State, time: f64) -> Result<Motion<Self::Group, Self::Advected>, StepError>
+    where
+        ScalarIn<Self>: Into<f64>,
+    {
+        /// More are no number of steps that a run can make.
+        const MOST: f64 = 9e15;
+        let h: f64 = self.step_size().into();
+        if h == 0.0 && time.is_finite() {
+            return Ok(**state);
+        }
+        let steps = time / h - state.steps as f64;
+        let can_be_counted = steps.abs() < MOST;
+        if !can_be_counted {
+            return Err(StepError::NonFinite { what: "time" });
+        }
+        let whole = steps.trunc();
+        let mut state = state.clone();
+        if whole >= 0.0 {
+            self.run(&mut state, whole as u64)?;
+        } else {
+            for _ in 0..-whole as u64 {
+                state = self.adopt(&self.part(&state, real(-1.0))?);
+            }
+        }
+        self.part(&state, real(steps - whole))
+    }
+}
+
+/// The scalar of an integrator.
+pub type ScalarIn<I> = <<I as Integrator>::Group as LieGroup>::Scalar;
+
+impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
+    type Group = Group<S>;
+    type Advected = S::Advected;
+    type State = StateOf<S, P>;
+
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        Stepper::step(self, state)
+    }
+
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        Stepper::run(self, state, steps)
+    }
+
+    fn attempt(&self, state: &mut Self::State, steps: u64) -> bool {
+        self.run_unexplained(state, steps).is_ok()
+    }
+
+    fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
+        self.fraction_of_a_step(state, fraction)
+    }
+
+    fn adopt(&self, motion: &Motion<Group<S>, S::Advected>) -> Self::State {
+        Stepper::adopt(self, motion)
+    }
+
+    fn step_size(&self) -> Scalar<S> {
+        Stepper::step_size(self)
+    }
+
+    fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
+        Stepper::velocity(self, motion)
+    }
+
+    fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
+        Stepper::energy(self, motion)
+    }
+}
+
+impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
+    type Group = G;
+    type Advected = A;
+    type State = AnyState<G, A>;
+
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        AnyStepper::step(self, state)
+    }
+
+    fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        AnyStepper::run(self, state, steps)
+    }
+
+    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
+        self.fraction_of_a_step(state, fraction)
+    }
+
+    fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
+        AnyStepper::adopt(self, motion)
+    }
+
+    fn step_size(&self) -> G::Scalar {
+        AnyStepper::step_size(self)
+    }
+
+    fn velocity(&self, motion: &Motion<G, A>) -> G::Vector {
+        AnyStepper::velocity(self, motion)
+    }
+
+    fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
+        AnyStepper::energy(self, motion)
+    }
+}
+
+/// A motion at a time, at the end of a step or between two, with what steps it.
+///
+/// It is read as a [`Motion`], to which it derefs.
+#[derive(Debug)]
+pub struct Moment<'a, I: Integrator + ?Sized> {
+    integrator: &'a I,
+    motion: &'a Motion<I::Group, I::Advected>,
+    time: ScalarIn<I>,
+    rising: Option<bool>,
+}
+
+impl<'a, I: Integrator + ?Sized> Moment<'a, I> {
+    /// At the end of a step.
+    #[must_use]
+    pub fn of_step(integrator: &'a I, motion: &'a Motion<I::Group, I::Advected>) -> Self {
+        Self { integrator, motion, time: integrator.time(motion), rising: None }
+    }
+
+    /// At any time, s.
+    pub(crate) fn at(
+        integrator: &'a I,
+        motion: &'a Motion<I::Group, I::Advected>,
+        time: ScalarIn<I>,
+        rising: Option<bool>,
+    ) -> Self {
+        Self { integrator, motion, time, rising }
+    }
+
+    /// The time since the start, s.
+    #[must_use]
+    pub fn time(&self) -> ScalarIn<I> {
+        self.time
+    }
+
+    /// The body velocity, on SO(3) in rad/s.
+    #[must_use]
+    pub fn velocity(&self) -> <I::Group as LieGroup>::Vector {
+        self.integrator.velocity(self.motion)
+    }
+
+    /// The energy, J.
+    #[must_use]
+    pub fn energy(&self) -> ScalarIn<I> {
+        self.integrator.energy(self.motion)
+    }
+
+    /// What steps the motion.
+    #[must_use]
+    pub fn integrator(&self) -> &'a I {
+        self.integrator
+    }
+
+    /// At a crossing of an event, whether its function rises there.
+    #[must_use]
+    pub fn rising(&self) -> Option<bool> {
+        self.rising
+    }
+}
+
+impl<I: Integrator + ?Sized> Deref for Moment<'_, I> {
+    type Target = Motion<I::Group, I::Advected>;
+
+    fn deref(&self) -> &Self::Target {
+        self.motion
+    }
+}
+
+/// What an observer says to the run that it observes: nothing, whether to go on, or that it failed.
+///
+/// Closures return `()`, a [`ControlFlow`], or a `Result` of one of these.
+pub trait Answer {
+    /// To go on or not, or the error.
+    ///
+    /// # Errors
+    ///
+    /// The observer's own.
+    fn verdict(self) -> Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
+}
+
+impl Answer for () {
+    fn verdict(self) -> Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>> {
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+impl Answer for ControlFlow<()> {
+    fn verdict(self) -> Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>> {
+        Ok(self)
+    }
+}
+
+impl<R: Answer, E: Into<Box<dyn core::error::Error + Send + Sync>>> Answer for Result<R, E> {
+    fn verdict(self) -> Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>> {
+        self.map_err(Into::into)?.verdict()
+    }
+}

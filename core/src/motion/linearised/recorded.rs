@@ -1,0 +1,81 @@
+//! What a step has done to a motion, stage by stage.
+
+use core::cell::RefCell;
+
+use crate::groups::{Advected, LieGroup};
+use crate::motion::summation::{Motion, Proceeded, Summation};
+use crate::numbers::zero;
+
+/// One change that a plan has made: a turn, a push, or both.
+#[derive(Clone, Copy, Debug)]
+pub struct Event<G: LieGroup, A> {
+    /// The motion before.
+    pub(crate) before: Motion<G, A>,
+    /// `F − I`; of a push zero.
+    pub(crate) increment: G::Matrix,
+}
+
+/// A motion that writes down each change; its bits are those of [`Motion`] alone.
+#[derive(Clone, Copy)]
+pub(super) struct Recorded<'a, G: LieGroup, A> {
+    pub(super) motion: Motion<G, A>,
+    pub(super) events: &'a RefCell<Vec<Event<G, A>>>,
+}
+
+impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
+    #[inline(always)]
+    fn note(&self, increment: G::Matrix) {
+        self.events.borrow_mut().push(Event { before: self.motion, increment });
+    }
+}
+
+impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
+    const CARRIES: bool = false;
+
+    #[inline(always)]
+    fn now(&self) -> &Motion<G, A> {
+        &self.motion
+    }
+
+    #[inline(always)]
+    fn turn(&mut self, increment: &G::Matrix) {
+        self.note(*increment);
+        self.motion.turn(increment);
+    }
+
+    #[inline(always)]
+    fn turned(&self, increment: &G::Matrix) -> A {
+        self.motion.turned(increment)
+    }
+
+    #[inline(always)]
+    fn push(&mut self, change: &G::Vector) {
+        self.note(zero());
+        Summation::push(&mut self.motion, change);
+    }
+
+    #[inline(always)]
+    fn proceed(&mut self, step: &Proceeded<G, A>) {
+        self.note(step.increment);
+        self.motion.proceed(step);
+    }
+
+    #[inline(always)]
+    fn recount(&mut self, steps: u64) {
+        self.motion.recount(steps);
+    }
+
+    #[cold]
+    fn restore(&mut self, spatial: &A) {
+        self.motion.restore(spatial);
+    }
+
+    fn replace(&mut self, motion: Motion<G, A>) {
+        self.motion = motion;
+    }
+
+    #[inline(always)]
+    fn show(&mut self, motion: Motion<G, A>) {
+        self.motion = motion;
+    }
+}

@@ -1,0 +1,242 @@
+//! Values of several lanes, put together of one for each and taken apart again.
+
+use nalgebra::{Point, SMatrix};
+
+use crate::numbers::scalar::Real;
+
+/// A value made of scalars with several [lanes](crate::numbers::Real#lanes), each lane of which is a value of its own.
+///
+/// A declaration that is generic over its scalar has it derived, with [`InLanes`]; sums, steppers and
+/// [states](crate::State) of such scenes have it, too. A scalar of one lane is as good as any.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::effects::Torque;
+/// use liestep::numbers::Lanes;
+/// use nalgebra::Vector3;
+/// use simba::simd::AutoF64x4;
+///
+/// let torques = [1.0, 2.0, 3.0, 4.0].map(|size| Torque { torque: Vector3::z() * size });
+/// let mut wide = Torque::<AutoF64x4>::gathered(&torques).expect("they share nothing");
+/// assert_eq!(wide.lane(2), torques[2]);
+/// assert!(wide.set_lane(2, &torques[0]));
+/// assert_eq!(wide.torque.z, AutoF64x4::new(1.0, 2.0, 1.0, 4.0));
+/// ```
+pub trait Lanes: Sized {
+    /// What is in one of the lanes.
+    type Lane;
+
+    /// The same in all lanes.
+    fn splat(lane: &Self::Lane) -> Self;
+
+    /// What is in lane `k`.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no lane `k`.
+    #[must_use]
+    fn lane(&self, k: usize) -> Self::Lane;
+
+    /// Puts it into lane `k`, and says whether that could be done: what lanes share, as the number of steps made or the
+    /// scheme of a method, has to agree. Where it doesn't, what is left is of no use.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no lane `k`.
+    #[must_use]
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool;
+
+    /// One in each lane, and the first in all that are left over; `None` where there is none, or where they don't agree
+    /// in what lanes share.
+    ///
+    /// # Panics
+    ///
+    /// Where they are more than there are lanes.
+    #[must_use]
+    fn gathered(lanes: &[Self::Lane]) -> Option<Self> {
+        let mut together = Self::splat(lanes.first()?);
+        let agree = lanes.iter().enumerate().skip(1).all(|(k, lane)| together.set_lane(k, lane));
+        agree.then_some(together)
+    }
+}
+
+/// What can be put into lanes of the scalar `W`, and what it is there.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` can't be put into lanes of `{W}`",
+    label = "can't be put into lanes",
+    note = "a declaration generic over its scalar can be: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here"
+)]
+pub trait InLanes<W>: Sized {
+    /// Several of them.
+    type Together: Lanes<Lane = Self>;
+}
+
+impl<T: Real<Element: Real>, const R: usize, const C: usize> Lanes for SMatrix<T, R, C> {
+    type Lane = SMatrix<T::Element, R, C>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        lane.map(T::splat)
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        self.map(|entry| entry.extract(k))
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.zip_apply(lane, |entry, lane| entry.replace(k, lane));
+        true
+    }
+}
+
+impl<T: Real<Element: Real>, const D: usize> Lanes for Point<T, D> {
+    type Lane = Point<T::Element, D>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self { coords: Lanes::splat(&lane.coords) }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        Point { coords: Lanes::lane(&self.coords, k) }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        Lanes::set_lane(&mut self.coords, k, &lane.coords)
+    }
+}
+
+impl<T: Real<Element: Real>, const N: usize> Lanes for [T; N] {
+    type Lane = [T::Element; N];
+
+    fn splat(lane: &Self::Lane) -> Self {
+        lane.map(T::splat)
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        self.map(|entry| entry.extract(k))
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.iter_mut().zip(lane).for_each(|(entry, lane)| entry.replace(k, *lane));
+        true
+    }
+}
+
+/// As many for each lane.
+impl<V: Lanes> Lanes for Vec<V> {
+    type Lane = Vec<V::Lane>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        lane.iter().map(V::splat).collect()
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        self.iter().map(|entry| entry.lane(k)).collect()
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.len() == lane.len() && self.iter_mut().zip(lane).all(|(entry, lane)| entry.set_lane(k, lane))
+    }
+}
+
+impl Lanes for () {
+    type Lane = ();
+
+    fn splat((): &()) -> Self {}
+
+    fn lane(&self, _: usize) -> Self::Lane {}
+
+    fn set_lane(&mut self, _: usize, (): &()) -> bool {
+        true
+    }
+}
+
+macro_rules! tuple {
+    ($($name:ident $index:tt),+) => {
+        impl<$($name: Lanes),+> Lanes for ($($name,)+) {
+            type Lane = ($($name::Lane,)+);
+
+            fn splat(lane: &Self::Lane) -> Self {
+                ($($name::splat(&lane.$index),)+)
+            }
+
+            fn lane(&self, k: usize) -> Self::Lane {
+                ($(self.$index.lane(k),)+)
+            }
+
+            fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+                $(self.$index.set_lane(k, &lane.$index))&&+
+            }
+        }
+    };
+}
+
+tuple!(A 0, B 1);
+tuple!(A 0, B 1, C 2);
+tuple!(A 0, B 1, C 2, D 3);
+tuple!(A 0, B 1, C 2, D 3, E 4);
+tuple!(A 0, B 1, C 2, D 3, E 4, F 5);
+
+/// The lanes of wrappers around one value that has them.
+macro_rules! lanes_of_wrapper {
+    ($([$($generics:tt)*] $type:ident<$scalar:ident $(, $argument:ident)*>),+ $(,)?) => {$(
+        impl<$($generics)*> $crate::numbers::Lanes for $type<$scalar $(, $argument)*>
+        where
+            $scalar: $crate::numbers::Real<Element: $crate::numbers::Real>,
+        {
+            type Lane = $type<$scalar::Element $(, $argument)*>;
+
+            fn splat(lane: &Self::Lane) -> Self {
+                Self($crate::numbers::Lanes::splat(&lane.0))
+            }
+
+            fn lane(&self, k: usize) -> Self::Lane {
+                $type($crate::numbers::Lanes::lane(&self.0, k))
+            }
+
+            fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+                $crate::numbers::Lanes::set_lane(&mut self.0, k, &lane.0)
+            }
+        }
+    )+};
+}
+
+/// The lanes of a struct of the scalar `T`, field by field: those that have lanes, scalars, and what lanes share.
+macro_rules! lanes_of_fields {
+    (
+        impl[$($generics:tt)*] $self:ty => $lane:ty, as $name:ident
+        $(where [$($bounds:tt)*])?
+        { lanes: [$($field:ident),*], scalars: [$($scalar:ident),*], shared: [$($shared:ident),*] }
+    ) => {
+        impl<$($generics)*> $crate::numbers::Lanes for $self
+        $(where $($bounds)*)?
+        {
+            type Lane = $lane;
+
+            fn splat(lane: &Self::Lane) -> Self {
+                $name {
+                    $($field: $crate::numbers::Lanes::splat(&lane.$field),)*
+                    $($scalar: nalgebra::SimdValue::splat(lane.$scalar),)*
+                    $($shared: lane.$shared.clone(),)*
+                }
+            }
+
+            fn lane(&self, k: usize) -> Self::Lane {
+                $name {
+                    $($field: $crate::numbers::Lanes::lane(&self.$field, k),)*
+                    $($scalar: nalgebra::SimdValue::extract(&self.$scalar, k),)*
+                    $($shared: self.$shared.clone(),)*
+                }
+            }
+
+            fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+                $(nalgebra::SimdValue::replace(&mut self.$scalar, k, lane.$scalar);)*
+                true
+                    $(&& self.$shared == lane.$shared)*
+                    $(&& $crate::numbers::Lanes::set_lane(&mut self.$field, k, &lane.$field))*
+            }
+        }
+    };
+}
+
+pub(crate) use {lanes_of_fields, lanes_of_wrapper};

@@ -1,0 +1,181 @@
+//! The solve with all its fallbacks, for what is seldom asked.
+//!
+//! It sees a scene through a table of functions, and so is compiled once for a group and its scalars: what a build
+//! compiles for each scene is its own equation.
+
+use core::marker::PhantomData;
+
+use super::iteration::{Lanes, MAX_ITERATIONS, Root, SquareOf, System, is_positive};
+use super::problem::{Problem, newton_system, pattern, step_terms};
+use super::reused_jacobian::Iteration;
+use crate::error::StepError;
+use crate::groups::{LieGroup, Retraction};
+use crate::mechanics::{Effect, Group, Square, Vector};
+use crate::numbers::{Coordinates as _, Mask, Pattern, real, reported};
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
+
+/// The damped retry shortens its steps, and so needs more of them than [`MAX_ITERATIONS`].
+const MAX_DAMPED_ITERATIONS: u32 = 60;
+
+/// What else is asked of a momentum equation where a solution is doubtful.
+trait Equation<G: LieGroup>: System<G> {
+    /// The system with nothing on its right side.
+    fn unforced_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
+
+    /// `h` times the [right-trivialised Jacobian](Effect::momentum_jacobian).
+    fn momentum_jacobian(&self, half: &G::Vector) -> SquareOf<G>;
+}
+
+/// The equation of a [`Problem`], by functions that aren't inlined.
+pub(super) struct Seldom<'a, L: Effect> {
+    problem: &'a Problem<'a, L>,
+    pub(super) terms: L::StepTerms,
+}
+
+impl<'a, L: Effect> Seldom<'a, L> {
+    pub(super) fn new(problem: &'a Problem<'a, L>) -> Self {
+        Self { problem, terms: step_terms::<L>(problem.constants, &problem.a, problem.w) }
+    }
+
+    pub(super) fn careful(&self) -> Careful<'_, Group<L>, L::Retraction> {
+        Careful { equation: self, safe: self.problem.safe, retraction: PhantomData }
+    }
+}
+
+impl<L: Effect> System<Group<L>> for Seldom<'_, L> {
+    fn pattern(&self) -> Pattern {
+        pattern::<L>()
+    }
+
+    fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
+        newton_system::<L>(self.problem.constants, &self.terms, half)
+    }
+
+    fn residual(&self, half: &Vector<L>) -> Vector<L> {
+        L::newton_residual(self.problem.constants, &self.terms, half).momentum_defect
+    }
+}
+
+impl<L: Effect> Equation<Group<L>> for Seldom<'_, L> {
+    fn unforced_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
+        let Problem { constants, w, .. } = *self.problem;
+        newton_system::<L>(constants, &step_terms::<L>(constants, &Vector::<L>::zero(), w), half)
+    }
+
+    fn momentum_jacobian(&self, half: &Vector<L>) -> Square<L> {
+        let Problem { scene, w, h, .. } = *self.problem;
+        let f = L::Retraction::retract(&(*half + *half)).matrix();
+        scene.momentum_jacobian(&f, w, h) * h
+    }
+}
+
+/// A solve of this equation.
+pub(super) struct Careful<'a, G: LieGroup, R> {
+    equation: &'a dyn Equation<G>,
+    /// See [`Problem::safe`].
+    safe: G::Scalar,
+    retraction: PhantomData<R>,
+}
+
+impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
+    /// From this start; where that fails from the identity; where that fails, once more with shortened steps. With the
+    /// iterations that the start has taken.
+    pub(super) fn solve(&self, start: Lanes<G>, spent: u32) -> Result<Root<G>, StepError> {
+        let (warm, iterations) = self.iterate(start);
+        let accepted = self.accepted(&warm);
+        if accepted.all() {
+            return Ok(warm.root::<R>(spent + iterations));
+        }
+        let (identity, spent) = (G::Vector::zero(), spent + MAX_ITERATIONS);
+        let (cold, iterations) = self.iterate(warm.keeping(accepted, &identity));
+        let accepted = self.accepted(&cold);
+        if accepted.all() {
+            return Ok(cold.root::<R>(spent + iterations));
+        }
+        let (damped, iterations) = self.iterate_damped(cold.keeping(accepted, &identity));
+        self.conclude(&damped, iterations).map(|mut root| {
+            root.iterations += spent;
+            root
+        })
+    }
+
+    /// Newton's iteration from one guess, refused where it settles on another branch.
+    pub(super) fn attempt(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
+        let (lanes, iterations) = self.iterate(Lanes::starting_at(guess));
+        self.conclude(&lanes, iterations)
+    }
+
+    /// Until all lanes have settled or the iterations are used up; how many there were.
+    fn iterate(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
+        for iteration in 1..=MAX_ITERATIONS {
+            let again = lanes.iterate_once::<true>(self.equation, self.safe);
+            if lanes.settled.all() {
+                return (lanes, iteration + u32::from(again));
+            }
+        }
+        (lanes, MAX_ITERATIONS)
+    }
+
+    /// As [`iterate`](Self::iterate), with no update longer than a quarter, half a radian.
+    fn iterate_damped(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
+        for iteration in 1..=MAX_DAMPED_ITERATIONS {
+            let (update, det) = self.update(&lanes.half);
+            let length = update.dot(&update).simd_sqrt();
+            let longest = real::<G::Scalar>(0.25);
+            let factor = (longest / length).select(length.simd_gt(longest), real(1.0));
+            lanes.advance(&update, det, &(update * factor));
+            if lanes.settled.all() {
+                return (lanes, iteration);
+            }
+        }
+        (lanes, MAX_DAMPED_ITERATIONS)
+    }
+
+    fn update(&self, half: &G::Vector) -> (G::Vector, G::Scalar) {
+        let Iteration { update, det, .. } = Iteration::from(self.equation, half);
+        (update, det)
+    }
+
+    /// The lanes that have settled on the branch of the identity.
+    fn accepted(&self, lanes: &Lanes<G>) -> Mask<G::Scalar> {
+        let candidates = lanes.settled & is_positive(lanes.det) & self.is_solved(&lanes.half);
+        let near = R::is_half_near_identity(&lanes.half);
+        if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.half)) }
+    }
+
+    /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too, that of each body's
+    /// part where there are several.
+    fn look_closer(&self, half: &G::Vector) -> Mask<G::Scalar> {
+        let (jacobian, pattern) = (self.equation.momentum_jacobian(half), self.equation.pattern());
+        let (_, det) = G::Vector::factorise_with(&jacobian, pattern);
+        is_positive(det) & is_positive(G::Vector::least_trace(&jacobian, pattern.factors))
+    }
+
+    /// Whether the momentum equation holds; a vanishing update alone doesn't say so.
+    ///
+    /// The bound is far above rounding, and far below the right side where rounding has swallowed the Jacobian.
+    fn is_solved(&self, half: &G::Vector) -> Mask<G::Scalar> {
+        let (residual, _) = self.equation.newton_system(half);
+        let (unknown, jacobian) = self.equation.unforced_system(half);
+        let size = |v: &G::Vector| v.dot(v).simd_sqrt();
+        let scale = size(&unknown) + size(&(unknown - residual)) + G::Vector::trace(&jacobian).simd_abs();
+        size(&residual).simd_le(scale * G::Scalar::simd_default_epsilon().simd_sqrt())
+    }
+
+    /// The root if all lanes have one, otherwise what the others have failed from.
+    fn conclude(&self, lanes: &Lanes<G>, iterations: u32) -> Result<Root<G>, StepError> {
+        let accepted = self.accepted(lanes);
+        if accepted.all() {
+            return Ok(lanes.root::<R>(iterations));
+        }
+        if lanes.settled.all() {
+            return Err(StepError::WrongBranch { determinant: reported(lanes.det) });
+        }
+        let (update, det) = self.update(&lanes.half);
+        if !lanes.half.is_finite() || (det.simd_eq(real(0.0)) & !lanes.settled).any() {
+            return Err(StepError::Singular);
+        }
+        let residual = reported((update.dot(&update) / lanes.half.dot(&lanes.half)).simd_sqrt());
+        Err(StepError::NotConverged { iterations, residual })
+    }
+}

@@ -1,0 +1,124 @@
+//! Newton's iteration, of the lanes that haven't settled.
+
+use crate::groups::{LieGroup, Retraction};
+use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
+use nalgebra::{SimdPartialOrd as _, SimdValue as _};
+
+/// Quadratic convergence needs at most nine up to 0.999 of the fold; more means that there is no solution.
+pub(super) const MAX_ITERATIONS: u32 = 20;
+
+/// Of the group's vectors, the square matrices.
+pub(super) type SquareOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordinates<<G as LieGroup>::Scalar>>::Square;
+
+/// A momentum equation as Newton's iteration sees it.
+pub(super) trait System<G: LieGroup> {
+    /// What is known of the Jacobian.
+    fn pattern(&self) -> Pattern;
+
+    /// The residual and the Jacobian at half the coordinates.
+    fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
+
+    /// The residual alone.
+    fn residual(&self, half: &G::Vector) -> G::Vector;
+}
+
+/// A solution of the momentum equation.
+#[derive(Clone, Copy)]
+pub(crate) struct Root<G: LieGroup> {
+    /// Half the coordinates of `F`, `y = ξ/2`.
+    pub(crate) half: G::Vector,
+    /// `F − I`.
+    pub(crate) increment: G::Matrix,
+    /// Iterations, those of abandoned attempts included.
+    pub(crate) iterations: u32,
+    /// The lanes that 3/2 of `half` would take out of where a solution is surely the wanted one.
+    pub(crate) far: Mask<G::Scalar>,
+    pub(crate) kick: Kick<G>,
+}
+
+/// The [`moving_kick`](crate::mechanics::Residual::moving_kick) that a solve has come by.
+#[derive(Clone, Copy)]
+pub(crate) struct Kick<G: LieGroup> {
+    pub(crate) value: G::Vector,
+    /// The lanes in which it is that of the solution, to its rounding.
+    pub(crate) found: Mask<G::Scalar>,
+}
+
+impl<G: LieGroup> Kick<G> {
+    #[inline(always)]
+    fn none() -> Self {
+        Self { value: G::Vector::zero(), found: nowhere::<G::Scalar>() }
+    }
+}
+
+impl<G: LieGroup> Root<G> {
+    pub(crate) fn at<R: Retraction<G>>(half: &G::Vector, iterations: u32) -> Self {
+        Self { far: far::<R, G>(half), ..Self::of(half, R::increment_of_half(half), iterations) }
+    }
+
+    /// With no lane far from the identity, and no kick.
+    #[inline(always)]
+    pub(super) fn of(half: &G::Vector, increment: G::Matrix, iterations: u32) -> Self {
+        Self { half: *half, increment, iterations, far: nowhere::<G::Scalar>(), kick: Kick::none() }
+    }
+}
+
+/// Where the lanes of an iteration have come to.
+pub(super) struct Lanes<G: LieGroup> {
+    pub(super) half: G::Vector,
+    /// Of the last Jacobian: at the iterate before `half`, or before two [short updates](super::reused_jacobian).
+    pub(super) det: G::Scalar,
+    pub(super) settled: Mask<G::Scalar>,
+    pub(super) kick: Kick<G>,
+}
+
+impl<G: LieGroup> Lanes<G> {
+    #[inline(always)]
+    pub(super) fn starting_at(half: &G::Vector) -> Self {
+        Self { half: *half, det: real(0.0), settled: nowhere::<G::Scalar>(), kick: Kick::none() }
+    }
+
+    /// Takes `part` of the update in the lanes that haven't settled.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, update: &G::Vector, det: G::Scalar, part: &G::Vector) {
+        let next = self.half - *part;
+        let settled = settled::<G>(update, &next);
+        self.half = self.half.select(self.settled, next);
+        self.det = self.det.select(self.settled, det);
+        self.settled = self.settled | settled;
+    }
+
+    /// The lanes of the mask as they are, the others at another start.
+    pub(super) fn keeping(mut self, accepted: Mask<G::Scalar>, start: &G::Vector) -> Self {
+        self.half = self.half.select(accepted, *start);
+        self.settled = accepted;
+        self.kick.found = self.kick.found & accepted;
+        self
+    }
+
+    pub(super) fn root<R: Retraction<G>>(&self, iterations: u32) -> Root<G> {
+        Root { kick: self.kick, ..Root::at::<R>(&self.half, iterations) }
+    }
+}
+
+/// Whether the next update would be below rounding.
+///
+/// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
+/// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
+#[inline(always)]
+pub(super) fn settled<G: LieGroup>(update: &G::Vector, half: &G::Vector) -> Mask<G::Scalar> {
+    use nalgebra::SimdRealField as _;
+    let tolerance = G::Scalar::simd_default_epsilon() * real(1.0 / 64.0);
+    update.dot(update).simd_le(half.dot(half) * tolerance)
+}
+
+#[inline(always)]
+pub(super) fn far<R: Retraction<G>, G: LieGroup>(half: &G::Vector) -> Mask<G::Scalar> {
+    !R::is_half_well_near_identity(half)
+}
+
+/// The sign that the Jacobian's determinant has at the identity, where it is that of the inertia.
+#[inline(always)]
+pub(super) fn is_positive<T: Real>(value: T) -> Mask<T> {
+    value.simd_gt(real(0.0))
+}

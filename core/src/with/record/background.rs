@@ -1,0 +1,94 @@
+//! A sink in a thread of its own.
+
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::{JoinHandle, spawn};
+
+use super::{Column, Sink, SinkError};
+
+/// A sink that writes in a thread of its own, so that a run waits only where it makes rows faster than they are written.
+///
+/// Blocks that wait to be written are four at most, so memory doesn't grow. An error of the sink is reported with a
+/// later block, or at the end.
+#[derive(Debug)]
+pub struct Background<S> {
+    /// Gone when the table is finished.
+    work: Option<SyncSender<Work>>,
+    /// Blocks that have been written, to be filled again.
+    written: Receiver<Vec<f64>>,
+    thread: Option<JoinHandle<(S, Result<(), SinkError>)>>,
+    /// What the thread has returned.
+    sink: Option<S>,
+}
+
+enum Work {
+    Begin(Vec<Column>),
+    Write(Vec<f64>),
+}
+
+/// Blocks that wait.
+const MOST_WAITING: usize = 4;
+
+impl<S: Sink + Send + 'static> Background<S> {
+    /// Starts the thread.
+    pub fn new(mut sink: S) -> Self {
+        let (work, waiting) = sync_channel(MOST_WAITING);
+        let (back, written) = sync_channel(MOST_WAITING + 1);
+        let thread = spawn(move || {
+            let written = write_all(&mut sink, &waiting, &back);
+            (sink, written)
+        });
+        Self { work: Some(work), written, thread: Some(thread), sink: None }
+    }
+
+    /// What was written to, where the table is finished.
+    pub fn into_inner(self) -> Option<S> {
+        self.sink
+    }
+
+    fn send(&mut self, work: Work) -> Result<(), SinkError> {
+        match &self.work {
+            Some(sender) if sender.send(work).is_ok() => Ok(()),
+            // The thread has ended, and says why.
+            _ => self.join(),
+        }
+    }
+
+    fn join(&mut self) -> Result<(), SinkError> {
+        self.work = None;
+        let Some(thread) = self.thread.take() else { return Err("the table is finished".into()) };
+        let (sink, written) = thread.join().map_err(|_| "the thread that writes the table has panicked")?;
+        self.sink = Some(sink);
+        written
+    }
+}
+
+fn write_all(sink: &mut impl Sink, waiting: &Receiver<Work>, back: &SyncSender<Vec<f64>>) -> Result<(), SinkError> {
+    for work in waiting {
+        match work {
+            Work::Begin(columns) => sink.begin(&columns)?,
+            Work::Write(rows) => {
+                sink.write(&rows)?;
+                // Where it isn't taken it is freed.
+                let _ = back.try_send(rows);
+            }
+        }
+    }
+    sink.end()
+}
+
+impl<S: Sink + Send + 'static> Sink for Background<S> {
+    fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
+        self.send(Work::Begin(columns.to_vec()))
+    }
+
+    fn write(&mut self, rows: &[f64]) -> Result<(), SinkError> {
+        let mut block = self.written.try_recv().unwrap_or_default();
+        block.clear();
+        block.extend_from_slice(rows);
+        self.send(Work::Write(block))
+    }
+
+    fn end(&mut self) -> Result<(), SinkError> {
+        self.join()
+    }
+}

@@ -1,0 +1,273 @@
+//! A table of a run: a row for each moment that is recorded, handed on in blocks to a file or to memory.
+
+mod background;
+mod csv;
+mod table;
+
+pub use background::Background;
+pub use csv::Csv;
+pub use table::Table;
+
+use core::fmt;
+
+use crate::groups::LieGroup;
+use crate::motion::{Integrator, Moment, ScalarIn};
+use crate::numbers::{Entries as _, real};
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name; no two of a table have the same.
+    pub name: String,
+    /// The unit of its numbers, and nothing where there is none or it depends on what was declared.
+    pub unit: String,
+}
+
+/// What can't be written.
+pub type SinkError = Box<dyn core::error::Error + Send + Sync>;
+
+/// Where the rows of a [`Recorder`] go.
+pub trait Sink {
+    /// The columns, once and before all rows.
+    ///
+    /// # Errors
+    ///
+    /// The sink's own.
+    fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError>;
+
+    /// Some rows, one after the other.
+    ///
+    /// # Errors
+    ///
+    /// The sink's own.
+    fn write(&mut self, rows: &[f64]) -> Result<(), SinkError>;
+
+    /// After the last row.
+    ///
+    /// # Errors
+    ///
+    /// The sink's own.
+    fn end(&mut self) -> Result<(), SinkError>;
+}
+
+/// Why a table couldn't be written.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// Two columns have one name.
+    SameName {
+        /// The name.
+        name: String,
+    },
+    /// What the rows are written to has failed.
+    Sink {
+        /// Its error.
+        cause: SinkError,
+    },
+}
+
+impl fmt::Display for RecordError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SameName { name } => write!(f, "two columns are called `{name}`; give one of them another name"),
+            Self::Sink { cause } => write!(f, "the table can't be written: {cause}"),
+        }
+    }
+}
+
+impl core::error::Error for RecordError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::SameName { .. } => None,
+            Self::Sink { cause } => Some(cause.as_ref()),
+        }
+    }
+}
+
+type Quantity<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>;
+
+/// Rows that are handed on at once, unless another number is asked for.
+const ROWS_IN_A_BLOCK: usize = 1024;
+
+/// Makes a row of each moment that it is shown, of named columns, and hands the rows on in blocks.
+///
+/// | columns | | unit on SO(3) |
+/// |---|---|---|
+/// | `t` | the time since the start | s |
+/// | `q_w`, `q_x`, `q_y`, `q_z` | the attitude, body to space; on other groups the matrix, `g_11`, `g_12`, … | 1 |
+/// | `velocity_x`, … | the body velocity; on other groups `velocity_1`, … | rad/s |
+/// | `momentum_x`, … | the body momentum | kg m²/s |
+/// | `energy` | the energy | J |
+/// | `defect` | how far the attitude has left the group | 1 |
+///
+/// Of the two quaternions of an attitude the one nearer to the row before is written. Other columns are
+/// [quantities](Self::quantity) of one's own. [`Run`](crate::with::Run) has an example.
+///
+/// Rows that are left when the recorder is dropped are written then, but an error is lost:
+/// [`finish`](Self::finish) reports it.
+pub struct Recorder<'a, I: Integrator, S: Sink> {
+    columns: Vec<Column>,
+    shows_motion: bool,
+    /// The numbers of the attitude in the row before.
+    attitude: Vec<ScalarIn<I>>,
+    quantities: Vec<Quantity<'a, I>>,
+    block: Vec<f64>,
+    rows_in_a_block: usize,
+    begun: bool,
+    /// Gone when the table is finished.
+    sink: Option<S>,
+}
+
+impl<'a, I, S> Recorder<'a, I, S>
+where
+    I: Integrator,
+    ScalarIn<I>: Into<f64>,
+    S: Sink,
+{
+    /// A table of all columns above, of motions that this integrator steps.
+    pub fn new(integrator: &I, sink: S) -> Self {
+        let mut recorder = Self::bare(integrator, sink);
+        let is_of_space = I::Group::component_names().first().is_some_and(|name| name == "x");
+        let unit = |unit: &'static str| if is_of_space { unit } else { "" };
+        let components = |quantity: &'static str| {
+            I::Group::component_names().into_iter().map(move |component| format!("{quantity}_{component}"))
+        };
+        let attitude = I::Group::number_names();
+        recorder.attitude = vec![real(0.0); attitude.len()];
+        recorder.shows_motion = true;
+        for (names, unit) in [
+            (attitude, unit("1")),
+            (components("velocity").collect(), unit("rad/s")),
+            (components("momentum").collect(), unit("kg m²/s")),
+            (vec!["energy".to_owned()], unit("J")),
+            (vec!["defect".to_owned()], "1"),
+        ] {
+            recorder.columns.extend(names.into_iter().map(|name| Column { name, unit: unit.to_owned() }));
+        }
+        recorder
+    }
+
+    /// A table of the time, and of what else is added to it.
+    pub fn bare(_: &I, sink: S) -> Self {
+        Self {
+            columns: vec![Column { name: "t".to_owned(), unit: "s".to_owned() }],
+            shows_motion: false,
+            attitude: Vec::new(),
+            quantities: Vec::new(),
+            block: Vec::new(),
+            rows_in_a_block: ROWS_IN_A_BLOCK,
+            begun: false,
+            sink: Some(sink),
+        }
+    }
+
+    /// A column of one's own, with its unit.
+    #[must_use]
+    pub fn quantity<T: Into<f64>>(
+        mut self,
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        mut quantity: impl FnMut(&Moment<'_, I>) -> T + 'a,
+    ) -> Self {
+        self.columns.push(Column { name: name.into(), unit: unit.into() });
+        self.quantities.push(Box::new(move |now| quantity(now).into()));
+        self
+    }
+
+    /// Hands on so many rows at once, where 1024 are the rule: with one, each row is written when it is recorded.
+    #[must_use]
+    pub fn in_blocks_of(mut self, rows: usize) -> Self {
+        self.rows_in_a_block = rows.max(1);
+        self
+    }
+
+    /// The columns.
+    #[must_use]
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Records a row.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError`] where two columns have one name, and where a full block of rows can't be written.
+    pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
+        let Self { block, attitude, .. } = self;
+        block.push(now.time().into());
+        if self.shows_motion {
+            now.attitude().write_numbers(attitude);
+            block.extend(attitude.iter().map(|&number| number.into()));
+            now.velocity().each(&mut |number| block.push(number.into()));
+            now.momentum().each(&mut |number| block.push(number.into()));
+            block.extend([now.energy().into(), now.orthogonality_defect().into()]);
+        }
+        for quantity in &mut self.quantities {
+            block.push(quantity(now));
+        }
+        if self.block.len() >= self.rows_in_a_block * self.columns.len() { self.flush() } else { Ok(()) }
+    }
+
+    /// Writes what is left, and returns what was written to.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError`] where it can't be written.
+    pub fn finish(mut self) -> Result<S, RecordError> {
+        self.flush()?;
+        let mut sink = self.sink.take().ok_or_else(unreachable)?;
+        sink.end().map_err(|cause| RecordError::Sink { cause })?;
+        Ok(sink)
+    }
+}
+
+impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
+    /// Hands on the rows that there are.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError`] where they can't be written.
+    pub fn flush(&mut self) -> Result<(), RecordError> {
+        let sink = self.sink.as_mut().ok_or_else(unreachable)?;
+        let failed = |cause| RecordError::Sink { cause };
+        if !self.begun {
+            let repeated = self
+                .columns
+                .iter()
+                .enumerate()
+                .find(|(place, column)| self.columns[..*place].iter().any(|before| before.name == column.name));
+            if let Some((_, column)) = repeated {
+                self.block.clear();
+                return Err(RecordError::SameName { name: column.name.clone() });
+            }
+            self.begun = true;
+            sink.begin(&self.columns).map_err(failed)?;
+        }
+        let written = if self.block.is_empty() { Ok(()) } else { sink.write(&self.block) };
+        self.block.clear();
+        written.map_err(failed)
+    }
+}
+
+/// The sink is there until the recorder is gone.
+fn unreachable() -> RecordError {
+    RecordError::Sink { cause: "the table is finished".into() }
+}
+
+impl<I: Integrator, S: Sink> Drop for Recorder<'_, I, S> {
+    fn drop(&mut self) {
+        // An error can't be reported from here.
+        if self.sink.is_some()
+            && self.flush().is_ok()
+            && let Some(sink) = &mut self.sink
+        {
+            let _ = sink.end();
+        }
+    }
+}
+
+impl<I: Integrator, S: Sink + fmt::Debug> fmt::Debug for Recorder<'_, I, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Recorder").field("columns", &self.columns).field("sink", &self.sink).finish_non_exhaustive()
+    }
+}

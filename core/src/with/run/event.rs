@@ -1,0 +1,214 @@
+//! Events: zeros of a function of the motion, in the order in which they are crossed.
+
+use super::crossing::{Looks, zeros};
+use super::error::{Ended, Reason, RunError};
+use super::{Observer, Run, show};
+use crate::motion::{Answer, Integrator, Moment, Motion, ScalarIn};
+use crate::numbers::{real, reported};
+
+/// What counts as an event: in which direction a function of the motion crosses zero, whether that ends the run, and how
+/// closely it is looked for between the steps. [`Run::event`] takes it.
+///
+/// # What isn't missed
+///
+/// A function that has one sign at the beginning of a step and the other at its end has a zero between, which is found.
+/// Of three zeros in one step one is found, and of two none, unless a bound is known: with
+/// [`curvature`](Self::curvature) every crossing is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    rising: bool,
+    falling: bool,
+    terminal: bool,
+    curvature: Option<f64>,
+}
+
+impl Event {
+    /// The function goes from below zero to above.
+    #[must_use]
+    pub const fn rising() -> Self {
+        Self { rising: true, falling: false, terminal: false, curvature: None }
+    }
+
+    /// The function goes from above zero to below.
+    #[must_use]
+    pub const fn falling() -> Self {
+        Self { rising: false, falling: true, terminal: false, curvature: None }
+    }
+
+    /// Either.
+    #[must_use]
+    pub const fn crossing() -> Self {
+        Self { rising: true, falling: true, terminal: false, curvature: None }
+    }
+
+    /// The run ends with the step in which this happens for the first time, and nothing later in that step is shown.
+    #[must_use]
+    pub const fn terminal(self) -> Self {
+        Self { terminal: true, ..self }
+    }
+
+    /// A bound of the function's second derivative in time, `|g̈| ≤ bound`, all along the run: no crossing is missed then,
+    /// save pairs that are nearer to each other than `2⁻²⁴` of a step.
+    ///
+    /// An interval in which the chord is steeper than the bound times its length has one zero or none, by the signs at its
+    /// ends; one in which the parabola of that curvature under the chord stays above zero has none; what is neither is
+    /// halved. So a step far from zero takes no look between its ends, and the nearer the function comes to touching zero
+    /// the more it takes. The bound is that of the motion between two steps, which differs from the exact one's by the
+    /// method's error: leave a margin for that. A bound that is too large takes more looks, and no more than
+    /// 10,000 a step, after which the run is an error.
+    #[must_use]
+    pub const fn curvature(self, bound: f64) -> Self {
+        Self { curvature: Some(bound), ..self }
+    }
+}
+
+/// An event, and what is done when it happens.
+pub(super) struct Watched<'a, I: Integrator> {
+    event: Event,
+    function: Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>,
+    then: Observer<'a, I>,
+    /// At the end of the last step.
+    value: f64,
+    /// Whether the function was above zero when last it wasn't zero.
+    above: Option<bool>,
+}
+
+/// A zero that was found.
+pub(super) struct Found<I: Integrator> {
+    /// Which event.
+    event: usize,
+    fraction: f64,
+    pub(super) time: f64,
+    rising: bool,
+    motion: Motion<I::Group, I::Advected>,
+}
+
+impl<'a, I: Integrator> Run<'a, I>
+where
+    ScalarIn<I>: Into<f64>,
+{
+    /// Finds the zeros of a function of the motion, and shows each with its time: events of one step in their order,
+    /// whichever function they are of.
+    ///
+    /// Between two steps the motion is [`Integrator::part`] of one, and a zero is located on it until its time has no
+    /// further digit. The moment that is shown has that time and the motion then, and [`Moment::rising`] the direction.
+    /// The steps stay what they are. [`sections`](crate::with::sections) has functions that are ready made.
+    ///
+    /// A function that is zero at the end of a step, to the bit, is crossed there if its signs before and after differ; one
+    /// that is zero at the start of the run isn't crossed then.
+    ///
+    /// # Examples
+    ///
+    /// When does a body that flips about its middle axis change sign?
+    ///
+    /// ```
+    /// use liestep::effects::RigidBody;
+    /// use liestep::with::Event;
+    /// use liestep::{NonstandardInertia, SO3, Stepper};
+    /// use nalgebra::Vector3;
+    ///
+    /// let body = RigidBody { J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 3.0))? };
+    /// let stepper = Stepper::new(body, 0.01)?;
+    /// let mut state = stepper.start(SO3::identity(), Vector3::new(0.01, 2.0, 0.02))?;
+    /// let mut flips = Vec::new();
+    /// stepper
+    ///     .observed(&mut state)
+    ///     .event(Event::crossing(), |now| now.momentum().y, |now| flips.push(now.time()))
+    ///     .until(20.0)?;
+    /// assert!(flips.len() == 3 && flips.is_sorted());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn event<Y: Into<f64>, R: Answer>(
+        mut self,
+        event: Event,
+        mut function: impl FnMut(&Moment<'_, I>) -> Y + 'a,
+        mut then: impl FnMut(&Moment<'_, I>) -> R + 'a,
+    ) -> Self {
+        self.watched.push(Watched {
+            event,
+            function: Box::new(move |now| function(now).into()),
+            then: Box::new(move |now: &Moment<'_, I>| then(now).verdict()),
+            value: 0.0,
+            above: None,
+        });
+        self
+    }
+}
+
+impl<I: Integrator> Run<'_, I> {
+    /// The functions at the start of the run.
+    pub(super) fn look_first(&mut self) -> Result<(), RunError> {
+        let now = Moment::of_step(self.integrator, self.state);
+        for (event, watched) in self.watched.iter_mut().enumerate() {
+            watched.value = watched.look(&now, event)?;
+            watched.above = side(watched.value);
+        }
+        Ok(())
+    }
+
+    /// All zeros in the step from this state, in their order.
+    pub(super) fn crossings(&mut self, before: &I::State) -> Result<Vec<Found<I>>, RunError> {
+        let integrator = self.integrator;
+        let (begun, h) = (reported(integrator.time(before)), reported(integrator.step_size()));
+        let now = Moment::of_step(integrator, self.state);
+        let mut found = Vec::new();
+        for (event, watched) in self.watched.iter_mut().enumerate() {
+            let next = watched.look(&now, event)?;
+            let (value, above) = (core::mem::replace(&mut watched.value, next), watched.above);
+            watched.above = side(next).or(above);
+            let bound = watched.event.curvature.map(|bound| bound.abs() * h * h);
+            // Of all steps but few there is nothing more to do.
+            if bound.is_none() && (above.is_none() || watched.above == above) {
+                continue;
+            }
+            let time = |fraction: f64| begun + fraction * h;
+            let mut look = |fraction: f64| {
+                let motion = integrator.part(before, real(fraction));
+                let motion = motion.map_err(|cause| RunError::Step { time: time(fraction), cause })?;
+                watched.look(&Moment::at(integrator, &motion, real(time(fraction)), None), event)
+            };
+            #[allow(clippy::cast_precision_loss)] // a rounding of time
+            let rounding = 0.25 * f64::EPSILON * (before.steps() as f64 + 1.0);
+            let looks = Looks { ends: [value, next], above, bound, rounding };
+            let Some(zeros) = zeros(looks, &mut look)? else {
+                return Err(RunError::TooManyLooks { event, time: begun });
+            };
+            let wanted = watched.event;
+            for (fraction, rising) in
+                zeros.into_iter().filter(|&(_, up)| if up { wanted.rising } else { wanted.falling })
+            {
+                let motion = integrator.part(before, real(fraction));
+                let motion = motion.map_err(|cause| RunError::Step { time: time(fraction), cause })?;
+                found.push(Found { event, fraction, time: time(fraction), rising, motion });
+            }
+        }
+        found.sort_by(|a, b| a.fraction.total_cmp(&b.fraction));
+        Ok(found)
+    }
+
+    /// Shows an event; returns whether the run ends.
+    pub(super) fn happen(&mut self, found: &Found<I>, ended: &mut Ended) -> Result<bool, RunError> {
+        let &Found { event, time, rising, ref motion, .. } = found;
+        let Some(watched) = self.watched.get_mut(event) else { return Ok(false) };
+        let moment = Moment::at(self.integrator, motion, real(time), Some(rising));
+        let mut stops = show(&mut watched.then, &moment, ended)?;
+        if watched.event.terminal {
+            ended.reason = Reason::Event { event, time };
+            stops = true;
+        }
+        Ok(stops)
+    }
+}
+
+impl<I: Integrator> Watched<'_, I> {
+    /// The function, if it has a value.
+    fn look(&mut self, now: &Moment<'_, I>, event: usize) -> Result<f64, RunError> {
+        let value = (self.function)(now);
+        if value.is_nan() { Err(RunError::NotANumber { event, time: reported(now.time()) }) } else { Ok(value) }
+    }
+}
+
+/// Whether a value is above zero; nothing where it is zero.
+pub(super) fn side(value: f64) -> Option<bool> {
+    if value == 0.0 { None } else { Some(value > 0.0) }
+}

@@ -1,0 +1,334 @@
+//! A run that is observed: by functions that are called every so many steps or at given times, and that may stop it.
+
+mod crossing;
+mod error;
+mod event;
+
+pub use error::{Ended, Reason, RunError};
+pub use event::Event;
+
+use event::Watched;
+
+use core::iter::Peekable;
+use core::ops::ControlFlow;
+
+use crate::groups::{Advected, LieGroup};
+use crate::mechanics::Effect;
+use crate::methods::CotangentGauss;
+use crate::motion::{Answer, AnyState, AnyStepper, Integrator, Moment, Plan, ScalarIn, StateOf, Stepper};
+use crate::numbers::{real, reported};
+
+/// What an observer answers.
+type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
+type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Verdict + 'a>;
+
+/// A run that is to be observed, by [`Stepper::observed`].
+///
+/// Observers are closures that are shown a [`Moment`]. They return nothing, a [`ControlFlow`] that may stop the run, or a
+/// `Result` whose error ends it:
+///
+/// ```
+/// use liestep::effects::{Drag, RigidBody};
+/// use liestep::with::{Csv, Reason, Recorder};
+/// use liestep::mechanics::Inertia;
+/// use liestep::{SO3, Stepper};
+/// use nalgebra::Vector3;
+///
+/// let J = Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
+/// let damped = Stepper::new(RigidBody { J_d: J.to_nonstandard() } + Drag { c: 0.1, J }, 0.01)?;
+/// let mut state = damped.start(SO3::identity(), Vector3::new(1.0, 2.0, 0.5))?;
+///
+/// let mut recorder = Recorder::new(&damped, Csv::new(Vec::new())); // or Csv::create("body.csv")?
+/// let ended = damped
+///     .observed(&mut state)
+///     .every(100, |now| recorder.record(now))
+///     .stop_when(|now| now.velocity().norm() < 0.1)
+///     .until(1000.0)?;
+/// let table = String::from_utf8(recorder.finish()?.into_inner())?;
+///
+/// assert!(matches!(ended.reason, Reason::Stopped { time } if time < 100.0));
+/// assert!(damped.velocity(&state).norm() < 0.1);
+/// assert!(table.starts_with("t,q_w,q_x,q_y,q_z,velocity_x,"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Contract
+///
+/// - The steps between two that are observed are made by [`Stepper::run`], so nothing is copied for them. A run with a
+///   condition, with events or with given times makes each step by itself. Only of splittings does that change digits,
+///   which `run` says.
+/// - Observers change nothing: for other methods the steps are those of an unobserved run, bit for bit.
+/// - Memory doesn't grow with the run.
+/// - After an error, and when an observer stops the run, the state is that of the last step that was made.
+#[must_use = "a run is made by `until` or `steps`"]
+pub struct Run<'a, I: Integrator> {
+    integrator: &'a I,
+    state: &'a mut I::State,
+    regular: Vec<Regular<'a, I>>,
+    timed: Vec<Timed<'a, I>>,
+    watched: Vec<Watched<'a, I>>,
+    progress: Option<Box<dyn FnMut(f64) + 'a>>,
+}
+
+/// An observer that is shown every so many steps.
+struct Regular<'a, I: Integrator> {
+    every: u64,
+    observer: Observer<'a, I>,
+}
+
+/// An observer that is shown given times.
+struct Timed<'a, I: Integrator> {
+    times: Peekable<Box<dyn Iterator<Item = f64> + 'a>>,
+    /// The last that was shown.
+    shown: Option<f64>,
+    observer: Observer<'a, I>,
+}
+
+impl<S: Effect, P: Plan<S>> Stepper<S, P> {
+    /// A run from this state that is observed, recorded or stopped; see [`Run`].
+    pub fn observed<'a>(&'a self, state: &'a mut StateOf<S, P>) -> Run<'a, Self> {
+        Run::new(self, state)
+    }
+}
+
+impl<G: LieGroup, A: Advected<G>> AnyStepper<G, A> {
+    /// As [`Stepper::observed`].
+    pub fn observed<'a>(&'a self, state: &'a mut AnyState<G, A>) -> Run<'a, Self> {
+        Run::new(self, state)
+    }
+}
+
+impl<L: crate::mechanics::ContinuousLagrangian, const PAIRS: usize, const N: usize> CotangentGauss<L, PAIRS, N>
+where
+    Self: Integrator,
+{
+    /// As [`Stepper::observed`].
+    pub fn observed<'a>(&'a self, state: &'a mut <Self as Integrator>::State) -> Run<'a, Self> {
+        Run::new(self, state)
+    }
+}
+
+impl<'a, I: Integrator> Run<'a, I> {
+    fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
+        Self { integrator, state, regular: Vec::new(), timed: Vec::new(), watched: Vec::new(), progress: None }
+    }
+
+    /// Shows the motion after every so many steps, counted from its start, and at its start.
+    ///
+    /// Zero is never.
+    pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
+        if steps > 0 {
+            let observer = Box::new(move |now: &Moment<'_, I>| observer(now).verdict());
+            self.regular.push(Regular { every: steps, observer });
+        }
+        self
+    }
+
+    /// Stops the run after the first step, or at the start, where this is so.
+    pub fn stop_when(self, mut condition: impl FnMut(&Moment<'_, I>) -> bool + 'a) -> Self {
+        self.every(1, move |now| if condition(now) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+
+    /// Tells what share of the run is made, from 0 to 1, a hundred times.
+    pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
+        self.progress = Some(Box::new(progress));
+        self
+    }
+
+    /// Makes so many steps, unless an observer stops the run.
+    ///
+    /// # Errors
+    ///
+    /// [`RunError`].
+    pub fn steps(mut self, steps: u64) -> Result<Ended, RunError> {
+        let mut ended = Ended { steps: 0, iterations: 0, reason: Reason::Done };
+        let start = self.state.steps();
+        let end = start.saturating_add(steps);
+        self.look_first()?;
+        if self.show_timed(None, reported(self.integrator.time(self.state)), &mut ended)?
+            || start == 0 && self.show_regular(&mut ended)?
+        {
+            return Ok(ended);
+        }
+        while self.state.steps() < end {
+            let made = self.next_shown(start, end) - self.state.steps();
+            let before = self.looks_between().then(|| self.state.clone());
+            ended.iterations += self.advance(made)?;
+            ended.steps += made;
+            if let Some(before) = before
+                && self.show_between(&before, &mut ended)?
+            {
+                break;
+            }
+            if self.show_regular(&mut ended)? {
+                break;
+            }
+            self.show_progress(start, end);
+        }
+        Ok(ended)
+    }
+
+    /// Whether something may be shown that isn't the end of a step.
+    fn looks_between(&self) -> bool {
+        !(self.timed.is_empty() && self.watched.is_empty())
+    }
+
+    /// Shows what there is within a step.
+    fn show_between(&mut self, before: &I::State, ended: &mut Ended) -> Result<bool, RunError> {
+        for found in self.crossings(before)? {
+            if self.show_timed(Some(before), found.time, ended)? || self.happen(&found, ended)? {
+                return Ok(true);
+            }
+        }
+        self.show_timed(Some(before), reported(self.integrator.time(self.state)), ended)
+    }
+
+    /// The next step after which something is to be done.
+    fn next_shown(&self, start: u64, end: u64) -> u64 {
+        let now = self.state.steps();
+        if self.looks_between() {
+            return now + 1;
+        }
+        let after = |every: u64| (now / every).saturating_add(1).saturating_mul(every);
+        let regular = self.regular.iter().map(|regular| after(regular.every));
+        let part = part_told(start, end);
+        let progress = self.progress.as_ref().map(|_| start.saturating_add(((now - start) / part + 1) * part));
+        regular.chain(progress).fold(end, u64::min)
+    }
+
+    /// So many steps, and where there are none the most there are.
+    fn advance(&mut self, steps: u64) -> Result<u64, RunError> {
+        match self.integrator.run(self.state, steps) {
+            Ok(iterations) => Ok(iterations),
+            Err(error) => Err(self.as_far_as_possible(steps, error)),
+        }
+    }
+
+    #[cold]
+    fn as_far_as_possible(&mut self, steps: u64, mut cause: crate::error::StepError) -> RunError {
+        for _ in 0..steps {
+            if let Err(error) = self.integrator.step(self.state) {
+                cause = error;
+                break;
+            }
+        }
+        RunError::Step { time: reported(self.integrator.time(self.state)), cause }
+    }
+
+    /// Shows a step to those whose turn it is; returns whether one of them stops the run.
+    fn show_regular(&mut self, ended: &mut Ended) -> Result<bool, RunError> {
+        let now = Moment::of_step(self.integrator, self.state);
+        let mut stops = false;
+        for Regular { every, observer } in &mut self.regular {
+            if now.steps().is_multiple_of(*every) {
+                stops |= show(observer, &now, ended)?;
+            }
+        }
+        Ok(stops)
+    }
+
+    /// Shows the times from the state before up to this time.
+    fn show_timed(&mut self, before: Option<&I::State>, up_to: f64, ended: &mut Ended) -> Result<bool, RunError> {
+        let time = self.integrator.time(self.state);
+        let (now, h) = (reported(time), reported(self.integrator.step_size()));
+        let begun = before.map_or(now, |before| reported(self.integrator.time(before)));
+        let mut stops = false;
+        for Timed { times, shown, observer } in &mut self.timed {
+            // Backwards where the step is negative.
+            let is_after = |asked: f64, time: f64| (asked - time) * h.signum() > 0.0;
+            while let Some(asked) = times.next_if(|asked| !is_after(*asked, up_to)) {
+                let earliest = shown.replace(asked).unwrap_or(begun);
+                if !asked.is_finite() || is_after(earliest, asked) || is_after(begun, asked) {
+                    return Err(RunError::Time { asked, now: earliest });
+                }
+                let motion = match before.filter(|_| is_after(now, asked)) {
+                    None => **self.state,
+                    Some(before) => {
+                        let part = self.integrator.part(before, real((asked - begun) / h));
+                        part.map_err(|cause| RunError::Step { time: asked, cause })?
+                    }
+                };
+                stops |= show(observer, &Moment::at(self.integrator, &motion, real(asked), None), ended)?;
+                if stops {
+                    break;
+                }
+            }
+        }
+        Ok(stops)
+    }
+
+    #[allow(clippy::cast_precision_loss)] // a share
+    fn show_progress(&mut self, start: u64, end: u64) {
+        let now = self.state.steps();
+        if let Some(progress) = &mut self.progress
+            && (now == end || (now - start).is_multiple_of(part_told(start, end)))
+        {
+            progress((now - start) as f64 / (end - start) as f64);
+        }
+    }
+}
+
+impl<'a, I: Integrator> Run<'a, I>
+where
+    ScalarIn<I>: Into<f64>,
+{
+    /// Shows the motion at these times, s, between the steps too: as [`Integrator::part`] of one. A time that is the end of
+    /// a step, to the bit, shows that step.
+    ///
+    /// The times are in the order of the motion, and none lies before it; those after the end of the run aren't shown.
+    pub fn at<R: Answer>(
+        mut self,
+        times: impl IntoIterator<Item = f64, IntoIter: 'a>,
+        mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a,
+    ) -> Self {
+        let times: Box<dyn Iterator<Item = f64> + 'a> = Box::new(times.into_iter());
+        let observer = Box::new(move |now: &Moment<'_, I>| observer(now).verdict());
+        self.timed.push(Timed { times: times.peekable(), shown: None, observer });
+        self
+    }
+
+    /// Makes steps up to the first that ends at this time or after it, s, unless an observer stops the run; none where the
+    /// motion is there already.
+    ///
+    /// A time that is a whole number of steps but for rounding is the end of the last of these.
+    ///
+    /// # Errors
+    ///
+    /// [`RunError`].
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
+    pub fn until(self, time: f64) -> Result<Ended, RunError> {
+        /// More are no number of steps that a run can make.
+        const MOST: f64 = 9e15;
+        let h: f64 = self.integrator.step_size().into();
+        let steps = time / h;
+        let can_be_counted = steps.abs() < MOST;
+        if !can_be_counted {
+            return Err(RunError::End { asked: time });
+        }
+        // What rounding makes of a whole number when times are multiples of the step.
+        let end = (steps * (1.0 - 4.0 * f64::EPSILON)).ceil();
+        let made = self.state.steps();
+        self.steps(if end > 0.0 { (end as u64).saturating_sub(made) } else { 0 })
+    }
+}
+
+/// So many steps are made from one time that progress is told to the next.
+fn part_told(start: u64, end: u64) -> u64 {
+    (end - start).div_ceil(100).max(1)
+}
+
+/// Shows a moment; returns whether the observer stops the run.
+fn show<I: Integrator>(
+    observer: &mut Observer<'_, I>,
+    now: &Moment<'_, I>,
+    ended: &mut Ended,
+) -> Result<bool, RunError> {
+    match observer(now) {
+        Ok(ControlFlow::Continue(())) => Ok(false),
+        Ok(ControlFlow::Break(())) => {
+            ended.reason = Reason::Stopped { time: reported(now.time()) };
+            Ok(true)
+        }
+        Err(cause) => Err(RunError::Observer { time: reported(now.time()), cause }),
+    }
+}

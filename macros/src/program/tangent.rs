@@ -1,0 +1,206 @@
+//! How the momenta at both ends of a step vary: derivatives of programs, operation by operation.
+//!
+//! `μ` of (2.7) and `μ⁺` of (2.6) are straight-line code in the entries of `D = F − I`, `w` and the parameters. A turn
+//! `ε` of the increment and a displacement `ζ` of the body at the beginning of the step move these entries by
+//!
+//! ```text
+//! δF = ε̂ F        δ(F⁻¹) = −F⁻¹ ε̂        δw = −ζ·w
+//! ```
+//!
+//! The chain rule is applied to the code and not to the expressions: closed `let`s need no rule of their own, and what
+//! the momenta have computed their derivatives share.
+
+use std::collections::BTreeMap;
+
+use super::closed::{Given, entries, with_lets};
+use super::graph::{Graph, Input, Node, NodeId};
+use super::kernel::{by_increment, components, generator, with_inverse};
+use super::scalarise::Entries;
+use crate::mathematics::derive::{Derived, Ends};
+use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
+
+/// The momenta at both ends of a step, to be differentiated.
+pub(crate) struct Linearisation<'a> {
+    derived: &'a Derived,
+    ends: &'a Ends,
+    pub(crate) graph: Graph,
+    /// The components of `μ`, then those of `μ⁺`.
+    momenta: Vec<NodeId>,
+    /// `F` and `F⁻¹` by their entries.
+    increments: Given,
+}
+
+/// The change of each input that changes.
+type Changes = BTreeMap<NodeId, NodeId>;
+
+impl<'a> Linearisation<'a> {
+    pub(crate) fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
+        let mut graph = Graph::default();
+        let given = by_increment(&mut graph, derived, |graph, row, column| {
+            graph.input(Input { symbol: derived.directions.small, row, column }, Stage::Iteration)
+        });
+        let increments = with_inverse(&mut graph, derived, given);
+        let given = with_lets(&mut graph, derived, increments.clone());
+        let [start, end] = &ends.momenta;
+        let momenta = [start, end].map(|momentum| components(&mut graph, derived, &given, momentum)).concat();
+        Self { derived, ends, graph, momenta, increments }
+    }
+
+    /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then those along each `ζ = E_j`; matrices row by row.
+    pub(crate) fn blocks(&mut self) -> [[Vec<NodeId>; 2]; 2] {
+        let dimension = self.derived.group.dimension();
+        [false, true].map(|is_displaced| {
+            let columns: Vec<Vec<NodeId>> = (0..dimension)
+                .map(|j| {
+                    let changes = if is_displaced { self.displaced(j) } else { self.turned(j) };
+                    tangent(&mut self.graph, &self.momenta, &changes)
+                })
+                .collect();
+            let rows = |momentum: usize| {
+                let row = |k: usize| columns.iter().filter_map(move |column| column.get(k).copied());
+                (momentum * dimension..(momentum + 1) * dimension).flat_map(row).collect()
+            };
+            [rows(0), rows(1)]
+        })
+    }
+
+    /// The derivatives of `μ` and of `μ⁺` by an entry of a symbol.
+    pub(crate) fn by_entry(&mut self, symbol: SymbolId, row: usize, column: usize) -> Vec<NodeId> {
+        let stage = self.derived.symbols.get(symbol).stage;
+        let (entry, one) = (self.graph.input(Input { symbol, row, column }, stage), self.graph.one());
+        tangent(&mut self.graph, &self.momenta, &Changes::from([(entry, one)]))
+    }
+
+    /// Whether nothing of both momenta changes.
+    pub(crate) fn is_nothing(&self, derivative: &[NodeId]) -> bool {
+        derivative.iter().all(|&node| self.graph.is_zero(node))
+    }
+
+    fn turned(&mut self, j: usize) -> Changes {
+        let e = generator(&mut self.graph, &self.derived.group, j);
+        let (f, inverse) = self.matrices();
+        let minus = negated(&mut self.graph, &e);
+        let (small, of_inverse) = (product(&mut self.graph, &e, &f), product(&mut self.graph, &inverse, &minus));
+        let (mut changes, directions) = (Changes::new(), &self.derived.directions);
+        self.collect(directions.small, &small, &mut changes);
+        self.collect(directions.small_inverse, &of_inverse, &mut changes);
+        changes
+    }
+
+    fn displaced(&mut self, j: usize) -> Changes {
+        let e = generator(&mut self.graph, &self.derived.group, j);
+        let minus = negated(&mut self.graph, &e);
+        let given = Given::from([(self.derived.directions.first, minus)]);
+        let mut changes = Changes::new();
+        for (w, moved) in &self.ends.moved {
+            let moved = entries(&mut self.graph, &self.derived.symbols, &given, moved);
+            self.collect(*w, &moved, &mut changes);
+        }
+        changes
+    }
+
+    fn matrices(&self) -> (Entries, Entries) {
+        let nothing = || Entries::new(0, 0, |_, _| NodeId(0));
+        let at = |symbol| self.increments.get(&symbol).cloned().unwrap_or_else(nothing);
+        (at(self.derived.increment()), at(self.derived.directions.inverse))
+    }
+
+    fn collect(&mut self, symbol: SymbolId, moved: &Entries, changes: &mut Changes) {
+        let stage = self.derived.symbols.get(symbol).stage;
+        for row in 0..moved.rows {
+            for column in 0..moved.columns {
+                let entry = self.graph.input(Input { symbol, row, column }, stage);
+                changes.insert(entry, moved.at(row, column));
+            }
+        }
+    }
+}
+
+fn negated(graph: &mut Graph, matrix: &Entries) -> Entries {
+    Entries::new(matrix.rows, matrix.columns, |row, column| graph.negate(matrix.at(row, column)))
+}
+
+fn product(graph: &mut Graph, left: &Entries, right: &Entries) -> Entries {
+    Entries::new(left.rows, right.columns, |row, column| {
+        let terms: Vec<NodeId> =
+            (0..left.columns).map(|k| graph.multiply(left.at(row, k), right.at(k, column))).collect();
+        graph.sum(&terms)
+    })
+}
+
+/// How the outputs change with the inputs.
+fn tangent(graph: &mut Graph, outputs: &[NodeId], changes: &Changes) -> Vec<NodeId> {
+    // What isn't here doesn't change.
+    let mut known = changes.clone();
+    known.retain(|_, change| !graph.is_zero(*change));
+    for id in graph.reachable(outputs) {
+        let change = |operand: NodeId| known.get(&operand).copied();
+        let found = match graph.node(id) {
+            Node::Constant(_) | Node::Input(_) => None,
+            Node::Negate(a) => change(a).map(|a| graph.negate(a)),
+            Node::Add(a, b) => either(graph, change(a), change(b), Graph::add),
+            Node::Subtract(a, b) => {
+                let taken = change(b).map(|b| graph.negate(b));
+                either(graph, change(a), taken, Graph::add)
+            }
+            Node::Multiply(a, b) => {
+                let of_first = change(a).map(|change| graph.multiply(change, b));
+                let of_second = change(b).map(|change| graph.multiply(a, change));
+                either(graph, of_first, of_second, Graph::add)
+            }
+            // d(a/b) = (da − (a/b) db)/b.
+            Node::Divide(a, b) => {
+                let of_divisor = change(b).map(|change| {
+                    let product = graph.multiply(id, change);
+                    graph.negate(product)
+                });
+                either(graph, change(a), of_divisor, Graph::add).map(|change| graph.divide(change, b))
+            }
+            Node::Apply(function, a) => change(a).map(|change| {
+                let slope = slope(graph, function, a, id);
+                graph.multiply(slope, change)
+            }),
+        };
+        if let Some(change) = found.filter(|&change| !graph.is_zero(change)) {
+            known.insert(id, change);
+        }
+    }
+    outputs.iter().map(|output| known.get(output).copied().unwrap_or_else(|| graph.zero())).collect()
+}
+
+fn either(
+    graph: &mut Graph,
+    a: Option<NodeId>,
+    b: Option<NodeId>,
+    both: impl Fn(&mut Graph, NodeId, NodeId) -> NodeId,
+) -> Option<NodeId> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(both(graph, a, b)),
+        (one, other) => one.or(other),
+    }
+}
+
+/// `f'(a)`, where `f(a)` is a node already; the rules of [`variation`](crate::mathematics::symbolic::variation).
+fn slope(graph: &mut Graph, function: Function, a: NodeId, value: NodeId) -> NodeId {
+    let half = graph.constant(Rational::new(1, 2));
+    match function {
+        Function::Sqrt => graph.divide(half, value),
+        Function::Ln => {
+            let one = graph.one();
+            graph.divide(one, a)
+        }
+        Function::Exp => value,
+        Function::Sin => graph.apply(Function::Cos, a),
+        Function::Cos => {
+            let sine = graph.apply(Function::Sin, a);
+            graph.negate(sine)
+        }
+        Function::Stumpff(k) => {
+            let (second, first) = (graph.apply(Function::Stumpff(k + 2), a), graph.apply(Function::Stumpff(k + 1), a));
+            let factor = graph.constant(Rational::new(k.into(), 2));
+            let (second, first) = (graph.multiply(factor, second), graph.multiply(half, first));
+            graph.subtract(second, first)
+        }
+        Function::LogRatio(k) => graph.apply(Function::LogRatio(k + 1), a),
+    }
+}

@@ -1,0 +1,201 @@
+//! Tangent maps and adjoints of random Lagrangians, against dual numbers through the steps themselves.
+
+use liestep::groups::{ContravariantVector, CovariantTensor, Generators, Given, LieGroup, MatrixGroup};
+use liestep::laws::samples::{MatrixLieGroup, Random, along};
+use liestep::mechanics::{Effect, Regular, SecondDerivatives};
+use liestep::motion::linearised::{Cotangent, Linearisable, Tape};
+use liestep::motion::{Plan, Stepper};
+use liestep::numbers::{Coordinates, Entries};
+use liestep::{SO3, lagrangian};
+use nalgebra::{Matrix2, Matrix3, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
+use num_dual::Dual64;
+
+const STEPS: u64 = 12;
+const STEP: f64 = 0.02;
+/// Of the largest entry.
+const BOUND: f64 = 1e-13;
+
+/// A step with these numbers as dual numbers, of which one, if any, has a derivative.
+type Columns<const D: usize> = Vec<(SVector<f64, D>, SVector<f64, D>)>;
+
+/// The derivatives of the last state by dual numbers: along displacements at the start, by its momentum, by parameters.
+fn by_dual_numbers<M, P, const N: usize, const D: usize>(
+    stepper: impl Fn(Option<usize>) -> Stepper<M, P>,
+    parameters: usize,
+    start: (SMatrix<f64, N, N>, SVector<f64, D>),
+) -> Columns<D>
+where
+    M: Effect<Scalar = Dual64>,
+    M::Group: LieGroup<Scalar = Dual64, Matrix = SMatrix<Dual64, N, N>, Vector = SVector<Dual64, D>>,
+    P: Plan<M>,
+{
+    let lift = |value: f64, change: f64| Dual64::new(value, change);
+    let outcome = |number: Option<usize>, displaced: SMatrix<f64, N, N>, pushed: SVector<f64, D>| {
+        let stepper = stepper(number);
+        let attitude = start.0.zip_map(&(start.0 * displaced), lift);
+        let momentum = start.1.zip_map(&pushed, lift);
+        let attitude = M::Group::from_matrix_unchecked(attitude);
+        let mut state = stepper.start_with_momentum(attitude, momentum).expect("a start");
+        for _ in 0..STEPS {
+            stepper.step(&mut state).expect("a step");
+        }
+        let (matrix, momentum) = (state.attitude().matrix(), state.momentum());
+        let inverse = matrix.map(|entry| entry.re).try_inverse().expect("an element of a group");
+        let displaced = (inverse * matrix.map(|entry| entry.eps)).map(Dual64::from);
+        (M::Group::vee(&displaced).map(|entry| entry.re), momentum.map(|entry| entry.eps))
+    };
+    let axis = |k: usize| SVector::<f64, D>::from_fn(|row, _| if row == k { 1.0 } else { 0.0 });
+    let hat = |k: usize| M::Group::hat(&axis(k).map(Dual64::from)).map(|entry| entry.re);
+    let of_attitude = (0..D).map(|k| outcome(None, hat(k), SVector::zeros()));
+    let of_momentum = (0..D).map(|k| outcome(None, SMatrix::zeros(), axis(k)));
+    let of_parameters = (0..parameters).map(|number| outcome(Some(number), SMatrix::zeros(), SVector::zeros()));
+    of_attitude.chain(of_momentum).chain(of_parameters).collect()
+}
+
+/// Tangent map, adjoints with either tape, and their duality.
+pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
+    stepper: &Stepper<L, P>,
+    dual: impl Fn(Option<usize>) -> Stepper<M, Q>,
+    seed: u64,
+) where
+    L: SecondDerivatives<Scalar = f64>,
+    L::Group: MatrixLieGroup<N, D>,
+    P: Linearisable<L>,
+    M: Effect<Scalar = Dual64>,
+    M::Group: LieGroup<Scalar = Dual64, Matrix = SMatrix<Dual64, N, N>, Vector = SVector<Dual64, D>>,
+    Q: Plan<M>,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    let mut random = Random::new(seed);
+    let (attitude, momentum) = (along::<L::Group, N, D>(&random.sample(), 1.0), random.sample());
+    let linear = stepper.linearised().expect("derivatives");
+    let numbers: Vec<usize> = (0..linear.parameters().len()).collect();
+    let mut tangent = linear.tangent(&numbers);
+    let start = stepper.start_with_momentum(attitude, momentum).expect("a start");
+    let mut state = start;
+    let cotangents: Vec<Cotangent<SVector<f64, D>>> =
+        (0..=STEPS).map(|_| Cotangent { attitude: random.sample(), momentum: random.sample() }).collect();
+    let mut paired = vec![0.0; 2 * D + numbers.len()];
+    let mut add = |tangent: &liestep::motion::linearised::TangentOf<L>, cotangent: &Cotangent<SVector<f64, D>>| {
+        for (sum, (attitude, momentum)) in paired.iter_mut().zip(tangent.columns()) {
+            *sum += attitude.dot(&cotangent.attitude) + momentum.dot(&cotangent.momentum);
+        }
+    };
+    add(&tangent, &cotangents[0]);
+    for cotangent in &cotangents[1..] {
+        linear.step(&mut state, &mut tangent).expect("a step");
+        add(&tangent, cotangent);
+    }
+    // The step itself is what it is without.
+    let mut plain = start;
+    for _ in 0..STEPS {
+        stepper.step(&mut plain).expect("a step");
+    }
+    assert_eq!(plain, state);
+
+    let expected = by_dual_numbers(dual, numbers.len(), (attitude.matrix(), momentum));
+    let largest = |v: &SVector<f64, D>| v.amax();
+    let size = expected.iter().fold(0.0_f64, |size, (a, b)| size.max(largest(a)).max(largest(b)));
+    for (number, (found, expected)) in tangent.columns().zip(&expected).enumerate() {
+        let error = largest(&(found.0 - expected.0)).max(largest(&(found.1 - expected.1)));
+        assert!(error <= BOUND * size, "column {number}: off by {error:e} of {size:e}, {found:?}, not {expected:?}");
+    }
+
+    let mut gradients = Vec::new();
+    for tape in [Tape::All, Tape::SquareRoot] {
+        let mut state = start;
+        let place = |n: u64| usize::try_from(n).expect("a few");
+        let gradient = linear.adjoint(&mut state, STEPS, tape, |n, _| cotangents[place(n)]).expect("a gradient");
+        assert_eq!(plain, state);
+        gradients.push(gradient);
+    }
+    assert_eq!(gradients[0], gradients[1], "checkpoints change a bit");
+    let gradient = &gradients[0];
+    let start = gradient.start.attitude.iter().chain(gradient.start.momentum.iter());
+    let found: Vec<f64> = start.chain(&gradient.parameters).copied().collect();
+    let size = paired.iter().fold(size, |size, entry| size.max(entry.abs()));
+    for (number, (found, expected)) in found.iter().zip(&paired).enumerate() {
+        let error = (found - expected).abs();
+        assert!(error <= BOUND * size, "{number}: {found} by the adjoint, {expected} by the tangent map");
+    }
+}
+
+macro_rules! family {
+    ($module:ident: $group:ident, $n:literal, $vector:ident, $matrix:ident) => {
+        pub(crate) mod $module {
+            use super::*;
+            use liestep::groups::$group;
+
+            #[lagrangian(
+                        group = $group,
+                        advected(w = covector, v = vector, B = form),
+                        given(u = strength),
+                        gradients,
+                        l_d = {
+                            let d = F - I;
+                            let kinetic = (d * J * d.transpose()).trace() / (2.0 * h);
+                            let gauge = 0.3 * (A * d).trace() + 0.3 * w.dot(&(d * r)) + 0.3 * a[2] * w.dot(&(d * v));
+                            let forms = u * w.dot(&(A * w)) + a[0] * w.dot(&(F * r)).powi(2) + v.dot(&(B * v));
+                            let products = a[3] * (A * F).trace() * w.dot(&r) + a[1] * (A * inverse(F)).trace();
+                            let smooth = (w.dot(&(F * r)) + w.dot(&r)).sin() + (1.0 + (B * A).trace().powi(2)).sqrt();
+                            kinetic + gauge - 0.5 * h * (forms + products + smooth / (2.0 + (0.3 * w.dot(&r)).exp()))
+                        },
+                    )]
+            #[derive(Clone, Debug)]
+            pub(crate) struct Terms<T: RealField + Copy> {
+                J: $matrix<T>,
+                A: $matrix<T>,
+                r: $vector<T>,
+                a: Vector4<T>,
+                strength: T,
+                covector: $vector<T>,
+                vector: ContravariantVector<T, $n>,
+                form: CovariantTensor<T, $n>,
+            }
+
+            impl<T: RealField + Copy> Terms<T> {
+                /// The numbers of the seed, one of which may have a unit of its own.
+                fn random(seed: u64, varied: Option<(usize, T)>) -> Self {
+                    let mut random = Random::new(seed);
+                    let root: SMatrix<f64, $n, $n> = random.sample();
+                    let metric = SMatrix::identity() + root * root.transpose();
+                    let mut fixed = Vec::new();
+                    Entries::each(&metric, &mut |entry: f64| fixed.push(entry));
+                    let mut place = 0;
+                    let mut next = || {
+                        let number: T = nalgebra::convert(fixed.get(place).copied().unwrap_or_else(|| random.signed()));
+                        place += 1;
+                        varied.filter(|(number, _)| number + 1 == place).map_or(number, |(_, unit)| number + unit)
+                    };
+                    Self {
+                        J: Entries::from_entries(&mut next),
+                        A: Entries::from_entries(&mut next),
+                        r: Entries::from_entries(&mut next),
+                        a: Entries::from_entries(&mut next),
+                        strength: next(),
+                        covector: Entries::from_entries(&mut next),
+                        vector: Entries::from_entries(&mut next),
+                        form: Entries::from_entries(&mut next),
+                    }
+                }
+            }
+
+            #[test]
+            fn tangent_and_adjoint() {
+                for seed in 0..4 {
+                    let stepper = Stepper::new(Terms::<f64>::random(seed, None), STEP).expect("a stepper");
+                    let unit = Dual64::new(0.0, 1.0);
+                    let dual = |number: Option<usize>| {
+                        let terms = Terms::random(seed, number.map(|number| (number, unit)));
+                        Stepper::new(terms, STEP.into()).expect("a stepper")
+                    };
+                    assert_linearised(&stepper, dual, seed);
+                }
+            }
+        }
+    };
+}
+
+family!(so3: SO3, 3, Vector3, Matrix3);
+family!(se2: SE2, 3, Vector3, Matrix3);
+family!(sl2: SL2, 2, Vector2, Matrix2);

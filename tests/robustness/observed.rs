@@ -1,0 +1,271 @@
+//! Runs that are recorded and stopped, whatever is asked of them.
+
+use std::cell::RefCell;
+use std::io::{self, Write};
+use std::ops::ControlFlow;
+use std::rc::Rc;
+
+use declarations::HeavyTop;
+use liestep::effects::{Drag, RigidBody};
+use liestep::mechanics::Sum;
+use liestep::methods::CotangentGauss;
+use liestep::motion::AnyStepper;
+use liestep::prelude::*;
+use liestep::with::{Background, Csv, Ended, Reason, RecordError, Recorder, RunError, Table};
+use nalgebra::{UnitQuaternion, Vector3};
+
+const VELOCITY: Vector3<f64> = Vector3::new(0.5, 2.0, 12.0);
+
+type Top = AnyStepper<SO3, Vector3<f64>>;
+type TopState = liestep::motion::AnyState<SO3, Vector3<f64>>;
+
+/// One type of stepper for nearly all of what is asked here.
+fn top(h: f64) -> (Top, TopState) {
+    let stepper = Stepper::new(HeavyTop::thesis(), h).unwrap().into_any();
+    let state = stepper.start(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0)), VELOCITY).unwrap();
+    (stepper, state)
+}
+
+fn csv_of(stepper: &Top, state: &mut TopState, every: u64, until: f64) -> String {
+    let mut recorder = Recorder::new(stepper, Csv::new(Vec::new()));
+    stepper.observed(state).every(every, |now| recorder.record(now)).until(until).unwrap();
+    String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap()
+}
+
+/// Each number is read back to the bit, and the numbers are those of the motion.
+#[test]
+fn a_file_has_every_bit() {
+    let (stepper, start) = top(0.01);
+    let text = csv_of(&stepper, &mut start.clone(), 10, 1.0);
+    let mut lines = text.lines();
+    assert_eq!(
+        lines.next().unwrap(),
+        "t,q_w,q_x,q_y,q_z,velocity_x,velocity_y,velocity_z,momentum_x,momentum_y,momentum_z,energy,defect"
+    );
+    let mut state = start;
+    for line in lines.by_ref() {
+        let row: Vec<f64> = line.split(',').map(|number| number.parse().unwrap()).collect();
+        let (velocity, momentum) = (stepper.velocity(&state), state.momentum());
+        let mut expected = vec![stepper.time(&state)];
+        expected.extend(&row[1..5]);
+        expected.extend(velocity.iter().chain(&momentum));
+        expected.extend([stepper.energy(&state), state.orthogonality_defect()]);
+        assert_eq!(row, expected);
+        let quaternion = nalgebra::Quaternion::new(row[1], row[2], row[3], row[4]);
+        let attitude = UnitQuaternion::new_unchecked(quaternion).to_rotation_matrix();
+        assert!((attitude.matrix() - state.attitude().as_matrix()).norm() < 1e-14);
+        stepper.run(&mut state, 10).unwrap();
+    }
+    assert_eq!((text.lines().count(), state.steps()), (12, 110));
+}
+
+/// A run in two parts writes what one run does, and so does a thread of its own.
+#[test]
+fn a_run_may_be_made_in_parts() {
+    let (stepper, mut state) = top(0.01);
+    let whole = csv_of(&stepper, &mut state.clone(), 10, 2.0);
+    let mut recorder = Recorder::new(&stepper, Background::new(Csv::new(Vec::new()))).in_blocks_of(3);
+    for until in [0.555, 0.555, 0.3, 1.2, 2.0] {
+        stepper.observed(&mut state).every(10, |now| recorder.record(now)).until(until).unwrap();
+        assert!(stepper.time(&state) > until - 1e-12);
+    }
+    let sink = recorder.finish().unwrap().into_inner().unwrap();
+    assert_eq!(String::from_utf8(sink.into_inner()).unwrap(), whole);
+}
+
+#[test]
+fn a_run_ends_when_it_is_told_to() {
+    let (stepper, start) = top(0.01);
+    // Whole numbers of steps, but for rounding, and what lies between.
+    for (until, steps) in [(0.0, 0), (-1.0, 0), (0.3, 30), (0.07, 7), (0.7, 70), (0.701, 71), (1e-9, 1)] {
+        let ended = stepper.observed(&mut start.clone()).until(until).unwrap();
+        assert_eq!((ended.steps, ended.reason), (steps, Reason::Done), "until {until}");
+    }
+    for until in [f64::NAN, f64::INFINITY, 1e300] {
+        let error = stepper.observed(&mut start.clone()).until(until).unwrap_err();
+        assert!(matches!(error, RunError::End { .. }), "{error}");
+    }
+
+    let mut state = start.clone();
+    let ended = stepper.observed(&mut state).stop_when(|now| now.momentum().x < -0.5).steps(1000).unwrap();
+    let Ended { steps, reason: Reason::Stopped { time }, iterations } = ended else { panic!("{ended:?}") };
+    assert!(state.momentum().x < -0.5 && iterations >= steps);
+    assert_eq!((state.steps(), time), (steps, stepper.time(&state)));
+    // Where it is so at the start, no step is made.
+    let ended = stepper.observed(&mut start.clone()).stop_when(|_| true).steps(1000).unwrap();
+    assert_eq!((ended.steps, ended.reason), (0, Reason::Stopped { time: 0.0 }));
+
+    // Backwards.
+    let (back, mut state) = top(-0.01);
+    let ended = back.observed(&mut state).at([0.0, -0.005, -0.015], |_| ()).until(-0.02).unwrap();
+    assert_eq!((ended.steps, back.time(&state)), (2, -0.02));
+}
+
+/// What observers see has no influence, and is seen in order.
+#[test]
+fn given_times_are_shown_in_order() {
+    let (stepper, start) = top(0.01);
+    let (mut state, mut alone) = (start.clone(), start.clone());
+    let times: Vec<f64> = (0..60).map(|frame| f64::from(frame) / 60.0).collect();
+    let seen = RefCell::new(Vec::new());
+    let shares = RefCell::new(Vec::new());
+    let ended = stepper
+        .observed(&mut state)
+        .at(times.iter().copied(), |now| seen.borrow_mut().push((now.time(), now.attitude())))
+        .at([0.02, 0.025], |now| assert_eq!(now.steps(), 2))
+        .every(25, |now| seen.borrow_mut().push((now.time(), now.attitude())))
+        .every(0, |_| -> () { panic!("never") })
+        .progress(|share| shares.borrow_mut().push(share))
+        .until(1.0)
+        .unwrap();
+    stepper.run(&mut alone, 100).unwrap();
+    assert_eq!((ended.steps, &state), (100, &alone));
+    let seen = seen.into_inner();
+    assert!(seen.is_sorted_by(|a, b| a.0 <= b.0));
+    assert_eq!(seen.len(), 60 + 5);
+    for (time, attitude) in seen {
+        let expected = liestep::motion::Integrator::state_at(&stepper, &start, time).unwrap();
+        assert!((attitude.as_matrix() - expected.attitude().as_matrix()).norm() < 1e-13, "{time}");
+    }
+    let expected: Vec<f64> = (1..=100).map(|share| f64::from(share) / 100.0).collect();
+    assert_eq!(shares.into_inner(), expected);
+
+    for times in [vec![0.02, 0.01], vec![f64::NAN], vec![-0.1], vec![0.5, f64::NEG_INFINITY]] {
+        let error = stepper.observed(&mut start.clone()).at(times, |_| ()).until(1.0).unwrap_err();
+        assert!(matches!(error, RunError::Time { .. }), "{error}");
+    }
+}
+
+/// A pendulum that falls until it is too fast for its steps: rows up to there are written, and the state is the last that
+/// there is.
+#[test]
+fn a_run_that_fails_keeps_what_it_has() {
+    let (stepper, _) = top(0.35);
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(1e-3, 0.0, 0.0));
+    let mut state = stepper.start(attitude, Vector3::zeros()).unwrap();
+    let mut single = state.clone();
+    let steps = (0..100).take_while(|_| stepper.step(&mut single).is_ok()).count();
+    assert!((5..100).contains(&steps), "{steps}");
+    let written = Rc::new(RefCell::new(Vec::new()));
+    let mut recorder = Recorder::new(&stepper, Csv::new(Shared(written.clone())));
+    let error = stepper.observed(&mut state).every(4, |now| recorder.record(now)).steps(1_000_000).unwrap_err();
+    assert!(matches!(error, RunError::Step { cause: StepError::BeyondSolvable { .. }, .. }), "{error}");
+    assert_eq!(usize::try_from(state.steps()).unwrap(), steps);
+    assert_eq!(state, single);
+    drop(recorder);
+    let rows = String::from_utf8(written.take()).unwrap().lines().count() - 1;
+    assert_eq!(rows, steps / 4 + 1);
+}
+
+struct Shared(Rc<RefCell<Vec<u8>>>);
+
+impl Write for Shared {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.borrow_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A disk that is full.
+struct Full;
+
+impl Write for Full {
+    fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+        Err(io::ErrorKind::StorageFull.into())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+#[test]
+fn what_cannot_be_recorded_ends_the_run() {
+    let (stepper, start) = top(0.01);
+    let mut state = start.clone();
+    let mut recorder = Recorder::new(&stepper, Csv::new(Full)).in_blocks_of(3);
+    let error = stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
+    assert!(matches!(error, RunError::Observer { .. }) && state.steps() == 2, "{error}");
+    assert!(error.to_string().contains("no storage space"), "{error}");
+    drop(recorder);
+
+    // In a thread it is found out with a later block.
+    let mut recorder = Recorder::new(&stepper, Background::new(Csv::new(Full))).in_blocks_of(1);
+    let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(1000).unwrap_err();
+    assert!(error.to_string().contains("no storage space"), "{error}");
+    assert!(recorder.finish().is_err());
+
+    let mut recorder =
+        Recorder::new(&stepper, Table::new()).quantity("energy", "J", |now| now.energy()).in_blocks_of(1);
+    let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
+    assert!(error.to_string().contains("two columns are called `energy`"), "{error}");
+    assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));
+
+    // An observer of one's own.
+    let error = stepper.observed(&mut start.clone()).every(3, |_| Err::<(), _>("enough")).steps(10).unwrap_err();
+    assert!(matches!(error, RunError::Observer { time: 0.0, .. }) && error.to_string().ends_with("enough"));
+    let mut state = start;
+    let stop_after_five = |steps| if steps > 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let ended = stepper.observed(&mut state).every(3, |now| stop_after_five(now.steps())).steps(10).unwrap();
+    assert_eq!(ended.steps, 6);
+}
+
+/// Names with commas and quotes, numbers that aren't any, and a table without rows.
+#[test]
+fn a_table_is_well_formed() {
+    let (stepper, mut state) = top(0.01);
+    let numbers = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, 1e300, 5e-324];
+    let mut recorder = Recorder::bare(&stepper, Csv::new(Vec::new()))
+        .quantity("a, \"b\"", "", |now| numbers[usize::try_from(now.steps()).unwrap()])
+        .quantity("steps", "1", |now| u32::try_from(now.steps()).unwrap());
+    assert_eq!(recorder.columns()[2].unit, "1");
+    stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(5).unwrap();
+    let text = String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap();
+    assert_eq!(
+        text,
+        "t,\"a, \"\"b\"\"\",steps\n0.0,NaN,0.0\n0.01,inf,1.0\n0.02,-inf,2.0\n0.03,-0.0,3.0\n0.04,1e300,4.0\n0.05,5e-324,5.0\n"
+    );
+    let empty = Recorder::bare(&stepper, Csv::new(Vec::new())).finish().unwrap().into_inner();
+    assert_eq!(empty, b"t\n");
+    let table = Recorder::bare(&stepper, Table::new()).finish().unwrap();
+    assert_eq!((table.rows().len(), table.column("t").unwrap().len()), (0, 0));
+    assert!(table.column("x").is_none());
+}
+
+/// Other scalars, other groups, another kind of integrator.
+#[test]
+fn whatever_steps_is_recorded() {
+    let J = Inertia::from_principal_moments(Vector3::new(1.0_f32, 2.0, 2.5)).unwrap();
+    let J_d = J.to_nonstandard();
+    let scene: Sum<RigidBody<f32>, Drag<f32>> = RigidBody { J_d } + Drag { c: 0.5, J };
+    let stepper = Stepper::new(scene, 1.0 / 64.0).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 1.0, 0.2)).unwrap();
+    let mut recorder = Recorder::new(&stepper, Table::new());
+    stepper.observed(&mut state).every(64, |now| recorder.record(now)).until(10.0).unwrap();
+    let table = recorder.finish().unwrap();
+    let energies: Vec<f64> = table.column("energy").unwrap().collect();
+    assert!(energies.len() == 11 && energies.is_sorted_by(|a, b| a > b));
+
+    let scene = HeavyTop::thesis();
+    let gauss = CotangentGauss::<_, 2, 3>::new(scene, 0.05).unwrap();
+    let mut state = gauss.start(SO3::identity(), VELOCITY).unwrap();
+    let (mut attitude, mut momentum) = (state.attitude(), state.momentum());
+    let mut recorder = Recorder::new(&gauss, Table::new());
+    gauss
+        .observed(&mut state)
+        .every(20, |now| recorder.record(now))
+        .at([0.52], |now| {
+            assert!(now.orthogonality_defect() < 1e-14);
+        })
+        .until(1.0)
+        .unwrap();
+    for _ in 0..20 {
+        (attitude, momentum) = gauss.step(&attitude, &momentum).unwrap();
+    }
+    assert_eq!((state.attitude(), state.momentum()), (attitude, momentum));
+    assert_eq!(recorder.finish().unwrap().column("momentum_y").unwrap().last(), Some(momentum.y));
+    assert!(gauss.start(SO3::from_matrix_unchecked(nalgebra::Matrix3::zeros()), VELOCITY).is_err());
+}
