@@ -94,8 +94,8 @@ fn closed() -> Result<[f64; 2], Box<dyn Error>> {
 }
 
 /// The picture, px, where the pivot is in it, and the radius of the sphere on which the tip moves.
-const PICTURE: [f64; 2] = [520.0, 340.0];
-const PIVOT: [f64; 2] = [260.0, 225.0];
+const PICTURE: [f64; 2] = [520.0, 335.0];
+const PIVOT: [f64; 2] = [260.0, 247.0];
 const SIZE: f64 = 230.0;
 /// How high the eye is, rad.
 const ELEVATION: f64 = 0.6;

@@ -80,6 +80,9 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
         if given.get_flag("csv") {
             output.write(&name(path, "csv"), &run.table(scene))?;
         }
+        if given.get_flag("csv") && scene.events().next().is_some() {
+            output.write(&name(path, "events.csv"), &run.event_table(scene))?;
+        }
         if given.get_flag("html") {
             output.write(&name(path, "html"), &scene.page(&run))?;
         }

@@ -117,8 +117,7 @@ fn simulate<A: Advected<SO3>>(
 ) -> Result<Run, Stopped> {
     let stepper = stepper.map_err(Stopped::Setup)?;
     let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stopped::Start)?;
-    let steps = u64::from(steps);
-    make(&stepper, state, (steps, file.output.stride(steps)), None)
+    make(file, &stepper, state, u64::from(steps), None)
 }
 
 /// Makes the steps that an accuracy takes.
@@ -129,8 +128,7 @@ fn ask(file: &SceneFile, tolerance: f64) -> Result<Run, Stopped> {
             let stepper = Stepper::for_accuracy($scene, accuracy, file.start.attitude, file.start.velocity)
                 .map_err(Stopped::Asked)?;
             let choice: Choice = stepper.choice().clone();
-            let strides = (choice.steps, file.output.stride(choice.steps));
-            make(&stepper, stepper.start(), strides, Some(choice))
+            make(file, &stepper, stepper.start(), choice.steps, Some(choice))
         }};
     }
     match file.body.mass {

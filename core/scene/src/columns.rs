@@ -142,10 +142,9 @@ impl Output {
     }
 }
 
-/// The samples as comma-separated values.
-pub(crate) fn table(columns: &[Column], samples: &[Sample]) -> String {
+/// The samples as comma-separated values, of a run that began with `first`.
+pub(crate) fn table(columns: &[Column], first: Option<&Sample>, samples: &[Sample]) -> String {
     let names: Vec<_> = columns.iter().flat_map(|column| column.names()).copied().collect();
-    let first = samples.first();
     let row = |sample: &Sample| {
         columns.iter().flat_map(|column| column.values(sample, first.unwrap_or(sample))).collect::<Vec<_>>()
     };
