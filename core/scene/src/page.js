@@ -276,7 +276,7 @@ function seek(time) {
 }
 function tick(moment) {
   if (!playing) return;
-  const passed = Math.min(0.1, (moment - before) / 1000); before = moment;
+  const passed = Math.min(0.25, (moment - before) / 1000); before = moment;
   seek(now + passed * Number(speed.value));
   if (now >= end) return toggle();
   requestAnimationFrame(tick);

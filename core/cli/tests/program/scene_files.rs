@@ -220,7 +220,7 @@ fn mistakes_in_choices_have_places() {
         ("[run]", "[sweep]\ngravity.m = { from = 1, to = 2, count = 200 }\ngravity.g = { from = 1, to = 2, count = 200 }\n[run]"),
     ]
     .map(|(line, by)| mistake(&folder, line, by));
-    expect![[r#"
+    expect![[r"
         error: top.toml:4:5: `J` has three rows of three components, found 2 rows
         error: top.toml:4:5: the inertia is not symmetric: two entries differ by 1e0, more than rounding; give it symmetric
         error: top.toml:5:11: unknown variant `quartic`, expected one of `rigid`, `cayley`, `geodesic`, `fourth-order`, `sixth-order`
@@ -243,7 +243,7 @@ fn mistakes_in_choices_have_places() {
         error: top.toml:21:8: an angle isn't in `J` but in `rad`, `deg`, `°`
         error: top.toml:19:1: `sweep` has no key to vary
         error: top.toml:19:1: `sweep` makes more than 10000 scenes
-    "#]].assert_eq(&messages.concat());
+    "]].assert_eq(&messages.concat());
 }
 
 /// What is no scene at all, with its place if there is text.
@@ -265,14 +265,14 @@ fn files_of_another_kind() {
         assert!(!output.status.success() && output.stdout.is_empty(), "{name}");
         String::from_utf8(output.stderr).unwrap()
     });
-    expect![[r#"
+    expect![[r"
         error: empty.toml:1:1: missing field `title`
         error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: large.toml: has more than 1048576 bytes, so it is no scene
         error: table.toml:1:1: invalid type: sequence, expected a table with an inertia
-    "#]].assert_eq(&messages.concat());
+    "]].assert_eq(&messages.concat());
 }
 
 /// A file of a hundred megabytes isn't read to its end.
