@@ -19,7 +19,7 @@ use clap::ArgMatches;
 use liestep_scene::SceneFile;
 
 use failure::Failure;
-use output::{Output, print};
+use output::{Output, print, progress};
 
 fn main() -> ExitCode {
     // A wrong command line ends here, with its message and the code 2.
@@ -74,7 +74,7 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
         if paths.len() > 1 {
             eprintln!("[{number}/{}] {}", paths.len(), path.display());
         }
-        let run = scene.run()?;
+        let run = scene.run_told(&mut progress())?;
         let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
         output.write(&name(path, "svg"), &picture)?;
         if given.get_flag("csv") {

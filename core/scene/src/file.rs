@@ -190,7 +190,16 @@ impl SceneFile {
     ///
     /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene can't be started or a step not be made.
     pub fn run(&self) -> Result<Run, Mistake> {
-        choose::run(self).map_err(|stopped| {
+        self.run_told(&mut |_| ())
+    }
+
+    /// As [`run`](Self::run), with a function that is told a hundred times what share of the run is made, from 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn run_told(&self, told: &mut dyn FnMut(f64)) -> Result<Run, Mistake> {
+        choose::run(self, told).map_err(|stopped| {
             let Origin { path, places } = &self.origin;
             Mistake::of_run(path, stopped.place(places), stopped.to_string())
         })

@@ -89,7 +89,13 @@ impl fmt::Display for Stopped {
             Self::Setup(cause) | Self::Start(cause) => cause.fmt(f),
             Self::Asked(cause) => cause.fmt(f),
             Self::Other(cause) => f.write_str(cause),
-            Self::Step { time, cause } => write!(f, "stopped at t = {time} s: {cause}"),
+            Self::Step { time, cause } => {
+                write!(f, "stopped at t = {time} s: {cause}")?;
+                match cause {
+                    StepError::BeyondSolvable { .. } => f.write_str(", and is `kinetic = \"cayley\"` of the body here"),
+                    _ => Ok(()),
+                }
+            }
         }
     }
 }
@@ -108,17 +114,20 @@ pub struct Run {
     choice: Option<Choice>,
 }
 
+/// What is told the share of a run that is made, from 0 to 1, a hundred times.
+pub(crate) type Told<'a> = &'a mut dyn FnMut(f64);
+
 /// Makes so many steps, unless an event stops the run, and keeps the state at every `stride`-th and at the end.
 pub(crate) fn make<A: Advected<SO3>>(
     scene: &SceneFile,
     stepper: &AnyStepper<SO3, A>,
     mut state: AnyState<SO3, A>,
-    steps: u64,
-    choice: Option<Choice>,
+    (steps, choice): (u64, Option<Choice>),
+    told: Told<'_>,
 ) -> Result<Run, Stopped> {
     let (mut samples, log) = (Vec::new(), Log(RefCell::new(Vec::new())));
     let stride = scene.output.stride(steps);
-    let mut observed = stepper.observed(&mut state).every(stride, |now| samples.push(Sample::of(now)));
+    let mut observed = stepper.observed(&mut state).every(stride, |now| samples.push(Sample::of(now))).progress(told);
     for (number, event) in scene.event.iter().enumerate() {
         let log = &log;
         observed = observed.event(event.kind(), event.function(scene.picture.axis.0), move |now| {

@@ -398,6 +398,7 @@ fn a_step_that_is_too_large() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(message.starts_with("error: fast.toml:20:8: stopped at t = 0 s: no solution at the step"), "{message}");
+    assert!(message.ends_with(", and is `kinetic = \"cayley\"` of the body here\n"), "{message}");
 }
 
 /// Every file that is there runs, moves, and has a picture and a table.
@@ -579,6 +580,23 @@ fn events() {
     let report = printed(&folder, &["run", "stop.toml", "--csv", "--out", "."]);
     assert!(report.contains(", 27 steps of 0.07 s\n") && report.contains(", which ended the run\n"), "{report}");
     assert_eq!(table_of(&folder.join("stop.csv")).last().unwrap()[0].to_bits(), (0.07 * 27.0_f64).to_bits());
+}
+
+/// A sweep counts events.
+#[test]
+fn events_of_a_sweep() {
+    let folder = folder("events-of-a-sweep");
+    let text = "title = \"ball\"\nbody.moments = [1, 1, 1]\nstart.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\n\
+                run.step = 0.07\nrun.duration = 7\nrun.method = { splitting = \"Strang\" }\noutput.columns = [\"time\"]\n\
+                sweep.start.velocity = [[2, 0, 0], [0, 0, 1]]\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\n";
+    fs::write(folder.join("ball.toml"), text).unwrap();
+    printed(&folder, &["sweep", "ball.toml", "--out", "."]);
+    let table = fs::read_to_string(folder.join("ball.csv")).unwrap();
+    let rows: Vec<Vec<_>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0][4..], ["low_times", "low_first"]);
+    assert_eq!((rows[1][0], rows[1][4]), ("2 0 0", "5e0"));
+    assert!((rows[1][5].parse::<f64>().unwrap() - PI / 6.0).abs() < 1e-13, "{table}");
+    assert_eq!(rows[2][4..], ["0e0", "NaN"]);
 }
 
 fn table_of(path: &Path) -> Vec<Vec<f64>> {
