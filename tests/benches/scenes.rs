@@ -3,6 +3,7 @@
 //! ```text
 //! cargo bench --bench scenes                       times a step of every scene
 //! cargo bench --bench scenes -- instructions       counts the instructions of a step of every scene, by valgrind
+//! cargo bench --bench scenes -- files              counts those of scenes from files
 //! cargo bench --bench scenes -- zero-cost          counts those of the free body here and in a program of its own
 //! cargo bench --bench scenes -- count NAME 1000    runs 1000 steps of one scene and nothing else
 //! ```
@@ -14,6 +15,7 @@
 #![allow(non_snake_case)]
 
 mod counting;
+mod files;
 mod stepping;
 
 use core::hint::black_box;
@@ -87,6 +89,15 @@ impl Visit for Instructions {
     }
 }
 
+/// Counts the instructions of scenes from files.
+fn from_files() -> Result<(), Uncounted> {
+    for (name, _) in files::FILES {
+        let steps = instructions(&std::env::current_exe()?, &["count-file", name], COUNTED)?;
+        println!("{name:<28}{steps:>8.1} instructions a step from a file");
+    }
+    Ok(())
+}
+
 /// The free body beside all other effects and in a program without them.
 fn zero_cost() -> Result<(), Uncounted> {
     let beside = instructions(&std::env::current_exe()?, &["count", "body"], COUNTED)?;
@@ -106,6 +117,12 @@ fn main() -> Result<(), Uncounted> {
             visit_all(&mut count);
             if count.found { Ok(()) } else { Err(format!("there is no scene `{wanted}`").into()) }
         }
+        ["count-file", wanted, steps] => {
+            let found = files::FILES.iter().find(|(name, _)| name == wanted);
+            let (_, tables) = found.ok_or_else(|| format!("there is no file `{wanted}`"))?;
+            Ok(files::run(tables, steps.parse()?)?)
+        }
+        ["files"] => from_files(),
         ["instructions"] => {
             let mut all = Instructions(Ok(()));
             visit_all(&mut all);

@@ -19,7 +19,7 @@ use clap::ArgMatches;
 use liestep_scene::SceneFile;
 
 use failure::Failure;
-use output::{Output, print};
+use output::{Output, print, progress};
 
 fn main() -> ExitCode {
     // A wrong command line ends here, with its message and the code 2.
@@ -74,11 +74,14 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
         if paths.len() > 1 {
             eprintln!("[{number}/{}] {}", paths.len(), path.display());
         }
-        let run = scene.run()?;
+        let run = scene.run_told(&mut progress())?;
         let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
         output.write(&name(path, "svg"), &picture)?;
         if given.get_flag("csv") {
             output.write(&name(path, "csv"), &run.table(scene))?;
+        }
+        if given.get_flag("csv") && scene.events().next().is_some() {
+            output.write(&name(path, "events.csv"), &run.event_table(scene))?;
         }
         if given.get_flag("html") {
             output.write(&name(path, "html"), &scene.page(&run))?;

@@ -2,8 +2,9 @@
 
 use std::fmt;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io::{self, IsTerminal as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
 
@@ -34,6 +35,22 @@ impl Output {
         fs::write(&path, content).map_err(|cause| cannot(&path, &cause))?;
         self.written.push((name.to_owned(), content.len()));
         Ok(())
+    }
+}
+
+/// Somebody who waits at a terminal sees how far a run is, and nothing is left of it at its end.
+pub(crate) fn progress() -> impl FnMut(f64) {
+    /// What takes less needs no patience.
+    const PATIENCE: Duration = Duration::from_millis(300);
+    let start = io::stderr().is_terminal().then(Instant::now);
+    move |share| {
+        let shown = match start {
+            Some(start) if start.elapsed() > PATIENCE && share < 1.0 => format!("\r{:>3.0} %", 100.0 * share),
+            Some(_) => "\r\x1b[K".to_owned(),
+            None => return,
+        };
+        // Nobody reads it where it can't be written.
+        let _ = write!(io::stderr(), "{shown}");
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
         let ends = in_parallel(&points, |scene| scene.run().map(|run| scene.end(&run)));
         let mut text = sweep.names().join(",");
         for name in points.first().map(|scene| scene.end_names()).unwrap_or_default() {
-            text.extend([",", name]);
+            text.extend([",", &name]);
         }
         text.push('\n');
         for ((values, scene), end) in sweep.points().iter().zip(ends) {

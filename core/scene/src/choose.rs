@@ -14,7 +14,7 @@ use crate::body::{Distribution, Kinetic};
 use crate::effects::Table as _;
 use crate::file::{Pace, SceneFile};
 use crate::method::{Method, Stages};
-use crate::run::{Run, Stopped, make};
+use crate::run::{Run, Stopped, Told, make};
 use crate::switched::Switched;
 
 /// The sums of a body and what is switched, each of one type; a file's scene is the shortest that has all that it names.
@@ -43,27 +43,27 @@ macro_rules! sums {
 ///
 /// Every run by (3.13) has the bits of the sum of just those. By other kinetic terms it is the same to rounding: beside an
 /// unknown part that is switched off, their equation is solved with its Jacobian from the first iteration on.
-pub(crate) fn run(file: &SceneFile) -> Result<Run, Stopped> {
+pub(crate) fn run(file: &SceneFile, told: Told<'_>) -> Result<Run, Stopped> {
     match (file.run.pace, file.run.method) {
-        (Pace::Accuracy(tolerance), _) => ask(file, tolerance),
-        (Pace::Step { step, steps }, Method::Step | Method::Composition(_)) => stepped(file, step, steps),
-        (Pace::Step { step, steps }, _) => with_exact_body(file, step, steps),
+        (Pace::Accuracy(tolerance), _) => ask(file, tolerance, told),
+        (Pace::Step { step, steps }, Method::Step | Method::Composition(_)) => stepped(file, (step, steps), told),
+        (Pace::Step { step, steps }, _) => with_exact_body(file, (step, steps), told),
     }
 }
 
 /// By the declared steps of one of the kinetic terms, or a composition of them.
-fn stepped(file: &SceneFile, h: f64, steps: u32) -> Result<Run, Stopped> {
+fn stepped(file: &SceneFile, (h, steps): (f64, u32), told: Told<'_>) -> Result<Run, Stopped> {
     macro_rules! step {
         ($scene:expr) => {
             match file.run.method {
                 Method::Composition(scheme) => {
-                    simulate(file, Stepper::composed($scene, h, scheme.0).map(Stepper::into_any), steps)
+                    simulate(file, Stepper::composed($scene, h, scheme.0).map(Stepper::into_any), steps, told)
                 }
                 _ => step!(only $scene),
             }
         };
         (only $scene:expr) => {
-            simulate(file, Stepper::new($scene, h).map(Stepper::into_any), steps)
+            simulate(file, Stepper::new($scene, h).map(Stepper::into_any), steps, told)
         };
     }
     macro_rules! with_effects {
@@ -96,7 +96,7 @@ fn stepped(file: &SceneFile, h: f64, steps: u32) -> Result<Run, Stopped> {
 }
 
 /// By methods that look at inertia and potential only.
-fn with_exact_body(file: &SceneFile, h: f64, steps: u32) -> Result<Run, Stopped> {
+fn with_exact_body(file: &SceneFile, (h, steps): (f64, u32), told: Told<'_>) -> Result<Run, Stopped> {
     let J = file.body.inertia();
     let (_, scene, _, _) = sums!(file, RigidBody { J_d: J.to_nonstandard() });
     let stepper = match file.run.method {
@@ -106,7 +106,7 @@ fn with_exact_body(file: &SceneFile, h: f64, steps: u32) -> Result<Run, Stopped>
         Method::Collocation(Stages::Four) => Stepper::collocated::<2>(scene, h).map(Stepper::into_any),
         Method::Collocation(Stages::Eight) => Stepper::collocated::<4>(scene, h).map(Stepper::into_any),
     };
-    simulate(file, stepper, steps)
+    simulate(file, stepper, steps, told)
 }
 
 /// Makes the steps of a scene.
@@ -114,23 +114,22 @@ fn simulate<A: Advected<SO3>>(
     file: &SceneFile,
     stepper: Result<AnyStepper<SO3, A>, SetupError>,
     steps: u32,
+    told: Told<'_>,
 ) -> Result<Run, Stopped> {
     let stepper = stepper.map_err(Stopped::Setup)?;
     let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stopped::Start)?;
-    let steps = u64::from(steps);
-    make(&stepper, state, (steps, file.output.stride(steps)), None)
+    make(file, &stepper, state, (u64::from(steps), None), told)
 }
 
 /// Makes the steps that an accuracy takes.
-fn ask(file: &SceneFile, tolerance: f64) -> Result<Run, Stopped> {
+fn ask(file: &SceneFile, tolerance: f64, told: Told<'_>) -> Result<Run, Stopped> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
     macro_rules! ask {
         ($scene:expr) => {{
             let stepper = Stepper::for_accuracy($scene, accuracy, file.start.attitude, file.start.velocity)
                 .map_err(Stopped::Asked)?;
             let choice: Choice = stepper.choice().clone();
-            let strides = (choice.steps, file.output.stride(choice.steps));
-            make(&stepper, stepper.start(), strides, Some(choice))
+            make(file, &stepper, stepper.start(), (choice.steps, Some(choice)), told)
         }};
     }
     match file.body.mass {

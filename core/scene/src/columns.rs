@@ -52,18 +52,16 @@ impl Column {
     #[must_use]
     pub const fn names(self) -> &'static [&'static str] {
         match self {
-            Self::Time => &["time_s"],
-            Self::Quaternion => &["quaternion_w", "quaternion_x", "quaternion_y", "quaternion_z"],
+            Self::Time => &["t"],
+            Self::Quaternion => &["q_w", "q_x", "q_y", "q_z"],
             Self::Axis => &["axis_x", "axis_y", "axis_z"],
-            Self::Velocity => &["omega_x_rad_per_s", "omega_y_rad_per_s", "omega_z_rad_per_s"],
-            Self::Momentum => &["momentum_x_kg_m2_per_s", "momentum_y_kg_m2_per_s", "momentum_z_kg_m2_per_s"],
-            Self::SpatialMomentum => {
-                &["spatial_momentum_x_kg_m2_per_s", "spatial_momentum_y_kg_m2_per_s", "spatial_momentum_z_kg_m2_per_s"]
-            }
-            Self::Energy => &["energy_J"],
-            Self::EnergyError => &["energy_error_J"],
-            Self::VerticalMomentumError => &["vertical_momentum_error_kg_m2_per_s"],
-            Self::MomentumError => &["momentum_error_kg_m2_per_s"],
+            Self::Velocity => &["velocity_x", "velocity_y", "velocity_z"],
+            Self::Momentum => &["momentum_x", "momentum_y", "momentum_z"],
+            Self::SpatialMomentum => &["spatial_momentum_x", "spatial_momentum_y", "spatial_momentum_z"],
+            Self::Energy => &["energy"],
+            Self::EnergyError => &["energy_error"],
+            Self::VerticalMomentumError => &["vertical_momentum_error"],
+            Self::MomentumError => &["momentum_error"],
         }
     }
 
@@ -144,10 +142,9 @@ impl Output {
     }
 }
 
-/// The samples as comma-separated values.
-pub(crate) fn table(columns: &[Column], samples: &[Sample]) -> String {
+/// The samples as comma-separated values, of a run that began with `first`.
+pub(crate) fn table(columns: &[Column], first: Option<&Sample>, samples: &[Sample]) -> String {
     let names: Vec<_> = columns.iter().flat_map(|column| column.names()).copied().collect();
-    let first = samples.first();
     let row = |sample: &Sample| {
         columns.iter().flat_map(|column| column.values(sample, first.unwrap_or(sample))).collect::<Vec<_>>()
     };

@@ -11,6 +11,7 @@ use crate::effects::{
     DipoleTable, DragTable, GravityGradientTable, GravityTable, MagneticDampingTable, RotorTable, SpringTable,
     ThrustTable, TorqueTable,
 };
+use crate::events::Event;
 use crate::method::Method;
 use crate::mistake::Mistake;
 use crate::picture::Picture;
@@ -38,6 +39,7 @@ use crate::tables::short;
 /// | `start` | `euler` or `quaternion`; `velocity` or `euler_rates` |
 /// | `run` | `duration`; `step` or `accuracy`; `method`: `"step"`, `{ composition = "Suzuki 4" }`, `{ splitting = "Nyström 6-4" }`, `{ processed = "processed 3-6 a" }`, `{ collocation = 8 }` |
 /// | `picture` | `path`: `axis`, `momentum`, `velocity`; `axis`; `panels`: `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error` |
+/// | `[[event]]` | `name`; one of `tilt`, `speed`, `energy`, `velocity_1` to `_3`, `axis_1` to `_3`: the value that is passed; `direction`: `rising`, `falling`, `either`; `stop` |
 /// | `output` | `columns`, see [`Column`]; `every`: so many steps |
 /// | `sweep` | any of the keys above: a list of values, or `{ from, to, count }` |
 #[derive(Clone, Deserialize)]
@@ -59,6 +61,8 @@ pub struct SceneFile {
     pub(crate) run: Schedule,
     #[serde(default)]
     pub(crate) picture: Picture,
+    #[serde(default)]
+    pub(crate) event: Vec<Event>,
     #[serde(default)]
     pub(crate) output: Output,
     /// Only in a file as a whole, and not in a point of its sweep.
@@ -169,6 +173,11 @@ impl SceneFile {
         self.sweep.as_ref()
     }
 
+    /// The names of the events that are looked for.
+    pub fn events(&self) -> impl Iterator<Item = &str> {
+        self.event.iter().map(|event| event.name.as_str())
+    }
+
     /// What a table of the run has.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
@@ -181,7 +190,16 @@ impl SceneFile {
     ///
     /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene can't be started or a step not be made.
     pub fn run(&self) -> Result<Run, Mistake> {
-        choose::run(self).map_err(|stopped| {
+        self.run_told(&mut |_| ())
+    }
+
+    /// As [`run`](Self::run), with a function that is told a hundred times what share of the run is made, from 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn run_told(&self, told: &mut dyn FnMut(f64)) -> Result<Run, Mistake> {
+        choose::run(self, told).map_err(|stopped| {
             let Origin { path, places } = &self.origin;
             Mistake::of_run(path, stopped.place(places), stopped.to_string())
         })

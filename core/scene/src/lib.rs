@@ -29,6 +29,7 @@ mod columns;
 mod derivation;
 mod document;
 mod effects;
+mod events;
 mod file;
 mod method;
 mod mistake;
@@ -50,6 +51,7 @@ use std::path::Path;
 pub use columns::Column;
 pub use derivation::{derivation, derived};
 pub use document::parse;
+pub use events::Happening;
 pub use file::SceneFile;
 pub use mistake::{Kind, Mistake};
 

@@ -215,6 +215,10 @@ const charts = motion.charts.map(chart => {
       if (column !== null) flush(column);
       pen.stroke();
     });
+    for (const [time, name] of motion.events) {
+      pen.strokeStyle = "#999"; pen.lineWidth = 0.7; pen.beginPath(); pen.moveTo(across(time), TOP); pen.lineTo(across(time), TOP + deep); pen.stroke();
+      if (motion.events.length < 9) { pen.textAlign = "left"; pen.fillStyle = "#777"; pen.fillText(name, across(time) + 3, TOP + 8); }
+    }
     pen.strokeStyle = PATH; pen.lineWidth = 1.5; pen.beginPath(); pen.moveTo(across(now), TOP); pen.lineTo(across(now), TOP + deep); pen.stroke();
     pen.restore();
     pen.textAlign = "left"; pen.fillStyle = INK; pen.font = "12px system-ui, sans-serif";
@@ -272,7 +276,7 @@ function seek(time) {
 }
 function tick(moment) {
   if (!playing) return;
-  const passed = Math.min(0.1, (moment - before) / 1000); before = moment;
+  const passed = Math.min(0.25, (moment - before) / 1000); before = moment;
   seek(now + passed * Number(speed.value));
   if (now >= end) return toggle();
   requestAnimationFrame(tick);

@@ -13,6 +13,9 @@ const STYLE: &str = include_str!("page.css");
 /// More frames than a screen shows in minutes; a run of more is thinned.
 const MOST_FRAMES: usize = 10_000;
 
+/// More lines are no longer told apart.
+const MOST_EVENTS: usize = 1000;
+
 /// All that a page shows. Lists are of the same length.
 pub(crate) struct Page<'a> {
     pub(crate) title: &'a str,
@@ -23,6 +26,8 @@ pub(crate) struct Page<'a> {
     /// Body to space.
     pub(crate) attitudes: &'a [UnitQuaternion<f64>],
     pub(crate) charts: &'a [Chart],
+    /// Times in s, and names.
+    pub(crate) events: &'a [(f64, String)],
 }
 
 /// Lines over time, in one panel.
@@ -173,7 +178,11 @@ impl fmt::Display for Page<'_> {
             [q.w, q.i, q.j, q.k]
         };
         writeln!(f, "attitudes: {},", numbers(frames().flat_map(attitude)))?;
-        writeln!(f, "charts: [")?;
+        writeln!(f, "events: [")?;
+        for (time, name) in self.events.iter().take(MOST_EVENTS) {
+            writeln!(f, "[{time:?}, {}],", Text(name))?;
+        }
+        writeln!(f, "],\ncharts: [")?;
         for Chart { title, unit, logarithmic, lines } in self.charts {
             writeln!(f, "{{title: {}, unit: {}, logarithmic: {logarithmic}, lines: [", Text(title), Text(unit))?;
             for (name, values) in lines {

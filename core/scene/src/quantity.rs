@@ -35,6 +35,7 @@ quantities! {
     Damping: "a damping coefficient" in "N m s" 1.0;
     Duration: "a time" in "s" 1.0, "ms" 1e-3, "min" 60.0, "h" 3600.0;
     FluxDensity: "a magnetic flux density" in "T" 1.0, "mT" 1e-3, "µT" 1e-6, "nT" 1e-9;
+    Energy: "an energy" in "J" 1.0, "mJ" 1e-3, "kJ" 1e3;
     Force: "a force" in "N" 1.0, "mN" 1e-3, "kN" 1e3;
     GravitationalParameter: "a gravitational parameter" in "m³/s²" 1.0, "km³/s²" 1e9;
     Inertia: "a moment of inertia" in "kg m²" 1.0, "g cm²" 1e-7;

@@ -6,6 +6,7 @@ use std::path::Path;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::columns::Column;
+use crate::events::Happening;
 use crate::file::SceneFile;
 use crate::mistake::Mistake;
 use crate::page::{Chart, Figure, Page};
@@ -21,6 +22,7 @@ pub struct Recording {
     times: Vec<f64>,
     attitudes: Vec<UnitQuaternion<f64>>,
     charts: Vec<Chart>,
+    events: Vec<(f64, String)>,
 }
 
 /// A recording isn't a scene, but it has an end.
@@ -49,7 +51,7 @@ impl Recording {
             let names = column.names().join(", ");
             wrong(1, 1, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
         };
-        let times = get("time_s").ok_or_else(|| missing(Column::Time))?;
+        let times = get("t").ok_or_else(|| missing(Column::Time))?;
         if times.is_empty() {
             return Err(wrong(2, 1, "has no row".to_owned()));
         }
@@ -67,7 +69,7 @@ impl Recording {
             .map(|row| attitude(row).ok_or_else(|| wrong(row + 2, 1, "the quaternion isn't a unit one".to_owned())))
             .collect::<Result<Vec<_>, _>>()?;
         let mut charts = vec![tilt(&attitudes, &Vector3::z())];
-        if let Some(energy) = get("energy_J") {
+        if let Some(energy) = get("energy") {
             charts.push(energy_error(&energy));
         }
         if let Some([x, y, z]) = all(Column::SpatialMomentum).as_deref() {
@@ -79,7 +81,8 @@ impl Recording {
         }
         let title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let figure = Figure::of(&Matrix3::identity(), None, &Vector3::z());
-        Ok(Self { title, about: path.display().to_string(), figure, times, attitudes, charts })
+        let about = path.display().to_string();
+        Ok(Self { title, about, figure, times, attitudes, charts, events: Vec::new() })
     }
 
     fn of(scene: &SceneFile, run: &Run) -> Self {
@@ -94,6 +97,9 @@ impl Recording {
             momentum_error(&momentum),
             rates([0, 1, 2].map(|k| collect(&|sample| sample.velocity[k]))),
         ];
+        let event = |happening: &Happening| {
+            scene.event.get(happening.event).map(|event| (happening.sample.time, event.name.clone()))
+        };
         Self {
             title: scene.title.clone(),
             about: format!("{}, {} steps of {} s", scene.sum(), run.steps(), short(run.step())),
@@ -101,6 +107,7 @@ impl Recording {
             times: collect(&|sample| sample.time),
             attitudes,
             charts,
+            events: run.happenings().iter().filter_map(event).collect(),
         }
     }
 
@@ -108,8 +115,8 @@ impl Recording {
     /// and what was recorded over time.
     #[must_use]
     pub fn page(&self) -> String {
-        let Self { title, about, figure, times, attitudes, charts } = self;
-        Page { title, about, figure, times, attitudes, charts }.to_string()
+        let Self { title, about, figure, times, attitudes, charts, events } = self;
+        Page { title, about, figure, times, attitudes, charts, events }.to_string()
     }
 }
 

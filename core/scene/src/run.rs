@@ -1,14 +1,17 @@
 //! A run of one scene, and its samples.
 
+use std::cell::RefCell;
 use std::fmt;
 
 use liestep::accuracy::{AccuracyError, Choice};
 use liestep::groups::Advected;
-use liestep::motion::{AnyState, AnyStepper};
+use liestep::motion::{AnyState, AnyStepper, Moment};
+use liestep::with::{Reason, RunError};
 use liestep::{SO3, SetupError, StepError};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::columns::table;
+use crate::events::{Event, Happening, Log};
 use crate::file::{Places, SceneFile};
 
 /// A state, in SI units.
@@ -28,13 +31,13 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn of<A: Advected<SO3>>(stepper: &AnyStepper<SO3, A>, state: &AnyState<SO3, A>) -> Self {
+    fn of<A: Advected<SO3>>(now: &Moment<'_, AnyStepper<SO3, A>>) -> Self {
         Self {
-            time: stepper.time(state),
-            attitude: state.attitude(),
-            momentum: state.momentum(),
-            velocity: stepper.velocity(state),
-            energy: stepper.energy(state),
+            time: now.time(),
+            attitude: now.attitude(),
+            momentum: now.momentum(),
+            velocity: now.velocity(),
+            energy: now.energy(),
         }
     }
 
@@ -57,13 +60,16 @@ pub(crate) enum Stopped {
     Start(SetupError),
     Asked(AccuracyError),
     Step { time: f64, cause: StepError },
+    Other(String),
 }
 
 impl Stopped {
     /// Which part of a file it is about.
     pub(crate) fn place(&self, places: &Places) -> (usize, usize) {
         match self {
-            Self::Setup(SetupError::InvalidStep { .. }) | Self::Asked(_) | Self::Step { .. } => places.pace,
+            Self::Setup(SetupError::InvalidStep { .. }) | Self::Asked(_) | Self::Step { .. } | Self::Other(_) => {
+                places.pace
+            }
             // What a method asks of a scene.
             Self::Setup(
                 SetupError::NotSeparable { .. }
@@ -82,7 +88,14 @@ impl fmt::Display for Stopped {
         match self {
             Self::Setup(cause) | Self::Start(cause) => cause.fmt(f),
             Self::Asked(cause) => cause.fmt(f),
-            Self::Step { time, cause } => write!(f, "stopped at t = {time} s: {cause}"),
+            Self::Other(cause) => f.write_str(cause),
+            Self::Step { time, cause } => {
+                write!(f, "stopped at t = {time} s: {cause}")?;
+                match cause {
+                    StepError::BeyondSolvable { .. } => f.write_str(", and is `kinetic = \"cayley\"` of the body here"),
+                    _ => Ok(()),
+                }
+            }
         }
     }
 }
@@ -94,39 +107,47 @@ pub struct Run {
     /// s.
     step: f64,
     steps: u64,
+    happenings: Vec<Happening>,
+    /// By which event, and when.
+    stopped: Option<(usize, f64)>,
     /// Where an accuracy was asked for.
     choice: Option<Choice>,
 }
 
-/// Makes so many steps, and keeps the state at every `stride`-th and at the end.
+/// What is told the share of a run that is made, from 0 to 1, a hundred times.
+pub(crate) type Told<'a> = &'a mut dyn FnMut(f64);
+
+/// Makes so many steps, unless an event stops the run, and keeps the state at every `stride`-th and at the end.
 pub(crate) fn make<A: Advected<SO3>>(
+    scene: &SceneFile,
     stepper: &AnyStepper<SO3, A>,
     mut state: AnyState<SO3, A>,
-    (steps, stride): (u64, u64),
-    choice: Option<Choice>,
+    (steps, choice): (u64, Option<Choice>),
+    told: Told<'_>,
 ) -> Result<Run, Stopped> {
-    let mut samples = vec![Sample::of(stepper, &state)];
-    let mut done = 0;
-    while done < steps {
-        let next = stride.min(steps - done);
-        if stepper.run(&mut state, next).is_err() {
-            return Err(stopped(stepper, state, next));
-        }
-        done += next;
-        samples.push(Sample::of(stepper, &state));
+    let (mut samples, log) = (Vec::new(), Log(RefCell::new(Vec::new())));
+    let stride = scene.output.stride(steps);
+    let mut observed = stepper.observed(&mut state).every(stride, |now| samples.push(Sample::of(now))).progress(told);
+    for (number, event) in scene.event.iter().enumerate() {
+        let log = &log;
+        observed = observed.event(event.kind(), event.function(scene.picture.axis.0), move |now| {
+            log.write(Happening { event: number, rising: now.rising().unwrap_or_default(), sample: Sample::of(now) })
+        });
     }
-    Ok(Run { samples, step: stepper.step_size(), steps, choice })
-}
-
-/// Where one of so many steps can't be made, and why.
-fn stopped<A: Advected<SO3>>(stepper: &AnyStepper<SO3, A>, mut state: AnyState<SO3, A>, steps: u64) -> Stopped {
-    for _ in 0..steps {
-        if let Err(cause) = stepper.step(&mut state) {
-            return Stopped::Step { time: stepper.time(&state), cause };
-        }
+    let ended = observed.steps(steps).map_err(|error| match error {
+        RunError::Step { time, cause } => Stopped::Step { time, cause },
+        other => Stopped::Other(other.to_string()),
+    })?;
+    let last = Sample::of(&Moment::of_step(stepper, &state));
+    if samples.last().is_none_or(|sample| sample.time < last.time) {
+        samples.push(last);
     }
-    // Not reached, as the same steps have the same bits; the state is finite, so this is a cause that says nothing else.
-    Stopped::Step { time: stepper.time(&state), cause: StepError::NonFinite { what: "state" } }
+    let stopped = match ended.reason {
+        Reason::Event { event, time } => Some((event, time)),
+        _ => None,
+    };
+    let step = stepper.step_size();
+    Ok(Run { samples, happenings: log.0.into_inner(), step, steps: ended.steps, stopped, choice })
 }
 
 impl Run {
@@ -134,6 +155,28 @@ impl Run {
     #[must_use]
     pub fn samples(&self) -> &[Sample] {
         &self.samples
+    }
+
+    /// The events that happened, in their order.
+    #[must_use]
+    pub fn happenings(&self) -> &[Happening] {
+        &self.happenings
+    }
+
+    /// The events as comma-separated values: its name, 1 where the quantity rose and 0 where it fell, and the columns of
+    /// [`table`](Self::table).
+    #[must_use]
+    pub fn event_table(&self, scene: &SceneFile) -> String {
+        let mut text = "event,rising,".to_owned();
+        let samples: Vec<_> = self.happenings.iter().map(|happening| happening.sample).collect();
+        let table = table(scene.columns(), self.samples.first(), &samples);
+        let mut rows = table.lines();
+        text.extend([rows.next().unwrap_or_default(), "\n"]);
+        for (happening, row) in self.happenings.iter().zip(rows) {
+            let name = scene.event.get(happening.event).map_or("", |event| event.name.as_str());
+            text.extend([name, if happening.rising { ",1," } else { ",0," }, row, "\n"]);
+        }
+        text
     }
 
     /// The step, s.
@@ -157,7 +200,7 @@ impl Run {
     /// The samples as comma-separated values, with the columns that the scene asks for.
     #[must_use]
     pub fn table(&self, scene: &SceneFile) -> String {
-        table(scene.columns(), &self.samples)
+        table(scene.columns(), self.samples.first(), &self.samples)
     }
 
     /// A line about the beginning and the end, and the table of the choice if there was one.
@@ -167,9 +210,19 @@ impl Run {
             return String::new();
         };
         let [before, after] = [first, last].map(|s| s.spatial_momentum().norm());
+        let told = |(number, event): (usize, &Event)| {
+            let times: Vec<_> =
+                self.happenings.iter().filter(|happening| happening.event == number).map(|h| h.sample.time).collect();
+            let first = times.first().map_or_else(String::new, |first| format!(", first at t = {first} s"));
+            let stopped =
+                if self.stopped.is_some_and(|(event, _)| event == number) { ", which ended the run" } else { "" };
+            format!("  {}: {} times{first}{stopped}\n", event.name, times.len())
+        };
+        let events: Vec<_> = scene.event.iter().enumerate().map(told).collect();
+        let events = events.concat();
         let choice = self.choice.as_ref().map(ToString::to_string).unwrap_or_default();
         format!(
-            "{}\n  {}, {} steps of {} s\n  energy {:.6} J → {:.6} J, momentum {:.6} → {:.6} kg m²/s\n{choice}",
+            "{}\n  {}, {} steps of {} s\n  energy {:.6} J → {:.6} J, momentum {:.6} → {:.6} kg m²/s\n{events}{choice}",
             scene.title(),
             scene.sum(),
             self.steps,

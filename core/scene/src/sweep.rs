@@ -21,12 +21,15 @@ pub struct Sweep {
 impl SceneFile {
     /// The names of what [`end`](Self::end) gives.
     #[must_use]
-    pub fn end_names(&self) -> Vec<&'static str> {
+    pub fn end_names(&self) -> Vec<String> {
         let columns = self.columns().iter().flat_map(|column| column.names()).copied();
-        columns.chain(["greatest_energy_error_J", "greatest_momentum_error_kg_m2_per_s"]).collect()
+        let columns = columns.chain(["greatest_energy_error", "greatest_momentum_error"]).map(str::to_owned);
+        let events = self.events().flat_map(|name| [format!("{name}_times"), format!("{name}_first")]);
+        columns.chain(events).collect()
     }
 
-    /// The scene's columns at the end of a run, and how far energy and angular momentum in space were from their start.
+    /// The scene's columns at the end of a run, how far energy and angular momentum in space were from their start, and of
+    /// each event how often and when first it happened, s; NaN if never.
     #[must_use]
     pub fn end(&self, run: &Run) -> Vec<f64> {
         let (Some(first), Some(last)) = (run.samples().first(), run.samples().last()) else { return Vec::new() };
@@ -35,7 +38,14 @@ impl SceneFile {
             values.map(f64::abs).fold(0.0, f64::max)
         };
         let columns = self.columns().iter().flat_map(|column| column.values(last, first));
-        columns.chain([greatest(Column::EnergyError), greatest(Column::MomentumError)]).collect()
+        let events = (0..self.event.len()).flat_map(|number| {
+            let mut times = run.happenings().iter().filter(|happening| happening.event == number);
+            let first = times.next().map_or(f64::NAN, |happening| happening.sample.time);
+            #[allow(clippy::cast_precision_loss)] // a million at most
+            let count = times.count() as f64 + if first.is_nan() { 0.0 } else { 1.0 };
+            [count, first]
+        });
+        columns.chain([greatest(Column::EnergyError), greatest(Column::MomentumError)]).chain(events).collect()
     }
 }
 

@@ -5,4 +5,5 @@
 
 mod mutated;
 mod page;
+mod readme;
 mod scene_files;

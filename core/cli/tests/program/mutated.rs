@@ -31,6 +31,7 @@ fn seeds() -> Vec<String> {
                [drag]\nc = 0.1\n[magnetic_damping]\nk = 0.1\nfield = [0, 0.5, 1]\n[torque]\ntorque = [0.1, 0.2, -0.1]\n\
                [thrust]\nat = [0, 0, \"1 cm\"]\nthrust = [1, 0, 0]\n[start]\nquaternion = [1, 0, 0, 0.5]\nvelocity = [0, 0, 1]\n\
                [run]\nstep = 0.01\nduration = 1\nmethod = \"step\"\n[output]\ncolumns = [\"time\", \"quaternion\"]\nevery = 3\n\
+               [[event]]\nname = \"fast\"\nspeed = 1.5\ndirection = \"rising\"\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\nstop = true\n\
                [sweep]\ngravity.m = [1, 2]\nspring.k = { from = 1, to = 2, count = 3 }\n";
     let split = "title = \"split\"\n[body]\nmoments = [1, 2, 2.5]\n[dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
                  [start]\neuler = [0, 0, 0]\neuler_rates = [0, 1, 0]\n[run]\nstep = 0.01\nduration = 1\n\

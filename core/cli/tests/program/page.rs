@@ -54,9 +54,9 @@ fn a_table_is_replayed() {
         assert_eq!(output.status.code(), Some(1), "{text}");
         assert!(text.starts_with("error: wrong.csv:") && text.contains(message), "{text}");
     };
-    let names = "time_s,quaternion_w,quaternion_x,quaternion_y,quaternion_z\n";
-    refused("", ":1:1: has no columns time_s");
-    refused("time_s\n0\n", ":1:1: has no columns quaternion_w, quaternion_x, quaternion_y, quaternion_z");
+    let names = "t,q_w,q_x,q_y,q_z\n";
+    refused("", ":1:1: has no columns t;");
+    refused("t\n0\n", ":1:1: has no columns q_w, q_x, q_y, q_z;");
     refused(names, ":2:1: has no row");
     refused(&format!("{names}0,1,0,0,0\n0,1,0,0,0\n"), ":3:1: is not later than the row before");
     refused(&format!("{names}0,1,0,0,0\n1,1,0,0\n"), ":3:1: has 4 values below 5 names");
@@ -81,9 +81,9 @@ fn a_browser_shows_it() {
         return;
     };
     let folder = folder("browser");
-    page(&folder, "A heavy top with drag");
-    let shown = |arguments: &[&str]| {
-        let address = format!("file://{}#t=1.5", folder.canonicalize().unwrap().join("top.html").display());
+    let page = page(&folder, "A heavy top with drag");
+    let shown = |name: &str, arguments: &[&str]| {
+        let address = format!("file://{}#t=1.5", folder.canonicalize().unwrap().join(name).display());
         let profile = format!("--user-data-dir={}", folder.join("profile").display());
         let plain =
             ["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1200,700", "--virtual-time-budget=3000"];
@@ -93,13 +93,41 @@ fn a_browser_shows_it() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8(output.stdout).unwrap()
     };
-    let document = shown(&["--dump-dom"]);
+    let document = shown("top.html", &["--dump-dom"]);
     let root = document.lines().find(|line| line.contains("<html")).unwrap();
     assert!(root.contains("data-frames=\"201\"") && root.contains("data-charts=\"4\""), "{root}");
     assert!(!root.contains("data-error"), "{root}");
     assert_eq!(document.matches("<canvas").count(), 5);
     assert!(document.contains("<output>1.50 s</output>"), "{document}");
-    shown(&["--screenshot=top.png"]);
+    shown("top.html", &["--screenshot=top.png"]);
     // A page with nothing on it is a tenth of that.
     assert!(fs::metadata(folder.join("top.png")).unwrap().len() > 40_000);
+
+    // It plays, is turned and zoomed, and goes where a chart is clicked.
+    let script = r#"<script>{
+        const root = document.documentElement, clock = document.querySelector("output"), button = document.querySelector("button");
+        const [view, chart] = document.querySelectorAll("canvas"), pixels = canvas => canvas.toDataURL();
+        const changes = (canvas, type, event) => { const before = pixels(canvas); canvas.dispatchEvent(new type(...event)); return before !== pixels(canvas); };
+        document.querySelector("input").value = 0.25;
+        document.querySelector("input").dispatchEvent(new Event("input"));
+        root.dataset.slid = clock.textContent;
+        const about = { clientX: 900, clientY: 150, deltaY: -300, cancelable: true };
+        root.dataset.zoomed = [changes(view, WheelEvent, ["wheel", about]), changes(chart, WheelEvent, ["wheel", about]), changes(chart, MouseEvent, ["dblclick", about])];
+        root.dataset.turned = changes(view, PointerEvent, ["pointermove", { buttons: 1, movementX: 40, movementY: 9 }]);
+        root.dataset.clicked = changes(chart, MouseEvent, ["click", about]);
+        document.dispatchEvent(new KeyboardEvent("keydown", { key: "Home" }));
+        button.click();
+        setTimeout(() => { root.dataset.played = clock.textContent; }, 1000);
+    }</script></body>"#;
+    fs::write(folder.join("played.html"), page.replace("</body>", script)).unwrap();
+    let document = shown("played.html", &["--dump-dom"]);
+    let root = document.lines().find(|line| line.contains("<html")).unwrap();
+    for word in
+        ["data-slid=\"0.50 s\"", "data-zoomed=\"true,true,true\"", "data-turned=\"true\"", "data-clicked=\"true\""]
+    {
+        assert!(root.contains(word), "{root}");
+    }
+    let played = root.split_once("data-played=\"").unwrap().1.split_once(' ').unwrap().0;
+    // How many frames a browser without a screen makes in a second is its own affair.
+    assert!((0.01..1.5).contains(&played.parse::<f64>().unwrap()) && !root.contains("data-error"), "{root}");
 }

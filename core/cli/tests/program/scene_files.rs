@@ -142,7 +142,7 @@ fn mistakes_have_places() {
     .map(|(line, by)| mistake(&folder, line, by));
     expect![[r#"
         error: top.toml:14:1: unknown field `viscosity`, expected `c`
-        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `output`
+        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`
         error: top.toml:6:1: missing field `g`
         error: top.toml:1:1: missing field `run`
         error: top.toml:14:1: unknown field `rho`, expected `c`
@@ -213,6 +213,9 @@ fn mistakes_in_choices_have_places() {
         ("[run]", "[sweep]\ngravity.m = { from = 1, to = \"2 g\", count = 3 }\n[run]"),
         ("[run]", "[sweep]\ngravity.m = { from = -1, to = 2, count = 3 }\n[run]"),
         ("[run]", "[sweep]\ngravity.m.x = [1]\n[run]"),
+        ("[run]", "[[event]]\nname = \"a\"\n[run]"),
+        ("[run]", "[[event]]\nname = \"a, b\"\ntilt = 1\n[run]"),
+        ("[run]", "[[event]]\nname = \"a\"\ntilt = \"1 J\"\n[run]"),
         ("[run]", "[sweep]\n[run]"),
         ("[run]", "[sweep]\ngravity.m = { from = 1, to = 2, count = 200 }\ngravity.g = { from = 1, to = 2, count = 200 }\n[run]"),
     ]
@@ -235,6 +238,9 @@ fn mistakes_in_choices_have_places() {
         error: top.toml:20:13: a range is `{ from = …, to = …, count = … }`: two numbers, or texts with the same unit, and how many
         error: top.toml:20:13: must be above zero
         error: top.toml:20:9: `m` isn't a table
+        error: top.toml:19:1: an event has one of `tilt`, `speed`, `energy`, `velocity_1`, `velocity_2`, `velocity_3`, `axis_1`, `axis_2`, `axis_3`
+        error: top.toml:19:1: the `name` of an event has letters, digits, - and _ only
+        error: top.toml:21:8: an angle isn't in `J` but in `rad`, `deg`, `°`
         error: top.toml:19:1: `sweep` has no key to vary
         error: top.toml:19:1: `sweep` makes more than 10000 scenes
     "]].assert_eq(&messages.concat());
@@ -261,7 +267,7 @@ fn files_of_another_kind() {
     });
     expect![[r"
         error: empty.toml:1:1: missing field `title`
-        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `output`
+        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: large.toml: has more than 1048576 bytes, so it is no scene
@@ -392,6 +398,7 @@ fn a_step_that_is_too_large() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(3));
     assert!(message.starts_with("error: fast.toml:20:8: stopped at t = 0 s: no solution at the step"), "{message}");
+    assert!(message.ends_with(", and is `kinetic = \"cayley\"` of the body here\n"), "{message}");
 }
 
 /// Every file that is there runs, moves, and has a picture and a table.
@@ -530,6 +537,72 @@ fn kinetic_terms_and_methods() {
     }
 }
 
+/// A ball that rolls on: its tilt passes 60° at π/6, 5π/6, 7π/6, … half seconds, between the steps.
+#[test]
+fn events() {
+    let folder = folder("events");
+    let text = "title = \"ball\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [2, 0, 0]\n\
+                [run]\nstep = 0.07\nduration = 7\nmethod = { splitting = \"Strang\" }\n\
+                [[event]]\nname = \"low\"\ntilt = \"60 deg\"\ndirection = \"rising\"\n\
+                [[event]]\nname = \"side\"\naxis_2 = 0.5\n";
+    fs::write(folder.join("ball.toml"), text).unwrap();
+    let report = printed(&folder, &["run", "ball.toml", "--csv", "--html", "--out", "."]);
+    assert!(
+        report.contains("\n  low: 3 times, first at t = 0.523598775598") && report.contains("\n  side: 4 times, first")
+    );
+    let table = fs::read_to_string(folder.join("ball.events.csv")).unwrap();
+    assert!(table.starts_with("event,rising,t,velocity_x,"), "{table}");
+    let mut found: Vec<(&str, &str, f64)> = Vec::new();
+    for row in table.lines().skip(1) {
+        let cells: Vec<_> = row.split(',').collect();
+        found.push((cells[0], cells[1], cells[2].parse().unwrap()));
+    }
+    // `R e₃` has the second component −sin 2t.
+    let expected = [
+        ("low", "1", 1.0),
+        ("side", "1", 3.5),
+        ("low", "1", 7.0),
+        ("side", "0", 5.5),
+        ("side", "1", 9.5),
+        ("low", "1", 13.0),
+        ("side", "0", 11.5),
+    ];
+    let mut expected = expected.map(|(name, rising, sixths)| (name, rising, sixths * PI / 6.0));
+    expected.sort_by(|a, b| a.2.total_cmp(&b.2));
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!((found.0, found.1), (expected.0, expected.1));
+        assert!((found.2 - expected.2).abs() < 1e-13, "{found:?} {expected:?}");
+    }
+    assert!(fs::read_to_string(folder.join("ball.html")).unwrap().contains("events: [\n[0.5235987755"));
+
+    fs::write(folder.join("stop.toml"), text.replace("axis_2 = 0.5", "axis_2 = 0.5\nstop = true")).unwrap();
+    let report = printed(&folder, &["run", "stop.toml", "--csv", "--out", "."]);
+    assert!(report.contains(", 27 steps of 0.07 s\n") && report.contains(", which ended the run\n"), "{report}");
+    assert_eq!(table_of(&folder.join("stop.csv")).last().unwrap()[0].to_bits(), (0.07 * 27.0_f64).to_bits());
+}
+
+/// A sweep counts events.
+#[test]
+fn events_of_a_sweep() {
+    let folder = folder("events-of-a-sweep");
+    let text = "title = \"ball\"\nbody.moments = [1, 1, 1]\nstart.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\n\
+                run.step = 0.07\nrun.duration = 7\nrun.method = { splitting = \"Strang\" }\noutput.columns = [\"time\"]\n\
+                sweep.start.velocity = [[2, 0, 0], [0, 0, 1]]\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\n";
+    fs::write(folder.join("ball.toml"), text).unwrap();
+    printed(&folder, &["sweep", "ball.toml", "--out", "."]);
+    let table = fs::read_to_string(folder.join("ball.csv")).unwrap();
+    let rows: Vec<Vec<_>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0][4..], ["low_times", "low_first"]);
+    assert_eq!((rows[1][0], rows[1][4]), ("2 0 0", "5e0"));
+    assert!((rows[1][5].parse::<f64>().unwrap() - PI / 6.0).abs() < 1e-13, "{table}");
+    assert_eq!(rows[2][4..], ["0e0", "NaN"]);
+}
+
+fn table_of(path: &Path) -> Vec<Vec<f64>> {
+    table(&fs::read_to_string(path).unwrap())
+}
+
 /// A point of a sweep is the file with its values.
 #[test]
 fn sweeps() {
@@ -539,7 +612,7 @@ fn sweeps() {
     printed(&folder, &["sweep", "sweep.toml", "--out", "."]);
     let table = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     let mut lines = table.lines();
-    assert!(lines.next().unwrap().starts_with("gravity.m,drag.c,time_s,omega_x_rad_per_s,"));
+    assert!(lines.next().unwrap().starts_with("gravity.m,drag.c,t,velocity_x,"));
     let points: Vec<_> = lines.map(|line| line.split(',').take(2).collect::<Vec<_>>().join(" ")).collect();
     assert_eq!(points, ["1 kg 0.001", "1 kg 0.0015", "1 kg 0.002", "1.5 0.001", "1.5 0.0015", "1.5 0.002"]);
     let row: Vec<f64> = table.lines().nth(6).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
