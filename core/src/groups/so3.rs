@@ -336,6 +336,11 @@ fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     ];
     let mut largest = parts[0].0;
     let mut products = [largest, wx, wy, wz];
+    // Within 120° of the identity no other part need be asked: this one keeps all digits.
+    if largest.simd_ge(one).all() {
+        let scale = real::<T>(0.5) / largest.simd_sqrt();
+        return products.map(|product| product * scale);
+    }
     for (place, (square, others)) in parts.into_iter().enumerate().skip(1) {
         let larger = square.simd_gt(largest);
         largest = square.select(larger, largest);

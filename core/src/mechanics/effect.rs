@@ -260,8 +260,12 @@ pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, 
 
 /// `½ ξ·Jξ + V(w)`, the energy of the continuous limit.
 pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Scalar<E> {
-    let velocity = velocity_of_momentum(effect, momentum, w);
-    let kinetic = velocity.dot(&(effect.inertia(w) * velocity)) * crate::numbers::real(0.5);
+    energy_of_velocity(effect, &velocity_of_momentum(effect, momentum, w), w)
+}
+
+/// The same, of a velocity that is known.
+pub(crate) fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
+    let kinetic = velocity.dot(&(effect.inertia(w) * *velocity)) * crate::numbers::real(0.5);
     kinetic + effect.potential(w)
 }
 

@@ -20,7 +20,9 @@ mod symmetry;
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
 pub use effect::{Effect, Group, Matrix, Moves, Parts, Regular, Residual, Scalar, Square, Vector};
-pub(crate) use effect::{check_inertia, constant_inertia, energy, momentum_of_velocity, velocity_of_momentum};
+pub(crate) use effect::{
+    check_inertia, constant_inertia, energy, energy_of_velocity, momentum_of_velocity, velocity_of_momentum,
+};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 pub use kinetic_part::{KineticPart, WithKinetic, WithoutKinetic};

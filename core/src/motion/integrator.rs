@@ -4,7 +4,7 @@ use core::ops::{ControlFlow, Deref};
 
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::mechanics::{Effect, Group, Scalar, Vector, energy_of_velocity};
 use crate::motion::any::{AnyState, AnyStepper};
 use crate::motion::plan::Plan;
 use crate::motion::report::StepReport;
@@ -73,6 +73,14 @@ pub trait Integrator {
 
     /// The energy, J; NaN where a momentum has none.
     fn energy(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self>;
+
+    /// Both, where what they share is computed once.
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<Self::Group, Self::Advected>,
+    ) -> (<Self::Group as LieGroup>::Vector, ScalarIn<Self>) {
+        (self.velocity(motion), self.energy(motion))
+    }
 
     /// The time since the start, `n h`, s.
     #[allow(clippy::cast_precision_loss)] // as `Stepper::time`
@@ -170,6 +178,11 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
 
     fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
         Stepper::energy(self, motion)
+    }
+
+    fn velocity_and_energy(&self, motion: &Motion<Group<S>, S::Advected>) -> (Vector<S>, Scalar<S>) {
+        let velocity = Stepper::velocity(self, motion);
+        (velocity, energy_of_velocity(self.scene(), &velocity, &motion.advected))
     }
 }
 

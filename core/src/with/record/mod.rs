@@ -198,9 +198,10 @@ where
         if self.shows_motion {
             now.attitude().write_numbers(attitude);
             block.extend(attitude.iter().map(|&number| number.into()));
-            now.velocity().each(&mut |number| block.push(number.into()));
+            let (velocity, energy) = now.integrator().velocity_and_energy(now);
+            velocity.each(&mut |number| block.push(number.into()));
             now.momentum().each(&mut |number| block.push(number.into()));
-            block.extend([now.energy().into(), now.orthogonality_defect().into()]);
+            block.extend([energy.into(), now.orthogonality_defect().into()]);
         }
         for quantity in &mut self.quantities {
             block.push(quantity(now));

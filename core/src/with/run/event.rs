@@ -117,7 +117,7 @@ where
     ///     .observed(&mut state)
     ///     .event(Event::crossing(), |now| now.momentum().y, |now| flips.push(now.time()))
     ///     .until(20.0)?;
-    /// assert!(flips.len() == 3 && flips.is_sorted());
+    /// assert!(flips.len() == 2 && flips.is_sorted());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn event<Y: Into<f64>, R: Answer>(

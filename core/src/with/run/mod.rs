@@ -152,15 +152,18 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
         while self.state.steps() < end {
             let made = self.next_shown(start, end) - self.state.steps();
-            let before = self.looks_between().then(|| self.state.clone());
-            ended.iterations += self.advance(made)?;
-            ended.steps += made;
-            if let Some(before) = before
-                && self.show_between(&before, &mut ended)?
-            {
-                break;
-            }
-            if self.show_regular(&mut ended)? {
+            // Else nothing is copied.
+            let stops = if self.looks_between() {
+                let before = self.state.clone();
+                ended.iterations += self.advance(made)?;
+                ended.steps += made;
+                self.show_between(&before, &mut ended)?
+            } else {
+                ended.iterations += self.advance(made)?;
+                ended.steps += made;
+                false
+            };
+            if stops || self.show_regular(&mut ended)? {
                 break;
             }
             self.show_progress(start, end);
@@ -191,9 +194,12 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
         let after = |every: u64| (now / every).saturating_add(1).saturating_mul(every);
         let regular = self.regular.iter().map(|regular| after(regular.every));
+        let next = regular.fold(end, u64::min);
+        if self.progress.is_none() {
+            return next;
+        }
         let part = part_told(start, end);
-        let progress = self.progress.as_ref().map(|_| start.saturating_add(((now - start) / part + 1) * part));
-        regular.chain(progress).fold(end, u64::min)
+        next.min(start.saturating_add(((now - start) / part + 1) * part))
     }
 
     /// So many steps, and where there are none the most there are.
