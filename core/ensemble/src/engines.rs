@@ -10,6 +10,9 @@
 //! | arrays of jobs (Slurm, Kubernetes, GNU parallel), anything else that starts programs | [`Local::share`](crate::Local::share) behind an option `--shard i/n` | the scheduler starts that share again |
 //! | another scheduler to be written for | [`Engine`](crate::Engine), or [`Ensemble::chunk`](crate::Ensemble::chunk) and [`Store::write`](crate::Store::write) | its own matter |
 //!
+//! `core/ensemble/mpi/run` compares the files of threads, of 1 to 4 processes of MPI, of a share by threads with the rest by
+//! MPI, and of a job one process of which was killed: they are the same.
+//!
 //! MPI hands out chunks as they are asked for, so that slow ones don't hold up the rest; shares are fixed beforehand, and
 //! cost nothing: no dependency and no server. Both need a folder that all processes see.
 //!
