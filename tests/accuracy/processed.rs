@@ -4,7 +4,7 @@ use checks::random::Random;
 use checks::structure::poisson::{TOLERANCE, defect_of};
 use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::effects::Gravity;
-use liestep::mechanics::DiagonalNonstandardInertia;
+use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
 use liestep::methods::{ExactBody, KineticFlow, ProcessedScheme, SplittingScheme};
 use liestep::numbers::Lanes;
 use liestep::prelude::*;
@@ -148,7 +148,7 @@ fn each_lane_moves_as_alone() {
     let inertia = Inertia::from_principal_moments(moments.into()).unwrap();
     let rho = Vector3::new(0.1, 0.2, 0.3);
     let alone = PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho, up: Vector3::z() };
-    let together = Lanes::splat(&alone);
+    let together: Sum<PrincipalBody<WideF64x4>, Gravity<WideF64x4>> = Lanes::splat(&alone);
     let mut random = Random::new(73);
     let starts: [(SO3, Vector3<f64>); 4] = core::array::from_fn(|_| (random.rotation(), random.vector() * 3.0));
     for scheme in [ProcessedScheme::SIX_A, ProcessedScheme::FOUR_A] {
