@@ -232,7 +232,9 @@ fn lanes_are_put_together_and_taken_apart_on_the_way() {
     let lanes: [Lane<f64>; 8] = spread(13, 32.0);
     let mut singles = alone::<AutoF64x8>(&lanes, 0.01);
     let run = |singles: &mut [Running<f64>], steps| {
-        singles.iter_mut().for_each(|(stepper, state)| stepper.run(state, steps).map(drop).unwrap());
+        for (stepper, state) in singles {
+            stepper.run(state, steps).unwrap();
+        }
     };
     run(&mut singles, 37);
     let stepper: Stepper<Top<AutoF64x8>> = Lanes::gathered(&of_each(&singles, |single| single.0.clone())).unwrap();

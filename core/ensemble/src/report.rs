@@ -66,13 +66,20 @@ impl<M: Integrator> Ensemble<M> {
         tell: &(dyn Fn(Progress) + Sync),
     ) -> Result<Report, StoreError> {
         let (plan, chunks) = (self.fingerprint(), self.chunks());
-        let (mut missing, mut faults) = (Vec::new(), Vec::new());
-        if engine.leads() {
+        let look = || {
             let (found, damaged) = store.survey(plan, drop)?;
             Store::remove(&damaged)?;
-            missing = (0..chunks).filter(|chunk| !found.contains_key(chunk)).collect();
-            faults = damaged;
-        }
+            Ok(((0..chunks).filter(|chunk| !found.contains_key(chunk)).collect(), damaged))
+        };
+        let looked = if engine.leads() { look() } else { Ok((Vec::new(), Vec::new())) };
+        let (missing, faults): (Vec<u64>, Vec<Fault>) = match looked {
+            Ok(found) => found,
+            Err(error) => {
+                // The other processes wait for numbers: there are none.
+                engine.distribute(&[], &|_, _| Ok(()))?;
+                return Err(error);
+            }
+        };
         let (made, before) = (AtomicU64::new(0), chunks - missing.len() as u64);
         engine.distribute(&missing, &|chunk, is_stopped| {
             let Some(shard) = self.shard(plan, chunk, is_stopped) else { return Ok(()) };

@@ -11,8 +11,8 @@ use liestep::mechanics::InertiaError;
 use liestep::methods::CompositionScheme;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use liestep_ensemble::{
-    Ensemble, Failed, Failure, Fault, Histogram, Local, Reduced, Report, Shard, Status, Store, StoreError, Table,
-    share_of,
+    Engine, Ensemble, Failed, Failure, Fault, Histogram, Local, MakeChunk, Reduced, Report, Shard, Status, Store,
+    StoreError, Table, share_of,
 };
 use nalgebra::Vector3;
 
@@ -159,6 +159,16 @@ fn sums_are_those_of_the_files() {
     assert!(report.reduced("y").is_none());
 }
 
+/// An engine that makes nothing; how many chunks it was told of, each time.
+struct Told(Mutex<Vec<usize>>);
+
+impl Engine for Told {
+    fn distribute(&self, missing: &[u64], _: &MakeChunk<'_>) -> Result<(), StoreError> {
+        self.0.lock().unwrap().push(missing.len());
+        Ok(())
+    }
+}
+
 /// A cut file, a bit that has turned over, a file of another plan, and one that isn't a shard.
 #[test]
 fn damaged_files_are_named_and_made_anew() {
@@ -195,6 +205,10 @@ fn damaged_files_are_named_and_made_anew() {
     let refused = ensemble.run(&Local::threads(2), &store).unwrap_err();
     assert!(matches!(&refused, StoreError::Foreign { path } if *path == to), "{refused}");
     assert!(to.exists());
+    // Who else waits for numbers is told that there are none.
+    let told = Told(Mutex::new(Vec::new()));
+    assert!(ensemble.run(&told, &store).is_err());
+    assert_eq!(*told.0.lock().unwrap(), [0]);
     let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
     assert_eq!(named, [Fault::Foreign(to.clone())]);
     std::fs::remove_file(&to).unwrap();

@@ -1,0 +1,60 @@
+//! Some tops, by all processes of a job; the first prints what has become of them.
+//!
+//! ```text
+//! mpirun -n 4 tops shared/out          all chunks that are missing
+//! tops shared/out --shard 2/8          a share of them, by threads: for arrays of jobs, in the same folder
+//! ```
+
+use std::error::Error;
+
+use liestep::effects::{Gravity, PrincipalBody};
+use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
+use liestep::{SO3, Stepper};
+use liestep_ensemble::{Ensemble, Local, Reduction, Store, share_of};
+use liestep_ensemble_mpi::Mpi;
+use nalgebra::Vector3;
+
+fn tops() -> Ensemble<Stepper<Sum<PrincipalBody, Gravity>>> {
+    Ensemble::new("tops", 6_000, 2_000, |member| {
+        let moments = Vector3::new(3.0, 3.1, member.normal("J_3", 4.0, 0.1));
+        let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
+        // One of a hundred falls too fast for the step.
+        let m = if member.number() % 100 == 50 { 1e3 } else { 1.0 };
+        let stepper = Stepper::new(body + Gravity { m, g: 9.81, rho: Vector3::z(), up: Vector3::z() }, 0.02)?;
+        let tilt = SO3::exp(Vector3::x() * member.uniform("tilt", 0.2..0.6));
+        let state = stepper.start(tilt, Vector3::new(0.0, 0.0, member.uniform("spin", 8.0..12.0)))?;
+        Ok((stepper, state))
+    })
+    .chunks_of(50)
+    .keep(["x", "y", "z"], |run| (run.state.attitude().as_matrix() * Vector3::z()).into())
+    .reduce("energy", Reduction::Moments, |run| run.stepper.energy(run.state))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let (ensemble, usage) = (tops(), "tops FOLDER [--shard I/N]");
+    let report = match arguments.as_slice() {
+        [folder] => {
+            let engine = Mpi::world().ok_or("MPI has been initialised already")?;
+            let report = ensemble.run(&engine, &Store::folder(folder)?)?;
+            if !engine.is_first() {
+                return Ok(());
+            }
+            report
+        }
+        [folder, option, share] if option == "--shard" => {
+            let (share, shares) = share_of(share)?;
+            ensemble.run(&Local::threads(0).share(share, shares), &Store::folder(folder)?)?
+        }
+        _ => return Err(usage.into()),
+    };
+    println!(
+        "{} of {} chunks are missing; {} tops finished, {} failed; energy {:?}",
+        report.missing,
+        report.chunks,
+        report.finished,
+        report.failed,
+        report.reduced("energy"),
+    );
+    Ok(())
+}

@@ -1,0 +1,174 @@
+//! Two ensembles: how soon a tumbling satellite is lost, and where a heavy top is chaotic.
+//!
+//! ```text
+//! cargo run --release --example ensemble
+//! cargo run --release --example ensemble -- --quick
+//! cargo run --release --example ensemble -- --shard 2/8 --out shared     of a job array: the last to end draws
+//! ```
+//!
+//! Stopped at any moment, the next run goes on where it was. The folders `satellite` and `map` have the files; polars
+//! and pandas read them.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use ensembles::map::Grid;
+use ensembles::{Mistake, satellite};
+use liestep::motion::Integrator;
+use liestep_ensemble::{Ensemble, Local, Reduced, Report, Store, share_of};
+use plotters::prelude::{RGBColor, Rectangle};
+use plotters::style::Color as _;
+use workbench::args::example;
+use workbench::output::{Output, print};
+use workbench::plot::{Area, BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
+use workbench::progress::Progress;
+
+const HELP: &str = "Runs two ensembles and draws how soon a tumbling satellite is lost and where a top is chaotic
+
+Options:
+      --quick        Some hundred members of each, in the place of some thousands
+      --threads <N>  So many threads; 0 for as many as there are cores [default: 0]
+      --shard <I/N>  Only this share of the chunks, from 0/N on; the run that makes the last of them draws
+      --out <DIR>    The folder for files and figures [default: out/ensemble]
+  -h, --help         Print this
+";
+
+struct Arguments {
+    quick: bool,
+    threads: usize,
+    share: (u64, u64),
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    example(HELP, |words| {
+        let mut arguments = Arguments { quick: false, threads: 0, share: (0, 1), out: "out/ensemble".into() };
+        while let Some(option) = words.option()? {
+            match option.as_str() {
+                "quick" => arguments.quick = true,
+                "threads" => {
+                    let text = words.text()?;
+                    let threads = text.parse().map_err(|_| format!("'{text}' for '--threads' isn't a number"))?;
+                    arguments.threads = threads;
+                }
+                "shard" => arguments.share = share_of(&words.text()?)?,
+                "out" => arguments.out = words.folder()?,
+                _ => return Err(words.unknown()),
+            }
+        }
+        run(&arguments)
+    })
+}
+
+fn run(arguments: &Arguments) -> Result<(), Mistake> {
+    let mut output = Output::new(arguments.out.clone())?;
+    let (members, grid) =
+        if arguments.quick { (256, Grid { tilts: 24, spins: 16 }) } else { (4_096, Grid { tilts: 96, spins: 64 }) };
+    let (satellites, tops) = (satellite::ensemble(members), grid.ensemble());
+    let (satellites_in, report) = made(&satellites, arguments, "satellite")?;
+    let (map_in, of_map) = made(&tops, arguments, "map")?;
+    let missing = report.missing + of_map.missing;
+    if missing > 0 {
+        print(&format!("{missing} chunks are left to other shares, of which the last to end draws the figures.\n"))?;
+        return Ok(());
+    }
+    let spread = satellite::spread(&satellites, &satellites_in)?;
+    let exponents = grid.exponents(&tops, &map_in)?;
+    output.write("satellite.svg", &of_spread(&spread)?)?;
+    output.write("map.svg", &of_exponents(grid, &exponents)?)?;
+    let lost = spread.iter().find(|(_, [_, half, _])| *half > 10.0).map_or(f64::NAN, |(time, _)| *time);
+    let largest = exponents.iter().flatten().fold(0.0_f64, |largest, exponent| largest.max(*exponent));
+    let chaotic = exponents.iter().flatten().filter(|exponent| **exponent > CHAOTIC).count();
+    let energy = match report.reduced("energy") {
+        Some(Reduced::Moments(moments)) => format!("{:.4} ± {:.4} J", moments.mean, moments.variance().sqrt()),
+        _ => String::new(),
+    };
+    print(&format!(
+        "{} satellites, {} tops; {} failed.\n\
+         Energy of the satellites: {energy}.\n\
+         Half of them point more than 10° from the nominal one after {lost} s.\n\
+         {chaotic} of {} points of the map have an exponent over 20 s above {CHAOTIC}/s, the largest is {largest:.2}/s.\n\n{output}",
+        report.finished,
+        of_map.finished,
+        report.failed + of_map.failed,
+        exponents.len(),
+    ))?;
+    Ok(())
+}
+
+/// Well above `ln(T)/T`, which a regular motion has.
+const CHAOTIC: f64 = 0.4;
+
+fn made<M: Integrator>(ensemble: &Ensemble<M>, arguments: &Arguments, name: &str) -> Result<(Store, Report), Mistake> {
+    let store = Store::folder(arguments.out.join(name))?;
+    let (share, shares) = arguments.share;
+    let progress = std::sync::Mutex::new(Progress::new(ensemble.chunks()));
+    let tell = |_| {
+        if let Ok(mut progress) = progress.lock() {
+            progress.add(1, name);
+        }
+    };
+    let report = ensemble.run_telling(&Local::threads(arguments.threads).share(share, shares), &store, &tell)?;
+    for fault in &report.faults {
+        eprintln!("note: {fault}; it was made anew");
+    }
+    Ok((store, report))
+}
+
+fn of_spread(spread: &[(f64, [f64; 3])]) -> Drawn<String> {
+    let colours = [GREEN, BLUE, ORANGE];
+    let line = |(place, colour): (usize, &RGBColor)| {
+        let points = spread.iter().map(|(time, angles)| (*time, angles[place])).collect();
+        Line { colour: *colour, width: 3, points }
+    };
+    let lines = colours.iter().enumerate().map(line).collect();
+    render((820, 420), |area| {
+        let (header, body) = area.split_vertically(px(60));
+        heading(
+            &header,
+            "A tumbling satellite",
+            "moments and rates known to 1 %: how far from the nominal one it points",
+        )?;
+        let (panel, names) = body.split_vertically(px(325));
+        Panel::over_time("", "angle, degrees", Vertical::Linear, lines).draw(&panel)?;
+        legend(&names, (16, 8), &[("a tenth below", GREEN), ("half below", BLUE), ("nine tenths below", ORANGE)])
+    })
+}
+
+fn of_exponents(grid: Grid, exponents: &[Option<f64>]) -> Drawn<String> {
+    let largest = exponents.iter().flatten().fold(CHAOTIC, |largest, exponent| largest.max(*exponent));
+    render((820, 560), |area| {
+        let (header, body) = area.split_vertically(px(60));
+        heading(
+            &header,
+            "Where a heavy top is chaotic",
+            "exponent over 20 s, from white (none) to blue (the largest); tilt 0.1 to 3 rad →, spin 0 to 8 rad/s ↑",
+        )?;
+        squares(&body, grid, |number| exponents[number].map(|exponent| (exponent / largest).clamp(0.0, 1.0)))
+    })
+}
+
+/// A square for each point of the grid, the darker the larger its value; grey where there is none.
+fn squares(area: &Area<'_>, grid: Grid, value: impl Fn(usize) -> Option<f64>) -> Drawn {
+    let (width, height) = area.dim_in_pixel();
+    let margin = px(16);
+    let place = |part: u64, whole: u64, room: u32| -> Result<i32, Mistake> {
+        Ok(i32::try_from(u64::from(margin) + part * u64::from(room - 2 * margin) / whole)?)
+    };
+    for number in 0..grid.tilts * grid.spins {
+        let (across, up) = (number % grid.tilts, grid.spins - 1 - number / grid.tilts);
+        let corner = |across, up| -> Result<(i32, i32), Mistake> {
+            Ok((place(across, grid.tilts, width)?, place(up, grid.spins, height)?))
+        };
+        let colour = value(usize::try_from(number)?).map_or(RGBColor(200, 200, 200), shade);
+        area.draw(&Rectangle::new([corner(across, up)?, corner(across + 1, up + 1)?], colour.filled()))?;
+    }
+    Ok(())
+}
+
+/// From white to the blue of the figures.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between two bytes
+fn shade(value: f64) -> RGBColor {
+    let mixed = |end: u8| (255.0 + (f64::from(end) - 255.0) * value).round() as u8;
+    RGBColor(mixed(BLUE.0), mixed(BLUE.1), mixed(BLUE.2))
+}
