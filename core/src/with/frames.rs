@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::error::StepError;
-use crate::motion::{Integrator, Motion, ScalarIn, StateIn};
+use crate::motion::{Integrator, Motion, ScalarIn};
 use crate::numbers::real;
 
 /// A motion that is shown at times of its viewer's: frames of a game, samples of a loudspeaker, slow motion.
@@ -41,7 +41,7 @@ use crate::numbers::real;
 /// ```
 pub struct Frames<I: Integrator> {
     integrator: I,
-    state: StateIn<I>,
+    state: I::State,
     /// What of the time isn't a whole step, in steps.
     left: f64,
     most_steps: u64,
@@ -55,7 +55,7 @@ where
     ScalarIn<I>: Into<f64>,
 {
     /// The motion from this state.
-    pub fn new(integrator: I, state: StateIn<I>) -> Self {
+    pub fn new(integrator: I, state: I::State) -> Self {
         Self { integrator, state, left: 0.0, most_steps: MOST_STEPS }
     }
 
@@ -95,7 +95,7 @@ where
     }
 
     /// The last step that was made.
-    pub fn state(&self) -> &StateIn<I> {
+    pub fn state(&self) -> &I::State {
         &self.state
     }
 
