@@ -1,4 +1,4 @@
-//! Scenes: sums of Lagrangians and forces, the effects of the library, what changes during a run, scenes in files.
+//! Scenes: sums of Lagrangians and forces, the effects of the library, what changes during a run.
 
 // The letters of the field.
 #![allow(non_snake_case)]

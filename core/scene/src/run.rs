@@ -216,7 +216,8 @@ impl Run {
             let first = times.first().map_or_else(String::new, |first| format!(", first at t = {first} s"));
             let stopped =
                 if self.stopped.is_some_and(|(event, _)| event == number) { ", which ended the run" } else { "" };
-            format!("  {}: {} times{first}{stopped}\n", event.name, times.len())
+            let often = if times.len() == 1 { "once".to_owned() } else { format!("{} times", times.len()) };
+            format!("  {}: {often}{first}{stopped}\n", event.name)
         };
         let events: Vec<_> = scene.event.iter().enumerate().map(told).collect();
         let events = events.concat();
