@@ -50,6 +50,7 @@
 //! | go on where a step has no solution, or lose less to rounding | [`with`] |
 //! | move on another group, or on one of your own | [`groups`], [`laws`] |
 //! | use `f32`, SIMD lanes, dual numbers | [`numbers::Real`] |
+//! | know how a motion depends on its start and its parameters; Lyapunov exponents | [`motion::linearised`] |
 //! | know what is conserved, and what left and right mean here | [`conventions::guarantees`], [`conventions`] |
 //! | come from the thesis' equations to a program | [`guide::thesis`] |
 //! | find an equation of the thesis | [`conventions::equations`] |

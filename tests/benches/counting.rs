@@ -25,6 +25,7 @@ fn count(program: &Path, arguments: &[&str], steps: u32) -> Result<u64, Uncounte
 }
 
 /// Builds another benchmark and tells where it is.
+#[allow(dead_code)] // one bench of two builds another
 pub(crate) fn built(bench: &str) -> Result<PathBuf, Uncounted> {
     let mut cargo = Command::new(env!("CARGO"));
     let output = cargo.args(["bench", "--no-run", "--bench", bench]).output()?;

@@ -5,7 +5,6 @@
 
 mod continuous;
 mod family;
-mod linearised;
 
 use checks::structure::{System, momenta, poisson, stages, symmetry, two_flows};
 use liestep::laws::samples::{Random, along};

@@ -135,6 +135,7 @@
 //! | \[LML05\] | T. Lee, N. H. McClamroch, M. Leok, *A Lie group variational integrator for the attitude dynamics of a rigid body with applications to the 3D pendulum*, IEEE Conference on Control Applications, 2005 |
 //! | \[MW01\] | J. E. Marsden, M. West, *Discrete mechanics and variational integrators*, Acta Numerica 10, 2001 |
 //! | \[HSS09\] | D. D. Holm, T. Schmah, C. Stoica, *Geometric Mechanics and Symmetry*, Oxford University Press, 2009 |
+//! | \[BGGS80\] | G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, *Lyapunov characteristic exponents for smooth dynamical systems and for Hamiltonian systems; a method for computing all of them*, Meccanica 15, 1980 |
 //! | \[Su90\] | M. Suzuki, *Fractal decomposition of exponential operators with applications to many-body theories and Monte Carlo simulations*, Physics Letters A 146, 1990 |
 //! | \[KL97\] | W. Kahan, R.-C. Li, *Composition constants for raising the orders of unconventional schemes for ordinary differential equations*, Mathematics of Computation 66, 1997 |
 //! | \[SS05\] | M. Sofroniou, G. Spaletta, *Derivation of symmetric composition constants for symmetric integrators*, Optimization Methods and Software 20, 2005 |

@@ -53,7 +53,7 @@ fn setup_errors() {
             SetupError::VaryingInertia => &["inertia", "advected", "same everywhere"],
             SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
-            SetupError::NoSecondDerivatives => &["linearised", "choose a scheme without"],
+            SetupError::NoSecondDerivatives => &["derivatives", "force gradients"],
             SetupError::PotentialMismatch => &["another potential"],
             SetupError::Unlike { .. } => &["lane 3", "another method"],
         };

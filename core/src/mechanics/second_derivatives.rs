@@ -23,7 +23,7 @@ use crate::numbers::Entries as _;
 ///
 /// # Source
 ///
-/// \[MW01\], section 1.3: the discrete Legendre transforms of a variation.
+/// \[RDAE, (2.6), (2.7)\], differentiated; [`motion::linearised`](crate::motion::linearised) has the formulas.
 #[diagnostic::on_unimplemented(
     message = "the derivatives of the steps of `{Self}` aren't known",
     label = "declared without `gradients`",

@@ -23,7 +23,8 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     };
     let span = Span::mixed_site();
     let mut silent = Errors::default();
-    let header = Header::new(&parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent));
+    let declaration = parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent);
+    let header = Header::new(&declaration);
     let private = &header.private;
     let none = quote_spanned!(span=> ());
     let types = header.types(true, &none, &none);
@@ -90,6 +91,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
             }
         }
     };
+    let gradients = declaration.gradients.map(|_| gradients(&header));
     let implementations = quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic)]
@@ -115,10 +117,40 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
             fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { loop {} }
         }
 
+        #gradients
         #addition
         #lanes
     };
     header.enclosing(implementations)
+}
+
+/// Where the derivatives of a step are asked for.
+fn gradients(header: &Header) -> TokenStream {
+    let (span, private, implementation) =
+        (Span::mixed_site(), &header.private, header.implementation("SecondDerivatives"));
+    let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
+    let core = quote_spanned!(span=> #private::core);
+    let visits = ["by_parameters", "by_advected"].map(|name| {
+        let name = syn::Ident::new(name, span);
+        quote_spanned! {span=>
+            fn #name(
+                &self, _: &#matrix, _: &Self::Advected, _: #scalar,
+                _: &mut impl #core::ops::FnMut(#core::primitive::usize, #vector, #vector),
+            ) {
+                loop {}
+            }
+        }
+    });
+    quote_spanned! {span=>
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #implementation {
+            const PARAMETERS: #core::primitive::usize = 0;
+            fn blocks(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #private::Blocks<#square> { loop {} }
+            #(#visits)*
+            fn carried_parameters(_: &mut dyn #core::ops::FnMut(#core::primitive::usize)) {}
+        }
+    }
 }
 
 /// The struct, or one of the same name in the place of an enum.

@@ -115,7 +115,9 @@ fn by_parameters(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenS
             }
             if place.is_half {
                 let half = linearisation.graph.constant(Rational::new(1, 2));
-                derivative.iter_mut().for_each(|node| *node = linearisation.graph.multiply(half, *node));
+                for node in &mut derivative {
+                    *node = linearisation.graph.multiply(half, *node);
+                }
             }
             found.push((first + place.number, derivative));
         }

@@ -1,6 +1,74 @@
 //! Derivatives of motions: the tangent map of a step, its transpose, and what is made of them.
 //!
-//! PAGE
+//! | | |
+//! |---|---|
+//! | how the end of a motion changes with its start and with some parameters | [`Linearised::step`] with a [`Tangent`] |
+//! | the state transition matrix | [`Tangent::transition`] |
+//! | how one number changes with the start and with all parameters | [`Linearised::adjoint`], [`Linearised::backwards`] |
+//! | Lyapunov exponents | [`Linearised::lyapunov_exponents`] |
+//!
+//! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
+//! of fourth and sixth order. A scene without it has nothing of this in its program. They go with a scene's own step, on
+//! any group and with forces, with compositions, and with splittings whose flow is declared. `cargo bench --bench
+//! gradients` has the costs.
+//!
+//! # Coordinates
+//!
+//! A state is `(g, μ)`; the body sees `w = g⁻¹·a_0`. Its changes are `(ζ, δμ)`, with `g ← g exp ζ̂` and the components of
+//! the momentum, so that
+//!
+//! ```text
+//! δw = −ζ·w + g⁻¹·δa_0
+//! ```
+//!
+//! On SO(3) `ζ` is a small turn in the body's axes, in rad. The derivative of a number is a [`Cotangent`]: a covector, and
+//! an element of the algebra.
+//!
+//! # The tangent map of a step
+//!
+//! A step solves (2.7), `μ = μ(F, w; θ)`, and ends with (2.6), `μ⁺ = μ⁺(F, w; θ)`, and (2.10), `g⁺ = g F`. With the turn `ε`
+//! of the increment, `δF = ε̂ F`,
+//!
+//! ```text
+//! A ε = δμ − ∂_ζμ ζ − ∂_θμ δθ            A = ∂_εμ, the exact Newton Jacobian
+//! ζ⁺  = Ad_{F⁻¹}(ζ + ε)
+//! δμ⁺ = ∂_εμ⁺ ε + ∂_ζμ⁺ ζ + ∂_θμ⁺ δθ
+//! ```
+//!
+//! where `∂_ζ` is along `δw = −ζ·w` at fixed `F`. The blocks are [second derivatives](SecondDerivatives) of `l_d`, which
+//! the macro makes of the derived momenta. They add in a sum. Nothing is divided by `h` that cancels later: for (3.13) `A =
+//! (tr(F J_d) I − F J_d)/h`, and the potential is in `∂_ζ` alone.
+//!
+//! # The adjoint
+//!
+//! Of a number with the derivative `(z, p)` at the end of the step, that at its beginning is `(ζ*, u)`:
+//!
+//! ```text
+//! Aᵀ u = Ad*_{F⁻¹} z + ∂_εμ⁺ᵀ p
+//! ζ*   = Ad*_{F⁻¹} z + ∂_ζμ⁺ᵀ p − ∂_ζμᵀ u
+//! θ*   = p·∂_θμ⁺ − u·∂_θμ                  added up over the steps
+//! ```
+//!
+//! One solve gives the derivatives by all parameters at once. It needs `F`, `w` and `g` of each step, from the last to the
+//! first: a [`Tape`] has them, all or by checkpoints, and a self-adjoint scene finds them again by steps of `−h`.
+//!
+//! # What is kept
+//!
+//! Of a scene without forces the transition matrix `Φ` is symplectic, `ω(Φx, Φy) = ω(x, y)` for the form
+//!
+//! ```text
+//! ω((ζ, δμ), (ζ', δμ')) = ⟨δμ', ζ⟩ − ⟨δμ, ζ'⟩ + ⟨μ, [ζ, ζ']⟩
+//! ```
+//!
+//! at the momentum of each end, to rounding at any step: it is the derivative of a map that keeps it. So exponents come in
+//! pairs `±λ`.
+//!
+//! # Traps
+//!
+//! - In chaos derivatives grow like the deviations: after `10/λ` they tell nothing of a motion that isn't known to `e⁻¹⁰`.
+//! - Gradients are at a fixed momentum at the start. Where that is `JΩ_0`, `J` and `Ω_0` have a share in it, which is the
+//!   caller's to add: `⟨p_0, δJ Ω_0⟩` of the gradient's `p_0`.
+//! - A number of an own scale, an inertia of two terms for example, is a parameter of each; the derivatives add.
 
 mod adjoint;
 mod exponents;
@@ -85,7 +153,7 @@ pub struct Parameter<T> {
     pub value: T,
 }
 
-impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
+impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The derivatives of the steps, by the start and by every parameter.
     ///
     /// A scene is asked for them by the word `gradients` in its declaration; the effects of the library have it.
@@ -93,7 +161,11 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients.
-    pub fn linearised(&self) -> Result<Linearised<'_, S, P>, SetupError> {
+    pub fn linearised(&self) -> Result<Linearised<'_, S, P>, SetupError>
+    where
+        S: SecondDerivatives,
+        P: Linearisable<S>,
+    {
         self.plan.check_stages()?;
         Ok(Linearised { stepper: self })
     }

@@ -60,16 +60,15 @@ impl<G: LieGroup, A> Tangent<G, A> {
     /// The state transition matrix `∂(ζ, μ)/∂(ζ_0, μ_0)`, by its four blocks: `[[∂ζ/∂ζ_0, ∂ζ/∂μ_0], [∂μ/∂ζ_0, ∂μ/∂μ_0]]`.
     #[must_use]
     pub fn transition(&self) -> [[<G::Vector as Coordinates<G::Scalar>>::Square; 2]; 2] {
-        let block = |first: usize, part: &dyn Fn(&Column<G::Vector>) -> G::Vector| {
+        let block = |first: usize, is_attitude: bool| {
             let columns = self.columns.iter().skip(first).take(G::DIMENSION);
             let zero = G::Vector::zero();
-            columns
-                .enumerate()
-                .fold(zero.outer(&zero), |block, (k, column)| block + part(column).outer(&G::Vector::axis(k)))
+            columns.enumerate().fold(zero.outer(&zero), |block, (k, column)| {
+                let part = if is_attitude { column.attitude } else { column.momentum };
+                block + part.outer(&G::Vector::axis(k))
+            })
         };
-        let rows: [&dyn Fn(&Column<G::Vector>) -> G::Vector; 2] =
-            [&|column| column.attitude, &|column| column.momentum];
-        rows.map(|part| [block(0, part), block(G::DIMENSION, part)])
+        [true, false].map(|is_attitude| [block(0, is_attitude), block(G::DIMENSION, is_attitude)])
     }
 
     /// Makes the columns of the start orthonormal, from the first to the last, and returns what each was longer than

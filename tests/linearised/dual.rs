@@ -1,21 +1,20 @@
-//! Tangent maps and adjoints of random Lagrangians, against dual numbers through the steps themselves.
+//! Tangent maps and adjoints against dual numbers through the steps themselves.
 
-use liestep::groups::{ContravariantVector, CovariantTensor, Generators, Given, LieGroup, MatrixGroup};
+use liestep::groups::LieGroup;
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
-use liestep::mechanics::{Effect, Regular, SecondDerivatives};
-use liestep::motion::linearised::{Cotangent, Linearisable, Tape};
+use liestep::mechanics::{Effect, SecondDerivatives};
+use liestep::motion::linearised::{Cotangent, Linearisable, TangentOf, Tape};
 use liestep::motion::{Plan, Stepper};
-use liestep::numbers::{Coordinates, Entries};
-use liestep::{SO3, lagrangian};
-use nalgebra::{Matrix2, Matrix3, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
+use liestep::numbers::Coordinates;
+use nalgebra::{SMatrix, SVector};
 use num_dual::Dual64;
 
 const STEPS: u64 = 12;
-const STEP: f64 = 0.02;
+pub(crate) const STEP: f64 = 0.02;
 /// Of the largest entry.
 const BOUND: f64 = 1e-13;
 
-/// A step with these numbers as dual numbers, of which one, if any, has a derivative.
+/// How attitude and momentum change, for each number that is varied.
 type Columns<const D: usize> = Vec<(SVector<f64, D>, SVector<f64, D>)>;
 
 /// The derivatives of the last state by dual numbers: along displacements at the start, by its momentum, by parameters.
@@ -76,7 +75,7 @@ pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
     let cotangents: Vec<Cotangent<SVector<f64, D>>> =
         (0..=STEPS).map(|_| Cotangent { attitude: random.sample(), momentum: random.sample() }).collect();
     let mut paired = vec![0.0; 2 * D + numbers.len()];
-    let mut add = |tangent: &liestep::motion::linearised::TangentOf<L>, cotangent: &Cotangent<SVector<f64, D>>| {
+    let mut add = |tangent: &TangentOf<L>, cotangent: &Cotangent<SVector<f64, D>>| {
         for (sum, (attitude, momentum)) in paired.iter_mut().zip(tangent.columns()) {
             *sum += attitude.dot(&cotangent.attitude) + momentum.dot(&cotangent.momentum);
         }
@@ -119,83 +118,3 @@ pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
         assert!(error <= BOUND * size, "{number}: {found} by the adjoint, {expected} by the tangent map");
     }
 }
-
-macro_rules! family {
-    ($module:ident: $group:ident, $n:literal, $vector:ident, $matrix:ident) => {
-        pub(crate) mod $module {
-            use super::*;
-            use liestep::groups::$group;
-
-            #[lagrangian(
-                        group = $group,
-                        advected(w = covector, v = vector, B = form),
-                        given(u = strength),
-                        gradients,
-                        l_d = {
-                            let d = F - I;
-                            let kinetic = (d * J * d.transpose()).trace() / (2.0 * h);
-                            let gauge = 0.3 * (A * d).trace() + 0.3 * w.dot(&(d * r)) + 0.3 * a[2] * w.dot(&(d * v));
-                            let forms = u * w.dot(&(A * w)) + a[0] * w.dot(&(F * r)).powi(2) + v.dot(&(B * v));
-                            let products = a[3] * (A * F).trace() * w.dot(&r) + a[1] * (A * inverse(F)).trace();
-                            let smooth = (w.dot(&(F * r)) + w.dot(&r)).sin() + (1.0 + (B * A).trace().powi(2)).sqrt();
-                            kinetic + gauge - 0.5 * h * (forms + products + smooth / (2.0 + (0.3 * w.dot(&r)).exp()))
-                        },
-                    )]
-            #[derive(Clone, Debug)]
-            pub(crate) struct Terms<T: RealField + Copy> {
-                J: $matrix<T>,
-                A: $matrix<T>,
-                r: $vector<T>,
-                a: Vector4<T>,
-                strength: T,
-                covector: $vector<T>,
-                vector: ContravariantVector<T, $n>,
-                form: CovariantTensor<T, $n>,
-            }
-
-            impl<T: RealField + Copy> Terms<T> {
-                /// The numbers of the seed, one of which may have a unit of its own.
-                fn random(seed: u64, varied: Option<(usize, T)>) -> Self {
-                    let mut random = Random::new(seed);
-                    let root: SMatrix<f64, $n, $n> = random.sample();
-                    let metric = SMatrix::identity() + root * root.transpose();
-                    let mut fixed = Vec::new();
-                    Entries::each(&metric, &mut |entry: f64| fixed.push(entry));
-                    let mut place = 0;
-                    let mut next = || {
-                        let number: T = nalgebra::convert(fixed.get(place).copied().unwrap_or_else(|| random.signed()));
-                        place += 1;
-                        varied.filter(|(number, _)| number + 1 == place).map_or(number, |(_, unit)| number + unit)
-                    };
-                    Self {
-                        J: Entries::from_entries(&mut next),
-                        A: Entries::from_entries(&mut next),
-                        r: Entries::from_entries(&mut next),
-                        a: Entries::from_entries(&mut next),
-                        strength: next(),
-                        covector: Entries::from_entries(&mut next),
-                        vector: Entries::from_entries(&mut next),
-                        form: Entries::from_entries(&mut next),
-                    }
-                }
-            }
-
-            #[test]
-            fn tangent_and_adjoint() {
-                for seed in 0..4 {
-                    let stepper = Stepper::new(Terms::<f64>::random(seed, None), STEP).expect("a stepper");
-                    let unit = Dual64::new(0.0, 1.0);
-                    let dual = |number: Option<usize>| {
-                        let terms = Terms::random(seed, number.map(|number| (number, unit)));
-                        Stepper::new(terms, STEP.into()).expect("a stepper")
-                    };
-                    assert_linearised(&stepper, dual, seed);
-                }
-            }
-        }
-    };
-}
-
-family!(so3: SO3, 3, Vector3, Matrix3);
-family!(se2: SE2, 3, Vector3, Matrix3);
-family!(sl2: SL2, 2, Vector2, Matrix2);

@@ -1,0 +1,48 @@
+//! The readings with their fit, and how a longer record tells more.
+
+use nalgebra::Vector3;
+use workbench::args::Failure;
+use workbench::plot::{BLUE, Drawn, GREEN, INK, Line, ORANGE, PURPLE, Panel, Vertical, heading, legend, px, render};
+
+use crate::READINGS;
+use crate::body::{STEP, measured, truth};
+use crate::fit::{Fitted, deviations};
+
+/// So much of the record, s: more would cover itself.
+const SHOWN: f64 = 4.0;
+
+pub(crate) fn picture(fits: &[Fitted]) -> Result<String, Failure> {
+    let first = fits.first().ok_or("no fit to draw")?;
+    let (read, fitted) = (measured(READINGS, 1)?, first.found.readings(READINGS, false)?);
+    let rates = |values: &[Vector3<f64>], component: usize| -> Vec<(f64, f64)> {
+        let timed = values.iter().enumerate().map(|(n, value)| ((n + 1) as f64 * STEP, value[component]));
+        timed.take_while(|(time, _)| *time <= SHOWN).collect()
+    };
+    let mut lines: Vec<Line> = Vec::new();
+    for component in 0..2 {
+        lines.push(Line { colour: [BLUE, GREEN][component], width: 2, points: rates(&read, component) });
+        lines.push(Line { colour: INK, width: 1, points: rates(&fitted, component) });
+    }
+    let records: Vec<usize> = (1..=20).map(|part| part * READINGS / 20).collect();
+    let mut spread = vec![Vec::new(); 4];
+    for count in records {
+        let deviations = deviations(&truth(), count)?;
+        for (line, number) in spread.iter_mut().zip([0, 1, 2, 3]) {
+            line.push((count as f64 * STEP, deviations[number]));
+        }
+    }
+    let colours = [BLUE, ORANGE, GREEN, PURPLE];
+    let spread = spread.into_iter().zip(colours).map(|(points, colour)| Line { colour, width: 3, points }).collect();
+    let drawn: Drawn<String> = render((1000, 420), |area| {
+        heading(area, "The inertia of a top from a gyroscope", "readings of seed 1, and what a record can tell")?;
+        let (_, body) = area.split_vertically(px(56));
+        let (left, right) = body.split_horizontally(px(500));
+        Panel::over_time("Ω1 (blue) and Ω2 (green), and the fit", "rad/s", Vertical::Linear, lines).draw(&left)?;
+        let names = "Standard deviation of what is fitted";
+        let panel = Panel { across: "record, s", ..Panel::over_time(names, "", Vertical::Logarithmic, spread) };
+        panel.draw(&right)?;
+        legend(&right, (250, 40), &[("ln J_d1", BLUE), ("ln J_d2", ORANGE)])?;
+        legend(&right, (250, 58), &[("ln J_d3", GREEN), ("rho 1, m", PURPLE)])
+    });
+    drawn
+}

@@ -1,0 +1,9 @@
+//! Tangent maps, adjoints and what is made of them.
+
+#![allow(non_snake_case)] // the letters of the field
+
+mod dual;
+mod exponents;
+mod random;
+mod scenes;
+mod structure;

@@ -1,0 +1,158 @@
+//! Sums of the library's effects, with a force, and the methods that are made of their steps.
+
+use liestep::effects::{Drag, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Sum};
+use liestep::methods::{CompositionScheme, SplittingScheme};
+use liestep::{SetupError, Stepper};
+use nalgebra::{Matrix3, RealField, Vector3};
+use num_dual::Dual64;
+
+use super::dual::{STEP, assert_linearised};
+
+const SEEDS: std::ops::Range<u64> = 0..2;
+
+/// The values, one of which may have a unit of its own; the entries of a matrix that is symmetric vary together.
+struct Numbers<T> {
+    next: usize,
+    varied: Option<(usize, T)>,
+}
+
+impl<T: RealField + Copy> Numbers<T> {
+    fn new(varied: Option<(usize, T)>) -> Self {
+        Self { next: 0, varied }
+    }
+
+    fn number(&mut self, value: f64) -> T {
+        self.next += 1;
+        let value: T = nalgebra::convert(value);
+        self.varied.filter(|(number, _)| number + 1 == self.next).map_or(value, |(_, unit)| value + unit)
+    }
+
+    fn vector(&mut self, x: f64, y: f64, z: f64) -> Vector3<T> {
+        Vector3::new(self.number(x), self.number(y), self.number(z))
+    }
+
+    fn symmetric(&mut self, value: &Matrix3<f64>) -> Matrix3<T> {
+        let rows = [0, 1, 2].map(|row| [0, 1, 2].map(|column| self.number(value[(row, column)])));
+        let matrix = Matrix3::from_fn(|row, column| rows[row][column]);
+        (matrix + matrix.transpose()) * nalgebra::convert::<f64, T>(0.5)
+    }
+
+    fn diagonal(&mut self, x: f64, y: f64, z: f64) -> Vector3<T> {
+        let first = self.next;
+        let moments = [x, y, z].map(|moment| nalgebra::convert::<f64, T>(moment));
+        self.next += 9;
+        Vector3::from_fn(|k, _| match self.varied {
+            Some((number, unit)) if number == first + 4 * k => moments[k] + unit,
+            _ => moments[k],
+        })
+    }
+}
+
+fn unit(number: Option<usize>) -> Option<(usize, Dual64)> {
+    number.map(|number| (number, Dual64::new(0.0, 1.0)))
+}
+
+const J_D: Matrix3<f64> = Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.6, 0.3, -0.1, 0.3, 2.4);
+
+type Damped<T> = Sum<Sum<Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>, Rotor<T>>, Drag<T>>;
+
+fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> Damped<T> {
+    let mut n = Numbers::new(varied);
+    let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_D)).expect("a body") };
+    let gravity = gravity(&mut n);
+    let spring = Spring {
+        k: n.number(1.5),
+        length: n.number(0.4),
+        at: n.vector(0.1, 0.5, -0.3),
+        anchor: n.vector(0.8, -0.2, 0.9),
+    };
+    let J = Matrix3::identity() * J_D.trace() - J_D;
+    let gradient = GravityGradient {
+        GM: n.number(0.7),
+        r: n.number(1.3),
+        J: Inertia::new(n.symmetric(&J)).expect("a body"),
+        direction: n.vector(0.6, 0.0, 0.8),
+    };
+    let rotor = Rotor { spin: n.vector(0.3, -0.2, 0.5) };
+    let drag = Drag { c: n.number(0.4), J: Inertia::new(n.symmetric(&J)).expect("a body") };
+    body + gravity + spring + gradient + rotor + drag
+}
+
+fn gravity<T: RealField + Copy>(n: &mut Numbers<T>) -> Gravity<T> {
+    let (m, g) = (n.number(1.2), n.number(9.81));
+    Gravity { m, g, rho: n.vector(0.3, 0.2, 0.4), up: n.vector(0.0, 0.6, 0.8) }
+}
+
+fn top<T: RealField + Copy>(varied: Option<(usize, T)>) -> Sum<PrincipalBody<T>, Gravity<T>> {
+    let mut n = Numbers::new(varied);
+    let J_d = DiagonalNonstandardInertia::from_diagonal(n.diagonal(2.0, 1.5, 1.0)).expect("a body");
+    PrincipalBody { J_d } + gravity(&mut n)
+}
+
+#[test]
+fn a_damped_scene() {
+    for seed in SEEDS {
+        let stepper = Stepper::new(damped::<f64>(None), STEP).expect("a stepper");
+        let dual = |number| Stepper::new(damped(unit(number)), STEP.into()).expect("a stepper");
+        assert_linearised(&stepper, dual, seed);
+    }
+}
+
+#[test]
+fn a_composition() {
+    let scheme = CompositionScheme::SUZUKI_4;
+    for seed in SEEDS {
+        let stepper = Stepper::composed(top::<f64>(None), STEP, scheme).expect("a stepper");
+        let dual = |number| Stepper::composed(top(unit(number)), STEP.into(), scheme).expect("a stepper");
+        assert_linearised(&stepper, dual, seed);
+    }
+}
+
+/// The flow's inertia is a parameter of its own, behind those of the scene: where both are varied, both derivatives add.
+#[test]
+fn a_splitting() {
+    let scheme = SplittingScheme::STRANG;
+    let split = |number: Option<usize>| {
+        // The scene's own inertia has to be the flow's to its rounding, which a dual number's value is.
+        let of_flow = number.filter(|&number| number >= 17).map(|number| number - 17);
+        let scene = top(unit(number.filter(|&number| number < 17)));
+        Stepper::split(scene, STEP.into(), top(unit(of_flow)).first, scheme).expect("a stepper")
+    };
+    for seed in SEEDS {
+        let scene = top::<f64>(None);
+        let stepper = Stepper::split(scene, STEP, scene.first, scheme).expect("a stepper");
+        assert_linearised(&stepper, split, seed);
+    }
+}
+
+#[test]
+fn parameters_have_their_fields_names() {
+    let stepper = Stepper::new(damped::<f64>(None), STEP).expect("a stepper");
+    let linear = stepper.linearised().expect("derivatives");
+    let parameters = linear.parameters();
+    assert_eq!(linear.numbers(1, "rho"), Some(11..14));
+    assert_eq!(linear.numbers(5, "c").map(|numbers| parameters[numbers.start].value), Some(0.4));
+    assert_eq!(linear.numbers(5, "rho"), None);
+    assert_eq!(linear.numbers(6, "c"), None);
+}
+
+#[test]
+fn a_force_gradient_is_refused() {
+    let scene = top::<f64>(None);
+    let stepper = Stepper::split(scene, STEP, scene.first, SplittingScheme::FORCE_GRADIENT_4).expect("a stepper");
+    assert_eq!(stepper.linearised().err(), Some(SetupError::NoSecondDerivatives));
+}
+
+/// Of a stepper of no step nothing changes, whatever the parameters.
+#[test]
+fn without_a_step_nothing_moves() {
+    let stepper = Stepper::new(top::<f64>(None), 0.0).expect("a stepper");
+    let linear = stepper.linearised().expect("derivatives");
+    let mut state =
+        stepper.start(liestep::SO3::from_matrix_unchecked(Matrix3::identity()), Vector3::x()).expect("a start");
+    let mut tangent = linear.tangent(&[0]);
+    let before: Vec<_> = tangent.columns().collect();
+    linear.step(&mut state, &mut tangent).expect("a step");
+    assert_eq!(before, tangent.columns().collect::<Vec<_>>());
+}

@@ -1,0 +1,81 @@
+//! What structure-preserving steps alone have: symplectic transition matrices, and adjoints by steps of `−h`.
+
+use liestep::effects::{Gravity, PrincipalBody};
+use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
+use liestep::motion::linearised::{Cotangent, Gradient, Tape};
+use liestep::{SO3, Stepper};
+use nalgebra::{SMatrix, Vector3};
+
+type Matrix6 = SMatrix<f64, 6, 6>;
+
+pub(crate) fn top() -> Sum<PrincipalBody, Gravity> {
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).expect("a body");
+    PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() }
+}
+
+fn start() -> (SO3, Vector3<f64>) {
+    (
+        SO3::from_matrix_unchecked(*nalgebra::Rotation3::new(Vector3::new(0.8, 0.0, 0.0)).matrix()),
+        Vector3::new(1.0, 6.0, 27.0),
+    )
+}
+
+/// `Ω(μ)` on `(ζ, δμ)`: `⟨δμ', ζ⟩ − ⟨δμ, ζ'⟩ + ⟨μ, [ζ, ζ']⟩`, up to a sign for all of it.
+fn form(momentum: &Vector3<f64>) -> Matrix6 {
+    let mut form = Matrix6::zeros();
+    form.fixed_view_mut::<3, 3>(0, 0).copy_from(&momentum.cross_matrix());
+    for k in 0..3 {
+        (form[(k, k + 3)], form[(k + 3, k)]) = (-1.0, 1.0);
+    }
+    form
+}
+
+#[test]
+fn the_transition_matrix_keeps_the_symplectic_form() {
+    let stepper = Stepper::new(top(), 0.01).expect("a stepper");
+    let linear = stepper.linearised().expect("derivatives");
+    let (attitude, momentum) = start();
+    let mut state = stepper.start_with_momentum(attitude, momentum).expect("a start");
+    let mut tangent = linear.tangent(&[]);
+    for _ in 0..1000 {
+        linear.step(&mut state, &mut tangent).expect("a step");
+    }
+    let [[a, b], [c, d]] = tangent.transition();
+    let mut transition = Matrix6::zeros();
+    for (place, block) in [((0, 0), a), ((0, 3), b), ((3, 0), c), ((3, 3), d)] {
+        transition.fixed_view_mut::<3, 3>(place.0, place.1).copy_from(&block);
+    }
+    let kept = transition.transpose() * form(&state.momentum()) * transition;
+    let defect = (kept - form(&momentum)).amax();
+    println!("defect {defect:e}, entries up to {:e}", transition.amax());
+    assert!(transition.amax() > 10.0 && defect < 1e-12, "{defect:e}");
+}
+
+/// A gradient by steps of `−h` and its distance from that by the tape, relative to the largest entry.
+fn parting(steps: u64) -> f64 {
+    let stepper = Stepper::new(top(), 0.01).expect("a stepper");
+    let linear = stepper.linearised().expect("derivatives");
+    let (attitude, momentum) = start();
+    let state = stepper.start_with_momentum(attitude, momentum).expect("a start");
+    let cost = |n: u64, motion: &liestep::motion::Motion<SO3, ((), Vector3<f64>)>| {
+        let height = Cotangent { attitude: -motion.advected().1.cross(&Vector3::z()), momentum: Vector3::z() };
+        if n == steps { height } else { Cotangent::zero() }
+    };
+    let taped = linear.adjoint(&mut { state }, steps, Tape::SquareRoot, cost).expect("a gradient");
+    let reversed = linear.backwards().expect("steps back").adjoint(&mut { state }, steps, cost).expect("a gradient");
+    let entries = |gradient: &Gradient<Vector3<f64>, f64>| -> Vec<f64> {
+        let start = gradient.start.attitude.iter().chain(gradient.start.momentum.iter());
+        start.chain(&gradient.parameters).copied().collect()
+    };
+    let (taped, reversed) = (entries(&taped), entries(&reversed));
+    let largest = taped.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    let error = taped.iter().zip(&reversed).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
+    println!("{steps} steps: {error:e} of {largest:e}");
+    error / largest
+}
+
+#[test]
+fn steps_back_give_the_gradient_of_the_tape() {
+    assert!(parting(1_000) < 1e-12);
+    assert!(parting(100_000) < 1e-10);
+}
