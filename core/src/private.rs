@@ -13,8 +13,8 @@ pub use crate::groups::{CayleyRetraction, Retraction};
 pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor};
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
-    Blocks, ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Operations, Parts,
-    Residual, SceneVisitor, SecondDerivatives, SharedBy, Sum, WithKinetic, WithoutKinetic,
+    ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Operations, Parts, Residual,
+    SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, WithKinetic, WithoutKinetic,
 };
 pub use crate::numbers::{InLanes, Lanes, Real, real};
 

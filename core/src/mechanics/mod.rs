@@ -29,6 +29,6 @@ pub use kinetic_part::{KineticPart, WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;
-pub use second_derivatives::{Blocks, SecondDerivatives};
+pub use second_derivatives::{SecondDerivatives, StepDerivatives};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};

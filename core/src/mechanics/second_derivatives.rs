@@ -35,7 +35,12 @@ pub trait SecondDerivatives: Effect {
     const PARAMETERS: usize;
 
     /// The derivatives along turns and displacements; `increment` is `F − I`.
-    fn blocks(&self, increment: &Matrix<Self>, w: &Self::Advected, h: Scalar<Self>) -> Blocks<Square<Self>>;
+    fn step_derivatives(
+        &self,
+        increment: &Matrix<Self>,
+        w: &Self::Advected,
+        h: Scalar<Self>,
+    ) -> StepDerivatives<Square<Self>>;
 
     /// The derivatives of `μ` and `μ⁺` by the scalars of the parameters, as [`describe`](Effect::describe) numbers them,
     /// at fixed `w`; what isn't visited is zero.
@@ -66,7 +71,7 @@ pub trait SecondDerivatives: Effect {
 /// The derivatives of the momenta `μ` and `μ⁺` along turns `ε` and displacements `ζ`: entry `(k, j)` of each is that of
 /// component `k` along `E_j`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Blocks<M> {
+pub struct StepDerivatives<M> {
     /// `∂μ/∂ε`, the exact Newton Jacobian [`momentum_jacobian`](Effect::momentum_jacobian).
     pub start_by_turn: M,
     /// `∂μ⁺/∂ε`.
@@ -77,7 +82,7 @@ pub struct Blocks<M> {
     pub end_by_place: M,
 }
 
-impl<M: Add<Output = M>> Add for Blocks<M> {
+impl<M: Add<Output = M>> Add for StepDerivatives<M> {
     type Output = Self;
 
     #[inline(always)]
@@ -99,8 +104,13 @@ where
     const PARAMETERS: usize = A::PARAMETERS + B::PARAMETERS;
 
     #[inline(always)]
-    fn blocks(&self, increment: &Matrix<Self>, w: &Self::Advected, h: Scalar<Self>) -> Blocks<Square<Self>> {
-        self.first.blocks(increment, &w.0, h) + self.second.blocks(increment, &w.1, h)
+    fn step_derivatives(
+        &self,
+        increment: &Matrix<Self>,
+        w: &Self::Advected,
+        h: Scalar<Self>,
+    ) -> StepDerivatives<Square<Self>> {
+        self.first.step_derivatives(increment, &w.0, h) + self.second.step_derivatives(increment, &w.1, h)
     }
 
     #[inline(always)]

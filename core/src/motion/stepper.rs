@@ -204,7 +204,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
         let mut next = state.motion;
         let mut kept = part.keep(scene, &next);
-        rare_step(&part, scene, &mut next, &mut kept).map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
+        rare_step(&part, scene, &mut next, &mut kept)
+            .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
         next.steps = state.steps;
         Ok(next)
     }

@@ -23,7 +23,7 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
     let ends = emitter.derived.ends.as_ref()?;
     let mut linearisation = Linearisation::new(emitter.derived, ends);
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
-    let blocks = blocks(emitter, &mut linearisation);
+    let blocks = step_derivatives(emitter, &mut linearisation);
     let parameters = by_parameters(emitter, &mut linearisation);
     let advected = by_advected(emitter, &mut linearisation);
     let (usize, count) = (quote_spanned!(span=> #private::core::primitive::usize), parameter_count(emitter));
@@ -39,7 +39,7 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
             const PARAMETERS: #usize = #count;
 
             #[inline(always)]
-            fn blocks(&self, increment: &#matrix, w: &Self::Advected, h: #scalar) -> #private::Blocks<#square> {
+            fn step_derivatives(&self, increment: &#matrix, w: &Self::Advected, h: #scalar) -> #private::StepDerivatives<#square> {
                 #blocks
             }
 
@@ -60,7 +60,7 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
     })
 }
 
-fn blocks(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
+fn step_derivatives(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
     let [[start_by_turn, end_by_turn], [start_by_place, end_by_place]] = linearisation.blocks();
     let all = [start_by_turn, end_by_turn, start_by_place, end_by_place];
     let (lets, values) = statements(emitter, linearisation, &all.concat());
@@ -72,7 +72,7 @@ fn blocks(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
         let name = syn::Ident::new(name, span);
         quote_spanned!(span=> #name: #block)
     });
-    quote_spanned!(span=> #lets #private::Blocks { #(#fields),* })
+    quote_spanned!(span=> #lets #private::StepDerivatives { #(#fields),* })
 }
 
 /// The `let`s of these outputs, and what they are made of.

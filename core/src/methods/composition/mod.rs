@@ -8,7 +8,7 @@ use crate::error::{SetupError, StepError};
 use crate::mechanics::{
     DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector,
 };
-use crate::motion::linearised::{Event, Linearisable, Pass, Stage as Linear};
+use crate::motion::linearised::{Change, Linearisable, Pass, Stage as Linear};
 use crate::motion::{
     Cost, Declared, Motion, Plan, Steerable, StepReport, Stepped, Stepper, Summation, beyond_solvable, half_coordinates,
 };
@@ -238,7 +238,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
     }
 
     #[inline(always)]
-    fn visit(&self, scene: &S, index: usize, event: &Event<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
+    fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
         if let Some(substep) = self.stages.get(index).and_then(|stage| self.substeps.get(stage.substep)) {
             pass.stage(&Linear::step(scene, substep.step_size(), event, event.before.advected));
         }

@@ -4,7 +4,7 @@ use super::{Flow, KineticFlow, Split};
 use crate::error::SetupError;
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::linearised::{Event, Linearisable, Pass, Stage};
+use crate::motion::linearised::{Change, Linearisable, Pass, Stage};
 use crate::numbers::{Real, real};
 
 /// A kinetic flow that can be differentiated: one that is declared with `gradients`.
@@ -61,7 +61,7 @@ where
         &self,
         scene: &S,
         index: usize,
-        event: &Event<SO3<Scalar<S>>, S::Advected>,
+        event: &Change<SO3<Scalar<S>>, S::Advected>,
         pass: &mut impl Pass<SO3<Scalar<S>>>,
     ) {
         let mut before = 0;

@@ -5,7 +5,7 @@ use core::cell::RefCell;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
-use crate::motion::linearised::recorded::Event;
+use crate::motion::linearised::recorded::Change;
 use crate::motion::linearised::stage::{Cotangent, GradientSum, Pass, Stage};
 use crate::motion::linearised::{Linearisable, Linearised};
 use crate::motion::stepper::{StateOf, Stepper};
@@ -219,7 +219,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
             let after = made.iter().skip(1).map(|event| event.before).chain([now.motion]).collect::<Vec<_>>();
             for ((index, event), after) in made.drain(..).enumerate().zip(after) {
                 let increment = Group::<S>::from_increment(&event.increment).inverse().increment();
-                let undone = Event { before: after, increment };
+                let undone = Change { before: after, increment };
                 forwards.stepper.plan.visit(&forwards.stepper.scene, index, &undone, &mut back);
             }
             back.add(&cost(n, &now.motion));

@@ -77,7 +77,7 @@ mod stage;
 mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
-pub use recorded::Event;
+pub use recorded::Change;
 pub use stage::{Cotangent, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
@@ -122,7 +122,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     fn stages(&self) -> usize;
 
     /// Shows the stage that has made the change of this number to a pass.
-    fn visit(&self, scene: &S, index: usize, event: &Event<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
+    fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
 }
 
 impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
@@ -131,7 +131,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
     }
 
     #[inline(always)]
-    fn visit(&self, scene: &S, _: usize, event: &Event<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
+    fn visit(&self, scene: &S, _: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
         pass.stage(&Stage::step(scene, self.step_size(), event, event.before.advected));
     }
 }
@@ -248,7 +248,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     fn recorded(
         &self,
         state: &mut StateOf<S, P>,
-        events: &RefCell<Vec<Event<Group<S>, S::Advected>>>,
+        events: &RefCell<Vec<Change<Group<S>, S::Advected>>>,
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
         let mut recorded = Recorded { motion: state.motion, events };

@@ -8,7 +8,7 @@ use crate::numbers::zero;
 
 /// One change that a plan has made: a turn, a push, or both.
 #[derive(Clone, Copy, Debug)]
-pub struct Event<G: LieGroup, A> {
+pub struct Change<G: LieGroup, A> {
     /// The motion before.
     pub(crate) before: Motion<G, A>,
     /// `F − I`; of a push zero.
@@ -19,13 +19,13 @@ pub struct Event<G: LieGroup, A> {
 #[derive(Clone, Copy)]
 pub(super) struct Recorded<'a, G: LieGroup, A> {
     pub(super) motion: Motion<G, A>,
-    pub(super) events: &'a RefCell<Vec<Event<G, A>>>,
+    pub(super) events: &'a RefCell<Vec<Change<G, A>>>,
 }
 
 impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
     #[inline(always)]
     fn note(&self, increment: G::Matrix) {
-        self.events.borrow_mut().push(Event { before: self.motion, increment });
+        self.events.borrow_mut().push(Change { before: self.motion, increment });
     }
 }
 

@@ -1,8 +1,8 @@
 //! The tangent map of one stage and its transpose.
 
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{Blocks, Effect, Group, Matrix, Scalar, SecondDerivatives, Square, Vector};
-use crate::motion::linearised::recorded::Event;
+use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
+use crate::motion::linearised::recorded::Change;
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
 
 /// One stage of a step, which an effect has made: what is differentiated.
@@ -27,13 +27,13 @@ enum Kind<T> {
 
 impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// The effect's own step of length `h`; the numbers of its parameters begin at `first`.
-    pub(crate) fn step<A>(effect: &'a E, h: Scalar<E>, event: &Event<Group<E>, A>, advected: E::Advected) -> Self {
+    pub(crate) fn step<A>(effect: &'a E, h: Scalar<E>, event: &Change<Group<E>, A>, advected: E::Advected) -> Self {
         let (attitude, increment) = (event.before.attitude, event.increment);
         Self { effect, kind: Kind::Step(h), attitude, advected, increment, first: 0 }
     }
 
     /// The kick of its potential.
-    pub(crate) fn kick(effect: &'a E, time: Scalar<E>, event: &Event<Group<E>, E::Advected>) -> Self {
+    pub(crate) fn kick(effect: &'a E, time: Scalar<E>, event: &Change<Group<E>, E::Advected>) -> Self {
         let (attitude, advected) = (event.before.attitude, event.before.advected);
         Self { effect, kind: Kind::Kick(time), attitude, advected, increment: zero(), first: 0 }
     }
@@ -50,11 +50,11 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
             // Without a step nothing moves.
             Kind::Step(h) if h == real(0.0) => Map::Nothing,
             Kind::Step(h) => {
-                let blocks = self.effect.blocks(&self.increment, &self.advected, h);
+                let blocks = self.effect.step_derivatives(&self.increment, &self.advected, h);
                 Map::Step(blocks, Group::<E>::from_increment(&self.increment).inverse())
             }
             Kind::Kick(time) => {
-                let blocks = self.effect.blocks(&self.increment, &self.advected, real(1.0));
+                let blocks = self.effect.step_derivatives(&self.increment, &self.advected, real(1.0));
                 let slope = blocks.end_by_place + blocks.start_by_place * real::<Scalar<E>>(-1.0);
                 Map::Kick(slope * time)
             }
@@ -182,7 +182,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
 pub(super) enum Map<E: Effect> {
     Nothing,
     /// `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`, with `F⁻¹`.
-    Step(Blocks<Square<E>>, Group<E>),
+    Step(StepDerivatives<Square<E>>, Group<E>),
     /// `δμ⁺ = δμ + S ζ`.
     Kick(Square<E>),
 }

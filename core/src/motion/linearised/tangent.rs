@@ -4,7 +4,7 @@ use core::cell::RefCell;
 
 use crate::groups::LieGroup;
 use crate::mechanics::{Effect, Group, SecondDerivatives, Vector};
-use crate::motion::linearised::recorded::Event;
+use crate::motion::linearised::recorded::Change;
 use crate::motion::linearised::stage::{Map, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
 use nalgebra::SimdComplexField as _;
@@ -22,7 +22,7 @@ pub struct Tangent<G: LieGroup, A> {
     /// The parameters' shares in a stage, by their numbers.
     shares: Vec<(G::Vector, G::Vector)>,
     /// The stages of the last step; the memory is used again.
-    pub(super) events: RefCell<Vec<Event<G, A>>>,
+    pub(super) events: RefCell<Vec<Change<G, A>>>,
 }
 
 /// A direction, and the parameter that moves with it.
