@@ -3,6 +3,7 @@
 
 mod attitudes;
 mod chain;
+mod declared;
 
 use liestep::SO3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
