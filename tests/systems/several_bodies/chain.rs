@@ -1,4 +1,4 @@
-//! Three links on ball joints from a fixed pivot, in the minimal form on SO(3)³: Lee, Leok and McClamroch (2008).
+//! Three links on ball joints from a fixed pivot, in the minimal form on SO(3)³.
 //!
 //! ```text
 //! l_d = Σ tr((F_a − I) J_a (F_a − I)ᵀ)/2h + Σ_{a<b} x_a·Q_ab y_b/h − (h/2) g Σ w_a·(s_a + F_a s_a)

@@ -121,14 +121,15 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
             errors.push_decisive(increment.span(), message);
             break;
         }
-        if named.built_in().is_none_or(|group| !group.is_so3) {
+        let is_known = named.built_in().is_some_and(|group| group.is_so3);
+        if !is_known {
             let message = "bodies that are declared together turn by `SO3`: of other products write the \
                            `DiscreteLagrangian` by hand";
             errors.push_over(&named.path, message);
         }
         // After a mistake, too, so that the rest can be checked.
         groups.extend(built_in("SO3"));
-        factors.push(Factor { name, place: increment.span(), path: Some(named.path) });
+        factors.push(Factor { name, place: increment.span(), path: is_known.then_some(named.path) });
     }
     (factors, Group::product(groups))
 }
