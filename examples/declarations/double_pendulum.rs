@@ -3,7 +3,8 @@
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A double pendulum of two rigid links: a ball joint at a fixed pivot, and one between them. The mass of the lower link counts at its joint, in `J_1` and `s_1`; `s_2` is the first moment of the lower one.
+/// A double pendulum of two rigid links: a ball joint at a fixed pivot, and one between them. The mass of the lower link
+/// counts at its joint, in `J_1` and `s_1`; `s_2` is the first moment of the lower one.
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),

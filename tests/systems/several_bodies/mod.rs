@@ -11,6 +11,9 @@ use serde_json::Value;
 
 use declarations::motions::{matrix, vector};
 
+/// Attitude and body velocity of one body.
+type End = (Matrix3<f64>, Vector3<f64>);
+
 /// `(M − Mᵀ)^∨`, twice the components of the skew part.
 fn twice_vee(m: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(m.m32 - m.m23, m.m13 - m.m31, m.m21 - m.m12)
