@@ -9,14 +9,14 @@ pub use liestep_macros::{force, lagrangian, matrix_group};
 // What a declaration becomes.
 pub use crate::error::SetupError;
 pub use crate::groups::rotation_functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
-pub use crate::groups::{CayleyRetraction, Retraction};
+pub use crate::groups::{CayleyRetraction, Configuration, Relative, Retraction, SeenFrom};
 pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor};
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
     ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Operations, Parts, Residual,
     SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, WithKinetic, WithoutKinetic,
 };
-pub use crate::numbers::{InLanes, Lanes, Real, real};
+pub use crate::numbers::{Blocks, InLanes, Lanes, Real, real};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 

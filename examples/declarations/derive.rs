@@ -32,7 +32,7 @@ const fn continuous<L: ContinuousLagrangian>(name: &'static str, about: &'static
 }
 
 /// All of them; a new one is one line.
-const LAGRANGIANS: [Shown; 19] = [
+const LAGRANGIANS: [Shown; 21] = [
     shown::<declarations::HeavyTop>("heavy-top", "(3.13) in principal axes: μ is (3.17), (L_F)* δl_d/δF is (3.18)"),
     shown::<declarations::ContinuousTop>("continuous-top", "l(Ω, w) of section 3.2, of which (3.13) is made"),
     shown::<declarations::FullTop>("full-top", "(3.13) with a full inertia tensor"),
@@ -47,6 +47,8 @@ const LAGRANGIANS: [Shown; 19] = [
     shown::<declarations::Satellite>("satellite", "attitude in the gravity of a near centre"),
     shown::<declarations::OrbitingBody>("orbiting-body", "orbit and attitude on SE(3)"),
     shown::<declarations::Spring>("spring", "a body tied to a fixed point"),
+    shown::<declarations::SlidingTop>("sliding-top", "a top on a smooth plane, whose inertia depends on how it stands"),
+    shown::<declarations::DoublePendulum>("double-pendulum", "two links on ball joints"),
     shown::<declarations::Magnet>("magnet", "a magnet in a field with a gradient"),
     shown::<declarations::UnderwaterBody>("underwater-body", "Kirchhoff's body on SE(3) with added mass"),
     shown::<declarations::TetheredPlate>("tethered-plate", "a plate on a spring, SE(2)"),

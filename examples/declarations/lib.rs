@@ -8,6 +8,7 @@
 
 mod cayley_top;
 mod continuous_top;
+mod double_pendulum;
 mod elastic_flow;
 mod flyer;
 mod fourth_order_top;
@@ -30,6 +31,7 @@ mod underwater_body;
 
 pub use cayley_top::CayleyTop;
 pub use continuous_top::ContinuousTop;
+pub use double_pendulum::DoublePendulum;
 pub use elastic_flow::ElasticFlow;
 pub use flyer::{FluidDrag, Flyer, Thruster};
 pub use fourth_order_top::FourthOrderTop;

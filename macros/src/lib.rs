@@ -22,6 +22,7 @@ mod program;
 ///     group = SO3,                    the group that F belongs to
 ///     generators = […],               its generators, row by row, if it is a group of your own; of one that
 ///                                     `matrix_group!` declares, `group = Name!` finds them
+///     group(F_1 = SO3, F_2 = SO3, …), or the increments of two to four bodies that turn
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     given(u = torque, …),           u is the field `torque` until a step is given another value; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
@@ -41,6 +42,21 @@ mod program;
 /// vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a field or of `F`. A large Lagrangian
 /// is best written with `let`s: what isn't cheaper multiplied out is differentiated through them, by multipliers.
 ///
+/// # Several bodies
+///
+/// With `group(F_1 = SO3, F_2 = SO3)` the expression is in the increments of both, and each parameter says who sees it:
+///
+/// | `advected(…)` | | `f⁻¹ · w` |
+/// |---|---|---|
+/// | `w = up.seen_from(F_1)` | the field `up`, as the body of `F_1` sees it | `F_1ᵀ w` |
+/// | `Q = F_2.seen_from(F_1)` | `g_1⁻¹ g_2`: `Q` brings a vector from the second body to the first | `F_1⁻¹ Q F_2` |
+/// | `R = F_2.seen_from(space)` | `g_2` itself | `R F_2` |
+///
+/// Vectors of two bodies meet by `Q`, as in `x.dot(&(Q * y))`. The states are tuples: `stepper.start((R_1, R_2), …)`, with
+/// the components of both velocities one after the other, and `state.momentum_of::<1>()` is the momentum of the second.
+/// What they conserve together, and whether a step solves them together, is in the documentation of the struct. They have
+/// no `ContinuousLagrangian`. `examples/declarations/double_pendulum.rs` is one.
+///
 /// # Continuous Lagrangians
 ///
 /// In `l = …` the velocity `ξ = g⁻¹ġ` is in scope by the name that `velocity` gives it, a vector with a component for each
@@ -55,9 +71,8 @@ mod program;
 /// | `midpoint(exp)` | `h l(ξ, exp(−hξ/2)·w)` | `hξ = log F` |
 /// | `chord`, `chord(Cayley)`, `chord(exp)` | `h l(ξ, (w + F⁻¹·w)/2)` | as for the trapezoid |
 ///
-/// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. A step needs one inertia, so a
-/// `discretise`d `l` is quadratic in the velocity, and its second derivative doesn't depend on what is advected. For the
-/// matrix `(F − I)/h` the velocity stands as `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A
+/// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. A step needs one inertia for
+/// all velocities, so a `discretise`d `l` is quadratic in the velocity. For the matrix `(F − I)/h` the velocity stands as `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A
 /// logarithm is known on SO(3) and where all generators are strictly triangular. A declared `l_d` has the continuous
 /// equations of its limit.
 ///

@@ -64,8 +64,9 @@ pub trait SecondDerivatives: Effect {
         visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>),
     );
 
-    /// Visits, for each scalar of [`advected`](Effect::advected), its number among the parameters.
-    fn carried_parameters(visit: &mut dyn FnMut(usize));
+    /// Visits each scalar of [`advected`](Effect::advected) that is a parameter: its number there, and that among the
+    /// parameters. A field that is advected under two names is visited for each.
+    fn carried_parameters(w: &Self::Advected, visit: &mut dyn FnMut(usize, usize));
 }
 
 /// The derivatives of the momenta `μ` and `μ⁺` along turns `ε` and displacements `ζ`: entry `(k, j)` of each is that of
@@ -141,8 +142,10 @@ where
         self.second.by_advected(increment, &w.1, h, &mut |number, start, end| visit(before + number, start, end));
     }
 
-    fn carried_parameters(visit: &mut dyn FnMut(usize)) {
-        A::carried_parameters(visit);
-        B::carried_parameters(&mut |number| visit(A::PARAMETERS + number));
+    fn carried_parameters(w: &Self::Advected, visit: &mut dyn FnMut(usize, usize)) {
+        let mut before = 0;
+        w.0.each(&mut |_| before += 1);
+        A::carried_parameters(&w.0, visit);
+        B::carried_parameters(&w.1, &mut |place, number| visit(before + place, A::PARAMETERS + number));
     }
 }

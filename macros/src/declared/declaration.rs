@@ -5,6 +5,7 @@ use syn::ext::IdentExt as _;
 use syn::{Expr, Ident, ItemStruct, Path};
 
 use super::Shape;
+use crate::mathematics::derive::Seen;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::Variance;
 
@@ -65,9 +66,9 @@ pub(crate) struct Declaration {
     pub(crate) item: ItemStruct,
     /// Where liestep is found, if not at `::liestep`.
     pub(crate) root: Option<Path>,
-    /// The group's name as written; `None` after a mistake.
-    pub(crate) group_path: Option<Path>,
     pub(crate) group: Group,
+    /// The increments, one for each factor of the group.
+    pub(crate) factors: Vec<Factor>,
     pub(crate) advected: Vec<AdvectedParameter>,
     /// The Lagrangian, or the virtual work of a force; `None` where a mistake elsewhere hides what it means.
     pub(crate) expression: Option<Expr>,
@@ -79,6 +80,15 @@ pub(crate) struct Declaration {
     /// The fields whose type has no meaning.
     pub(crate) unreadable: Vec<String>,
     pub(crate) scalar: Scalar,
+}
+
+/// An increment: `F`, or one of those that `group(F_1 = SO3, …)` names.
+pub(crate) struct Factor {
+    /// Without `r#`.
+    pub(crate) name: String,
+    pub(crate) place: Span,
+    /// The group's name as written; `None` after a mistake.
+    pub(crate) path: Option<Path>,
 }
 
 /// What belongs to `l = …`.
@@ -127,6 +137,8 @@ pub(crate) struct AdvectedParameter {
     pub(crate) field: Option<usize>,
     /// Whether it is a value of the step, which the group doesn't move: `given(…)`.
     pub(crate) is_given: bool,
+    /// Which bodies move it.
+    pub(crate) seen: Seen,
 }
 
 impl AdvectedParameter {
@@ -149,8 +161,13 @@ impl Declaration {
 
     /// What an advected parameter's field promises; a plain vector after a mistake.
     pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
-        let size = self.group.size;
         let parameter = self.advected.get(index);
+        let size = |factor: usize| self.group.factors().get(factor).map_or(self.group.size, |factor| factor.size);
+        let size = match parameter.map(|w| w.seen) {
+            Some(Seen::Relative { of, .. } | Seen::Configuration(of)) => return FieldKind::Configuration(size(of)),
+            Some(Seen::From(factor)) => size(factor),
+            None => self.group.size,
+        };
         let field = parameter.and_then(|w| self.fields.get(w.field?));
         if parameter.is_some_and(|w| w.is_given) {
             return FieldKind::Given(field.map_or(Shape::Scalar, |field| field.kind.shape()));
@@ -187,6 +204,8 @@ pub(crate) enum FieldKind {
     Matrix(usize),
     /// An advected parameter with its kind in its type.
     Advected(Variance, usize),
+    /// A body as another sees it, or as it is in space; rows.
+    Configuration(usize),
     /// A value of the step: as a field it is a scalar, a vector or a matrix.
     Given(Shape),
     /// `NonstandardInertia`, `Inertia`.
@@ -201,7 +220,7 @@ impl FieldKind {
         match self {
             Self::Advected(variance, _) => variance,
             Self::Point(_) => Variance::Vector,
-            Self::Given(_) => Variance::Fixed,
+            Self::Given(_) | Self::Configuration(_) => Variance::Fixed,
             _ => Variance::Covector,
         }
     }
@@ -227,7 +246,7 @@ impl FieldKind {
             Self::Given(shape) => shape,
             Self::Vector(rows) | Self::Point(rows) => Shape::Matrix(rows, 1),
             Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
-            Self::Matrix(rows) => Shape::Matrix(rows, rows),
+            Self::Matrix(rows) | Self::Configuration(rows) => Shape::Matrix(rows, rows),
             Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
         }
     }

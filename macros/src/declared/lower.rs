@@ -8,9 +8,9 @@ use syn::ext::IdentExt as _;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{
-    Declared, DeclaredContinuous, Displacements, Let, hat, linear_forms, matrix_symbol, unit,
+    Carried, Declared, DeclaredContinuous, Displacements, Let, hat, linear_forms, matrix_symbol, unit,
 };
-use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance, stage_of};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
@@ -43,13 +43,16 @@ pub(crate) fn readings_without(
 ) -> Option<Vec<Lowered>> {
     let mut symbols = Symbols::default();
     let mut names = BTreeMap::new();
-    let size = declaration.group.size;
-    let structure = if declaration.group.orthogonal { Structure::Rotation } else { Structure::General };
     let step = symbols.add("h", (1, 1), Structure::General, Stage::Construction);
-    let structure = weaker(Name::Increment, structure);
-    let increment = symbols.add("F", (size, size), structure, Stage::Iteration);
     names.insert(Name::Step, step);
-    names.insert(Name::Increment, increment);
+    let mut increments = Vec::new();
+    for (index, (factor, group)) in declaration.factors.iter().zip(declaration.group.factors()).enumerate() {
+        let structure = if group.orthogonal { Structure::Rotation } else { Structure::General };
+        let structure = weaker(Name::Increment(index), structure);
+        let increment = symbols.add(factor.name.clone(), (group.size, group.size), structure, Stage::Iteration);
+        names.insert(Name::Increment(index), increment);
+        increments.push(increment);
+    }
     let advected = parameters(declaration, weaker, &mut symbols, &mut names);
     let displacements = (declaration.role == Role::Force).then(|| {
         let mut displacement = |name: &str, place| {
@@ -65,10 +68,11 @@ pub(crate) fn readings_without(
         Lowering { symbols, names: &names, known, lets, velocity_matrix: None }.whole(tree)
     };
     let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
-        let (group, advected, names) = (declaration.group.clone(), advected.clone(), names.clone());
+        let (group, increments) = (declaration.group.clone(), increments.clone());
+        let (advected, names) = (advected.clone(), names.clone());
         let has_gradients = declaration.gradients.is_some();
         let declared =
-            Declared { group, symbols, lets, expression, increment, step, advected, displacements, has_gradients };
+            Declared { group, symbols, lets, expression, increments, step, advected, displacements, has_gradients };
         Lowered { declared, names }
     };
     let multiplied_out = attempt(None);
@@ -95,6 +99,7 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let advected = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let name = declaration.velocity().map_or_else(|| "ξ".to_owned(), |name| name.unraw().to_string());
+    let advected = advected.iter().map(|w| (w.symbol, w.variance)).collect();
     let velocity = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
     names.insert(Name::Velocity, velocity);
     let group = declaration.group.clone();
@@ -119,7 +124,7 @@ fn parameters(
     weaker: &dyn Fn(Name, Structure) -> Structure,
     symbols: &mut Symbols,
     names: &mut BTreeMap<Name, SymbolId>,
-) -> Vec<(SymbolId, Variance)> {
+) -> Vec<Carried> {
     for (index, field) in declaration.fields.iter().enumerate() {
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
@@ -127,7 +132,7 @@ fn parameters(
                 (ambient(field.kind.shape()), Structure::General)
             }
             FieldKind::Point(rows) => ((rows, 1), Structure::Point),
-            FieldKind::Matrix(rows) => ((rows, rows), Structure::General),
+            FieldKind::Matrix(rows) | FieldKind::Configuration(rows) => ((rows, rows), Structure::General),
             FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
         };
@@ -139,11 +144,15 @@ fn parameters(
     for (index, w) in declaration.advected.iter().enumerate() {
         let kind = declaration.advected_kind(index);
         let shape = ambient(kind.shape());
-        let structure = if matches!(kind, FieldKind::Point(_)) { Structure::Point } else { Structure::General };
+        let structure = match kind {
+            FieldKind::Point(_) => Structure::Point,
+            FieldKind::Configuration(_) if declaration.group.orthogonal => Structure::Rotation,
+            _ => Structure::General,
+        };
         let structure = weaker(Name::Advected(index), structure);
-        let id = symbols.add(w.plain_name(), shape, structure, Stage::Step);
-        names.insert(Name::Advected(index), id);
-        advected.push((id, kind.variance()));
+        let symbol = symbols.add(w.plain_name(), shape, structure, Stage::Step);
+        names.insert(Name::Advected(index), symbol);
+        advected.push(Carried { symbol, variance: kind.variance(), seen: w.seen });
     }
     advected
 }

@@ -16,7 +16,8 @@ mod spelling;
 mod tree;
 
 pub(crate) use declaration::{
-    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Field, FieldKind, Quadrature, Role, Scalar,
+    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature,
+    Role, Scalar,
 };
 pub(crate) use spelling::Spelling;
 pub(crate) use tree::{Kind, Name, Shape, Tree};

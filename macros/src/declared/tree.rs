@@ -69,8 +69,8 @@ impl Tree {
 /// A name in scope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Name {
-    /// `F`.
-    Increment,
+    /// `F`, of one factor of the group.
+    Increment(usize),
     /// `h`.
     Step,
     /// The components of the velocity in a continuous Lagrangian.

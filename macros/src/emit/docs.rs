@@ -2,7 +2,7 @@
 
 use crate::declared::Declaration;
 use crate::judged::{Chosen, Equations, Findings};
-use crate::mathematics::derive::{Declared, Derived, SelfAdjointness};
+use crate::mathematics::derive::{Declared, Derived, Seen, SelfAdjointness};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
@@ -47,7 +47,7 @@ pub(super) fn lets(derived: &Derived) -> String {
 /// The equations of a declaration, in the order of the thesis.
 pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Option<&Equations>) -> Vec<Equation> {
     let symbols = &derived.symbols;
-    let covector = |expression| covector_text(expression, derived.directions.first, symbols);
+    let covector = |expression| covectors(derived, expression);
     let scalar = |expression| text(expression, symbols);
     let equation = Equation::new;
     let mut equations = vec![
@@ -76,6 +76,19 @@ pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Opti
     equations
 }
 
+/// A covector; of several bodies that of each.
+fn covectors(derived: &Derived, expression: &crate::mathematics::symbolic::Expression) -> String {
+    let (symbols, factors) = (&derived.symbols, &derived.directions.factors);
+    let of_factor = |first| {
+        let own = expression.filtered(|monomial| crate::mathematics::symbolic::monomial_contains(monomial, first));
+        covector_text(&own, first, symbols)
+    };
+    match factors.as_slice() {
+        [one] => covector_text(expression, one.first, symbols),
+        factors => factors.iter().map(|one| of_factor(one.first)).collect::<Vec<_>>().join(";  "),
+    }
+}
+
 /// A longer flow on increments is the equation of two terms that are in print.
 const LONGEST: usize = 1_500;
 
@@ -97,7 +110,7 @@ fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
 /// The equations of a force.
 pub(super) fn equations_of_force(derived: &Derived, declared: &Declared) -> Vec<Equation> {
     let symbols = &derived.symbols;
-    let covector = |expression| covector_text(expression, derived.directions.first, symbols);
+    let covector = |expression| covectors(derived, expression);
     let equation = Equation::new;
     let (work, jacobian) = (text(&declared.expression, symbols), text(&derived.jacobian, symbols));
     vec![
@@ -170,13 +183,26 @@ pub(super) fn costs(kernel: &Kernel) -> String {
 
 /// The group, and how it moves the advected parameters.
 pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
-    let group = declaration
-        .group_path
-        .as_ref()
-        .and_then(|path| path.segments.last())
-        .map(|segment| segment.ident.to_string())
-        .unwrap_or_default();
+    let names = declaration.factors.iter().map(|factor| {
+        let segment = factor.path.as_ref().and_then(|path| path.segments.last());
+        segment.map(|segment| segment.ident.to_string()).unwrap_or_default()
+    });
+    let group = names.collect::<Vec<_>>().join(" × ");
+    let is_product = declaration.group.is_product();
+    let increment = |factor: usize| declaration.factors.get(factor).map_or("F", |factor| factor.name.as_str());
     let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
+        let name = w.plain_name();
+        let f = match w.seen {
+            Seen::From(factor) => increment(factor),
+            Seen::Relative { of, from } => {
+                let (of, from) = (increment(of), increment(from));
+                return format!("    {name}⁺ = {from}⁻¹ {name} {of}: the body of {of} as that of {from} sees it\n");
+            }
+            Seen::Configuration(of) => {
+                let of = increment(of);
+                return format!("    {name}⁺ = {name} {of}: the body of {of} as it is in space\n");
+            }
+        };
         let (space, moved) = match declaration.advected_kind(index).variance() {
             Variance::Vector => ("V", "F⁻¹ w"),
             Variance::Covector => ("V*", "Fᵀ w"),
@@ -185,15 +211,20 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
             Variance::Mixed => ("V ⊗ V*", "F⁻¹ w F"),
             Variance::Fixed => return format!("    {} is given for each step\n", w.plain_name()),
         };
-        let name = w.plain_name();
         if is_discrete {
-            format!("    {name}⁺ = F⁻¹·{name} = {} for {name} in {space}\n", moved.replace('w', &name))
+            let moved = moved.replace('F', f).replace('w', &name);
+            format!("    {name}⁺ = {f}⁻¹·{name} = {moved} for {name} in {space}\n")
         } else {
             format!("    {name} = g⁻¹·a₀ in {space}\n")
         }
     });
     let advected: String = advected.collect();
-    let element = if is_discrete { "F = g⁻¹ g⁺" } else { "g" };
+    let increments = declaration.factors.iter().map(|factor| factor.name.as_str()).collect::<Vec<_>>().join(", ");
+    let element = match (is_discrete, is_product) {
+        (true, true) => format!("({increments}) = g⁻¹ g⁺"),
+        (true, false) => "F = g⁻¹ g⁺".to_owned(),
+        (false, _) => "g".to_owned(),
+    };
     format!("group\n    {element} in {group}\n{advected}")
 }
 

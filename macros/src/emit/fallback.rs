@@ -148,7 +148,10 @@ fn gradients(header: &Header) -> TokenStream {
             const PARAMETERS: #core::primitive::usize = 0;
             fn blocks(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #private::Blocks<#square> { loop {} }
             #(#visits)*
-            fn carried_parameters(_: &mut dyn #core::ops::FnMut(#core::primitive::usize)) {}
+            fn carried_parameters(
+                _: &Self::Advected,
+                _: &mut dyn #core::ops::FnMut(#core::primitive::usize, #core::primitive::usize),
+            ) {}
         }
     }
 }

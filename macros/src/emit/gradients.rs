@@ -53,7 +53,7 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
                 #advected
             }
 
-            fn carried_parameters(visit: &mut dyn #private::core::ops::FnMut(#usize)) {
+            fn carried_parameters(_: &Self::Advected, visit: &mut dyn #private::core::ops::FnMut(#usize, #usize)) {
                 #carried
             }
         }
@@ -83,7 +83,8 @@ fn statements(emitter: &Emitter, linearisation: &Linearisation, outputs: &[NodeI
         _ => None,
     };
     let (lets, values) = emitter.statements(graph, outputs, &given);
-    let inverse = stages::uses(graph, outputs, emitter.derived.directions.small_inverse).then(
+    let factors = &emitter.derived.directions.factors;
+    let inverse = factors.iter().any(|one| stages::uses(graph, outputs, one.small_inverse)).then(
         || quote_spanned!(span=> let inverse_increment = <Self::Group as #private::LieGroup>::inverse_increment(increment);),
     );
     (quote_spanned!(span=> #inverse #lets), values)
@@ -143,15 +144,15 @@ fn by_advected(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStr
     visits(emitter, linearisation, &found)
 }
 
-/// The numbers of the scalars of what is advected, among those of the parameters.
+/// The numbers of the scalars of what is advected, with those that they have among the parameters.
 fn carried_parameters(emitter: &Emitter) -> TokenStream {
     let declaration = emitter.declaration;
-    let runs = declaration.advected.iter().filter_map(|w| {
+    let runs = declaration.advected.iter().enumerate().filter_map(|(index, w)| {
         let field = declaration.fields.get(w.field?)?;
-        let before: usize = declaration.fields.iter().take(w.field?).map(|field| numbers(field.kind)).sum();
-        let (start, end) = (before, before + numbers(field.kind));
-        let [start, end] = [start, end].map(Literal::usize_unsuffixed);
-        Some(quote_spanned!(Span::mixed_site()=> (#start..#end).for_each(&mut *visit);))
+        let place: usize = (0..index).map(|index| numbers(declaration.advected_kind(index))).sum();
+        let parameter: usize = declaration.fields.iter().take(w.field?).map(|field| numbers(field.kind)).sum();
+        let [place, parameter, count] = [place, parameter, numbers(field.kind)].map(Literal::usize_unsuffixed);
+        Some(quote_spanned!(Span::mixed_site()=> (0..#count).for_each(|k| visit(#place + k, #parameter + k));))
     });
     let private = &emitter.header.private;
     let runs: Vec<TokenStream> = runs.collect();

@@ -5,6 +5,7 @@ use quote::{ToTokens as _, quote_spanned};
 use syn::{Ident, Path};
 
 use crate::declared::{Declaration, FieldKind, Scalar, Shape};
+use crate::mathematics::derive::Seen;
 use crate::mathematics::symbolic::Variance;
 
 /// What the signatures are written with.
@@ -13,13 +14,16 @@ pub(crate) struct Header {
     pub(crate) private: Path,
     /// Where liestep is found, if not at `::liestep`.
     root: Option<Path>,
-    group_path: Path,
+    /// One for each factor.
+    group_paths: Vec<Path>,
     pub(crate) scalar: TokenStream,
     /// The type parameter, if the scalar is one.
     pub(crate) parameter: Option<Ident>,
     pub(super) name: Ident,
     pub(super) generics: syn::Generics,
-    advected: Vec<FieldKind>,
+    advected: Vec<(FieldKind, Seen)>,
+    /// The size of the matrices of each factor.
+    sizes: Vec<usize>,
     size: usize,
     dimension: usize,
 }
@@ -30,7 +34,11 @@ impl Header {
             Some(_) => syn::parse_quote_spanned!(Span::mixed_site()=> __liestep),
             None => syn::parse_quote_spanned!(Span::mixed_site()=> ::liestep::__private),
         };
-        let group_path = declaration.group_path.clone().unwrap_or_else(|| syn::parse_quote!(#private::SO3));
+        let paths = declaration
+            .factors
+            .iter()
+            .map(|factor| factor.path.clone().unwrap_or_else(|| syn::parse_quote!(#private::SO3)));
+        let group_paths = paths.collect();
         let (scalar, parameter) = match &declaration.scalar {
             // The primitive type even where the name is shadowed.
             Scalar::Primitive(name) => (quote_spanned!(Span::mixed_site()=> #private::core::primitive::#name), None),
@@ -39,12 +47,16 @@ impl Header {
         Self {
             private,
             root: declaration.root.clone(),
-            group_path,
+            group_paths,
             scalar,
             parameter,
             name: declaration.item.ident.clone(),
             generics: declaration.item.generics.clone(),
-            advected: (0..declaration.advected.len()).map(|index| declaration.advected_kind(index)).collect(),
+            advected: (0..)
+                .zip(&declaration.advected)
+                .map(|(index, w)| (declaration.advected_kind(index), w.seen))
+                .collect(),
+            sizes: declaration.group.factors().iter().map(|factor| factor.size).collect(),
             size: declaration.group.size,
             dimension: declaration.group.dimension(),
         }
@@ -82,7 +94,21 @@ impl Header {
 
     /// The matrices of the group.
     pub(crate) fn matrix(&self) -> TokenStream {
-        self.matrix_of(self.size)
+        let matrices = self.sizes.iter().map(|&size| self.matrix_of(size));
+        Self::of_factors(&matrices.collect::<Vec<_>>())
+    }
+
+    /// One, or a tuple.
+    fn of_factors(each: &[TokenStream]) -> TokenStream {
+        match each {
+            [single] => single.clone(),
+            each => quote_spanned!(Span::mixed_site()=> (#(#each),*)),
+        }
+    }
+
+    /// The matrices of one factor.
+    pub(crate) fn matrix_of_factor(&self) -> TokenStream {
+        self.matrix_of(self.sizes.first().copied().unwrap_or(self.size))
     }
 
     fn column(&self, rows: usize) -> TokenStream {
@@ -90,12 +116,32 @@ impl Header {
         quote_spanned!(Span::mixed_site()=> #private::nalgebra::SVector<#scalar, #rows>)
     }
 
-    fn advected_type(&self, kind: FieldKind) -> TokenStream {
+    fn advected_type(&self, (kind, seen): (FieldKind, Seen)) -> TokenStream {
+        let (private, span) = (&self.private, Span::mixed_site());
+        let place = Literal::usize_unsuffixed;
+        match (seen, kind) {
+            (Seen::Relative { of, from }, FieldKind::Configuration(rows)) => {
+                let (matrix, of, from) = (self.matrix_of(rows), place(of), place(from));
+                quote_spanned!(span=> #private::Relative<#from, #of, #matrix>)
+            }
+            (Seen::Configuration(of), FieldKind::Configuration(rows)) => {
+                let (matrix, of) = (self.matrix_of(rows), place(of));
+                quote_spanned!(span=> #private::Configuration<#of, #matrix>)
+            }
+            (Seen::From(factor), kind) if self.sizes.len() > 1 && !matches!(kind, FieldKind::Given(_)) => {
+                let (own, factor) = (self.own_advected_type(kind), place(factor));
+                quote_spanned!(span=> #private::SeenFrom<#factor, #own>)
+            }
+            _ => self.own_advected_type(kind),
+        }
+    }
+
+    fn own_advected_type(&self, kind: FieldKind) -> TokenStream {
         let (variance, rows) = match kind {
             FieldKind::Advected(variance, rows) => (variance, rows),
             FieldKind::Point(rows) => return self.point(rows - 1),
             FieldKind::Given(shape) => return self.given(shape),
-            _ => return self.column(self.size),
+            _ => return self.column(self.sizes.first().copied().unwrap_or(self.size)),
         };
         let name = match variance {
             Variance::Vector | Variance::Covector | Variance::Fixed => "ContravariantVector",
@@ -136,7 +182,7 @@ impl Header {
 
     /// `impl … Add<Other> for …`: the sum with any effect of the same group, or with any continuous Lagrangian.
     pub(crate) fn addition(&self, of: &str) -> TokenStream {
-        let (span, private, group, scalar) = (Span::mixed_site(), &self.private, &self.group_path, &self.scalar);
+        let (span, private, group) = (Span::mixed_site(), &self.private, self.group());
         let core = quote_spanned!(span=> #private::core);
         // A name that no type of the user's has.
         let other = Ident::new("LiestepOtherEffect", span);
@@ -144,7 +190,7 @@ impl Header {
         let bounds = [
             syn::parse_quote_spanned!(span=> #other: #private::#of),
             syn::parse_quote_spanned! {span=>
-                <#other as #private::#of>::Group: #private::SharedBy<#group<#scalar>, Self, #other>
+                <#other as #private::#of>::Group: #private::SharedBy<#group, Self, #other>
             },
         ];
         let added = quote_spanned!(span=> #core::ops::Add<#other>);
@@ -185,7 +231,7 @@ impl Header {
 
     /// The advected parameters.
     pub(crate) fn advected_types(&self) -> TokenStream {
-        let values: Vec<TokenStream> = self.advected.iter().map(|kind| self.advected_type(*kind)).collect();
+        let values: Vec<TokenStream> = self.advected.iter().map(|&each| self.advected_type(each)).collect();
         match values.as_slice() {
             [single] => single.clone(),
             values => quote_spanned!(Span::mixed_site()=> (#(#values),*)),
@@ -194,18 +240,19 @@ impl Header {
 
     /// The group.
     pub(crate) fn group(&self) -> TokenStream {
-        let (group, scalar) = (&self.group_path, &self.scalar);
-        quote_spanned!(Span::mixed_site()=> #group<#scalar>)
+        let scalar = &self.scalar;
+        let groups = self.group_paths.iter().map(|group| quote_spanned!(Span::mixed_site()=> #group<#scalar>));
+        Self::of_factors(&groups.collect::<Vec<_>>())
     }
 
     /// The associated types of an effect.
     pub(crate) fn types(&self, has_kinetic: bool, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
         let kinetic = Ident::new(if has_kinetic { "WithKinetic" } else { "WithoutKinetic" }, Span::mixed_site());
-        let (private, group, scalar) = (&self.private, &self.group_path, &self.scalar);
+        let (private, group, scalar) = (&self.private, self.group(), &self.scalar);
         let advected = self.advected_types();
         quote_spanned! {Span::mixed_site()=>
             type Scalar = #scalar;
-            type Group = #group<#scalar>;
+            type Group = #group;
             type Retraction = #private::CayleyRetraction;
             type Kinetic = #private::#kinetic;
             type Advected = #advected;

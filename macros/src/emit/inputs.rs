@@ -15,7 +15,7 @@ impl Code<'_> {
         match found {
             Some(Name::Step) => quote_spanned!(span=> h),
             Some(Name::Velocity) => entry(&quote_spanned!(span=> velocity), input),
-            Some(Name::Increment) => entry(&quote_spanned!(span=> f), input),
+            Some(Name::Increment(factor)) => entry(&self.of_factor(&quote_spanned!(span=> f), factor), input),
             Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),
             // Displacements are replaced by directions before.
@@ -33,14 +33,17 @@ impl Code<'_> {
         if input.symbol == directions.coordinates {
             return entry(&quote_spanned!(span=> half), input);
         }
-        if input.symbol == directions.small {
-            return entry(&quote_spanned!(span=> increment), input);
-        }
-        if input.symbol == directions.small_inverse {
-            return entry(&quote_spanned!(span=> inverse_increment), input);
-        }
-        if input.symbol == directions.inverse {
-            return entry(&quote_spanned!(span=> inverse), input);
+        for (factor, one) in directions.factors.iter().enumerate() {
+            let all = if input.symbol == one.small {
+                quote_spanned!(span=> increment)
+            } else if input.symbol == one.small_inverse {
+                quote_spanned!(span=> inverse_increment)
+            } else if input.symbol == one.inverse {
+                quote_spanned!(span=> inverse)
+            } else {
+                continue;
+            };
+            return entry(&self.of_factor(&all, factor), input);
         }
         if input.symbol == directions.along {
             return entry(&quote_spanned!(span=> velocity), input);
@@ -58,6 +61,15 @@ impl Code<'_> {
         quote_spanned!(Span::mixed_site()=> compile_error!(#message))
     }
 
+    /// The matrix of a factor among those of a product.
+    pub(super) fn of_factor(&self, all: &TokenStream, factor: usize) -> TokenStream {
+        if !self.declaration.group.is_product() {
+            return all.clone();
+        }
+        let factor = syn::Index::from(factor);
+        quote_spanned!(Span::mixed_site()=> #all.#factor)
+    }
+
     /// An entry of one advected parameter.
     fn advected_entry(&self, all: &TokenStream, index: usize, input: Input) -> TokenStream {
         let span = Span::mixed_site();
@@ -67,7 +79,10 @@ impl Code<'_> {
             let index = syn::Index::from(index);
             quote_spanned!(span=> #all.#index)
         };
-        match self.declaration.advected_kind(index) {
+        let kind = self.declaration.advected_kind(index);
+        let is_seen = self.declaration.group.is_product() && !matches!(kind, FieldKind::Given(_));
+        let part = if is_seen { quote_spanned!(span=> #part.0) } else { part };
+        match kind {
             FieldKind::Advected(..) | FieldKind::Given(_) => entry(&quote_spanned!(span=> #part.0), input),
             // The last coordinate is a constant before.
             FieldKind::Point(_) => entry(&quote_spanned!(span=> #part.coords), input),
@@ -82,9 +97,11 @@ impl Code<'_> {
         let place = |value: TokenStream| entry_at(span, &value, input);
         match field.kind {
             FieldKind::Scalar => quote_spanned!(span=> self.#name),
-            FieldKind::Vector(_) | FieldKind::Matrix(_) | FieldKind::Advected(..) | FieldKind::Given(_) => {
-                place(quote_spanned!(span=> self.#name))
-            }
+            FieldKind::Vector(_)
+            | FieldKind::Matrix(_)
+            | FieldKind::Configuration(_)
+            | FieldKind::Advected(..)
+            | FieldKind::Given(_) => place(quote_spanned!(span=> self.#name)),
             FieldKind::Point(_) => place(quote_spanned!(span=> self.#name.coords)),
             FieldKind::SymmetricInertia => place(quote_spanned!(span=> self.#name.as_matrix())),
             FieldKind::DiagonalInertia => {

@@ -212,7 +212,7 @@ impl Emitter<'_> {
             Form::Square | Form::Matrix => (square(&mut graph, d, &none, expression), self.header.square()),
         };
         let documentation = docs::of(equations, name, &graph, &outputs);
-        let inverse = stages::uses(&graph, &outputs, d.directions.inverse).then(
+        let inverse = d.directions.factors.iter().any(|one| stages::uses(&graph, &outputs, one.inverse)).then(
             || quote_spanned!(span=> let inverse = #private::inverse_of::<<Self as #private::Effect>::Group>(*f);),
         );
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
@@ -286,11 +286,15 @@ impl Code<'_> {
         let span = Span::mixed_site();
         let private = &self.header.private;
         let values = self.declaration.advected.iter().filter_map(|w| {
+            if w.seen.is_configuration() {
+                return Some(quote_spanned!(span=> #private::core::default::Default::default()));
+            }
             let field = self.declaration.fields.get(w.field?)?;
             let name = &field.name;
             Some(match field.kind {
                 FieldKind::Scalar => quote_spanned!(span=> #private::Given::scalar(self.#name)),
                 _ if w.is_given => quote_spanned!(span=> #private::Given(self.#name)),
+                _ if self.declaration.group.is_product() => quote_spanned!(span=> #private::SeenFrom(self.#name)),
                 _ => quote_spanned!(span=> self.#name),
             })
         });

@@ -4,8 +4,8 @@ use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::quote_spanned;
 
 use super::docs::{Equation, costs, lets};
-use crate::declared::{Declaration, Role};
-use crate::judged::{Chosen, Equations, Findings};
+use crate::declared::{Declaration, Field, Role};
+use crate::judged::{self, Chosen, Equations, Findings};
 use crate::mathematics::derive::SelfAdjointness;
 
 /// The item as it stands, with a page of documentation behind its own, and the letters of the field allowed.
@@ -73,6 +73,10 @@ pub(super) fn page(
     if has_kinetic {
         points.push(format!("Limit of a step: {}", limit(chosen)));
     }
+    if declaration.group.is_product() && is_lagrangian {
+        points.push(momenta(declaration));
+        points.push(together(declaration, chosen));
+    }
     points.push(format!("Cost:\n  * {}", costs(&chosen.kernel).replace("\n    ", "\n  * ")));
     let points = points.into_iter().fold(String::new(), |points, point| points + "* " + &point + "\n");
     let continuous = continuous.map(|equations| super::continuous::text::shown(declaration, equations));
@@ -82,6 +86,43 @@ pub(super) fn page(
     format!(
         "\n{heading}\n\n{text}\n\n{points}\n{continuous}All equations are in `DERIVATION` and in the documentation of the methods."
     )
+}
+
+/// What several bodies conserve.
+fn momenta(declaration: &Declaration) -> String {
+    let name = |field: usize| declaration.fields.get(field).map(Field::plain_name).unwrap_or_default();
+    let all = judged::conserved(declaration).into_iter().map(|one| {
+        let terms: Vec<String> = one.bodies.iter().map(|body| format!("R_{0} Π_{0}", body + 1)).collect();
+        let sum = terms.join(" + ");
+        match one.along {
+            None => format!("`{sum}`"),
+            Some(field) if terms.len() > 1 => format!("`{}·({sum})`", name(field)),
+            Some(field) => format!("`{}·{sum}`", name(field)),
+        }
+    });
+    let all: Vec<String> = all.collect();
+    if all.is_empty() {
+        return "Conserved: no momentum, as what is seen asks for every direction.".to_owned();
+    }
+    format!("Conserved, however well a step is solved: {}.", all.join(" and "))
+}
+
+/// Which bodies a step solves together.
+fn together(declaration: &Declaration, chosen: &Chosen) -> String {
+    let ends = chosen.kernel.ends(&chosen.derived.group);
+    let mut groups: Vec<Vec<&str>> = vec![Vec::new()];
+    for (index, factor) in declaration.factors.iter().enumerate() {
+        if ends.contains(&index) {
+            groups.push(Vec::new());
+        }
+        groups.last_mut().into_iter().for_each(|group| group.push(&factor.name));
+    }
+    let shown = groups.iter().map(|group| format!("`{}`", group.join("`, `"))).collect::<Vec<_>>();
+    if shown.len() == 1 {
+        format!("Solved together: {}, {} unknowns.", shown[0], chosen.derived.group.dimension())
+    } else {
+        format!("Solved apart: {}.", shown.join("; "))
+    }
 }
 
 /// What self-adjointness says of the order.

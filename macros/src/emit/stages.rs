@@ -56,12 +56,13 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
     let residual_alone = kernel.jacobian_is_expensive().then(|| residual_alone(emitter, kernel, &from_terms));
     let (increment, jacobian) = in_coordinates(emitter, kernel, &system, jacobian);
-    let inverse = uses(graph, &kernel.kick_after, emitter.derived.directions.inverse).then(|| {
-        let group = quote_spanned!(span=> <Self::Group as #private::LieGroup>);
-        quote_spanned! {span=>
-            let inverse = #group::matrix(&#group::inverse(&#group::from_increment(increment)));
-        }
-    });
+    let inverse =
+        emitter.derived.directions.factors.iter().any(|one| uses(graph, &kernel.kick_after, one.inverse)).then(|| {
+            let group = quote_spanned!(span=> <Self::Group as #private::LieGroup>);
+            quote_spanned! {span=>
+                let inverse = #group::matrix(&#group::inverse(&#group::from_increment(increment)));
+            }
+        });
     let length = |nodes: &BTreeMap<NodeId, usize>| {
         let length = Literal::usize_unsuffixed(nodes.len());
         quote_spanned!(span=> [#scalar; #length])
@@ -140,7 +141,8 @@ fn in_coordinates(
     }
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let retraction = quote_spanned!(span=> <Self::Retraction as #private::Retraction<Self::Group>>);
-    let inverse = uses(&kernel.graph, system, emitter.derived.directions.small_inverse).then(
+    let factors = &emitter.derived.directions.factors;
+    let inverse = factors.iter().any(|one| uses(&kernel.graph, system, one.small_inverse)).then(
         || quote_spanned!(span=> let inverse_increment = <Self::Group as #private::LieGroup>::inverse_increment(&increment);),
     );
     (
@@ -158,11 +160,22 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     let u32 = quote_spanned!(span=> #private::core::primitive::u32);
     let bool = quote_spanned!(span=> #private::core::primitive::bool);
     let is_constant = !derived.inertia_varies();
+    let ends = kernel.ends(&derived.group);
+    let apart = (!ends.is_empty()).then(|| {
+        let whole = quote_spanned!(span=> #private::Blocks::WHOLE);
+        // Each end from the beginning.
+        let blocks = ends.iter().fold(whole.clone(), |blocks, &factor| {
+            let size = Literal::usize_unsuffixed(derived.group.component_of(factor));
+            quote_spanned!(span=> #blocks.then(#size, #whole))
+        });
+        quote_spanned!(span=> const APART: #private::Blocks = #blocks;)
+    });
     let [step, iteration] = kernel.operations().map(Literal::u32_unsuffixed);
     quote_spanned! {span=>
         const PARTS: #private::Parts = #private::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
         const INERTIA_IS_CONSTANT: #bool = #is_constant;
+        #apart
         const OPERATIONS: #private::Operations = #private::Operations { step: #step, iteration: #iteration };
     }
 }
@@ -212,7 +225,7 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
 /// The compiler's check that the generators that were derived with are those of the group that is run with.
 pub(super) fn same_generators(code: &Code) -> TokenStream {
     let (span, private, group) = (Span::mixed_site(), &code.header.private, &code.declaration.group);
-    if group.is_so3 {
+    if group.rotates() {
         return TokenStream::new();
     }
     let matrices = group.generators.iter().map(|entries| {

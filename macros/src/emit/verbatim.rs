@@ -29,13 +29,27 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             values.push(value);
         }
     };
-    bind("F", quote_spanned!(span=> *f));
-    bind("I", quote_spanned!(span=> <#square>::identity()));
+    for (index, factor) in declaration.factors.iter().enumerate() {
+        let value = if declaration.group.is_product() {
+            let index = syn::Index::from(index);
+            quote_spanned!(span=> f.#index)
+        } else {
+            quote_spanned!(span=> *f)
+        };
+        bind(&factor.name, value);
+    }
+    let one = header.matrix_of_factor();
+    bind("I", quote_spanned!(span=> <#one>::identity()));
     let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
     bind("vee", quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)));
     let vector = header.vector();
-    let group = header.group();
-    bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
+    if declaration.group.is_product() {
+        let vector = quote_spanned!(span=> #private::nalgebra::Vector3<#scalar>);
+        bind("hat", quote_spanned!(span=> |v: #vector| <#private::SO3<#scalar> as #private::LieGroup>::hat(&v)));
+    } else {
+        let group = header.group();
+        bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
+    }
     if let Some(name) = declaration.velocity() {
         bind(&name.unraw().to_string(), quote_spanned!(span=> *velocity));
     }
@@ -52,7 +66,10 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
-        let value = match declaration.advected_kind(index) {
+        let kind = declaration.advected_kind(index);
+        let is_seen = declaration.group.is_product() && !matches!(kind, FieldKind::Given(_));
+        let part = if is_seen { quote_spanned!(span=> #part.0) } else { part };
+        let value = match kind {
             FieldKind::Given(Shape::Scalar) => quote_spanned!(span=> #part.0.x),
             FieldKind::Advected(..) | FieldKind::Given(_) => quote_spanned!(span=> #part.0),
             FieldKind::Point(_) => quote_spanned!(span=> #private::Parameter::value(&#part)),

@@ -156,7 +156,7 @@ impl Build<'_> {
     }
 
     fn increment(&self) -> Rc<Tree> {
-        self.tree(self.square(), Kind::Name(Name::Increment))
+        self.tree(self.square(), Kind::Name(Name::Increment(0)))
     }
 
     fn inverse(&self) -> Rc<Tree> {

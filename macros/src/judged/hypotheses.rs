@@ -15,7 +15,12 @@ use crate::program::{Given, Graph, Scalariser, count, with_values};
 /// The hypotheses that are used, as a paper would write them.
 pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &Lowered) -> Vec<String> {
     let without = |name: Name, weaker: Structure| {
-        let weaker = |other: Name, structure: Structure| if other == name { weaker } else { structure };
+        // All increments at once.
+        let is_meant = |other: Name| match name {
+            Name::Increment(_) => matches!(other, Name::Increment(_)),
+            _ => other == name,
+        };
+        let weaker = |other: Name, structure: Structure| if is_meant(other) { weaker } else { structure };
         let candidates = readings_without(declaration, tree, &weaker, &mut Errors::default())?;
         candidates.into_iter().find(|other| other.declared.lets.is_empty() == lowered.declared.lets.is_empty())
     };
@@ -27,11 +32,18 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
     let operations = operations(lowered);
     let mut used = Vec::new();
     if declaration.group.orthogonal {
-        if changes_equations(Name::Increment, Structure::General) {
+        if changes_equations(Name::Increment(0), Structure::General) {
             used.push("FᵀF = I".to_owned());
         }
-        if changes_equations(Name::Increment, Structure::Orthogonal) {
+        if changes_equations(Name::Increment(0), Structure::Orthogonal) {
             used.push("det F = 1".to_owned());
+        }
+    }
+    for (index, w) in declaration.advected.iter().enumerate() {
+        let (name, shown) = (Name::Advected(index), w.plain_name());
+        let is_rotation = matches!(declaration.advected_kind(index), FieldKind::Configuration(_));
+        if is_rotation && changes_equations(name, Structure::General) {
+            used.push(format!("{shown}ᵀ{shown} = I"));
         }
     }
     for (index, field) in declaration.fields.iter().enumerate() {
@@ -63,9 +75,11 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
 fn operations(lowered: &Lowered) -> usize {
     let (mut graph, declared) = (Graph::default(), &lowered.declared);
     let mut symbols = declared.symbols.clone();
-    let shape = symbols.get(declared.increment).shape;
-    let inverse = symbols.add("F⁻¹", shape, Structure::General, Stage::Iteration);
-    symbols.set_inverse(declared.increment, inverse);
+    for &increment in &declared.increments {
+        let shape = symbols.get(increment).shape;
+        let inverse = symbols.add("F⁻¹", shape, Structure::General, Stage::Iteration);
+        symbols.set_inverse(increment, inverse);
+    }
     let given =
         with_values(&mut graph, &symbols, declared.lets.iter().map(|one| (one.symbol, &one.value)), Given::new());
     let mut scalariser = Scalariser { graph: &mut graph, symbols: &symbols, given };

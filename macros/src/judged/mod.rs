@@ -2,7 +2,7 @@
 //!
 //! `discretise` makes `l_d` of a continuous `l`, `continuous` has the continuous equations, `choose` counts operations,
 //! `verify` evaluates the declared tree on numbers and compares, `hypotheses` finds what the equations rest on,
-//! `findings` has what comes of both, and `explain` says at the tokens of the declaration why nothing could be derived.
+//! `momenta` finds what several bodies conserve, `findings` has what comes of both, and `explain` says at the tokens of the declaration why nothing could be derived.
 //!
 //! Deliberately not here: any derivation, which is mathematics, and any text of the generated documentation, which is
 //! emitted. The room knows `declared`, `program` and `mathematics`.
@@ -13,6 +13,7 @@ mod discretise;
 mod explain;
 mod findings;
 mod hypotheses;
+mod momenta;
 pub(crate) mod verify;
 
 pub(crate) use choose::{Chosen, cheapest};
@@ -20,3 +21,4 @@ pub(crate) use continuous::{Equations, continuous, of_declared};
 pub(crate) use discretise::discretised;
 pub(crate) use explain::terms;
 pub(crate) use findings::{Findings, findings};
+pub(crate) use momenta::conserved;

@@ -15,9 +15,57 @@ pub(crate) struct Group {
     pub(crate) orthogonal: bool,
     /// Whether it is the group of rotations of space, with its own Cayley form and cross products.
     pub(crate) is_so3: bool,
+    /// Of a product its factors, whose matrices stand on the diagonal one after the other; elsewhere none.
+    factors: Vec<Group>,
 }
 
 impl Group {
+    /// The product of several groups, as block-diagonal matrices.
+    pub(crate) fn product(factors: Vec<Self>) -> Self {
+        let size = factors.iter().map(|factor| factor.size).sum();
+        let mut generators = Vec::new();
+        let mut start = 0;
+        for factor in &factors {
+            let inside = |at: usize| (start..start + factor.size).contains(&at);
+            generators.extend(factor.generators.iter().map(|own| {
+                let entry = |place: usize| match (place / size, place % size) {
+                    (row, column) if inside(row) && inside(column) => {
+                        own.get((row - start) * factor.size + column - start).copied().unwrap_or(Rational::ZERO)
+                    }
+                    _ => Rational::ZERO,
+                };
+                (0..size * size).map(entry).collect()
+            }));
+            start += factor.size;
+        }
+        let orthogonal = factors.iter().all(|factor| factor.orthogonal);
+        Self { size, generators, orthogonal, is_so3: false, factors }
+    }
+
+    /// The factors; a group that isn't a product is its own.
+    pub(crate) fn factors(&self) -> &[Self] {
+        if self.factors.is_empty() { std::slice::from_ref(self) } else { &self.factors }
+    }
+
+    pub(crate) fn is_product(&self) -> bool {
+        !self.factors.is_empty()
+    }
+
+    /// Whether all factors are that of the rotations of space.
+    pub(crate) fn rotates(&self) -> bool {
+        self.factors().iter().all(|factor| factor.is_so3)
+    }
+
+    /// The first row of a factor.
+    pub(crate) fn row_of(&self, factor: usize) -> usize {
+        self.factors().iter().take(factor).map(|before| before.size).sum()
+    }
+
+    /// The first component of a factor.
+    pub(crate) fn component_of(&self, factor: usize) -> usize {
+        self.factors().iter().take(factor).map(Self::dimension).sum()
+    }
+
     pub(crate) fn dimension(&self) -> usize {
         self.generators.len()
     }
@@ -54,7 +102,7 @@ impl Group {
             })
         };
         let orthogonal = generators.iter().all(skew);
-        Self { size, generators, orthogonal, is_so3: false }
+        Self { size, generators, orthogonal, is_so3: false, factors: Vec::new() }
     }
 
     /// What keeps the generators from being a basis of a Lie algebra, in exact arithmetic; nothing where that doesn't

@@ -7,7 +7,7 @@ use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, NodeId};
 use super::scalarise::{Entries, Scalariser};
-use crate::mathematics::derive::{Cleared, Continuous, Derived};
+use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId};
 
@@ -56,6 +56,19 @@ impl Kernel {
         !self.moved.is_empty() && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
     }
 
+    /// The factors of the group before which nothing couples to what comes later: there the Jacobian falls into blocks.
+    pub(crate) fn ends(&self, group: &Group) -> Vec<usize> {
+        let dimension = group.dimension();
+        let is_zero = |row: usize, column: usize| {
+            self.jacobian.get(dimension * row + column).is_none_or(|&entry| self.graph.is_zero(entry))
+        };
+        let is_end = |factor: &usize| {
+            let start = group.component_of(*factor);
+            (0..start).all(|k| (start..dimension).all(|j| is_zero(k, j) && is_zero(j, k)))
+        };
+        (1..group.factors().len()).filter(is_end).collect()
+    }
+
     /// Of a step without the solve and of an iteration, as `Effect::OPERATIONS` has them.
     pub(crate) fn operations(&self) -> [u32; 2] {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
@@ -89,7 +102,9 @@ pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, co
     (0..derived.group.dimension())
         .map(|k| {
             let mut given = given.clone();
-            given.insert(derived.directions.first, generator(graph, &derived.group, k));
+            for (factor, one) in derived.directions.factors.iter().enumerate() {
+                given.insert(one.first, generator(graph, &derived.group, factor, k));
+            }
             Scalariser { graph, symbols: &derived.symbols, given }.scalar(covector)
         })
         .collect()
@@ -108,8 +123,8 @@ pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: us
     let of_place = |(k, j)| {
         let mut given = Given::from([(derived.directions[0], unit(graph, k)), (derived.directions[1], unit(graph, j))]);
         if let Some([eta, zeta]) = derived.direction_matrices {
-            given.insert(eta, generator(graph, &derived.group, k));
-            given.insert(zeta, generator(graph, &derived.group, j));
+            given.insert(eta, generator(graph, &derived.group, 0, k));
+            given.insert(zeta, generator(graph, &derived.group, 0, j));
         }
         given.extend(derived.velocity_matrix.map(|xi| (xi, matrix_of(graph, &derived.group, derived.velocity))));
         Scalariser { graph, symbols: &derived.symbols, given }.scalar(term)
@@ -131,11 +146,12 @@ pub(crate) fn diamond_matrix(graph: &mut Graph, derived: &Continuous) -> Vec<Nod
     places.map(entry).collect()
 }
 
-/// The constant matrix `E_k`.
-pub(super) fn generator(graph: &mut Graph, group: &Group, k: usize) -> Entries {
+/// The block of the constant matrix `E_k` that belongs to a factor; of a group that isn't a product all of it.
+pub(super) fn generator(graph: &mut Graph, group: &Group, factor: usize, k: usize) -> Entries {
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
-    Entries::new(group.size, group.size, |row, column| {
-        let entry = entries.get(row * group.size + column).copied();
+    let (start, size) = (group.row_of(factor), group.factors().get(factor).map_or(0, |factor| factor.size));
+    Entries::new(size, size, |row, column| {
+        let entry = entries.get((start + row) * group.size + start + column).copied();
         graph.constant(entry.unwrap_or(Rational::ZERO))
     })
 }
@@ -149,7 +165,7 @@ fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
 fn matrix_of(graph: &mut Graph, group: &Group, symbol: SymbolId) -> Entries {
     let components: Vec<NodeId> =
         (0..group.dimension()).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Step)).collect();
-    let generators: Vec<Entries> = (0..group.dimension()).map(|j| generator(graph, group, j)).collect();
+    let generators: Vec<Entries> = (0..group.dimension()).map(|j| generator(graph, group, 0, j)).collect();
     Entries::new(group.size, group.size, |row, column| {
         let terms: Vec<NodeId> = generators
             .iter()
@@ -170,7 +186,9 @@ pub(crate) fn square(graph: &mut Graph, derived: &Derived, given: &Given, biline
     let columns: Vec<Vec<NodeId>> = (0..dimension)
         .map(|j| {
             let mut given = given.clone();
-            given.insert(derived.directions.second, generator(graph, &derived.group, j));
+            for (factor, one) in derived.directions.factors.iter().enumerate() {
+                given.insert(one.second, generator(graph, &derived.group, factor, j));
+            }
             let given = if varies { with_tangents(graph, derived, given) } else { given };
             components(graph, derived, &given, bilinear)
         })
@@ -188,10 +206,11 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
     let kick_before = components(&mut graph, derived, &none, &derived.kick_before);
     let kick_derivative = derived.kick_derivative.as_ref().map(|expression| {
         let velocity = velocity(&mut graph, derived);
-        components(&mut graph, derived, &Given::from([(derived.directions.second, velocity)]), expression)
+        let second = derived.directions.factors.first().map(|one| (one.second, velocity));
+        components(&mut graph, derived, &second.into_iter().collect(), expression)
     });
-    let increment = by_increment(&mut graph, derived, |graph, row, column| {
-        graph.input(Input { symbol: derived.directions.small, row, column }, Stage::Iteration)
+    let increment = by_increment(&mut graph, derived, |graph, factor, row, column| {
+        graph.input(Input { symbol: factor.small, row, column }, Stage::Iteration)
     });
     let kick_after = {
         let given = after(&mut graph, derived, increment.clone());
@@ -202,7 +221,7 @@ pub(crate) fn kernel(derived: &Derived) -> Kernel {
         let operations = count(graph, &outputs, Some(Stage::Iteration));
         found.push((Candidate { name, operations, denominators }, outputs));
     };
-    let in_increment = !derived.group.is_so3;
+    let in_increment = !derived.group.rotates();
     let mut moved = Vec::new();
     if in_increment {
         let given = with_inverse(&mut graph, derived, increment);
@@ -255,26 +274,30 @@ fn after(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
     with_lets(graph, derived, given)
 }
 
-/// `D` by its entries, and `F = I + D`.
+/// `D` by its entries, and `F = I + D`, of each factor.
 pub(super) fn by_increment(
     graph: &mut Graph,
     derived: &Derived,
-    mut entry: impl FnMut(&mut Graph, usize, usize) -> NodeId,
+    mut entry: impl FnMut(&mut Graph, &OfFactor, usize, usize) -> NodeId,
 ) -> Given {
-    let size = derived.group.size;
-    let small = Entries::new(size, size, |row, column| entry(graph, row, column));
-    let f = plus_identity(graph, &small);
-    BTreeMap::from([(derived.directions.small, small), (derived.increment(), f)])
+    let mut given = Given::new();
+    for (one, group) in derived.directions.factors.iter().zip(derived.group.factors()) {
+        let small = Entries::new(group.size, group.size, |row, column| entry(graph, one, row, column));
+        let f = plus_identity(graph, &small);
+        given.extend([(one.small, small), (one.increment, f)]);
+    }
+    given
 }
 
 /// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
 pub(super) fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
-    let (size, directions) = (derived.group.size, &derived.directions);
-    let small = Entries::new(size, size, |row, column| {
-        graph.input(Input { symbol: directions.small_inverse, row, column }, Stage::Iteration)
-    });
-    let inverse = plus_identity(graph, &small);
-    given.extend([(directions.small_inverse, small), (directions.inverse, inverse)]);
+    for (one, group) in derived.directions.factors.iter().zip(derived.group.factors()) {
+        let small = Entries::new(group.size, group.size, |row, column| {
+            graph.input(Input { symbol: one.small_inverse, row, column }, Stage::Iteration)
+        });
+        let inverse = plus_identity(graph, &small);
+        given.extend([(one.small_inverse, small), (one.inverse, inverse)]);
+    }
     given
 }
 
@@ -326,7 +349,8 @@ fn target(graph: &mut Graph, derived: &Derived) -> Entries {
 
 fn coordinates(graph: &mut Graph, derived: &Derived) -> Vec<NodeId> {
     let symbol = derived.directions.coordinates;
-    (0..3).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
+    let dimension = derived.group.dimension();
+    (0..dimension).map(|row| graph.input(Input { symbol, row, column: 0 }, Stage::Iteration)).collect()
 }
 
 /// `1 + |y|²`.
@@ -363,7 +387,37 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
 /// when the system is multiplied out.
 fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);
-    let d = denominator(graph, &y);
+    let (mut given, mut tangents) = (Given::new(), Vec::new());
+    for (one, y) in derived.directions.factors.iter().zip(y.chunks(3)) {
+        let (small, tangent) = rotation(graph, y);
+        let f = plus_identity(graph, &small);
+        given.extend([(one.small, small), (one.increment, f)]);
+        tangents.push(tangent);
+    }
+    let opaque: BTreeSet<NodeId> = given.values().chain(&tangents).flat_map(|entries| entries.all().to_vec()).collect();
+    let given = with_lets(graph, derived, given);
+    let moved = derived.moved.as_ref().map(|moved| components(graph, derived, &given, moved)).unwrap_or_default();
+    let mut outputs = system(graph, derived, &given);
+    let dimension = derived.group.dimension();
+    let jacobian = outputs.split_off(dimension);
+    for row in jacobian.chunks(dimension) {
+        for (entries, tangent) in row.chunks(3).zip(&tangents) {
+            for column in 0..3 {
+                let terms: Vec<NodeId> = entries
+                    .iter()
+                    .enumerate()
+                    .map(|(k, &entry)| graph.multiply(entry, tangent.at(k, column)))
+                    .collect();
+                outputs.push(graph.sum(&terms));
+            }
+        }
+    }
+    (outputs, moved, opaque)
+}
+
+/// `D = cay(2y) − I` of a rotation, and the tangent in `y`.
+fn rotation(graph: &mut Graph, y: &[NodeId]) -> (Entries, Entries) {
+    let d = denominator(graph, y);
     let two = graph.constant(Rational::integer(2));
     let scale = graph.divide(two, d);
     let hat = |graph: &mut Graph, row: usize, column: usize| match (3 + column - row) % 3 {
@@ -377,7 +431,7 @@ fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>,
         if row == column { scale } else { scaled }
     });
     // D = (ŷ + ŷ²) · 2/(1 + |y|²), ŷ² = yyᵀ − |y|² I; on the diagonal the squares cancel before they are formed.
-    let given = by_increment(graph, derived, |graph, row, column| {
+    let small = Entries::new(3, 3, |row, column| {
         if row == column {
             let others: Vec<NodeId> = (0..3).filter(|&k| k != row).map(|k| graph.multiply(y[k], y[k])).collect();
             let sum = graph.sum(&others);
@@ -390,18 +444,5 @@ fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>,
         let skew = graph.multiply(scale, skew);
         graph.sum(&[outer, skew])
     });
-    let opaque: BTreeSet<NodeId> =
-        given.values().chain([&tangent]).flat_map(|entries| entries.all().to_vec()).collect();
-    let given = with_lets(graph, derived, given);
-    let moved = derived.moved.as_ref().map(|moved| components(graph, derived, &given, moved)).unwrap_or_default();
-    let mut outputs = system(graph, derived, &given);
-    let jacobian = outputs.split_off(3);
-    for row in 0..3 {
-        for column in 0..3 {
-            let terms: Vec<NodeId> =
-                (0..3).map(|k| graph.multiply(jacobian[3 * row + k], tangent.at(k, column))).collect();
-            outputs.push(graph.sum(&terms));
-        }
-    }
-    (outputs, moved, opaque)
+    (small, tangent)
 }

@@ -36,8 +36,8 @@ type Changes = BTreeMap<NodeId, NodeId>;
 impl<'a> Linearisation<'a> {
     pub(crate) fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
         let mut graph = Graph::default();
-        let given = by_increment(&mut graph, derived, |graph, row, column| {
-            graph.input(Input { symbol: derived.directions.small, row, column }, Stage::Iteration)
+        let given = by_increment(&mut graph, derived, |graph, one, row, column| {
+            graph.input(Input { symbol: one.small, row, column }, Stage::Iteration)
         });
         let increments = with_inverse(&mut graph, derived, given);
         let given = with_lets(&mut graph, derived, increments.clone());
@@ -77,20 +77,24 @@ impl<'a> Linearisation<'a> {
     }
 
     fn turned(&mut self, j: usize) -> Changes {
-        let e = generator(&mut self.graph, &self.derived.group, j);
-        let (f, inverse) = self.matrices();
-        let minus = negated(&mut self.graph, &e);
-        let (small, of_inverse) = (product(&mut self.graph, &e, &f), product(&mut self.graph, &inverse, &minus));
-        let (mut changes, directions) = (Changes::new(), &self.derived.directions);
-        self.collect(directions.small, &small, &mut changes);
-        self.collect(directions.small_inverse, &of_inverse, &mut changes);
+        let mut changes = Changes::new();
+        for (factor, one) in self.derived.directions.factors.iter().enumerate() {
+            let e = generator(&mut self.graph, &self.derived.group, factor, j);
+            let [f, inverse] = [one.increment, one.inverse].map(|symbol| self.matrix(symbol));
+            let minus = negated(&mut self.graph, &e);
+            let (small, of_inverse) = (product(&mut self.graph, &e, &f), product(&mut self.graph, &inverse, &minus));
+            self.collect(one.small, &small, &mut changes);
+            self.collect(one.small_inverse, &of_inverse, &mut changes);
+        }
         changes
     }
 
     fn displaced(&mut self, j: usize) -> Changes {
-        let e = generator(&mut self.graph, &self.derived.group, j);
-        let minus = negated(&mut self.graph, &e);
-        let given = Given::from([(self.derived.directions.first, minus)]);
+        let mut given = Given::new();
+        for (factor, one) in self.derived.directions.factors.iter().enumerate() {
+            let e = generator(&mut self.graph, &self.derived.group, factor, j);
+            given.insert(one.first, negated(&mut self.graph, &e));
+        }
         let mut changes = Changes::new();
         for (w, moved) in &self.ends.moved {
             let moved = entries(&mut self.graph, &self.derived.symbols, &given, moved);
@@ -99,10 +103,9 @@ impl<'a> Linearisation<'a> {
         changes
     }
 
-    fn matrices(&self) -> (Entries, Entries) {
-        let nothing = || Entries::new(0, 0, |_, _| NodeId(0));
-        let at = |symbol| self.increments.get(&symbol).cloned().unwrap_or_else(nothing);
-        (at(self.derived.increment()), at(self.derived.directions.inverse))
+    /// An increment or its inverse.
+    fn matrix(&self, symbol: SymbolId) -> Entries {
+        self.increments.get(&symbol).cloned().unwrap_or_else(|| Entries::new(0, 0, |_, _| NodeId(0)))
     }
 
     fn collect(&mut self, symbol: SymbolId, moved: &Entries, changes: &mut Changes) {

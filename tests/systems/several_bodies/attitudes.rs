@@ -10,13 +10,15 @@ use liestep::numbers::Blocks;
 use liestep::{SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::{all, apart, attitudes_of, momentum, part, put, stacked, twice_vee};
+use super::{End, all, apart, attitudes_of, momentum, part, put, stacked, twice_vee};
 
 type Group = (SO3, SO3, SO3, SO3);
 type Matrices = <Group as LieGroup>::Matrix;
 type Components = SVector<f64, 12>;
 type Square = SMatrix<f64, 12, 12>;
 type Between<const A: usize, const B: usize> = Relative<A, B, Matrix3<f64>>;
+/// A motion of the reference, with where it is later.
+type Started = (Stepper<Row>, liestep::State<Group, Seen>, Vec<End>);
 type Seen = (Between<0, 1>, Between<1, 2>, Between<2, 3>);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,7 +126,7 @@ impl Effect for Row {
     }
 }
 
-fn started(h: f64) -> (Stepper<Row>, liestep::State<Group, Seen>, Vec<(Matrix3<f64>, Vector3<f64>)>) {
+fn started(h: f64) -> Started {
     let states = &read("several bodies")["coupled_attitudes4"]["states"];
     let (start, end) = (&states[0]["bodies"], &states[1]["bodies"]);
     let attitudes = all(start, |body| SO3::try_from(matrix(&body["R"])).unwrap());

@@ -1,4 +1,4 @@
-//! Three links on ball joints from a fixed pivot, in the minimal form on SO(3)³: Lee, Leok and McClamroch (2008).
+//! Three links on ball joints from a fixed pivot, in the minimal form on SO(3)³.
 //!
 //! ```text
 //! l_d = Σ tr((F_a − I) J_a (F_a − I)ᵀ)/2h + Σ_{a<b} x_a·Q_ab y_b/h − (h/2) g Σ w_a·(s_a + F_a s_a)
@@ -15,7 +15,7 @@ use liestep::methods::CompositionScheme;
 use liestep::{SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::{all, apart, attitudes_of, increments, momentum, part, put, stacked, twice_vee};
+use super::{End, all, apart, attitudes_of, increments, momentum, part, put, stacked, twice_vee};
 
 type Group = (SO3, SO3, SO3);
 type Matrices = (Matrix3<f64>, Matrix3<f64>, Matrix3<f64>);
@@ -74,8 +74,8 @@ impl Chain {
     fn slope(&self, f: &Matrices, w: &Seen) -> Square {
         let (f, (_, q)) = (increments([&f.0, &f.1, &f.2]), seen(w));
         let mut slope = Square::zeros();
-        for a in 0..3 {
-            let p = f[a].1 * self.J[a];
+        for (a, (_, f)) in f.iter().enumerate() {
+            let p = f * self.J[a];
             put(&mut slope, (a, a), &(Matrix3::from_diagonal_element(p.trace()) - p));
         }
         for ((a, b), q) in PAIRS.into_iter().zip(q) {
@@ -226,7 +226,7 @@ impl Effect for Chain {
 }
 
 /// Where it starts, and the first and the last link two seconds later.
-fn motion() -> (Group, Components, [(Matrix3<f64>, Vector3<f64>); 2]) {
+fn motion() -> (Group, Components, [End; 2]) {
     let states = &read("several bodies")["chain3"]["states"];
     let (start, end) = (&states[0]["bodies"], &states[1]["bodies"]);
     let attitudes = all(start, |body| SO3::try_from(matrix(&body["R"])).unwrap());

@@ -3,12 +3,16 @@
 
 mod attitudes;
 mod chain;
+mod declared;
 
 use liestep::SO3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use serde_json::Value;
 
 use declarations::motions::{matrix, vector};
+
+/// Attitude and body velocity of one body.
+type End = (Matrix3<f64>, Vector3<f64>);
 
 /// `(M − Mᵀ)^∨`, twice the components of the skew part.
 fn twice_vee(m: &Matrix3<f64>) -> Vector3<f64> {

@@ -4,6 +4,7 @@ use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
+use crate::solving::pattern;
 
 /// One stage of a step, which an effect has made: what is differentiated.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +27,7 @@ enum Kind<T> {
 }
 
 impl<'a, E: SecondDerivatives> Stage<'a, E> {
-    /// The effect's own step of length `h`; the numbers of its parameters begin at `first`.
+    /// The effect's own step of length `h`.
     pub(crate) fn step<A>(effect: &'a E, h: Scalar<E>, event: &Change<Group<E>, A>, advected: E::Advected) -> Self {
         let (attitude, increment) = (event.before.attitude, event.increment);
         Self { effect, kind: Kind::Step(h), attitude, advected, increment, first: 0 }
@@ -98,11 +99,10 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         unit.seen_from(&self.attitude).zip(&origin, &mut |a, b| a - b)
     }
 
-    /// The derivatives of `μ` and `μ⁺` by all parameters, each of which is visited once or not at all.
+    /// The derivatives of `μ` and `μ⁺` by all parameters; those of one that is visited again are added.
     pub(super) fn forwards(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
         self.by_parameters(visit);
-        let mut place = 0;
-        E::carried_parameters(&mut |parameter| {
+        E::carried_parameters(&self.advected, &mut |place, parameter| {
             let seen = self.seen(place);
             let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
             self.by_advected(&mut |number, by_start, by_end| {
@@ -110,7 +110,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 (start, end) = (start + by_start * change, end + by_end * change);
             });
             visit(self.first + parameter, start, end);
-            place += 1;
         });
     }
 
@@ -128,8 +127,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 *entry = paired(start, end);
             }
         });
-        let mut place = 0;
-        E::carried_parameters(&mut |parameter| {
+        E::carried_parameters(&self.advected, &mut |place, parameter| {
             let (mut sum, mut number) = (real::<Scalar<E>>(0.0), 0);
             self.seen(place).each(&mut |seen| {
                 if let Some(&by) = gradient.by_advected.get(number) {
@@ -137,7 +135,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 }
                 number += 1;
             });
-            place += 1;
             gradient.add(self.first + parameter, sum);
         });
     }
@@ -155,7 +152,9 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
             Map::Step(blocks, inverse) => {
                 let attitude = inverse.adjoint_transpose(&end.attitude);
                 let right = attitude + transposed(&blocks.end_by_turn, &end.momentum);
-                let (at_start, _) = Vector::<E>::solve(&Vector::<E>::transpose(&blocks.start_by_turn), &right);
+                let (factors, det) =
+                    Vector::<E>::factorise_with(&Vector::<E>::transpose(&blocks.start_by_turn), pattern::<E>());
+                let at_start = Vector::<E>::solve_again_with(&factors, det, pattern::<E>(), &right);
                 self.backwards(&at_start, &end.momentum, gradient);
                 let attitude = attitude
                     + (transposed(&blocks.end_by_place, &end.momentum) - transposed(&blocks.start_by_place, &at_start));

@@ -7,6 +7,7 @@ use crate::mechanics::{Effect, Group, SecondDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
 use crate::motion::linearised::stage::{Map, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
+use crate::solving::pattern;
 use nalgebra::SimdComplexField as _;
 
 /// How a state changes with its start, and with parameters: columns `(ζ, δμ)` that
@@ -128,7 +129,7 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
             let shares = &mut self.shares;
             stage.forwards(&mut |number, start, end| {
                 if let Some(share) = shares.get_mut(number) {
-                    *share = (start * scale, end * scale);
+                    *share = (share.0 + start * scale, share.1 + end * scale);
                 }
             });
         }
@@ -137,14 +138,14 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
         match map {
             Map::Nothing => {}
             Map::Step(blocks, inverse) => {
-                let (factors, determinant) = Vector::<E>::factorise(&blocks.start_by_turn);
+                let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern::<E>());
                 for column in &mut self.columns {
                     let mut target = column.momentum - blocks.start_by_place * column.attitude;
                     let share = share(column);
                     if let Some((start, _)) = share {
                         target = target - *start;
                     }
-                    let turn = Vector::<E>::solve_again(&factors, determinant, &target);
+                    let turn = Vector::<E>::solve_again_with(&factors, determinant, pattern::<E>(), &target);
                     let mut momentum = blocks.end_by_turn * turn + blocks.end_by_place * column.attitude;
                     if let Some((_, end)) = share {
                         momentum = momentum + *end;

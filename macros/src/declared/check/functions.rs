@@ -37,8 +37,8 @@ impl Checker<'_> {
             return None;
         }
         match (function.as_str(), argument.shape) {
-            ("hat", shape) if shape == Shape::Matrix(self.declaration.group.dimension(), 1) => {
-                let Group { size, generators, is_so3, .. } = &self.declaration.group;
+            ("hat", shape) if shape == Shape::Matrix(self.factor().dimension(), 1) => {
+                let Group { size, generators, is_so3, .. } = self.factor();
                 // In cross products the relations of vectors are known.
                 if *is_so3 && self.declaration.continuous.is_some() {
                     return Some(Tree::new(span, SQUARE, Kind::CrossMatrix(argument)));
@@ -47,12 +47,12 @@ impl Checker<'_> {
                 Some(Tree::new(span, Shape::Matrix(*size, *size), Kind::Hat(argument, generators)))
             }
             ("hat", shape) => {
-                let dimension = self.declaration.group.dimension();
+                let dimension = self.factor().dimension();
                 self.mismatch("hat", &format!("a vector of {dimension}, one for each generator"), shape, at)
             }
             ("vee", SQUARE) => Some(Tree::new(span, VECTOR, Kind::Vee(argument))),
             ("vee", shape) => self.mismatch("vee", "a 3 × 3 matrix", shape, at),
-            ("log", SQUARE) if self.declaration.group.is_so3 => Some(logarithm(span, argument)),
+            ("log", SQUARE) if self.declaration.group.rotates() => Some(logarithm(span, argument)),
             ("log", SQUARE) => {
                 self.errors.push(at, "`log` is that of a rotation, and this group isn't SO3");
                 None
@@ -77,7 +77,7 @@ impl Checker<'_> {
     ) -> Option<Rc<Tree>> {
         match (&argument.kind, shape) {
             // The group knows the inverses of its elements.
-            (Kind::Name(Name::Increment), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
+            (Kind::Name(Name::Increment(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
             (_, Shape::Matrix(rows, columns)) if rows != columns || rows > 3 => {
                 self.mismatch("inverse", "a matrix of up to 3 × 3", shape, at)
             }

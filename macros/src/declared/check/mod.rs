@@ -346,12 +346,13 @@ impl Checker<'_> {
         }
         let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.plain_name() == name);
         let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.plain_name() == name);
-        let size = self.declaration.group.size;
+        let size = self.factor().size;
         let square = Shape::Matrix(size, size);
+        let increment = self.declaration.factors.iter().position(|factor| factor.name == name);
         let (shape, found) = match name.as_str() {
             "I" => return Some(Tree::new(span, square, Kind::Identity)),
             "F" | "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
-            "F" => (square, Name::Increment),
+            _ if increment.is_some() => (square, Name::Increment(increment.unwrap_or(0))),
             "h" => (Shape::Scalar, Name::Step),
             _ if self.declaration.velocity().is_some_and(|velocity| velocity.unraw() == name) => {
                 (self.displacement(), Name::Velocity)
@@ -409,6 +410,11 @@ impl Checker<'_> {
 
     fn is_force(&self) -> bool {
         self.declaration.role == Role::Force
+    }
+
+    /// The group that an increment belongs to; those of a product are all of one kind.
+    fn factor(&self) -> &crate::mathematics::group::Group {
+        self.declaration.group.factors().first().unwrap_or(&self.declaration.group)
     }
 
     /// A vector with a component for each generator.

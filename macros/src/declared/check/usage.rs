@@ -31,11 +31,23 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         return;
     }
     // A potential at the beginning of a step alone has no `F`, and still pushes.
-    if !used.iter().any(|name| matches!(name, Name::Increment | Name::Advected(_))) {
+    if !used.iter().any(|name| matches!(name, Name::Increment(_) | Name::Advected(_))) {
         errors.push_over(
             declaration.expression.as_ref().map(super::value),
             "the Lagrangian doesn't depend on `F`, the increment of a step: nothing would move",
         );
+    }
+    if declaration.group.is_product() {
+        for (index, factor) in declaration.factors.iter().enumerate() {
+            if !used.contains(&Name::Increment(index)) {
+                let name = &factor.name;
+                let message = format!(
+                    "the Lagrangian doesn't depend on `{name}`: that body would not move; leave it out, or add its kinetic \
+                     part"
+                );
+                errors.push(factor.place, message);
+            }
+        }
     }
     check_names(declaration, used, errors);
 }

@@ -13,8 +13,10 @@ use crate::declared::{Coordinates, Discretisation, Quadrature, Role};
 #[derive(Default)]
 pub(super) struct Arguments {
     pub(super) group: Option<group::Named>,
-    /// Name, field, and whether it is given for each step.
-    pub(super) advected: Vec<(Ident, Ident, bool)>,
+    /// The factors of a product: the increment of each, and its group.
+    pub(super) factors: Vec<(Ident, group::Named)>,
+    /// Name, where its value comes from, and whether it is given for each step.
+    pub(super) advected: Vec<(Ident, Source, bool)>,
     /// `l_d`, or the virtual work, with its key.
     pub(super) expression: Option<(Ident, Expr)>,
     /// `l`, with its key.
@@ -30,6 +32,14 @@ pub(super) struct Arguments {
     pub(super) gradients: Option<Ident>,
     /// Whether an argument has come without a name, which one message says.
     has_nameless: bool,
+}
+
+/// The value of an advected parameter.
+pub(super) enum Source {
+    /// `up`.
+    Field(Ident),
+    /// `up.seen_from(F_1)`, `F_2.seen_from(F_1)`, `F_2.seen_from(space)`.
+    Seen { what: Ident, from: Ident },
 }
 
 /// Reads `key = value` pairs; after a syntax error it goes on behind the next comma.
@@ -71,7 +81,15 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
     };
     match key.to_string().as_str() {
         "group" => {
-            once(arguments.group.is_some());
+            once(arguments.group.is_some() || !arguments.factors.is_empty());
+            if role == Role::Lagrangian && input.peek(syn::token::Paren) {
+                let content;
+                parenthesized!(content in input);
+                let factors = factors(&content, errors);
+                content.parse::<TokenStream>()?;
+                arguments.factors = factors?;
+                return comma(input);
+            }
             equals(&key, input)?;
             without_quotes(&key, input)?;
             arguments.group = Some(group::named(input, errors)?);
@@ -128,7 +146,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             let pairs = content.parse_terminated(advected_pair, Token![,]);
             // What is left after a mistake would be reported as unexpected.
             content.parse::<TokenStream>()?;
-            arguments.advected.extend(pairs?.into_iter().map(|(name, field)| (name, field, is_given)));
+            arguments.advected.extend(pairs?.into_iter().map(|(name, source)| (name, source, is_given)));
         }
         other => {
             let near = suggestion(other, known.iter().copied());
@@ -140,10 +158,38 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             ));
         }
     }
+    comma(input)
+}
+
+fn comma(input: ParseStream) -> syn::Result<()> {
     if !input.is_empty() {
         input.parse::<Token![,]>()?;
     }
     Ok(())
+}
+
+/// `F_1 = SO3, F_2 = SO3`.
+fn factors(input: ParseStream, errors: &mut Errors) -> syn::Result<Vec<(Ident, group::Named)>> {
+    let mut factors = vec![factor(input, errors)?];
+    while !input.is_empty() {
+        input.parse::<Token![,]>()?;
+        if !input.is_empty() {
+            factors.push(factor(input, errors)?);
+        }
+    }
+    Ok(factors)
+}
+
+/// `F_1 = SO3`.
+fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group::Named)> {
+    let span = input.span();
+    let message = "write `group(F_1 = SO3, F_2 = SO3)`: the increment of each body, and its group";
+    let name: Ident = input.parse().map_err(|_| syn::Error::new(span, message))?;
+    if !input.peek(Token![=]) {
+        return Err(syn::Error::new(name.span(), message));
+    }
+    input.parse::<Token![=]>()?;
+    Ok((name, group::named(input, errors)?))
 }
 
 /// The name of an argument, known or followed by what it would be given.
@@ -209,7 +255,7 @@ fn without_quotes(key: &Ident, input: ParseStream) -> syn::Result<()> {
     }
 }
 
-fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
+fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
     if !input.peek(Ident::peek_any) {
         return Err(input.error("write `w = up`: a name for the expression, then the field"));
     }
@@ -222,9 +268,30 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Ident)> {
     without_quotes(&name, input)?;
     let span = input.span();
     let message = format!("write `{name} = field` with the name of a field and nothing else");
-    let field = input.parse().map_err(|_| syn::Error::new(span, &message))?;
+    let field: Ident = input.parse().map_err(|_| syn::Error::new(span, &message))?;
+    if input.peek(Token![.]) {
+        return Ok((name, seen(field, input)?));
+    }
     if !input.is_empty() && !input.peek(Token![,]) {
         return Err(input.error(message));
     }
-    Ok((name, field))
+    Ok((name, Source::Field(field)))
+}
+
+/// `.seen_from(F_1)`.
+fn seen(what: Ident, input: ParseStream) -> syn::Result<Source> {
+    input.parse::<Token![.]>()?;
+    let message = format!("write `{what}.seen_from(F_1)`, with the increment of the body that sees it");
+    let method: Ident = input.parse().map_err(|_| input.error(&message))?;
+    if method != "seen_from" || !input.peek(syn::token::Paren) {
+        return Err(syn::Error::new(method.span(), message));
+    }
+    let content;
+    parenthesized!(content in input);
+    let from: Ident = content.parse().map_err(|_| syn::Error::new(method.span(), &message))?;
+    let rest: TokenStream = content.parse()?;
+    if !rest.is_empty() || !input.is_empty() && !input.peek(Token![,]) {
+        return Err(syn::Error::new(method.span(), message));
+    }
+    Ok(Source::Seen { what, from })
 }

@@ -1,11 +1,13 @@
 //! The group of a declaration: a built-in one by its name, or one that the user gives by its generators.
 
 use proc_macro2::Span;
+use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::spanned::Spanned as _;
 use syn::{Expr, ExprArray, Ident, Path, PathArguments, Token};
 
 use crate::declared::errors::{Errors, suggestion};
+use crate::declared::{Factor, Role};
 use crate::mathematics::group::{Defect, Group, NAMES, built_in};
 use crate::mathematics::symbolic::Rational;
 
@@ -99,6 +101,41 @@ pub(super) fn group(
         }
     }
 }
+
+/// The factors of a product, with their increments.
+pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<Factor>, Group) {
+    let (mut factors, mut groups): (Vec<Factor>, Vec<Group>) = (Vec::new(), Vec::new());
+    for (increment, named) in named {
+        let name = increment.unraw().to_string();
+        if Role::Lagrangian.reserved().contains(&name.as_str()) && name != "F" {
+            let message = format!("`{name}` already has a meaning in the Lagrangian: choose another name");
+            errors.push_decisive(increment.span(), message);
+        }
+        if factors.iter().any(|other| other.name == name) {
+            let message = format!("`{name}` is declared twice: each factor has its own increment");
+            errors.push_decisive(increment.span(), message);
+            continue;
+        }
+        if factors.len() == MOST_FACTORS {
+            let message = format!("at most {MOST_FACTORS} bodies are declared together");
+            errors.push_decisive(increment.span(), message);
+            break;
+        }
+        let is_known = named.built_in().is_some_and(|group| group.is_so3);
+        if !is_known {
+            let message = "bodies that are declared together turn by `SO3`: of other products write the \
+                           `DiscreteLagrangian` by hand";
+            errors.push_over(&named.path, message);
+        }
+        // After a mistake, too, so that the rest can be checked.
+        groups.extend(built_in("SO3"));
+        factors.push(Factor { name, place: increment.span(), path: is_known.then_some(named.path) });
+    }
+    (factors, Group::product(groups))
+}
+
+/// More would make the derived code grow without bound.
+const MOST_FACTORS: usize = 4;
 
 /// The generators, to be read when the group is known.
 pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {

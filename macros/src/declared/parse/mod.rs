@@ -13,10 +13,11 @@ use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};
 
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{
-    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Field, FieldKind, Quadrature, Role,
+    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature, Role,
 };
+use crate::mathematics::derive::Seen;
 use crate::mathematics::group::Group;
-use arguments::{Arguments, arguments_from};
+use arguments::{Arguments, Source, arguments_from};
 use fields::{points, scalar};
 
 pub(crate) use own_group::{Asked, OwnGroup, asked, own_group};
@@ -91,7 +92,22 @@ pub(crate) fn as_far_as_readable(
     });
     // What seems to be missing may stand in an argument that couldn't be read.
     let is_readable = errors.is_empty();
-    let (group_path, group) = group::group(arguments.group.take(), arguments.generators.take(), is_readable, errors);
+    let named = std::mem::take(&mut arguments.factors);
+    let (group_path, group, factors) = if named.len() > 1 {
+        if let Some((key, _)) = &arguments.continuous {
+            let message = "several bodies are declared by their steps: write `l_d = …` in their increments";
+            errors.push_decisive(key.span(), message);
+        }
+        let (factors, group) = group::product(named, errors);
+        (factors.first().and_then(|factor| factor.path.clone()), group, factors)
+    } else {
+        let single = named.into_iter().next();
+        let name = single.as_ref().map_or_else(|| "F".to_owned(), |(name, _)| name.unraw().to_string());
+        let place = single.as_ref().map_or_else(Span::call_site, |(name, _)| name.span());
+        let named = arguments.group.take().or(single.map(|(_, named)| named));
+        let (path, group) = group::group(named, arguments.generators.take(), is_readable, errors);
+        (path.clone(), group, vec![Factor { name, place, path }])
+    };
     if arguments.expression.is_none() && arguments.continuous.is_none() && is_readable {
         let message = match role {
             Role::Lagrangian => {
@@ -107,16 +123,22 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
-    let advected =
-        advected(role, &arguments.advected, &fields, &unreadable, group_path.as_ref().map(|_| &group), errors);
+    let advected = advected(
+        role,
+        &arguments.advected,
+        &fields,
+        &unreadable,
+        group_path.as_ref().map(|_| (&group, factors.as_slice())),
+        errors,
+    );
     let (expression, continuous) = kind(role, &mut arguments, &fields, &advected, errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
     Declaration {
         role,
         root: arguments.root,
-        group_path,
         group,
+        factors,
         advected,
         expression: expression.filter(|_| has_meaning),
         continuous,
@@ -186,15 +208,20 @@ fn kind(
 
 fn advected(
     role: Role,
-    pairs: &[(Ident, Ident, bool)],
+    pairs: &[(Ident, Source, bool)],
     fields: &[Field],
     unreadable: &[String],
-    group: Option<&Group>,
+    group: Option<(&Group, &[Factor])>,
     errors: &mut Errors,
 ) -> Vec<AdvectedParameter> {
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
-    for &(ref name, ref field, is_given) in pairs {
+    for &(ref name, ref source, is_given) in pairs {
         let unraw = name.unraw().to_string();
+        let Some((field, seen)) = seen(source, is_given, group, errors) else {
+            // After a mistake, so that the name isn't one more.
+            parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen: Seen::From(0) });
+            continue;
+        };
         let field_names: Vec<String> = fields.iter().map(Field::plain_name).collect();
         if field_names.contains(&unraw) {
             errors.push_decisive(name.span(), format!("`{unraw}` is a field already: choose another name"));
@@ -212,6 +239,10 @@ fn advected(
             errors.push(name.span(), format!("`{unraw}` is declared twice: remove one"));
             continue;
         }
+        let Some(field) = field else {
+            parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen });
+            continue;
+        };
         let wanted = field.unraw().to_string();
         let index = field_names.iter().position(|known| *known == wanted);
         if index.is_none() && !unreadable.contains(&wanted) {
@@ -224,8 +255,8 @@ fn advected(
                     format!("a step is given numbers: make `{wanted}` an f64, a Vector3<f64> or a Matrix3<f64>");
                 errors.push_decisive(found.at, message);
             }
-        } else if let (Some(found), Some(group)) = (index.and_then(|index| fields.get(index)), group)
-            && let size = group.size
+        } else if let (Some(found), Some((group, _))) = (index.and_then(|index| fields.get(index)), group)
+            && let size = group.factors().first().map_or(group.size, |factor| factor.size)
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
@@ -243,9 +274,59 @@ fn advected(
             };
             errors.push_decisive(found.at, message);
         }
-        parameters.push(AdvectedParameter { name: name.clone(), field: index, is_given });
+        parameters.push(AdvectedParameter { name: name.clone(), field: index, is_given, seen });
     }
     parameters
+}
+
+/// The field that an advected parameter has its value from, if it isn't a body, and which bodies move it; nothing after a
+/// mistake.
+fn seen<'a>(
+    source: &'a Source,
+    is_given: bool,
+    group: Option<(&Group, &[Factor])>,
+    errors: &mut Errors,
+) -> Option<(Option<&'a Ident>, Seen)> {
+    let factors = group.map_or(&[][..], |(_, factors)| factors);
+    let place = |name: &Ident| factors.iter().position(|factor| *name == factor.name);
+    match source {
+        Source::Field(field) if factors.len() > 1 && !is_given => {
+            let asked: Vec<String> =
+                factors.iter().map(|factor| format!("`{field}.seen_from({})`", factor.name)).collect();
+            errors.push_decisive(field.span(), format!("who sees `{field}`? write {}", asked.join(" or ")));
+            None
+        }
+        Source::Field(field) => Some((Some(field), Seen::From(0))),
+        Source::Seen { what, .. } if is_given => {
+            errors.push_decisive(what.span(), format!("what is given is seen as it is: write `{what}`"));
+            None
+        }
+        Source::Seen { what, from } => {
+            let seer = if *from == "space" { None } else { Some(place(from)) };
+            if seer == Some(None) {
+                let known: Vec<String> = factors.iter().map(|factor| format!("`{}`", factor.name)).collect();
+                let message =
+                    format!("`{from}` isn't the increment of a body: write one of {}, or `space`", known.join(", "));
+                errors.push_decisive(from.span(), message);
+                return None;
+            }
+            match (place(what), seer.flatten()) {
+                (Some(of), Some(own)) if of == own => {
+                    let message = format!("`{what}` sees itself where it is: name two bodies, or write `space`");
+                    errors.push_decisive(what.span(), message);
+                    None
+                }
+                (Some(of), Some(from)) => Some((None, Seen::Relative { of, from })),
+                (Some(of), None) => Some((None, Seen::Configuration(of))),
+                (None, Some(factor)) => Some((Some(what), Seen::From(factor))),
+                (None, None) => {
+                    let message = format!("seen from space `{what}` doesn't change: use the field itself, `{what}`");
+                    errors.push_decisive(what.span(), message);
+                    None
+                }
+            }
+        }
+    }
 }
 
 /// A mistake where a parameter has a name that means something else.

@@ -9,6 +9,7 @@ mod mutants;
 mod own_group;
 mod right;
 mod rooms;
+mod several_bodies;
 mod sizes;
 mod time;
 mod tour;

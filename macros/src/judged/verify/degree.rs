@@ -80,7 +80,7 @@ impl Degrees {
     fn operation(&mut self, tree: &Rc<Tree>) -> Degree {
         match &tree.kind {
             Kind::Number(_) | Kind::Identity => Degree::new(0, 0),
-            Kind::Name(Name::Increment) => self.increment,
+            Kind::Name(Name::Increment(_)) => self.increment,
             // At most as a tensor, F⁻¹ S F.
             Kind::Name(Name::Advected(_)) => self.increment.power(2).times(Degree::new(1, 0)),
             // A symmetric matrix is a product of two.
@@ -110,7 +110,7 @@ impl Degrees {
                 Degree::new(1, 1)
             }
             // The adjugate over the determinant.
-            Kind::Inverse(a) if matches!(a.kind, Kind::Name(Name::Increment)) => self.increment,
+            Kind::Inverse(a) if matches!(a.kind, Kind::Name(Name::Increment(_))) => self.increment,
             Kind::Inverse(a) => {
                 let (degree, rows) = (
                     self.of(a),

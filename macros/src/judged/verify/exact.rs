@@ -11,7 +11,7 @@ use std::rc::Rc;
 use super::number::Number;
 use super::residue::Residue;
 use super::value::Value;
-use super::{Sample, degree};
+use super::{Sample, degree, inverse_of};
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, Kind, Tree};
 use crate::mathematics::derive::Derived;
@@ -60,8 +60,8 @@ fn element(group: &Group, number: &mut impl FnMut() -> Residue) -> Option<(Value
         let t = number();
         let forwards = identity.zip(&generator, |one, e| one + t * e);
         let backwards = identity.zip(&generator, |one, e| one - t * e);
-        element = element.times(&backwards.inverse().times(&forwards));
-        inverse = forwards.inverse().times(&backwards).times(&inverse);
+        element = element.times(&inverse_of(group, &backwards).times(&forwards));
+        inverse = inverse_of(group, &forwards).times(&backwards).times(&inverse);
     }
     Some((element, inverse))
 }

@@ -39,7 +39,7 @@ fn check(
     // −f⁻_k at exp(tE_j) F.
     let expected = |k: usize, j: usize, t: f64| {
         let mut values = sample.values.clone();
-        values.insert(Name::Increment, turn(&derived.group, j, t).times(&sample.increment));
+        values.insert(Name::Increment(0), turn(&derived.group, j, t).times(&sample.increment));
         values.extend(displacements(dimension, k));
         -Evaluation::new(&values).of(tree).first()
     };

@@ -28,7 +28,7 @@ use std::rc::Rc;
 
 use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, FieldKind, Name, Role, Shape, Tree};
-use crate::mathematics::derive::{Derived, SelfAdjointness};
+use crate::mathematics::derive::{Derived, Seen, SelfAdjointness};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 use crate::program::{Graph, Input, Kernel, NodeId};
@@ -181,11 +181,12 @@ fn exponential<T: Number>(exponent: &Value<T>) -> Value<T> {
 #[derive(Clone)]
 struct Sample<'a, T = f64> {
     derived: &'a Derived,
+    /// Of a product all increments, in blocks.
     increment: Value<T>,
     inverse: Value<T>,
     values: BTreeMap<Name, Value<T>>,
     symbols: BTreeMap<SymbolId, Name>,
-    advected: Vec<(Name, Variance)>,
+    advected: Vec<(Name, Variance, Seen)>,
 }
 
 impl<'a> Sample<'a> {
@@ -220,7 +221,7 @@ impl<'a> Sample<'a> {
                 _ => None,
             };
             *value = match kind {
-                None | Some(FieldKind::Point(_)) => continue,
+                None | Some(FieldKind::Point(_) | FieldKind::Configuration(_)) => continue,
                 Some(FieldKind::Scalar) if sign => value.map(|x| -scale * x),
                 Some(_) => value.map(|x| scale * x),
             };
@@ -239,12 +240,14 @@ impl<'a> Sample<'a> {
         for (symbol, name) in &self.symbols {
             inputs.extend(self.values.get(name).map(|value| (*symbol, value.clone())));
         }
-        let identity = Value::identity(f.rows);
-        let (inverse, directions) = (f.inverse(), &self.derived.directions);
-        inputs.insert(self.derived.increment(), f.clone());
-        inputs.insert(directions.small, f.zip(&identity, |x, y| x - y));
-        inputs.insert(directions.small_inverse, inverse.zip(&identity, |x, y| x - y));
-        inputs.insert(directions.inverse, inverse);
+        for (factor, one) in self.derived.directions.factors.iter().enumerate() {
+            let f = block(&self.derived.group, f, factor);
+            let (inverse, identity) = (f.inverse(), Value::identity(f.rows));
+            inputs.insert(one.small, f.zip(&identity, |x, y| x - y));
+            inputs.insert(one.increment, f);
+            inputs.insert(one.small_inverse, inverse.zip(&identity, |x, y| x - y));
+            inputs.insert(one.inverse, inverse);
+        }
         inputs
     }
 
@@ -271,7 +274,7 @@ impl<'a, T: Number> Sample<'a, T> {
         (increment, inverse): (Value<T>, Value<T>),
         mut number: impl FnMut() -> T,
     ) -> Self {
-        let mut values = BTreeMap::from([(Name::Increment, increment.clone())]);
+        let mut values = BTreeMap::from_iter(increments(&declaration.group, &increment));
         let tenth = T::of(Rational::new(1, 10));
         values.insert(Name::Step, Value::scalar(tenth + tenth * number()));
         for (index, field) in declaration.fields.iter().enumerate() {
@@ -286,7 +289,8 @@ impl<'a, T: Number> Sample<'a, T> {
         for index in 0..declaration.advected.len() {
             let kind = declaration.advected_kind(index);
             values.insert(Name::Advected(index), parameter(kind, &mut number));
-            advected.push((Name::Advected(index), kind.variance()));
+            let seen = declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
+            advected.push((Name::Advected(index), kind.variance(), seen));
         }
         let symbols = lowered.names.iter().map(|(name, id)| (*id, *name)).collect();
         Self { derived, increment, inverse, values, symbols, advected }
@@ -308,9 +312,23 @@ impl<'a, T: Number> Sample<'a, T> {
 
     fn moved_values(&self, f: &Value<T>, (g, inverse): (&Value<T>, &Value<T>)) -> BTreeMap<Name, Value<T>> {
         let mut values = self.values.clone();
-        values.insert(Name::Increment, f.clone());
-        for (name, variance) in &self.advected {
+        let group = &self.derived.group;
+        values.extend(increments(group, f));
+        for (name, variance, seen) in &self.advected {
             let Some(w) = self.values.get(name) else { continue };
+            let factor = match *seen {
+                Seen::From(factor) => factor,
+                Seen::Relative { of, from } => {
+                    let moved = block(group, g, from).times(w).times(&block(group, inverse, of));
+                    values.insert(*name, moved);
+                    continue;
+                }
+                Seen::Configuration(of) => {
+                    values.insert(*name, w.times(&block(group, inverse, of)));
+                    continue;
+                }
+            };
+            let (g, inverse) = (&block(group, g, factor), &block(group, inverse, factor));
             let moved = match variance {
                 Variance::Vector => g.times(w),
                 Variance::Covector => inverse.transpose().times(w),
@@ -325,6 +343,31 @@ impl<'a, T: Number> Sample<'a, T> {
     }
 }
 
+/// The block of a matrix that belongs to a factor of the group; of a group that isn't a product all of it.
+fn block<T: Number>(group: &Group, all: &Value<T>, factor: usize) -> Value<T> {
+    let (start, size) = (group.row_of(factor), group.factors().get(factor).map_or(0, |factor| factor.size));
+    Value::new(size, size, |row, column| all.at(start + row, start + column))
+}
+
+/// The increments of all factors.
+fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)> {
+    (0..group.factors().len()).map(|factor| (Name::Increment(factor), block(group, all, factor))).collect()
+}
+
+/// The inverse of an element, block by block.
+fn inverse_of<T: Number>(group: &Group, all: &Value<T>) -> Value<T> {
+    let mut inverse = Value::identity(group.size);
+    for factor in 0..group.factors().len() {
+        let (start, own) = (group.row_of(factor), block(group, all, factor).inverse());
+        let inside = |at: usize| (start..start + own.rows).contains(&at);
+        let known = inverse.clone();
+        inverse = Value::new(group.size, group.size, |row, column| {
+            if inside(row) && inside(column) { own.at(row - start, column - start) } else { known.at(row, column) }
+        });
+    }
+    inverse
+}
+
 /// A value that has what a field's type promises.
 fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Value<T> {
     let Shape::Matrix(rows, columns) = kind.shape() else {
@@ -337,6 +380,12 @@ fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Valu
         FieldKind::Point(_) => Value::new(rows, 1, |row, _| if row + 1 < rows { any.at(row, 0) } else { T::ONE }),
         FieldKind::SymmetricInertia => any.times(&any.transpose()),
         FieldKind::DiagonalInertia => Value::diagonal(rows, |row| T::ONE + any.at(row, row)),
+        // A Cayley transform is a rotation, whatever the skew matrix.
+        FieldKind::Configuration(_) => {
+            let skew = any.zip(&any.transpose(), |x, y| x - y);
+            let identity = Value::identity(rows);
+            identity.zip(&skew, |x, y| x - y).inverse().times(&identity.plus(&skew))
+        }
         _ => any,
     }
 }

@@ -10,7 +10,7 @@ use super::evaluation::Evaluation;
 use super::number::Number as _;
 use super::series::Series;
 use super::value::Value;
-use super::{exponential, parameter, stream};
+use super::{exponential, increments, parameter, stream};
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::{Function, Rational};
 
@@ -96,7 +96,7 @@ impl Points {
         };
         let mut number = numbers(1);
         let mut at_rest = Values::from([(Name::Step, Value::scalar(Series::STEP))]);
-        at_rest.insert(Name::Increment, Value::identity(group.size));
+        at_rest.extend(increments(group, &Value::identity(group.size)));
         for (index, field) in declaration.fields.iter().enumerate() {
             at_rest.insert(Name::Field(index), parameter(field.kind, &mut number));
         }
@@ -125,7 +125,7 @@ impl Points {
         }
         let with_increment = |increment: Value<Series>| {
             let mut values = at_rest.clone();
-            values.insert(Name::Increment, increment);
+            values.extend(increments(group, &increment));
             values
         };
         // At h = 0.3 and at h = 0.2.
@@ -281,7 +281,7 @@ impl Names {
     fn of(tree: &Rc<Tree>) -> Self {
         let mut names = Self::default();
         visit(tree, &mut |tree| match &tree.kind {
-            Kind::Name(Name::Increment) => names.has_increment = true,
+            Kind::Name(Name::Increment(_)) => names.has_increment = true,
             Kind::Name(Name::Advected(_)) => names.has_advected = true,
             Kind::Power(a, exponent) if *exponent > 1 && is_step(a) => names.has_power = true,
             _ => {}

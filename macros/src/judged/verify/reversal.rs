@@ -53,10 +53,12 @@ impl Sample<'_> {
         for (name, value) in &mut sample.values {
             let is_vector = match name {
                 Name::Field(_) => true,
-                Name::Advected(_) => self.advected.contains(&(*name, Variance::Vector)),
-                Name::Increment | Name::Step | Name::Velocity | Name::DisplacementBefore | Name::DisplacementAfter => {
-                    false
-                }
+                Name::Advected(_) => self.advected.iter().any(|w| (w.0, w.1) == (*name, Variance::Vector)),
+                Name::Increment(_)
+                | Name::Step
+                | Name::Velocity
+                | Name::DisplacementBefore
+                | Name::DisplacementAfter => false,
             };
             if is_vector && (value.rows, value.columns) == (group.size, 1) {
                 value.entries.pop();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::terms::Terms;
-use super::{Fault, SPACING, Sample, Value, compare, evaluated, linear, remembered, turn};
+use super::{Fault, SPACING, Sample, Value, block, compare, evaluated, linear, remembered, turn};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::SymbolId;
@@ -61,8 +61,11 @@ impl Step<'_> {
 
     fn inputs(&self, sample: &Sample, f: &Value) -> BTreeMap<SymbolId, Value> {
         let mut inputs = sample.inputs(f);
-        if self.derived.group.is_so3 {
-            inputs.insert(self.derived.directions.coordinates, cayley_coordinates(f));
+        if self.derived.group.rotates() {
+            let group = &self.derived.group;
+            let parts =
+                (0..group.factors().len()).flat_map(|factor| cayley_coordinates(&block(group, f, factor)).entries);
+            inputs.insert(self.derived.directions.coordinates, column(&parts.collect::<Vec<_>>()));
         }
         inputs
     }
@@ -130,9 +133,11 @@ impl Step<'_> {
     ) -> bool {
         let directions = &self.derived.directions;
         let mut inputs = inputs.clone();
-        inputs.insert(directions.inverse, sample.inverse.clone());
+        for (factor, one) in directions.factors.iter().enumerate() {
+            inputs.insert(one.inverse, block(&self.derived.group, &sample.inverse, factor));
+        }
         let carried = sample.moved_values(&sample.increment, (&sample.inverse, &sample.increment));
-        for ((name, _), &next) in sample.advected.iter().zip(&directions.next) {
+        for ((name, ..), &next) in sample.advected.iter().zip(&directions.next) {
             inputs.extend(carried.get(name).map(|w| (next, w.clone())));
         }
         let after = evaluated(&self.kernel.graph, &self.kernel.kick_after, &inputs);

@@ -9,8 +9,70 @@
 //! V ⊗ V*     E S − S E         F S⁺ F⁻¹
 //! given      0                 w⁺
 //! ```
+//!
+//! Of several bodies, `E_a` in the algebra of the factor `a`:
+//!
+//! ```text
+//! seen from a           as above, with E_a and F_a
+//! b as a sees it        E_a Q − Q E_b           F_a Q⁺ F_b⁻¹
+//! b as it is in space   −R E_b                  R⁺ F_b⁻¹
+//! ```
 
-use crate::mathematics::symbolic::{Expression, Rational, Symbols, Variance};
+use super::Context;
+use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Symbols, Variance};
+
+/// An advected parameter, and how it is moved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carried {
+    pub(crate) symbol: SymbolId,
+    pub(crate) variance: Variance,
+    pub(crate) seen: Seen,
+}
+
+/// Which factors of the group move a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Seen {
+    /// This one, by the variance.
+    From(usize),
+    /// The configuration of a factor, as another sees it.
+    Relative { of: usize, from: usize },
+    /// That of a factor, as it is in space.
+    Configuration(usize),
+}
+
+impl Seen {
+    /// Whether it is a body itself.
+    pub(crate) fn is_configuration(self) -> bool {
+        matches!(self, Self::Relative { .. } | Self::Configuration(_))
+    }
+}
+
+/// `E·w`, with an element of the algebra for each factor.
+pub(super) fn along(context: &Context, carried: Carried, e: &dyn Fn(usize) -> Expression) -> Expression {
+    let (symbols, w) = (context.symbols, context.symbol(carried.symbol));
+    match carried.seen {
+        Seen::From(factor) => infinitesimal(symbols, carried.variance, &e(factor), &w),
+        Seen::Relative { of, from } => context.product(&e(from), &w).minus(context.product(&w, &e(of))),
+        Seen::Configuration(of) => context.product(&w, &e(of)).scaled(-Rational::ONE),
+    }
+}
+
+/// `F·w⁺`, with an element and its inverse for each factor.
+pub(super) fn back(
+    context: &Context,
+    carried: Carried,
+    f: &dyn Fn(usize) -> (Expression, Expression),
+    next: &Expression,
+) -> Expression {
+    match carried.seen {
+        Seen::From(factor) => {
+            let (f, inverse) = f(factor);
+            moved_back(context.symbols, carried.variance, (&f, &inverse), next)
+        }
+        Seen::Relative { of, from } => context.product(&context.product(&f(from).0, next), &f(of).1),
+        Seen::Configuration(of) => context.product(next, &f(of).1),
+    }
+}
 
 /// `E·w`.
 pub(super) fn infinitesimal(symbols: &Symbols, variance: Variance, e: &Expression, w: &Expression) -> Expression {
@@ -29,7 +91,7 @@ pub(super) fn infinitesimal(symbols: &Symbols, variance: Variance, e: &Expressio
 }
 
 /// `F·w⁺`, with `F` and its inverse.
-pub(super) fn moved_back(
+fn moved_back(
     symbols: &Symbols,
     variance: Variance,
     (f, inverse): (&Expression, &Expression),

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::Context;
-use crate::mathematics::symbolic::{Expression, Rational, Variations, degree, variation};
+use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Variations, degree, variation};
 
 /// `(h/2) Dⁿ (U − a)`, linear in `E_k`, and its variation along `δy`.
 #[derive(Clone, Debug)]
@@ -23,9 +23,10 @@ const MOST_TERMS: usize = 100;
 
 pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared> {
     let directions = context.directions;
+    let &[factor] = directions.factors.as_slice() else { return None };
     if !context.declared.group.is_so3
-        || unknown.contains_closed(context.declared.increment)
-        || terms_in_coordinates(context, unknown) > MOST_TERMS
+        || unknown.contains_closed(factor.increment)
+        || terms_in_coordinates(factor.increment, unknown) > MOST_TERMS
     {
         return None;
     }
@@ -37,10 +38,10 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
     let outer = context.product(&y, &y.transpose(context.symbols)).scaled(Rational::integer(2));
     let numerator = scalar_part.plus(outer).plus(y.hat(context.symbols).scaled(Rational::integer(2)));
     let cayley = context.product(&d.clone().power(-1, context.symbols), &numerator);
-    let map = BTreeMap::from([(context.declared.increment, cayley)]);
+    let map = BTreeMap::from([(factor.increment, cayley)]);
     let in_coordinates = context.product(&context.half_step(), &context.substituted(unknown, &map));
     // ⟨a, E⟩ = −½ tr(E â), where `a` stands for (h/2) a.
-    let direction = context.symbol(directions.first);
+    let direction = context.symbol(factor.first);
     let target_hat = context.symbol(directions.target).hat(context.symbols);
     let target = context.product(&direction, &target_hat).trace(context.symbols).scaled(Rational::new(-1, 2));
     let difference = in_coordinates.minus(target);
@@ -55,9 +56,9 @@ pub(super) fn cleared(context: &Context, unknown: &Expression) -> Option<Cleared
 }
 
 /// Each `F` becomes the four terms of `(2/D − 1) I + (2 yyᵀ + 2 ŷ)/D`.
-fn terms_in_coordinates(context: &Context, unknown: &Expression) -> usize {
+fn terms_in_coordinates(increment: SymbolId, unknown: &Expression) -> usize {
     let terms = unknown.terms().map(|(monomial, _)| {
-        let factors = u32::try_from(degree(monomial, context.declared.increment)).unwrap_or(u32::MAX);
+        let factors = u32::try_from(degree(monomial, increment)).unwrap_or(u32::MAX);
         4_usize.saturating_pow(factors)
     });
     terms.fold(0, usize::saturating_add)

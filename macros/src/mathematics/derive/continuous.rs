@@ -197,10 +197,12 @@ pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContin
     let velocity_matrix = (!group.is_so3).then(|| matrix_symbol(&group, "hat(ξ)", &mut symbols));
     let matrix = Element::new(velocity, velocity_matrix, &symbols).matrix;
     let directions = &derived.directions;
-    let map = BTreeMap::from([(directions.first, matrix.clone()), (directions.second, matrix)]);
+    let factors = directions.factors.iter();
+    let map = factors.flat_map(|one| [one.first, one.second].map(|direction| (direction, matrix.clone()))).collect();
     let along = |expression: &Expression| substitute(expression, &map, &symbols);
     let limit = &derived.limit;
+    let advected = declared.advected.iter().map(|w| (w.symbol, w.variance)).collect();
     let kinetic = along(&limit.inertia).scaled(Rational::new(1, 2));
     let expression = kinetic.plus(along(&limit.bias)).minus(limit.potential.clone());
-    DeclaredContinuous { group, expression, velocity, velocity_matrix, advected: declared.advected.clone(), symbols }
+    DeclaredContinuous { group, symbols, expression, velocity, velocity_matrix, advected }
 }

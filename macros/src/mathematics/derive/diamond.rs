@@ -10,11 +10,8 @@ use super::{Context, action};
 use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};
 
 pub(super) fn diamond(context: &Context) -> Expression {
-    let direction = context.symbol(context.directions.first);
-    let carried =
-        context.declared.advected.iter().map(|&(w, variance)| {
-            (w, action::infinitesimal(context.symbols, variance, &direction, &context.symbol(w)))
-        });
-    let variations: Variations = carried.collect();
+    let carried = context.declared.advected.iter();
+    let variations: Variations =
+        carried.map(|&w| (w.symbol, action::along(context, w, &|factor| context.first(factor)))).collect();
     variation(context.lagrangian, &variations, context.symbols).scaled(-Rational::ONE)
 }

@@ -34,7 +34,7 @@ pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
-    let direction = context.components(&context.symbol(directions.first));
+    let direction = context.components(&context.first(0));
     let work = |before: i128, after: i128| {
         let along = |factor| direction.clone().scaled(Rational::integer(factor));
         let map = BTreeMap::from([(displacements.before, along(before)), (displacements.after, along(after))]);
@@ -58,7 +58,6 @@ pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result
     let none = || Expression::zero((1, 1));
     Ok(Derived {
         group: declared.group.clone(),
-        increment: declared.increment,
         right_momentum: none(),
         left_momentum: none(),
         diamond: before,

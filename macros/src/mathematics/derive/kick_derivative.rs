@@ -11,10 +11,9 @@ use super::{Context, action};
 use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};
 
 pub(super) fn kick_derivative(context: &Context, kick_before: &Expression) -> Expression {
-    let direction = context.symbol(context.directions.second);
-    let carried = context.declared.advected.iter().map(|&(w, variance)| {
-        let moved = action::infinitesimal(context.symbols, variance, &direction, &context.symbol(w));
-        (w, moved.scaled(-Rational::ONE))
+    let carried = context.declared.advected.iter().map(|&w| {
+        let moved = action::along(context, w, &|factor| context.second(factor));
+        (w.symbol, moved.scaled(-Rational::ONE))
     });
     let variations: Variations = carried.collect();
     variation(kick_before, &variations, context.symbols)

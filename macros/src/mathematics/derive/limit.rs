@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use super::series::Expansion;
 use super::{Context, momentum_equation};
-use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Variations, degree, variation};
+use crate::mathematics::symbolic::{Expression, Monomial, Rational, SymbolId, Variations, degree, variation};
 
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
@@ -44,8 +44,11 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
     if l_d.contains_closed(h) {
         return Err(LimitError::StepInsideFunction);
     }
-    let lowest =
-        l_d.terms().filter(|(m, _)| crate::mathematics::symbolic::monomial_contains(m, context.declared.increment));
+    let moves = |monomial| {
+        let mut increments = context.declared.increments.iter();
+        increments.any(|&increment| crate::mathematics::symbolic::monomial_contains(monomial, increment))
+    };
+    let lowest = l_d.terms().filter(|(m, _)| moves(m));
     if let Some(power) = lowest.map(|(monomial, _)| monomial.exponent(h)).min().filter(|&power| power < -1) {
         return Err(LimitError::TooSingular(power));
     }
@@ -63,13 +66,14 @@ pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, L
 
 /// As a series in `h` along `F = exp(hξ̂)`, where `let`s hide the powers of `h`.
 fn through_lets(context: &Context) -> Result<Limit, LimitError> {
-    let velocity = context.directions.velocity;
-    let series = Expansion::new(context, velocity, context.directions.scratch)?.of(&context.declared.expression)?;
+    let factors = &context.directions.factors;
+    let series = Expansion::new(context, context.directions.scratch)?.of(&context.declared.expression)?;
     if series.end() < 2 {
         return Err(LimitError::NotALagrangian);
     }
-    let advected = |value: &Expression| context.declared.advected.iter().any(|&(w, _)| value.contains(w));
-    if let Some((order, _)) = series.terms().find(|(order, value)| *order < 0 && value.contains(velocity)) {
+    let advected = |value: &Expression| context.declared.advected.iter().any(|w| value.contains(w.symbol));
+    let moves = |value: &Expression| factors.iter().any(|one| value.contains(one.velocity));
+    if let Some((order, _)) = series.terms().find(|(order, value)| *order < 0 && moves(value)) {
         return Err(LimitError::TooSingular(order));
     }
     if series.terms().any(|(order, value)| order < 1 && advected(value)) {
@@ -79,9 +83,12 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     let by_degree = |order: i32| {
         let zero = Expression::zero((1, 1));
         let coefficient = series.terms().find(|&(at, _)| at == order).map_or(zero, |(_, value)| value.clone());
-        let parts = [0, 1, 2].map(|n| coefficient.filtered(|monomial| degree(monomial, velocity) == n));
+        let parts = [0, 1, 2].map(|n| {
+            let degree = |monomial: &Monomial| factors.iter().map(|one| degree(monomial, one.velocity)).sum::<usize>();
+            coefficient.filtered(|monomial| degree(monomial) == n)
+        });
         let all = parts.iter().cloned().fold(Expression::zero((1, 1)), Expression::plus);
-        if coefficient.contains_closed(velocity) || all != coefficient {
+        if factors.iter().any(|one| coefficient.contains_closed(one.velocity)) || all != coefficient {
             return Err(LimitError::NotALagrangian);
         }
         Ok(parts)
@@ -91,11 +98,11 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     if !curvature.is_zero() {
         return Err(LimitError::NotALagrangian);
     }
-    let along = |expression: &Expression, direction| {
-        let variations = Variations::from([(velocity, context.symbol(direction))]);
-        variation(expression, &variations, context.symbols)
+    let along = |expression: &Expression, direction: &dyn Fn(usize) -> Expression| {
+        let velocities = factors.iter().enumerate().map(|(factor, one)| (one.velocity, direction(factor)));
+        variation(expression, &velocities.collect::<Variations>(), context.symbols)
     };
-    let (first, second) = (context.directions.first, context.directions.second);
+    let (first, second) = (&|factor| context.first(factor), &|factor| context.second(factor));
     let inertia = along(&along(&kinetic, first), second);
     let (slope, bias) = (along(&slope, first), along(&linear, first));
     Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential: rest.scaled(-Rational::ONE) })
@@ -106,7 +113,9 @@ fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {
 }
 
 fn at_identity(context: &Context, expression: &Expression) -> Expression {
-    let identity = Expression::identity(context.declared.group.size);
-    let map = BTreeMap::from([(context.declared.increment, identity.clone()), (context.directions.inverse, identity)]);
+    let identity = |id| Expression::identity(context.symbol(id).shape().0);
+    let factors = context.directions.factors.iter();
+    let map = factors.flat_map(|one| [one.increment, one.inverse].map(|id| (id, identity(id))));
+    let map: BTreeMap<SymbolId, Expression> = map.collect();
     context.substituted(expression, &map)
 }

@@ -19,8 +19,9 @@ mod transport;
 use std::collections::BTreeMap;
 
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols};
 
+pub(crate) use action::{Carried, Seen};
 pub(crate) use algebra::{hat, linear_forms, unit};
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
@@ -38,12 +39,12 @@ pub(crate) struct Declared {
     pub(crate) lets: Vec<Let>,
     /// The Lagrangian `l_d`, or the virtual work of a force.
     pub(crate) expression: Expression,
-    /// The increment `F`.
-    pub(crate) increment: SymbolId,
+    /// The increments `F`, one for each factor of the group.
+    pub(crate) increments: Vec<SymbolId>,
     /// The step `h`.
     pub(crate) step: SymbolId,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<(SymbolId, Variance)>,
+    pub(crate) advected: Vec<Carried>,
     /// Those of a force's virtual work; a Lagrangian has none.
     pub(crate) displacements: Option<Displacements>,
     /// Whether the derivatives of a step are asked for.
@@ -59,21 +60,33 @@ pub(crate) enum Refusal {
     Overflow,
 }
 
-/// The symbols that the derivation adds.
-#[derive(Clone, Debug)]
-pub(crate) struct Directions {
+/// The symbols that the derivation adds for each factor of the group.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfFactor {
+    /// The increment `F` itself.
+    pub(crate) increment: SymbolId,
     /// The component `E_k` of a covector.
     pub(crate) first: SymbolId,
     /// The direction `E_j` of a Jacobian's column.
     pub(crate) second: SymbolId,
-    /// The covector `a` that the unknown part of the momentum equation has to equal; in a Newton system `(h/2) a`.
-    pub(crate) target: SymbolId,
     /// `D = F − I`.
     pub(crate) small: SymbolId,
     /// `F⁻¹`.
     pub(crate) inverse: SymbolId,
     /// `D⁻ = F⁻¹ − I`.
     pub(crate) small_inverse: SymbolId,
+    /// The increment `F⁺` of the next step, in print.
+    pub(crate) next_increment: SymbolId,
+    /// `ξ̂` in the limit `F = exp(hξ̂)`.
+    velocity: SymbolId,
+}
+
+/// The symbols that the derivation adds.
+#[derive(Clone, Debug)]
+pub(crate) struct Directions {
+    pub(crate) factors: Vec<OfFactor>,
+    /// The covector `a` that the unknown part of the momentum equation has to equal; in a Newton system `(h/2) a`.
+    pub(crate) target: SymbolId,
     /// The Cayley vector `y` of `F = cay(2y)`.
     pub(crate) coordinates: SymbolId,
     /// `1 + |y|²`, the denominator of the Cayley map.
@@ -82,10 +95,6 @@ pub(crate) struct Directions {
     pub(crate) coordinate_direction: SymbolId,
     /// The new advected parameters `w⁺ = F⁻¹·w`.
     pub(crate) next: Vec<SymbolId>,
-    /// The increment `F⁺` of the next step, in print.
-    pub(crate) next_increment: SymbolId,
-    /// `ξ̂` in the limit `F = exp(hξ̂)`.
-    velocity: SymbolId,
     /// The body velocity `v` that a kick is differentiated along.
     pub(crate) along: SymbolId,
     /// A scalar to differentiate functions by.
@@ -97,7 +106,6 @@ pub(crate) struct Directions {
 pub(crate) struct Derived {
     pub(crate) symbols: Symbols,
     pub(crate) group: Group,
-    increment: SymbolId,
     pub(crate) directions: Directions,
     /// The closed `let`s with their derivatives.
     pub(crate) closed: Vec<Closed>,
@@ -152,11 +160,6 @@ pub(crate) struct Ends {
 }
 
 impl Derived {
-    /// The increment `F`.
-    pub(crate) fn increment(&self) -> SymbolId {
-        self.increment
-    }
-
     /// Whether the inertia depends on what is advected or given.
     pub(crate) fn inertia_varies(&self) -> bool {
         self.previous.iter().any(|(w, _)| self.limit.inertia.contains(*w))
@@ -223,7 +226,6 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
         if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
     Ok(Derived {
         group: declared.group.clone(),
-        increment: declared.increment,
         right_momentum,
         left_momentum,
         diamond,
@@ -279,6 +281,25 @@ impl Context<'_> {
         Expression::symbol(id, self.symbols)
     }
 
+    /// `E_k` of each factor, in the place of all.
+    fn first(&self, factor: usize) -> Expression {
+        self.directions.factors.get(factor).map_or_else(|| Expression::zero((1, 1)), |one| self.symbol(one.first))
+    }
+
+    /// `E_j` of each factor.
+    fn second(&self, factor: usize) -> Expression {
+        self.directions.factors.get(factor).map_or_else(|| Expression::zero((1, 1)), |one| self.symbol(one.second))
+    }
+
+    /// `F` of a factor with its inverse.
+    fn increment(&self, factor: usize) -> (Expression, Expression) {
+        let one = self.directions.factors.get(factor).map(|one| one.increment);
+        one.map_or_else(
+            || (Expression::zero((1, 1)), Expression::zero((1, 1))),
+            |id| (self.symbol(id), Expression::inverse(id, self.symbols)),
+        )
+    }
+
     fn half_step(&self) -> Expression {
         self.symbol(self.declared.step).scaled(Rational::new(1, 2))
     }
@@ -288,12 +309,8 @@ impl Context<'_> {
         let small = |momentum: &Expression| {
             if closed.is_empty() { transport::in_small_increment(self, momentum) } else { momentum.clone() }
         };
-        let direction = self.symbol(self.directions.first);
-        let moved = self
-            .declared
-            .advected
-            .iter()
-            .map(|&(w, variance)| (w, action::infinitesimal(self.symbols, variance, &direction, &self.symbol(w))));
+        let moved =
+            self.declared.advected.iter().map(|&w| (w.symbol, action::along(self, w, &|factor| self.first(factor))));
         self.declared.has_gradients.then(|| Ends { momenta: momenta.map(small), moved: moved.collect() })
     }
 
@@ -312,36 +329,64 @@ impl Context<'_> {
 }
 
 fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
-    let (size, dimension) = (declared.group.size, declared.group.dimension());
-    let structure = if declared.group.orthogonal { Structure::Skew } else { Structure::General };
+    let dimension = declared.group.dimension();
+    let is_product = declared.group.is_product();
+    let factors: Vec<(usize, &Group, SymbolId)> = {
+        let factors = declared.group.factors().iter().zip(&declared.increments).enumerate();
+        factors.map(|(place, (group, &increment))| (place, group, increment)).collect()
+    };
+    // With its number, where there are several.
+    let matrices = |symbols: &mut Symbols, name: &str, stage, structure: &dyn Fn(&Group) -> Structure| {
+        let of_factor = |&(place, group, _): &(usize, &Group, SymbolId)| {
+            let name = if is_product { format!("{name}_{}", place + 1) } else { name.to_owned() };
+            symbols.add(name, (group.size, group.size), structure(group), stage)
+        };
+        factors.iter().map(of_factor).collect::<Vec<SymbolId>>()
+    };
     let column =
         |symbols: &mut Symbols, name: &str, rows, stage| symbols.add(name, (rows, 1), Structure::General, stage);
-    let algebra = |symbols: &mut Symbols, name: &str| symbols.add(name, (size, size), structure, Stage::Construction);
-    let of_increment = symbols.get(declared.increment).structure;
-    let inverse = symbols.add("F⁻¹", (size, size), Structure::General, Stage::Iteration);
-    symbols.set_inverse(declared.increment, inverse);
-    Directions {
-        inverse,
-        first: algebra(symbols, "E_k"),
-        second: algebra(symbols, "E_j"),
-        target: column(symbols, "a", dimension, Stage::Step),
-        small: symbols.add("D", (size, size), Structure::General, Stage::Iteration),
-        small_inverse: symbols.add("D⁻", (size, size), Structure::General, Stage::Iteration),
-        coordinates: column(symbols, "y", dimension, Stage::Iteration),
-        denominator: symbols.add("(1 + |y|²)", (1, 1), Structure::General, Stage::Iteration),
-        coordinate_direction: column(symbols, "δy", dimension, Stage::Construction),
-        velocity: algebra(symbols, "ξ̂"),
-        along: column(symbols, "v", dimension, Stage::Step),
-        scratch: symbols.add("x", (1, 1), Structure::General, Stage::Construction),
-        next: declared
-            .advected
-            .iter()
-            .map(|&(w, _)| {
-                let before = symbols.get(w);
-                let (name, shape, structure) = (format!("{}⁺", before.name), before.shape, before.structure);
-                symbols.add(name, shape, structure, Stage::Step)
-            })
-            .collect(),
-        next_increment: symbols.add("F⁺", (size, size), of_increment, Stage::Iteration),
+    let general = |_: &Group| Structure::General;
+    let algebra = |group: &Group| if group.orthogonal { Structure::Skew } else { Structure::General };
+    let inverse = matrices(symbols, "F⁻¹", Stage::Iteration, &general);
+    for (&(_, _, increment), &inverse) in factors.iter().zip(&inverse) {
+        symbols.set_inverse(increment, inverse);
     }
+    let first = matrices(symbols, "E_k", Stage::Construction, &algebra);
+    let second = matrices(symbols, "E_j", Stage::Construction, &algebra);
+    let target = column(symbols, "a", dimension, Stage::Step);
+    let small = matrices(symbols, "D", Stage::Iteration, &general);
+    let small_inverse = matrices(symbols, "D⁻", Stage::Iteration, &general);
+    let coordinates = column(symbols, "y", dimension, Stage::Iteration);
+    let denominator = symbols.add("(1 + |y|²)", (1, 1), Structure::General, Stage::Iteration);
+    let coordinate_direction = column(symbols, "δy", dimension, Stage::Construction);
+    let velocity = matrices(symbols, "ξ̂", Stage::Construction, &algebra);
+    let along = column(symbols, "v", dimension, Stage::Step);
+    let scratch = symbols.add("x", (1, 1), Structure::General, Stage::Construction);
+    let next = declared.advected.iter().map(|w| {
+        let before = symbols.get(w.symbol);
+        let (name, shape, structure) = (format!("{}⁺", before.name), before.shape, before.structure);
+        symbols.add(name, shape, structure, Stage::Step)
+    });
+    let next = next.collect();
+    let structures: Vec<Structure> = factors.iter().map(|&(_, _, id)| symbols.get(id).structure).collect();
+    let next_increment: Vec<SymbolId> = factors
+        .iter()
+        .zip(structures)
+        .map(|(&(place, group, _), structure)| {
+            let name = if is_product { format!("F⁺_{}", place + 1) } else { "F⁺".to_owned() };
+            symbols.add(name, (group.size, group.size), structure, Stage::Iteration)
+        })
+        .collect();
+    let of_factor = |&(place, _, increment): &(usize, &Group, SymbolId)| OfFactor {
+        increment,
+        first: first[place],
+        second: second[place],
+        small: small[place],
+        inverse: inverse[place],
+        small_inverse: small_inverse[place],
+        next_increment: next_increment[place],
+        velocity: velocity[place],
+    };
+    let factors = factors.iter().map(of_factor).collect();
+    Directions { factors, target, coordinates, denominator, coordinate_direction, next, along, scratch }
 }

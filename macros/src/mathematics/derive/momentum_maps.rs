@@ -9,16 +9,16 @@ use super::Context;
 use crate::mathematics::symbolic::{Expression, Variations, variation};
 
 pub(super) fn right(context: &Context) -> Expression {
-    let f = context.symbol(context.declared.increment);
-    along(context, context.product(&context.symbol(context.directions.first), &f))
+    along(context, &|factor| context.product(&context.first(factor), &context.increment(factor).0))
 }
 
 pub(super) fn left(context: &Context) -> Expression {
-    let f = context.symbol(context.declared.increment);
-    along(context, context.product(&f, &context.symbol(context.directions.first)))
+    along(context, &|factor| context.product(&context.increment(factor).0, &context.first(factor)))
 }
 
-fn along(context: &Context, delta_f: Expression) -> Expression {
-    let variations = Variations::from([(context.declared.increment, delta_f)]);
+/// With `δF` of each factor: of several bodies the covector is linear in all `E_k` together.
+fn along(context: &Context, delta_f: &dyn Fn(usize) -> Expression) -> Expression {
+    let increments = context.declared.increments.iter().enumerate();
+    let variations: Variations = increments.map(|(factor, &increment)| (increment, delta_f(factor))).collect();
     variation(context.lagrangian, &variations, context.symbols)
 }

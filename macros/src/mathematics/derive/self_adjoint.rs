@@ -37,15 +37,17 @@ pub(super) fn defect(context: &Context) -> Expression {
     if !declared.lets.is_empty() {
         return declared.expression.clone();
     }
-    let f = context.symbol(declared.increment);
-    let inverse = Expression::inverse(declared.increment, context.symbols);
-    let mut map = BTreeMap::from([
-        (declared.increment, inverse.clone()),
-        (context.directions.inverse, f.clone()),
-        (declared.step, context.symbol(declared.step).scaled(-Rational::ONE)),
-    ]);
-    for &(w, variance) in &declared.advected {
-        map.insert(w, action::moved_back(context.symbols, variance, (&inverse, &f), &context.symbol(w)));
+    let mut map = BTreeMap::from([(declared.step, context.symbol(declared.step).scaled(-Rational::ONE))]);
+    let turned_back = |factor: usize| {
+        let (f, inverse) = context.increment(factor);
+        (inverse, f)
+    };
+    for (factor, one) in context.directions.factors.iter().enumerate() {
+        let (inverse, f) = turned_back(factor);
+        map.extend([(one.increment, inverse), (one.inverse, f)]);
+    }
+    for &w in &declared.advected {
+        map.insert(w.symbol, action::back(context, w, &turned_back, &context.symbol(w.symbol)));
     }
     declared.expression.clone().plus(context.substituted(&declared.expression, &map))
 }

@@ -79,19 +79,20 @@ impl Series {
 /// Evaluates expressions to series.
 pub(super) struct Expansion<'a> {
     context: &'a Context<'a>,
-    /// `ξ̂`, with `F = exp(h ξ̂)`.
-    velocity: SymbolId,
     /// A scalar to differentiate functions by.
     scratch: SymbolId,
     known: BTreeMap<SymbolId, Series>,
 }
 
 impl<'a> Expansion<'a> {
-    pub(super) fn new(context: &'a Context, velocity: SymbolId, scratch: SymbolId) -> Result<Self, LimitError> {
-        let mut expansion = Self { context, velocity, scratch, known: BTreeMap::new() };
-        let [increment, inverse] = [Rational::ONE, -Rational::ONE].map(|sign| expansion.exponential(sign));
-        expansion.known.insert(context.declared.increment, increment);
-        expansion.known.insert(context.directions.inverse, inverse);
+    pub(super) fn new(context: &'a Context, scratch: SymbolId) -> Result<Self, LimitError> {
+        let mut expansion = Self { context, scratch, known: BTreeMap::new() };
+        for one in &context.directions.factors {
+            let [increment, inverse] =
+                [Rational::ONE, -Rational::ONE].map(|sign| expansion.exponential(one.velocity, sign));
+            expansion.known.insert(one.increment, increment);
+            expansion.known.insert(one.inverse, inverse);
+        }
         let h = Series::constant(Expression::identity(1)).shifted(1);
         expansion.known.insert(context.declared.step, h);
         for one in &context.declared.lets {
@@ -102,9 +103,9 @@ impl<'a> Expansion<'a> {
     }
 
     /// `I ± h ξ̂ + h² ξ̂²/2 ± …`.
-    fn exponential(&self, sign: Rational) -> Series {
-        let xi = self.context.symbol(self.velocity).scaled(sign);
-        let identity = Expression::identity(self.context.declared.group.size);
+    fn exponential(&self, velocity: SymbolId, sign: Rational) -> Series {
+        let xi = self.context.symbol(velocity).scaled(sign);
+        let identity = Expression::identity(xi.shape().0);
         let mut series = Series::constant(identity.clone());
         let mut power = identity;
         for order in 1..CUTOFF {

@@ -23,60 +23,57 @@ pub(super) struct Parts {
 }
 
 pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expression) -> Parts {
-    let increment = context.declared.increment;
     let unknown = momentum.filtered(|monomial| stage_of_monomial(monomial, context.symbols) == Stage::Iteration);
     let kick_before = unknown.clone().minus(momentum.clone());
     let moved = diamond.clone().minus(kick_before.clone());
-    let f = context.symbol(increment);
-    let direction = context.symbol(context.directions.first);
-    let inverse = Expression::inverse(increment, context.symbols);
-    let turned = context.product(&context.product(&f, &direction), &inverse);
-    let mut map = BTreeMap::from([(context.directions.first, turned)]);
-    map.extend(previous(context));
+    let mut map: BTreeMap<SymbolId, Expression> = previous(context).into_iter().collect();
+    for (factor, one) in context.directions.factors.iter().enumerate() {
+        let (f, inverse) = context.increment(factor);
+        map.insert(one.first, context.product(&context.product(&f, &context.first(factor)), &inverse));
+    }
     let kick_after = context.substituted(&moved, &map);
     Parts { kick_before, unknown, moved, kick_after }
 }
 
 /// `w = F·w⁺`.
 pub(super) fn previous(context: &Context) -> Vec<(SymbolId, Expression)> {
-    let f = context.symbol(context.declared.increment);
-    let inverse = Expression::inverse(context.declared.increment, context.symbols);
     let pairs = context.declared.advected.iter().zip(&context.directions.next);
-    let moved = pairs.map(|(&(w, variance), &next)| {
-        (w, action::moved_back(context.symbols, variance, (&f, &inverse), &context.symbol(next)))
-    });
-    moved.collect()
+    let increment = |factor| context.increment(factor);
+    pairs.map(|(&w, &next)| (w.symbol, action::back(context, w, &increment, &context.symbol(next)))).collect()
 }
 
 /// The two sides of the flow on increments: `μ(F⁺, w⁺)`, and the momentum after a step in `F` and `w⁺`.
 pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expression) -> [Expression; 2] {
     let (symbols, directions) = (context.symbols, context.directions);
-    let next = directions.next_increment;
-    let mut map = BTreeMap::from([
-        (context.declared.increment, context.symbol(next)),
-        (directions.inverse, Expression::inverse(next, symbols)),
-    ]);
+    let mut map = BTreeMap::new();
+    for one in &directions.factors {
+        let next = one.next_increment;
+        map.extend([(one.increment, context.symbol(next)), (one.inverse, Expression::inverse(next, symbols))]);
+    }
     let carried = context.declared.advected.iter().zip(&directions.next);
-    map.extend(carried.map(|(&(w, _), &next)| (w, context.symbol(next))));
+    map.extend(carried.map(|(w, &next)| (w.symbol, context.symbol(next))));
     let after = context.substituted(left, &previous(context).into_iter().collect());
     [context.substituted(momentum, &map), after]
 }
 
 /// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.
 pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
-    let increment = context.declared.increment;
     // Each F becomes two terms.
-    let factors = |monomial| u32::try_from(degree(monomial, increment)).unwrap_or(u32::MAX);
+    let factors = |monomial| {
+        let degrees = context.declared.increments.iter().map(|&increment| degree(monomial, increment));
+        u32::try_from(degrees.sum::<usize>()).unwrap_or(u32::MAX)
+    };
     let terms = unknown.terms().map(|(monomial, _)| 2_usize.saturating_pow(factors(monomial)));
     if terms.fold(0, usize::saturating_add) > 4 * unknown.len() + 16 {
         return unknown.clone();
     }
-    let identity = Expression::identity(context.declared.group.size);
-    let near_identity = |small| identity.clone().plus(context.symbol(small));
-    let directions = context.directions;
-    let map = BTreeMap::from([
-        (increment, near_identity(directions.small)),
-        (directions.inverse, near_identity(directions.small_inverse)),
-    ]);
+    let near_identity = |small| {
+        let symbol = context.symbol(small);
+        Expression::identity(symbol.shape().0).plus(symbol)
+    };
+    let factors = context.directions.factors.iter();
+    let map = factors
+        .flat_map(|one| [(one.increment, near_identity(one.small)), (one.inverse, near_identity(one.small_inverse))]);
+    let map = map.collect();
     context.substituted(unknown, &map)
 }

@@ -65,8 +65,8 @@ impl Symbol {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Symbols {
     all: Vec<Symbol>,
-    /// A matrix and the symbol whose entries are those of its inverse.
-    inverse: Option<(SymbolId, SymbolId)>,
+    /// Matrices, each with the symbol whose entries are those of its inverse.
+    inverses: Vec<(SymbolId, SymbolId)>,
 }
 
 impl Symbols {
@@ -94,11 +94,12 @@ impl Symbols {
     }
 
     pub(crate) fn set_inverse(&mut self, matrix: SymbolId, inverse: SymbolId) {
-        self.inverse = Some((matrix, inverse));
+        self.inverses.retain(|(known, _)| *known != matrix);
+        self.inverses.push((matrix, inverse));
     }
 
     /// The symbol for the entries of the inverse, where one was set.
     pub(crate) fn inverse_of(&self, id: SymbolId) -> Option<SymbolId> {
-        self.inverse.filter(|(matrix, _)| *matrix == id).map(|(_, inverse)| inverse)
+        self.inverses.iter().find(|(matrix, _)| *matrix == id).map(|&(_, inverse)| inverse)
     }
 }

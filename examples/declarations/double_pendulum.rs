@@ -1,0 +1,32 @@
+//! Two links on ball joints.
+
+use liestep::{NonstandardInertia, SO3, lagrangian};
+use nalgebra::Vector3;
+
+/// A double pendulum of two rigid links: a ball joint at a fixed pivot, and one between them. The mass of the lower link
+/// counts at its joint, in `J_1` and `s_1`; `s_2` is the first moment of the lower one.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
+    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+        + ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s_2))) / h
+        - 0.5 * h * g * (w_1.dot(&(s_1 + F_1 * s_1)) + w_2.dot(&(s_2 + F_2 * s_2))),
+)]
+#[derive(Clone, Debug)]
+pub struct DoublePendulum {
+    /// Nonstandard inertia of the upper link about the pivot, with the mass of the lower at their joint, kg m².
+    pub J_1: NonstandardInertia,
+    /// That of the lower link about their joint, kg m².
+    pub J_2: NonstandardInertia,
+    /// The joint from the pivot, in the upper link, m.
+    pub rho: Vector3<f64>,
+    /// First moment of the upper link about the pivot, with the mass of the lower at their joint, kg m.
+    pub s_1: Vector3<f64>,
+    /// That of the lower link about their joint, kg m.
+    pub s_2: Vector3<f64>,
+    /// Gravitational acceleration, m/s².
+    pub g: f64,
+    /// The vertical, in space.
+    pub up: Vector3<f64>,
+}

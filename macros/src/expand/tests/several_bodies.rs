@@ -1,0 +1,64 @@
+//! Declarations of several bodies: what they conserve, and what is solved together.
+
+use super::{expanded, is_refused, tokens};
+use crate::declared::errors::Errors;
+use crate::declared::{Role, parse};
+use crate::judged::conserved;
+
+const BODIES: &str = "struct Bodies { J_1: NonstandardInertia, J_2: NonstandardInertia, k: f64, up: Vector3<f64>, \
+                      other: Vector3<f64> }";
+const KINETIC: &str = "((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+    + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)";
+
+/// The bodies of each momentum, and the field that it is along.
+fn momenta(advected: &str) -> Vec<(Vec<usize>, Option<usize>)> {
+    let arguments = format!("group(F_1 = SO3, F_2 = SO3), advected({advected}), l_d = 0.0");
+    let mut errors = Errors::default();
+    let declaration = parse::declaration(Role::Lagrangian, &tokens(&arguments), &tokens(BODIES), &mut errors);
+    assert!(errors.is_empty(), "{advected}");
+    let all = conserved(&declaration.expect("a declaration"));
+    all.into_iter().map(|one| (one.bodies, one.along)).collect()
+}
+
+#[test]
+fn conserved_momenta_are_read_off_what_is_seen() {
+    let (up, both) = (Some(3), vec![0, 1]);
+    assert_eq!(momenta("Q = F_2.seen_from(F_1)"), [(both.clone(), None)]);
+    assert_eq!(momenta("w = up.seen_from(F_1), Q = F_2.seen_from(F_1)"), [(both.clone(), up)]);
+    assert_eq!(momenta("w = up.seen_from(F_1), v = up.seen_from(F_2), Q = F_1.seen_from(F_2)"), [(both, up)]);
+    assert_eq!(momenta("w = up.seen_from(F_1)"), [(vec![0], up), (vec![1], None)]);
+    assert_eq!(momenta("w = up.seen_from(F_1), v = other.seen_from(F_2), Q = F_1.seen_from(F_2)"), []);
+    assert_eq!(momenta("R = F_1.seen_from(space)"), [(vec![1], None)]);
+    assert_eq!(momenta("R = F_1.seen_from(space), Q = F_2.seen_from(F_1)"), []);
+}
+
+/// Attitudes couple bodies at the ends of a step, and velocities in the middle of it.
+#[test]
+fn what_couples_is_solved_together() {
+    let declared = |coupling: &str| {
+        let arguments = format!(
+            "group(F_1 = SO3, F_2 = SO3), advected(w = up.seen_from(F_1), v = other.seen_from(F_2), \
+             Q = F_2.seen_from(F_1)), l_d = {KINETIC} - h * (w.z + v.z) + {coupling}"
+        );
+        let expansion = expanded(&arguments, BODIES);
+        assert!(!is_refused(&expansion), "{expansion}");
+        expansion.to_string()
+    };
+    let apart = declared("0.5 * h * k * (Q.trace() + (F_1.transpose() * Q * F_2).trace())");
+    assert!(apart.contains("const APART") && apart.contains("Solved apart: `F_1`; `F_2`."));
+    let together = declared("k * vee(F_1).dot(&(Q * vee(F_2))) / h");
+    assert!(!together.contains("const APART") && together.contains("Solved together: `F_1`, `F_2`, 6 unknowns."));
+    assert!(
+        together.contains("const INERTIA_IS_CONSTANT : :: liestep :: __private :: core :: primitive :: bool = false")
+    );
+    assert!(apart.contains("Conserved: no momentum"));
+}
+
+/// One body by another name.
+#[test]
+fn one_factor_is_a_group() {
+    let item = "struct Body { J_1: NonstandardInertia }";
+    let l_d = "((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)";
+    assert!(!is_refused(&expanded(&format!("group(F_1 = SO3), l_d = {l_d}"), item)));
+    assert!(is_refused(&expanded("group(), l_d = h", item)));
+}

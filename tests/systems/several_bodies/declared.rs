@@ -1,0 +1,232 @@
+//! The double pendulum as it is declared.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use declarations::DoublePendulum;
+use declarations::motions::{number, read, vector};
+use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
+use liestep::laws::samples::{Random, derivative};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect};
+use liestep::methods::CompositionScheme;
+use liestep::{NonstandardInertia, SO3, Stepper};
+use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
+
+use super::{apart, attitudes_of, momentum, part};
+
+type Group = (SO3, SO3);
+
+/// A double pendulum without any symmetry.
+fn pendulum() -> DoublePendulum {
+    let inertia = |x: f64, y: f64, z: f64| {
+        let m = Matrix3::new(x, 0.02, -0.03, 0.02, y, 0.01, -0.03, 0.01, z);
+        NonstandardInertia::new(m).unwrap()
+    };
+    let (rho, c_1, c_2, m_2) =
+        (Vector3::new(0.1, 0.2, -1.0), Vector3::new(0.1, 0.05, -0.5), Vector3::new(0.05, -0.1, -0.4), 0.7);
+    let J_1 = NonstandardInertia::new(inertia(0.3, 0.2, 0.4).as_matrix() + rho * rho.transpose() * m_2).unwrap();
+    let J_2 = NonstandardInertia::new(inertia(0.1, 0.15, 0.05).as_matrix() + c_2 * c_2.transpose() * m_2).unwrap();
+    DoublePendulum { J_1, J_2, rho, s_1: c_1 + rho * m_2, s_2: c_2 * m_2, g: 9.81, up: Vector3::z() }
+}
+
+fn element(random: &mut Random, size: f64) -> Group {
+    let xi: SVector<f64, 6> = random.sample();
+    <CayleyRetraction as Retraction<Group>>::retract(&(xi * size))
+}
+
+fn axis(k: usize, s: f64) -> Group {
+    <CayleyRetraction as Retraction<Group>>::retract(&Vector6::from_fn(|i, _| if i == k { s } else { 0.0 }))
+}
+
+/// Momentum maps, diamond and momentum equation are derivatives of the declared expression, and the Jacobian is that of
+/// the momentum equation.
+#[test]
+fn what_is_derived_is_what_is_declared() {
+    let (l, h, mut random) = (pendulum(), 0.05, Random::new(5));
+    for _ in 0..5 {
+        let (f, g) = (element(&mut random, 0.3), element(&mut random, 1.0));
+        let w = l.advected().seen_from(&g);
+        let value = |f: &Group, w: &_| l.l_d(&f.matrix(), w, h);
+        let of = |function: &dyn Fn(&Group) -> f64| Vector6::from_fn(|k, _| derivative(|s| function(&axis(k, s))));
+        // e·w is what an observer turned by e⁻¹ sees.
+        let moved = |e: &Group| w.seen_from(&e.inverse());
+        let right = of(&|e| value(&e.compose(&f), &w));
+        let left = of(&|e| value(&f.compose(e), &w));
+        let diamond = -of(&|e| value(&f, &moved(e)));
+        let momentum = of(&|e| value(&e.compose(&f), &moved(e)));
+        let m = f.matrix();
+        let scale = l.momentum_jacobian(&m, &w, h).norm();
+        for (name, found, expected) in [
+            ("right", l.right_momentum(&m, &w, h), right),
+            ("left", l.left_momentum(&m, &w, h), left),
+            ("diamond", l.diamond(&m, &w, h), diamond),
+            ("(2.7)", l.legendre_minus(&m, &w, h), momentum),
+        ] {
+            assert!((found - expected).norm() < 1e-10 * scale, "{name}: {found} {expected}");
+        }
+        for j in 0..6 {
+            let column =
+                Vector6::from_fn(|k, _| derivative(|t| l.legendre_minus(&axis(j, t).compose(&f).matrix(), &w, h)[k]));
+            assert!((l.momentum_jacobian(&m, &w, h).column(j) - column).norm() < 1e-10 * scale, "column {j}");
+        }
+        let energy = -derivative(|s| l.l_d(&m, &w, h * (1.0 + s))) / h;
+        assert!((l.discrete_energy(&m, &w, h) - energy).abs() < 1e-9 * scale / h);
+        let limit = |xi: &Vector6<f64>| {
+            let at = |h: f64| l.l_d(&<CayleyRetraction as Retraction<Group>>::retract(&(xi * h)).matrix(), &w, h) / h;
+            // Potentials are at the ends of a step.
+            (8.0 * at(2.5e-4) - 6.0 * at(5e-4) + at(1e-3)) / 3.0
+        };
+        let xi: Vector6<f64> = random.sample();
+        let expected = 0.5 * xi.dot(&(l.inertia(&w) * xi)) - l.potential(&w);
+        assert!((limit(&xi) - expected).abs() < 1e-7, "{} {expected}", limit(&xi));
+    }
+    const { assert!(DoublePendulum::SELF_ADJOINT && !DoublePendulum::INERTIA_IS_CONSTANT) };
+}
+
+/// What a step ends at is the momentum after it, and what it begins with that before.
+#[test]
+fn a_step_is_that_of_the_momentum_maps() {
+    let (l, h, mut random) = (pendulum(), 0.02, Random::new(6));
+    let stepper = Stepper::new(l.clone(), h).unwrap();
+    for _ in 0..5 {
+        let g = element(&mut random, 1.0);
+        let before = stepper.start(g, random.sample()).unwrap();
+        let mut after = before;
+        stepper.step(&mut after).unwrap();
+        let f = g.inverse().compose(&after.attitude()).matrix();
+        let w = before.advected();
+        let scale = l.momentum_jacobian(&f, &w, h).norm();
+        assert!((l.legendre_minus(&f, &w, h) - before.momentum()).norm() < 1e-14 * scale);
+        assert!((l.legendre_plus(&f, &w, h) - after.momentum()).norm() < 1e-14 * scale);
+        let seen = l.advected().seen_from(&after.attitude());
+        assert!((after.advected().2.0 - seen.2.0).norm() < 1e-14 && (after.advected().1.0 - seen.1.0).norm() < 1e-14);
+    }
+}
+
+/// Two point masses on rods: the reference knows directions alone, and a body without a moment about its axis has no
+/// other motion.
+#[test]
+fn spherical_pendulum() {
+    let data = &read("several bodies")["double_spherical_pendulum"];
+    let (start, end) = (&data["states"][0], &data["states"][1]);
+    let (m_1, m_2, l_1, l_2, own) = (1.0, 0.7, 1.0, 0.9, 0.01);
+    // About its axis a rod has some moment, which doesn't matter: nothing turns it.
+    let inertia =
+        |ml: f64| NonstandardInertia::from_diagonal(Vector3::new(0.5 * own, 0.5 * own, ml - 0.5 * own)).unwrap();
+    let e = Vector3::z();
+    let pendulum = DoublePendulum {
+        J_1: inertia((m_1 + m_2) * l_1 * l_1),
+        J_2: inertia(m_2 * l_2 * l_2),
+        rho: e * l_1,
+        s_1: e * ((m_1 + m_2) * l_1),
+        s_2: e * (m_2 * l_2),
+        g: 9.81,
+        up: e,
+    };
+    let attitude = |q: &Vector3<f64>| UnitQuaternion::rotation_between(&e, q).unwrap();
+    let direction = |value: &serde_json::Value, k: usize| vector(&value["q"][k]);
+    let (q, omega) = ([0, 1].map(|k| direction(start, k)), [0, 1].map(|k| vector(&start["omega"][k])));
+    let turned = [0, 1].map(|k| attitude(&q[k]));
+    let velocity = Vector6::from_iterator(
+        [0, 1].iter().flat_map(|&k| turned[k].inverse_transform_vector(&omega[k]).iter().copied().collect::<Vec<_>>()),
+    );
+    let start_at = (SO3::from(turned[0]), SO3::from(turned[1]));
+    let error = |end_at: &Group| {
+        let [first, second] = [end_at.0, end_at.1].map(|attitude| attitude.as_matrix() * e);
+        (first - direction(end, 0)).amax().max((second - direction(end, 1)).amax())
+    };
+    let errors = [(0.01, 200_u64), (0.005, 400), (0.0025, 800)].map(|(h, steps)| {
+        let stepper = Stepper::new(pendulum.clone(), h).unwrap();
+        let mut state = stepper.start(start_at, velocity).unwrap();
+        let energy = stepper.energy(&state);
+        assert!((energy - number(&start["energy"])).abs() < 1e-13, "{energy}");
+        stepper.run(&mut state, steps).unwrap();
+        let momentum = state.momentum();
+        assert!(momentum[2].abs() < 1e-13 && momentum[5].abs() < 1e-13, "about the axes: {momentum}");
+        error(&state.attitude())
+    });
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.02, "{order}");
+    }
+    let composed = Stepper::composed(pendulum, 0.02, CompositionScheme::KAHAN_LI_8).unwrap();
+    let mut state = composed.start(start_at, velocity).unwrap();
+    composed.run(&mut state, 100).unwrap();
+    println!("of order 8: {:.1e}", error(&state.attitude()));
+    assert!(error(&state.attitude()) < 1e-8);
+}
+
+/// Along the vertical the momentum of both is kept, however badly a step is solved; a step back undoes a step.
+#[test]
+fn vertical_momentum_and_energy() {
+    let stepper = Stepper::new(pendulum(), 0.01).unwrap();
+    let attitude = element(&mut Random::new(7), 1.0);
+    let mut state = stepper.start(attitude, Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5)).unwrap();
+    let vertical = |state: &liestep::motion::Motion<Group, <DoublePendulum as Effect>::Advected>| {
+        let spatial = state.spatial_momentum();
+        part(&spatial, 0).z + part(&spatial, 1).z
+    };
+    let (before, energy) = (vertical(&state), stepper.energy(&state));
+    let (mut most, mut iterations) = (0.0_f64, 0);
+    for _ in 0..20_000 {
+        iterations += stepper.step(&mut state).unwrap().iterations;
+        most = most.max((stepper.energy(&state) - energy).abs());
+    }
+    println!("momentum {:.1e}, energy {most:.1e}, iterations {iterations}", vertical(&state) - before);
+    assert!((vertical(&state) - before).abs() < 1e-12);
+    assert!(most < 0.1 && iterations < 70_000);
+
+    let (there, back) = (state, stepper.inverse().unwrap());
+    stepper.run(&mut state, 20).unwrap();
+    let mut returned = back.adopt(&state);
+    back.run(&mut returned, 20).unwrap();
+    assert!((returned.momentum() - there.momentum()).norm() < 1e-11);
+}
+
+/// Four bodies in a row, coupled by their attitudes.
+#[liestep::lagrangian(
+    group(F_1 = SO3, F_2 = SO3, F_3 = SO3, F_4 = SO3),
+    advected(Q = F_2.seen_from(F_1), R = F_3.seen_from(F_2), S = F_4.seen_from(F_3)),
+    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+        + ((F_3 - I) * J_3 * (F_3 - I).transpose()).trace() / (2.0 * h)
+        + ((F_4 - I) * J_4 * (F_4 - I).transpose()).trace() / (2.0 * h)
+        + 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace())
+        + 0.5 * h * kappa * (R.trace() + (F_2.transpose() * R * F_3).trace())
+        + 0.5 * h * kappa * (S.trace() + (F_3.transpose() * S * F_4).trace()),
+)]
+struct CoupledAttitudes {
+    J_1: DiagonalNonstandardInertia,
+    J_2: DiagonalNonstandardInertia,
+    J_3: DiagonalNonstandardInertia,
+    J_4: DiagonalNonstandardInertia,
+    kappa: f64,
+}
+
+/// To rounding, against a step of 30 digits; each body is solved for itself.
+#[test]
+fn golden_step_of_coupled_attitudes() {
+    let data = &read("several bodies");
+    let golden = &data["golden steps"]["coupled_attitudes4"];
+    let parameters = &data["coupled_attitudes4"]["parameters"];
+    let [J_1, J_2, J_3, J_4] = [0, 1, 2, 3].map(|a| {
+        let moments = Vector3::from_fn(|k, _| parameters["J"][a][k].as_f64().unwrap());
+        DiagonalNonstandardInertia::from_principal_moments(moments).unwrap()
+    });
+    let kappa = parameters["kappa"].as_f64().unwrap();
+    let scene = CoupledAttitudes { J_1, J_2, J_3, J_4, kappa };
+    let stepper = Stepper::new(scene, number(&golden["h"])).unwrap();
+    let start = attitudes_of(&golden["R0"]);
+    let attitude = (start[0], start[1], start[2], start[3]);
+    let mut state = stepper.start_with_momentum(attitude, momentum(&golden["mu0"])).unwrap();
+    stepper.step(&mut state).unwrap();
+    let (end, expected): (_, SVector<f64, 12>) = (state.attitude(), momentum(&golden["mu1"]));
+    let errors = [
+        apart(&[end.0, end.1, end.2, end.3], &attitudes_of(&golden["R1"])),
+        (state.momentum() - expected).norm() / expected.norm(),
+    ];
+    println!("{errors:?}");
+    assert!(errors.iter().all(|&error| error < 1e-14), "{errors:?}");
+    assert_eq!(CoupledAttitudes::APART, <(SO3, SO3, SO3, SO3) as liestep::groups::LieGroup>::FACTORS);
+}
