@@ -1,7 +1,7 @@
 //! Events against closed forms, and the order of the motion between two steps.
 
 use checks::random::Random;
-use declarations::{FreeBody, HeavyTop, Motion, Top as _};
+use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::mechanics::Effect;
 use liestep::methods::{CompositionScheme, ExactBody, SplittingScheme, SymmetricBody};
 use liestep::motion::{Integrator as _, Plan};
@@ -97,7 +97,7 @@ fn crossings_are_where_closed_forms_have_them() {
         let (size, shape) = (1.5 + random.signed(), 1.2 + 0.7 * random.signed());
         let moments = [1.0, 1.0, shape].map(|moment| moment * size);
         let momentum = random.direction() * size * (2.0 + random.signed());
-        let (normal, attitude, level) = (random.direction(), SO3::from(random.rotation()), 0.9 * random.signed());
+        let (normal, attitude, level) = (random.direction(), random.rotation(), 0.9 * random.signed());
         let h = 1.5 + random.signed();
         let flow = SymmetricBody::new(&Inertia::from_principal_moments(moments.into()).unwrap()).unwrap();
         let stepper = Stepper::split(FreeBody::with_moments(moments), h, flow, SplittingScheme::STRANG).unwrap();
@@ -196,13 +196,10 @@ fn a_top_turns_where_its_quadrature_has_it() {
 /// The motion between two steps has the order of the method.
 #[test]
 fn between_steps_the_order_is_that_of_the_method() {
-    fn between<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static>(
-        motion: &Motion,
-        stepper: Stepper<S, P>,
-        steps: u32,
-    ) -> End
+    fn between<S, P>(motion: &Motion, stepper: Stepper<S, P>, steps: u32) -> End
     where
-        S: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+        S: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + 'static,
+        P: Plan<S, Kept: 'static> + 'static,
     {
         let stepper = stepper.into_any();
         let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();

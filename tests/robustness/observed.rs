@@ -198,7 +198,7 @@ fn an_event_may_end_the_run() {
     stepper
         .observed(&mut start.clone())
         .event(Event::crossing(), |now| now.time() - stepper.step_size() * 7.0, |_| *count.borrow_mut() += 1)
-        .event(Event::crossing(), |now| now.time(), |_| -> () { panic!("at the start") })
+        .event(Event::crossing(), |now| 2.0 * now.time(), |_| -> () { panic!("at the start") })
         .event(
             Event::crossing(),
             |now| (now.time() - stepper.step_size() * 7.0).powi(2),
@@ -286,7 +286,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(recorder.finish().is_err());
 
     let mut recorder =
-        Recorder::new(&stepper, Table::new()).quantity("energy", "J", |now| now.energy()).in_blocks_of(1);
+        Recorder::new(&stepper, Table::new()).quantity("energy", "kJ", |now| 1e-3 * now.energy()).in_blocks_of(1);
     let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
     assert!(error.to_string().contains("two columns are called `energy`"), "{error}");
     assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));
