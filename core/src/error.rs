@@ -129,7 +129,7 @@ impl fmt::Display for SetupError {
             }
             Self::Unlike { lane } => write!(
                 f,
-                "the body of lane {lane} can't be stepped beside those before it: they have another method, or have made another number of steps; put like bodies together"
+                "the body of lane {lane} can't be stepped beside those before it: they have another method, or have made another number of steps; build a batch of like ones"
             ),
         }
     }
