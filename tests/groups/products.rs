@@ -204,6 +204,8 @@ fn what_is_far_is_restored_by_itself() {
     assert!(restored.1.defect() < 1e-15 && (good, bad).defect() > 1e-9);
 }
 
+type Four = (SO3, SE2, SO3, SE2);
+
 /// Three and four factors are in the order of the tuple, and their components too.
 #[test]
 fn components_are_in_the_order_of_the_factors() {
@@ -213,7 +215,6 @@ fn components_are_in_the_order_of_the_factors() {
     assert_eq!(Three::hat(&xi).2, SO3::hat(&Vector3::new(6.0, 7.0, 8.0)));
     assert_eq!(Three::vee(&Three::hat(&xi)), xi);
     assert!(Three::FACTORS.end_at(3) && Three::FACTORS.end_at(6) && !Three::FACTORS.end_at(4));
-    type Four = (SO3, SE2, SO3, SE2);
     let xi = SMatrix::<f64, 12, 1>::from_fn(|k, _| f64::from(u8::try_from(k).unwrap()));
     assert_eq!(<Four as Factor<3>>::components(&xi), Vector3::new(9.0, 10.0, 11.0));
     assert_eq!(Four::vee(&Four::hat(&xi)), xi);
