@@ -22,7 +22,8 @@ pub struct Report {
     pub finished: u64,
     /// How many didn't; [`Store::shards`] has them with their errors.
     pub failed: u64,
-    /// The files that were damaged, and made anew.
+    /// The files that were damaged. They are now called `….damaged`, and their chunks were made anew; but for those that
+    /// have only been damaged since this run began, which are left to the next.
     pub faults: Vec<Fault>,
     reductions: Vec<(String, Reduced)>,
 }
@@ -68,7 +69,7 @@ impl<M: Integrator> Ensemble<M> {
         let (plan, chunks) = (self.fingerprint(), self.chunks());
         let look = || {
             let (found, damaged) = store.survey(plan, drop)?;
-            Store::remove(&damaged)?;
+            Store::set_aside(&damaged)?;
             Ok(((0..chunks).filter(|chunk| !found.contains_key(chunk)).collect(), damaged))
         };
         let looked = if engine.leads() { look() } else { Ok((Vec::new(), Vec::new())) };
@@ -99,11 +100,12 @@ impl<M: Integrator> Ensemble<M> {
         };
         if engine.leads() {
             // In the order of their numbers, as sums are.
-            let (found, _) = store.survey(plan, |shard| {
+            let (found, damaged) = store.survey(plan, |shard| {
                 report.finished += shard.finished;
                 report.failed += shard.failures.len() as u64;
                 report.reductions.iter_mut().zip(&shard.reduced).for_each(|((_, all), part)| all.merge(part));
             })?;
+            report.faults.extend(damaged);
             report.missing = chunks - found.len() as u64;
             if report.missing == 0 {
                 store.sweep()?;

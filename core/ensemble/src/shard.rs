@@ -114,17 +114,21 @@ impl Shard {
         Ok(bytes)
     }
 
-    /// What a file holds that was written by [`to_bytes`](Self::to_bytes), and why it wasn't.
-    pub(crate) fn of_bytes(bytes: &[u8]) -> Result<Self, String> {
+    /// What a file holds that was written by [`to_bytes`](Self::to_bytes), or why it wasn't; `None` where another version
+    /// of the format has written it.
+    pub(crate) fn of_bytes(bytes: &[u8]) -> Result<Option<Self>, String> {
         let reader = FileReader::try_new(Cursor::new(bytes), None).map_err(|error| error.to_string())?;
         let schema = reader.schema();
         let summary = schema.metadata().get(KEY).ok_or("it has no summary of a chunk")?;
+        if summary.lines().next() != Some(FORMAT) {
+            return Ok(None);
+        }
         let names: Vec<String> = schema.fields().iter().skip(3).map(|field| field.name().clone()).collect();
         let mut shard = Self::of_summary(summary, names).ok_or("its summary can't be read")?;
         for batch in reader {
             shard.append(&batch.map_err(|error| error.to_string())?).ok_or("its columns are of other types")?;
         }
-        Ok(shard)
+        Ok(Some(shard))
     }
 
     fn append(&mut self, batch: &RecordBatch) -> Option<()> {
@@ -158,10 +162,7 @@ impl Shard {
     }
 
     fn of_summary(summary: &str, names: Vec<String>) -> Option<Self> {
-        let mut lines = summary.lines();
-        if lines.next()? != FORMAT {
-            return None;
-        }
+        let mut lines = summary.lines().skip(1);
         let mut value = |key: &str| lines.next()?.strip_prefix(key)?.strip_prefix(' ').map(str::to_owned);
         let mut shard = Self {
             plan: u64::from_str_radix(&value("plan")?, 16).ok()?,
@@ -185,5 +186,35 @@ impl Shard {
             }
         }
         Some(shard)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FORMAT, Rows, Shard};
+
+    /// A later version's file isn't damaged: there is nothing to be made anew in its place.
+    #[test]
+    fn another_format_is_told_from_what_cannot_be_read() {
+        let shard = Shard {
+            plan: 1,
+            chunk: 2,
+            names: vec!["x".to_owned()],
+            rows: Rows::of_columns(1),
+            finished: 0,
+            failures: vec![],
+            reduced: vec![],
+        };
+        let bytes = shard.to_bytes().unwrap();
+        assert_eq!(Shard::of_bytes(&bytes), Ok(Some(shard)));
+        let mut later = bytes.clone();
+        // At the beginning and in the footer.
+        for (place, part) in bytes.windows(FORMAT.len()).enumerate() {
+            if part == FORMAT.as_bytes() {
+                later[place + FORMAT.len() - 1] = b'9';
+            }
+        }
+        assert_eq!(Shard::of_bytes(&later), Ok(None));
+        assert!(Shard::of_bytes(b"ARROW1").is_err());
     }
 }

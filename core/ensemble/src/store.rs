@@ -3,7 +3,7 @@
 use core::fmt;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::digest::Digest;
@@ -14,7 +14,8 @@ use crate::shard::Shard;
 ///
 /// A file is written beside, brought to the disk, and then renamed; the folder is brought to the disk, too. So whatever
 /// ends a run, a shard is there whole or not at all, and the next run makes what is missing. Several processes may write
-/// to one folder, on a shared file system too.
+/// to one folder, on a shared file system too. Files of other names are nobody's business here: they are neither read nor
+/// removed.
 ///
 /// Every file is Arrow IPC and can be read without this library: `polars.read_ipc("out/*/*.arrow")`. Its columns are
 /// `member`, `step`, `status` (a [`Status`](crate::Status)) and those that are [kept](crate::Ensemble::keep).
@@ -31,10 +32,12 @@ pub enum Fault {
     Truncated(PathBuf),
     /// It has changed since it was written.
     Altered(PathBuf),
-    /// It is whole, but of another plan.
+    /// It is whole, but of another plan, or of another version of this format.
     Foreign(PathBuf),
     /// It can't be read as a shard.
     Unreadable(PathBuf, String),
+    /// The file system doesn't give it.
+    Io(PathBuf, String),
 }
 
 /// Why shards can't be read or written.
@@ -48,9 +51,14 @@ pub enum StoreError {
         /// Why.
         error: std::io::Error,
     },
-    /// The folder has shards of another plan, which are left alone.
+    /// The folder has shards of another plan, or of another version of this format, which are left alone.
     Foreign {
         /// One of them.
+        path: PathBuf,
+    },
+    /// A chunk has two whole files, which differ: members aren't the same each time that they are made.
+    Twice {
+        /// The second.
         path: PathBuf,
     },
     /// A shard can't be put into its format.
@@ -66,7 +74,8 @@ impl fmt::Display for Fault {
             Self::Truncated(path) => write!(f, "{} is truncated", path.display()),
             Self::Altered(path) => write!(f, "{} has been altered: its digest is another", path.display()),
             Self::Foreign(path) => write!(f, "{} is of another plan", path.display()),
-            Self::Unreadable(path, reason) => write!(f, "{} can't be read: {reason}", path.display()),
+            Self::Unreadable(path, reason) => write!(f, "{} isn't a shard: {reason}", path.display()),
+            Self::Io(path, reason) => write!(f, "{} can't be read: {reason}", path.display()),
         }
     }
 }
@@ -77,7 +86,12 @@ impl fmt::Display for StoreError {
             Self::Io { path, error } => write!(f, "{}: {error}", path.display()),
             Self::Foreign { path } => write!(
                 f,
-                "{} is of another plan (other members, steps, columns or a changed program); take another folder, or delete that file",
+                "{} is of another plan (other members, steps, columns, or a changed program or library); take another folder, or delete that file",
+                path.display()
+            ),
+            Self::Twice { path } => write!(
+                f,
+                "{} is a second file of its chunk with other contents: members have to be the same each time and on every machine; delete one of the two",
                 path.display()
             ),
             Self::Unwritable { reason } => write!(f, "a shard can't be written: {reason}"),
@@ -112,7 +126,7 @@ impl Store {
         let mut files = Vec::new();
         for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
             let named = entries(&folder)?.into_iter().filter_map(|path| Some((name_of(&path)?.0, path)));
-            files.extend(named);
+            files.extend(named.filter(|(_, path)| !path.is_dir()));
         }
         files.sort();
         Ok(files)
@@ -122,16 +136,22 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// A [`Fault`] where it is truncated, altered or no shard.
+    /// A [`Fault`] where it is truncated, altered or no shard, or the file system doesn't give it.
     pub fn read(path: &Path) -> Result<Shard, Fault> {
+        let bytes = fs::read(path).map_err(|error| Fault::Io(path.to_owned(), error.to_string()))?;
+        Self::shard_of(path, &bytes)
+    }
+
+    fn shard_of(path: &Path, bytes: &[u8]) -> Result<Shard, Fault> {
         let unreadable = |reason: &str| Fault::Unreadable(path.to_owned(), reason.to_owned());
-        let bytes = fs::read(path).map_err(|error| unreadable(&error.to_string()))?;
-        let (chunk, digest) = name_of(path).ok_or_else(|| unreadable("its name isn't a shard's"))?;
-        if Digest::of(&bytes) != digest {
+        let (chunk, digest) =
+            name_of(path).ok_or_else(|| unreadable("its name, or that of its folder, isn't a shard's"))?;
+        if Digest::of(bytes) != digest {
             let is_whole = bytes.ends_with(END);
             return Err(if is_whole { Fault::Altered(path.to_owned()) } else { Fault::Truncated(path.to_owned()) });
         }
-        let shard = Shard::of_bytes(&bytes).map_err(|reason| unreadable(&reason))?;
+        let shard = Shard::of_bytes(bytes).map_err(|reason| unreadable(&reason))?;
+        let shard = shard.ok_or_else(|| Fault::Foreign(path.to_owned()))?;
         if shard.chunk == chunk { Ok(shard) } else { Err(Fault::Altered(path.to_owned())) }
     }
 
@@ -155,8 +175,8 @@ impl Store {
     /// [`StoreError`] where that can't be done. Other shards are as they were.
     pub fn write(&self, shard: &Shard) -> Result<(), StoreError> {
         let bytes = shard.to_bytes().map_err(|error| StoreError::Unwritable { reason: error.to_string() })?;
-        let folder = self.folder.join(format!("{:05}", shard.chunk / PER_FOLDER));
-        let name = format!("{:08}-{:016x}.arrow", shard.chunk, Digest::of(&bytes));
+        let folder = self.folder.join(folder_of(shard.chunk));
+        let name = file_of(shard.chunk, Digest::of(&bytes));
         let beside = folder.join(format!("{name}.{}.part", std::process::id()));
         let io = |path: &Path| {
             let path = path.to_owned();
@@ -184,7 +204,7 @@ impl Store {
     pub(crate) fn sweep(&self) -> Result<(), StoreError> {
         for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
             for path in entries(&folder)? {
-                if path.extension().is_some_and(|extension| extension == "part") {
+                if is_part(&path) {
                     let _ = fs::remove_file(path);
                 }
             }
@@ -199,8 +219,16 @@ impl Store {
         mut look: impl FnMut(Shard) -> T,
     ) -> Result<(BTreeMap<u64, T>, Vec<Fault>), StoreError> {
         let (mut found, mut faults) = (BTreeMap::new(), Vec::new());
-        for shard in self.shards(plan)? {
-            match shard {
+        for (_, path) in self.files()? {
+            let bytes = match fs::read(&path) {
+                Ok(bytes) => bytes,
+                // Another process has just set it aside.
+                Err(error) if error.kind() == ErrorKind::NotFound => continue,
+                Err(error) => return Err(StoreError::Io { path, error }),
+            };
+            match Self::shard_of(&path, &bytes) {
+                Ok(shard) if shard.plan != plan => return Err(StoreError::Foreign { path }),
+                Ok(shard) if found.contains_key(&shard.chunk) => return Err(StoreError::Twice { path }),
                 Ok(shard) => drop(found.insert(shard.chunk, look(shard))),
                 Err(Fault::Foreign(path)) => return Err(StoreError::Foreign { path }),
                 Err(fault) => faults.push(fault),
@@ -209,20 +237,43 @@ impl Store {
         Ok((found, faults))
     }
 
-    /// Removes files that are named in faults: their chunks are made anew.
-    pub(crate) fn remove(faults: &[Fault]) -> Result<(), StoreError> {
+    /// Gives the damaged files that are named in faults another name, `….arrow.damaged`: their chunks are made anew.
+    pub(crate) fn set_aside(faults: &[Fault]) -> Result<(), StoreError> {
         for fault in faults {
             let (Fault::Truncated(path) | Fault::Altered(path) | Fault::Unreadable(path, _)) = fault else { continue };
-            fs::remove_file(path).map_err(|error| StoreError::Io { path: path.clone(), error })?;
+            let mut aside = path.clone().into_os_string();
+            aside.push(".damaged");
+            match fs::rename(path, aside) {
+                // Another process was faster.
+                Err(error) if error.kind() == ErrorKind::NotFound => {}
+                renamed => renamed.map_err(|error| StoreError::Io { path: path.clone(), error })?,
+            }
         }
         Ok(())
     }
 }
 
-/// The number and the digest in a shard's name.
+fn folder_of(chunk: u64) -> String {
+    format!("{:05}", chunk / PER_FOLDER)
+}
+
+fn file_of(chunk: u64, digest: u64) -> String {
+    format!("{chunk:08}-{digest:016x}.arrow")
+}
+
+/// The number and the digest in a shard's name, where it is to the letter the one that [`Store::write`] gives.
 fn name_of(path: &Path) -> Option<(u64, u64)> {
-    let (chunk, digest) = path.file_name()?.to_str()?.strip_suffix(".arrow")?.split_once('-')?;
-    Some((chunk.parse().ok()?, u64::from_str_radix(digest, 16).ok()?))
+    let name = path.file_name()?.to_str()?;
+    let (chunk, digest) = name.strip_suffix(".arrow")?.split_once('-')?;
+    let (chunk, digest) = (chunk.parse().ok()?, u64::from_str_radix(digest, 16).ok()?);
+    let folder = path.parent()?.file_name()?.to_str()?;
+    (name == file_of(chunk, digest) && folder == folder_of(chunk)).then_some((chunk, digest))
+}
+
+/// Whether it is a shard's that hasn't got its name yet.
+fn is_part(path: &Path) -> bool {
+    let stem = || path.to_str()?.strip_suffix(".part")?.rsplit_once('.');
+    stem().is_some_and(|(shard, process)| process.parse::<u32>().is_ok() && name_of(Path::new(shard)).is_some())
 }
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {

@@ -2,6 +2,7 @@
 
 mod common;
 
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -194,6 +195,12 @@ fn damaged_files_are_named_and_made_anew() {
     assert!(named[0].to_string().contains("truncated") && named[1].to_string().contains("digest"));
     let report = run(&ensemble, &Local::threads(2), &folder);
     assert_eq!((report.made, report.missing, &report.faults), (2, 0, &faults));
+    // What was damaged is there under another name.
+    let aside = |path: &Path| PathBuf::from(format!("{}.damaged", path.display()));
+    assert_eq!(std::fs::read(aside(&cut)).unwrap(), bytes[..bytes.len() / 2]);
+    assert_ne!(std::fs::read(aside(&turned)).unwrap(), whole);
+    std::fs::remove_file(aside(&cut)).unwrap();
+    std::fs::remove_file(aside(&turned)).unwrap();
     assert!(contents(&folder.0) == expected);
     // Of another plan: nothing is touched.
     let foreign = tops(MEMBERS, STEPS).seed(8);
@@ -216,6 +223,58 @@ fn damaged_files_are_named_and_made_anew() {
     let empty = folder.0.join("00000").join("00000002-cbf29ce484222325.arrow");
     std::fs::write(&empty, b"").unwrap();
     assert!(matches!(Store::read(&empty), Err(Fault::Unreadable(..))));
+    assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 0);
+    assert!(!empty.exists() && aside(&empty).exists());
+    // The file system gives no folder where a file should be.
+    assert!(matches!(Store::read(&folder.0.join("00000")), Err(Fault::Io(..))));
+}
+
+/// Whatever else lies in the folder stays where it is, whatever it is called.
+#[test]
+fn files_of_others_survive() {
+    let ensemble = tops(MEMBERS, STEPS);
+    let folder = Folder::new("others");
+    run(&ensemble, &Local::threads(2), &folder);
+    let own = contents(&folder.0);
+    let names = [
+        "2024/2024-12.arrow", // by months
+        "00000/2024-12.arrow",
+        "00000/1-cbf29ce484222325.arrow",        // a number that isn't filled up
+        "00000/00000001-CBF29CE484222325.arrow", // a digest in capitals
+        "00000/+0000001-cbf29ce484222325.arrow",
+        "00001/00000001-cbf29ce484222325.arrow", // another folder than its number's
+        "00000/film.part",
+        "00000/00000001-cbf29ce484222325.arrow.part",
+        "00000/notes.damaged",
+    ];
+    for name in names {
+        let path = folder.0.join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, name).unwrap();
+    }
+    let report = run(&ensemble, &Local::threads(2), &folder);
+    assert_eq!((report.made, report.missing, &report.faults), (0, 0, &vec![]));
+    let mut found = contents(&folder.0);
+    for name in names {
+        assert_eq!(found.remove(Path::new(name)).as_deref(), Some(name.as_bytes()), "{name}");
+    }
+    assert!(found == own);
+}
+
+/// Members that aren't the same each time make two whole files of a chunk, of which neither is counted.
+#[test]
+fn two_files_of_one_chunk_are_refused() {
+    let folder = Folder::new("twice");
+    let store = Store::folder(&folder.0).unwrap();
+    let ensemble = tops(MEMBERS, STEPS);
+    let mut shard = ensemble.chunk(3, &|| false).unwrap();
+    store.write(&shard).unwrap();
+    shard.rows.columns[0][0] += 1.0;
+    store.write(&shard).unwrap();
+    let (_, second) = store.files().unwrap().remove(1);
+    let refused = ensemble.run(&Local::threads(1), &store).unwrap_err();
+    assert!(matches!(&refused, StoreError::Twice { path } if *path == second), "{refused}");
+    assert_eq!(store.files().unwrap().len(), 2);
 }
 
 /// Whatever changes what comes out is another plan: also a function that is another, which only its values tell.
