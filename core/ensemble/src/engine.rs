@@ -22,7 +22,8 @@ pub trait Engine {
     fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>) -> Result<(), StoreError>;
 }
 
-/// Makes a chunk of a number and writes it, unless it is told to stop on the way, which it asks between members.
+/// Makes a chunk of a number and writes it, unless it is told to stop on the way, which it asks between members and
+/// after each [piece](crate::Ensemble::PIECE) of their steps.
 pub type MakeChunk<'a> = dyn Fn(u64, &dyn Fn() -> bool) -> Result<(), StoreError> + Sync + 'a;
 
 /// The threads of this process, and if asked for only a share of the chunks: whose numbers leave the rest `share` when
@@ -57,7 +58,7 @@ impl<'a> Local<'a> {
         self
     }
 
-    /// Stops between members once this is set, from a handler of signals for example. Chunks that are done are kept.
+    /// Stops within a [piece](crate::Ensemble::PIECE) of steps once this is set, from a handler of signals for example. Chunks that are done are kept.
     #[must_use]
     pub fn stopped_by(mut self, stop: &'a AtomicBool) -> Self {
         self.stop = Some(stop);
@@ -68,8 +69,14 @@ impl<'a> Local<'a> {
 impl Engine for Local<'_> {
     fn distribute(&self, missing: &[u64], make: &MakeChunk<'_>) -> Result<(), StoreError> {
         let own: Vec<u64> = missing.iter().copied().filter(|chunk| chunk % self.shares == self.share).collect();
-        let is_stopped = || self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
-        let make = |&chunk: &u64| if is_stopped() { Ok(()) } else { make(chunk, &is_stopped) };
+        let has_failed = AtomicBool::new(false);
+        let is_stopped =
+            || has_failed.load(Ordering::Relaxed) || self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
+        let make = |&chunk: &u64| {
+            let made = if is_stopped() { Ok(()) } else { make(chunk, &is_stopped) };
+            // The others needn't come to the ends of their chunks.
+            made.inspect_err(|_| has_failed.store(true, Ordering::Relaxed))
+        };
         if self.threads == 1 {
             return own.iter().try_for_each(make);
         }
