@@ -18,7 +18,7 @@ impl<M: Integrator> Ensemble<M> {
     }
 
     /// What is kept of the members of a chunk: the same for the same plan and number, whoever computes it. `None` if it is
-    /// told to stop on the way, which is asked between members.
+    /// told to stop on the way, which is asked between members and after each [piece](Self::PIECE) of their steps.
     pub fn chunk(&self, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         self.shard(self.fingerprint(), chunk, is_stopped)
     }
@@ -42,16 +42,23 @@ impl<M: Integrator> Ensemble<M> {
             let impossible = start.map(|start| starts.push(start)).err();
             waiting.push((member, impossible.map(|failure| Failed { member, steps: 0, failure })));
             if starts.len() == crate::group::LANES {
-                self.move_on(&mut waiting, &mut starts, &mut made);
+                self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
             }
         }
-        self.move_on(&mut waiting, &mut starts, &mut made);
+        self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
         let Made { rows, finished, failures, reduced } = made;
         Some(Shard { plan, chunk, names: self.names.clone(), rows, finished, failures, reduced })
     }
 
-    /// Runs those that are waiting to their ends, in lanes, and writes down what is kept of them in their order.
-    fn move_on(&self, waiting: &mut Vec<(u64, Option<Failed>)>, starts: &mut Vec<Start<M>>, made: &mut Made) {
+    /// Runs those that are waiting to their ends, in lanes, and writes down what is kept of them in their order. `None` if
+    /// it is told to stop.
+    fn move_on(
+        &self,
+        waiting: &mut Vec<(u64, Option<Failed>)>,
+        starts: &mut Vec<Start<M>>,
+        made: &mut Made,
+        is_stopped: &dyn Fn() -> bool,
+    ) -> Option<()> {
         let possible: Vec<u64> =
             waiting.iter().filter(|(_, failed)| failed.is_none()).map(|(member, _)| *member).collect();
         let mut kept: Vec<Rows> = possible.iter().map(|_| Rows::of_columns(self.names.len())).collect();
@@ -73,6 +80,9 @@ impl<M: Integrator> Ensemble<M> {
             while steps < self.steps {
                 let due = self.every.map_or(self.steps, |every| ((steps / every + 1) * every).min(self.steps));
                 while steps < due {
+                    if is_stopped() {
+                        return None;
+                    }
                     let piece = Self::PIECE.min(due - steps);
                     group.run(piece);
                     steps += piece;
@@ -116,9 +126,16 @@ impl<M: Integrator> Ensemble<M> {
             }
         }
         starts.clear();
+        Some(())
     }
 
+    /// One row for a member and a step: one that ends where it was last kept has a last row already.
     fn keep_row(&self, run: &Run<'_, M>, steps: u64, status: Status, rows: &mut Rows) {
+        if rows.step.last() == Some(&steps) {
+            rows.status.pop();
+            rows.status.push(status);
+            return;
+        }
         let mut row = Vec::with_capacity(self.names.len());
         self.columns.iter().for_each(|values| values(run, &mut row));
         rows.push(run.member, steps, status, row.into_iter());

@@ -84,7 +84,7 @@ impl Mpi {
             false
         };
         while let Some(chunk) = next() {
-            // It answers between the members of its own chunk, where it is asked whether to stop.
+            // It answers within its own chunk, each time that it asks whether to stop.
             self.or_abort(make(chunk, &answer_all));
         }
         while workers.get() > 0 {
