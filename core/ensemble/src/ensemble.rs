@@ -7,7 +7,7 @@ use simba::simd::AutoF64x8;
 
 use crate::digest::Digest;
 use crate::draw::Member;
-use crate::group::{Grouped, Start, in_lanes, one_by_one};
+use crate::group::{Grouped, LANES, Start, in_lanes, one_by_one};
 use crate::reduce::Reduction;
 use crate::{Failure, Table};
 
@@ -55,7 +55,8 @@ impl<M: Integrator> Ensemble<M> {
     /// So many members of so many steps, eight at a time in [lanes](liestep::numbers::Real#lanes).
     ///
     /// The name tells one ensemble from another in the files. `make` is a member's stepper and its start, or why there is
-    /// none; it has to give the same each time.
+    /// none; it has to give the same each time. Who changes `make` takes another name or another folder: of what it
+    /// makes the [fingerprint](Self::fingerprint) sees three members only.
     ///
     /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Any other
     /// is taken by [`one_by_one`](Self::one_by_one).
@@ -117,6 +118,8 @@ impl<M: Integrator> Ensemble<M> {
 
     /// Keeps the columns at the start, after each so many steps and at the end; if nothing is said, at the end only.
     ///
+    /// A chunk is made in memory, all rows of its members: those of one member are bounded by this number only.
+    ///
     /// # Panics
     ///
     /// Where the number is zero.
@@ -129,7 +132,7 @@ impl<M: Integrator> Ensemble<M> {
 
     /// So many members to a chunk, which is what one worker makes at a time and one file holds.
     ///
-    /// If nothing is said it is about a second's work of one core, a million rows at most.
+    /// If nothing is said it is about a second's work of one core, and a million rows at most where one member hasn't more.
     ///
     /// # Panics
     ///
@@ -142,18 +145,30 @@ impl<M: Integrator> Ensemble<M> {
     }
 
     /// Keeps columns of these names.
+    ///
+    /// # Panics
+    ///
+    /// Where there is a column of that name already; `member`, `step` and `status` always are.
     #[must_use]
     pub fn keep<const N: usize>(
         mut self,
         names: [&str; N],
         values: impl Fn(&Run<'_, M>) -> [f64; N] + Send + Sync + 'static,
     ) -> Self {
-        self.names.extend(names.map(str::to_owned));
+        for name in names {
+            let is_new = !["member", "step", "status"].contains(&name) && self.names.iter().all(|own| own != name);
+            assert!(is_new, "there is a column `{name}` already");
+            self.names.push(name.to_owned());
+        }
         self.columns.push(Box::new(move |run, row| row.extend(values(run))));
         self
     }
 
     /// Reduces a value of every member that has come to its end.
+    ///
+    /// # Panics
+    ///
+    /// Where a histogram has no bins or no range, or two reductions have one name.
     #[must_use]
     pub fn reduce(
         mut self,
@@ -161,6 +176,10 @@ impl<M: Integrator> Ensemble<M> {
         reduction: Reduction,
         value: impl Fn(&Run<'_, M>) -> f64 + Send + Sync + 'static,
     ) -> Self {
+        if let Some(mistake) = reduction.mistake() {
+            panic!("`{name}`: {mistake}");
+        }
+        assert!(self.reductions.iter().all(|(own, ..)| own != name), "there is a reduction `{name}` already");
         self.reductions.push((name.to_owned(), reduction, Box::new(value)));
         self
     }
@@ -178,7 +197,8 @@ impl<M: Integrator> Ensemble<M> {
         self.chunk.unwrap_or_else(|| {
             let rows = self.every.map_or(1, |every| self.steps / every + 2);
             let members = (STEPS / self.steps.max(1)).min(ROWS / rows.min(ROWS)).clamp(1, 1 << 16);
-            members.next_multiple_of(crate::group::LANES as u64)
+            // Full lanes, if there are members for one.
+            if members < LANES as u64 { members } else { members - members % LANES as u64 }
         })
     }
 
@@ -186,8 +206,8 @@ impl<M: Integrator> Ensemble<M> {
         Member { number, seed: self.seed, table: self.table.as_ref() }
     }
 
-    /// What tells this plan from another: all its numbers and names, its table, and what is kept of its first member at
-    /// the start and after a piece, as a function can't be compared.
+    /// What tells this plan from another: all its numbers and names, its table, and what is kept of its first, its middle
+    /// and its last member at the start and after a piece, as a function can't be compared.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         let mut digest = Digest::default();
@@ -202,13 +222,21 @@ impl<M: Integrator> Ensemble<M> {
             digest.text(name);
             digest.text(&reduction.begin().to_line());
         }
-        match (self.make)(&self.member(0)) {
+        let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
+        looked_at.dedup();
+        looked_at.into_iter().for_each(|member| self.look_at(member, &mut digest));
+        digest.value()
+    }
+
+    /// What a member is, by what is kept of it.
+    fn look_at(&self, member: u64, digest: &mut Digest) {
+        match (self.make)(&self.member(member)) {
             Ok((stepper, mut state)) => {
                 for steps in [0, Self::PIECE.min(self.steps)] {
                     if stepper.run(&mut state, steps).is_err() {
                         digest.number(steps);
                     }
-                    let run = Run { member: 0, stepper: &stepper, state: &state };
+                    let run = Run { member, stepper: &stepper, state: &state };
                     let mut row = Vec::new();
                     self.columns.iter().for_each(|values| values(&run, &mut row));
                     row.extend(self.reductions.iter().map(|(_, _, value)| value(&run)));
@@ -219,7 +247,6 @@ impl<M: Integrator> Ensemble<M> {
             }
             Err(failure) => digest.text(&failure.to_line()),
         }
-        digest.value()
     }
 }
 

@@ -65,6 +65,11 @@ impl Moments {
         if other.count == 0 {
             return;
         }
+        if self.count == 0 {
+            // By the formula the square of a large mean would be infinite, and zero times that.
+            *self = Self { not_finite: self.not_finite, ..other.clone() };
+            return;
+        }
         let count = self.count + other.count;
         let (difference, share) = (other.mean - self.mean, other.count as f64 / count as f64);
         self.squares += other.squares + difference * difference * self.count as f64 * share;
@@ -124,6 +129,17 @@ impl Histogram {
 }
 
 impl Reduction {
+    /// What is wrong with it, if something is.
+    pub(crate) fn mistake(&self) -> Option<String> {
+        let Self::Histogram { range, bins } = self else { return None };
+        if *bins == 0 {
+            return Some("a histogram has at least one bin".to_owned());
+        }
+        let width = range.end - range.start;
+        let is_range = width.is_finite() && width > 0.0;
+        (!is_range).then(|| format!("the range of a histogram goes from a number to a larger one, not {range:?}"))
+    }
+
     /// Of no values.
     pub(crate) fn begin(&self) -> Reduced {
         match self {
@@ -217,6 +233,20 @@ mod tests {
         // Of 1, 2, 6, −1 and 7: the mean 3, and 4 + 1 + 9 + 16 + 16 about it.
         assert!((moments.mean - 3.0).abs() < 1e-15 && (moments.variance() - 46.0 / 4.0).abs() < 1e-14);
         assert_eq!(Reduced::of_line(&all.to_line()), Some(all));
+    }
+
+    /// Their squares aren't doubles.
+    #[test]
+    fn moments_of_large_values_are_numbers() {
+        let mut all = Reduction::Moments.begin();
+        all.add(f64::NAN);
+        all.add(1e200);
+        let Reduced::Moments(moments) = &all else { panic!("they are moments") };
+        assert_eq!((moments.count, moments.not_finite), (1, 1));
+        assert_eq!([moments.mean, moments.squares].map(f64::to_bits), [1e200, 0.0].map(f64::to_bits));
+        let mut merged = Reduction::Moments.begin();
+        merged.merge(&all);
+        assert_eq!(merged, all);
     }
 
     #[test]

@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use arrow_array::cast::AsArray as _;
-use arrow_array::types::{Float32Type, Float64Type, Int32Type, Int64Type, UInt32Type, UInt64Type};
+use arrow_array::types::{
+    Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+};
 use arrow_array::{Array as _, ArrayRef};
 use arrow_ipc::reader::FileReader;
 use arrow_schema::{ArrowError, DataType};
@@ -38,6 +40,13 @@ pub enum TableError {
         /// The first such row, from zero.
         row: usize,
     },
+    /// A whole number of more than 53 bits, which isn't a double.
+    TooLarge {
+        /// The column.
+        column: String,
+        /// The first such row, from zero.
+        row: usize,
+    },
     /// Two columns differ in length.
     Uneven {
         /// The one that differs from those before.
@@ -52,6 +61,10 @@ impl fmt::Display for TableError {
             Self::Empty { column, row } => {
                 write!(f, "the column `{column}` has no number in row {row}; fill it, or leave the row out")
             }
+            Self::TooLarge { column, row } => write!(
+                f,
+                "the whole number in row {row} of the column `{column}` is beyond 2⁵³, so that a double hasn't all of its digits; write the column as text or in two"
+            ),
             Self::Uneven { column } => write!(f, "the column `{column}` has another length than those before it"),
         }
     }
@@ -77,11 +90,12 @@ impl Table {
         Ok(table)
     }
 
-    /// The columns of numbers of an Arrow IPC file, as polars and pandas write it; others are left out.
+    /// The columns of numbers of an Arrow IPC file, as polars and pandas write it: doubles, floats, and whole numbers of
+    /// 8 to 64 bits. Others are left out.
     ///
     /// # Errors
     ///
-    /// [`TableError`] where the file can't be read, or a number is missing.
+    /// [`TableError`] where the file can't be read, a number is missing, or a whole number is beyond 2⁵³.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, TableError> {
         let path = path.as_ref();
         let unreadable = |reason: String| TableError::Unreadable { path: path.to_owned(), reason };
@@ -96,6 +110,9 @@ impl Table {
                 let column = columns.entry(name.clone()).or_default();
                 if let Some(row) = (0..array.len()).find(|&row| array.is_null(row)) {
                     return Err(TableError::Empty { column: name.clone(), row: column.len() + row });
+                }
+                if let Some(row) = first_too_large(array) {
+                    return Err(TableError::TooLarge { column: name.clone(), row: column.len() + row });
                 }
                 column.extend(numbers);
             }
@@ -137,15 +154,48 @@ impl Table {
 }
 
 /// Of a column of numbers.
-#[allow(clippy::cast_precision_loss)] // counts and identifiers
+#[allow(clippy::cast_precision_loss)] // `first_too_large` finds those that would lose some
 fn numbers(array: &ArrayRef) -> Option<Vec<f64>> {
     Some(match array.data_type() {
         DataType::Float64 => array.as_primitive::<Float64Type>().values().to_vec(),
         DataType::Float32 => array.as_primitive::<Float32Type>().values().iter().map(|&n| f64::from(n)).collect(),
         DataType::Int64 => array.as_primitive::<Int64Type>().values().iter().map(|&n| n as f64).collect(),
         DataType::UInt64 => array.as_primitive::<UInt64Type>().values().iter().map(|&n| n as f64).collect(),
+        DataType::Int8 => array.as_primitive::<Int8Type>().values().iter().map(|&n| f64::from(n)).collect(),
+        DataType::UInt8 => array.as_primitive::<UInt8Type>().values().iter().map(|&n| f64::from(n)).collect(),
+        DataType::Int16 => array.as_primitive::<Int16Type>().values().iter().map(|&n| f64::from(n)).collect(),
+        DataType::UInt16 => array.as_primitive::<UInt16Type>().values().iter().map(|&n| f64::from(n)).collect(),
         DataType::Int32 => array.as_primitive::<Int32Type>().values().iter().map(|&n| f64::from(n)).collect(),
         DataType::UInt32 => array.as_primitive::<UInt32Type>().values().iter().map(|&n| f64::from(n)).collect(),
         _ => return None,
     })
+}
+
+/// The first row of a whole number that a double may not have all digits of.
+fn first_too_large(array: &ArrayRef) -> Option<usize> {
+    const LARGEST: u64 = 1 << f64::MANTISSA_DIGITS;
+    match array.data_type() {
+        DataType::Int64 => array.as_primitive::<Int64Type>().values().iter().position(|n| n.unsigned_abs() > LARGEST),
+        DataType::UInt64 => array.as_primitive::<UInt64Type>().values().iter().position(|&n| n > LARGEST),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{first_too_large, numbers};
+    use arrow_array::{ArrayRef, Int8Array, Int64Array, StringArray, UInt16Array, UInt64Array};
+    use std::sync::Arc;
+
+    #[test]
+    fn whole_numbers_are_read_while_doubles_have_them() {
+        let read = |array: ArrayRef| (numbers(&array), first_too_large(&array));
+        assert_eq!(read(Arc::new(Int8Array::from(vec![-128, 127]))), (Some(vec![-128.0, 127.0]), None));
+        assert_eq!(read(Arc::new(UInt16Array::from(vec![65_535]))), (Some(vec![65_535.0]), None));
+        let most = 1_i64 << 53;
+        assert_eq!(read(Arc::new(Int64Array::from(vec![most, -most]))).1, None);
+        assert_eq!(read(Arc::new(Int64Array::from(vec![0, -most - 1]))).1, Some(1));
+        assert_eq!(read(Arc::new(UInt64Array::from(vec![u64::MAX]))).1, Some(0));
+        assert_eq!(read(Arc::new(StringArray::from(vec!["1"]))), (None, None));
+    }
 }

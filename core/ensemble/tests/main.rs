@@ -3,8 +3,9 @@
 mod common;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
 use common::{Folder, Top, axis, contents, top, tops, with_columns};
 use liestep::effects::RigidBody;
@@ -12,8 +13,8 @@ use liestep::mechanics::InertiaError;
 use liestep::methods::CompositionScheme;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use liestep_ensemble::{
-    Engine, Ensemble, Failed, Failure, Fault, Histogram, Local, MakeChunk, Reduced, Report, Shard, Status, Store,
-    StoreError, Table, share_of,
+    Engine, Ensemble, Failed, Failure, Fault, Histogram, Local, MakeChunk, Reduced, Reduction, Report, Shard, Status,
+    Store, StoreError, Table, share_of,
 };
 use nalgebra::Vector3;
 
@@ -86,8 +87,8 @@ fn members_are_what_they_are_alone() {
         made
     });
     let _ = probe.seed(7).chunks_of(MEMBERS).chunk(0, &|| false);
-    // The first is asked for once more, by the fingerprint.
-    for (member, made) in starts.lock().unwrap().drain(..).skip(1) {
+    // Three are asked for once more, by the fingerprint.
+    for (member, made) in starts.lock().unwrap().drain(..).skip(3) {
         let (stepper, mut state) = match made {
             Ok(made) => made,
             Err(failure) => {
@@ -142,8 +143,10 @@ fn sums_are_those_of_the_files() {
     for (_, path) in Store::folder(&folder.0).unwrap().files().unwrap() {
         let table = Table::read(path).unwrap();
         let (z, steps) = (table.column("z").unwrap(), table.column("step").unwrap());
-        assert!(table.column("status").is_none(), "a small whole number isn't a column of a table");
+        let finished = table.column("status").unwrap().iter().filter(|status| (*status - 1.0).abs() < 0.5).count();
+        let last = ends.len();
         ends.extend(z.iter().zip(steps).filter(|(_, steps)| **steps > 149.5).map(|(z, _)| *z));
+        assert_eq!(finished, ends.len() - last);
     }
     assert_eq!(ends.len() as u64, report.finished);
     let Some(Reduced::Moments(moments)) = report.reduced("z") else { panic!("{report:?}") };
@@ -298,6 +301,13 @@ fn another_plan_has_another_fingerprint() {
             let stepper = Stepper::new(heavier, 0.01)?;
             Ok((stepper, state))
         })),
+        // Only the last member is another.
+        with_columns(Ensemble::new("tops", MEMBERS, STEPS, |member| {
+            let (stepper, state) = top(member)?;
+            let state =
+                if member.number() + 1 == MEMBERS { stepper.start(SO3::identity(), Vector3::x())? } else { state };
+            Ok((stepper, state))
+        })),
     ];
     let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
     assert_eq!(fingerprints[0], tops(MEMBERS, STEPS).fingerprint());
@@ -342,6 +352,92 @@ fn a_run_can_be_watched_and_stopped() {
     assert_eq!(*seen.lock().unwrap(), [(1, 7), (2, 7), (3, 7)]);
     assert_eq!((report.made, report.missing), (3, 4));
     assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 4);
+}
+
+/// A member that ends where it was last kept has no second row for it.
+#[test]
+fn a_member_has_one_row_for_each_step() {
+    for (steps, every) in [(STEPS, 1), (40, 40), (0, 5)] {
+        let shard = tops(20, steps).every(every).chunk(0, &|| false).unwrap();
+        let mut rows: Vec<(u64, u64)> =
+            shard.rows.member.iter().copied().zip(shard.rows.step.iter().copied()).collect();
+        let count = rows.len();
+        rows.dedup();
+        assert_eq!(rows.len(), count, "{steps} steps, every {every}");
+        let ends = shard.rows.status.iter().filter(|status| **status != Status::Going).count();
+        assert_eq!(ends, 20);
+        assert!(shard.rows.columns.iter().all(|column| column.len() == count));
+    }
+    let stopped = tops(20, STEPS).every(1).chunk(0, &|| false).unwrap();
+    assert!(stopped.rows.status.contains(&Status::Stopped));
+}
+
+/// It is asked while members run, not only while they are made.
+#[test]
+fn a_long_member_can_be_stopped() {
+    let asked = AtomicU64::new(0);
+    let is_stopped = || asked.fetch_add(1, Ordering::Relaxed) == 100;
+    assert!(tops(1, 1_000_000_000).chunk(0, &is_stopped).is_none());
+}
+
+/// One worker's error ends what the others are about.
+#[test]
+fn an_error_stops_the_other_workers() {
+    let is_there = AtomicBool::new(false);
+    let until = Instant::now() + Duration::from_secs(60);
+    let told = AtomicBool::new(false);
+    let wait = |done: &dyn Fn() -> bool| {
+        while !done() && Instant::now() < until {
+            std::thread::yield_now();
+        }
+        done()
+    };
+    let made = Local::threads(2).distribute(&[0, 1, 2], &|chunk, is_stopped| match chunk {
+        0 => {
+            wait(&|| is_there.load(Ordering::Relaxed));
+            Err(StoreError::Unwritable { reason: "full".to_owned() })
+        }
+        1 => {
+            is_there.store(true, Ordering::Relaxed);
+            told.store(wait(is_stopped), Ordering::Relaxed);
+            Ok(())
+        }
+        _ => panic!("it was given up before"),
+    });
+    assert!(matches!(made, Err(StoreError::Unwritable { .. })));
+    assert!(told.into_inner());
+}
+
+/// Chunks of their own choice: full lanes, or one member.
+#[test]
+fn chunks_hold_a_million_rows_at_most() {
+    for (steps, every, members) in [(1 << 22, 1 << 22, 8), (1 << 23, 1 << 23, 4), (1 << 18, 1, 3), (1 << 30, 1, 1)] {
+        let chunks = Ensemble::one_by_one("tops", 24, steps, top).every(every).chunks();
+        assert_eq!(chunks, 24_u64.div_ceil(members), "{steps} steps, every {every}");
+    }
+}
+
+fn message(of: impl FnOnce() -> Ensemble<Top> + std::panic::UnwindSafe) -> String {
+    let payload = std::panic::catch_unwind(of).map(drop).unwrap_err();
+    let text = payload.downcast_ref::<String>().cloned();
+    text.unwrap_or_else(|| (*payload.downcast_ref::<&str>().unwrap()).to_owned())
+}
+
+#[test]
+fn columns_and_reductions_have_names_of_their_own() {
+    for name in ["member", "step", "status", "x", "energy"] {
+        let said = message(|| tops(1, 1).keep([name], |_| [0.0]));
+        assert!(said.contains(&format!("`{name}`")), "{said}");
+    }
+    assert!(message(|| tops(1, 1).keep(["a", "a"], |_| [0.0; 2])).contains("`a`"));
+    assert!(message(|| tops(1, 1).reduce("z", Reduction::Moments, |_| 0.0)).contains("`z`"));
+    let histogram =
+        |range, bins| message(move || tops(1, 1).reduce("h", Reduction::Histogram { range, bins }, |_| 0.0));
+    assert!(histogram(0.0..1.0, 0).contains("bin"));
+    for range in [1.0..0.0, 0.0..0.0, 0.0..f64::NAN, f64::NEG_INFINITY..0.0, f64::MIN..f64::MAX] {
+        let said = histogram(range.clone(), 4);
+        assert!(said.contains("`h`") && said.contains("range"), "{said}");
+    }
 }
 
 /// Rows of a table are members; one too many has no row, and says so.
