@@ -11,7 +11,7 @@
 //! dispatched: either shows here as a ratio near one. Kernels take turns within one run, and the fastest batch of each
 //! counts.
 //!
-//! Eight tops in lanes are those of `ensemble.rs`, for a step of (3.13), a splitting, a composition, and splittings with
+//! Eight tops in lanes are those of `lanes.rs`, for a step of (3.13), a splitting, a composition, and splittings with
 //! the exact motion of their asymmetric bodies. Eight alone are eight steps of one.
 
 mod eight_tops;

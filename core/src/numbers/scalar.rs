@@ -30,7 +30,7 @@ use nalgebra::{SimdBool as _, SimdRealField, SimdValue};
 /// up to [four `f64`](crate::numbers::Vectors::Four) a register, and so does every method's: a program needn't be compiled for one
 /// machine. That is for lanes which are arrays, such as `AutoF64x8`: the `Wide` types of simba take those instructions
 /// that the program is compiled for, two `f64` a register on x86-64 unless the compiler is told more. `cargo bench
-/// --bench ensemble` and `--bench vectors` measure both.
+/// --bench lanes` and `--bench vectors` measure both.
 ///
 /// With `-C target-cpu=native` on a machine with AVX-512 lanes that are arrays are two to three times slower,
 /// probably as the compiler then makes registers of eight `f64` of parts of different arrays. `-C

@@ -1,9 +1,9 @@
 //! Steps a second of eight heavy tops (3.13) on one core: one after another, and in SIMD lanes.
 //!
 //! ```text
-//! cargo bench --bench ensemble                                    scalars by the target's common instructions
-//! RUSTFLAGS="-C target-cpu=native" cargo bench --bench ensemble   by those of this machine
-//! cargo bench --bench ensemble -- count f64-lanes 1000            1000 steps of all tops by one kernel, nothing else
+//! cargo bench --bench lanes                                    scalars by the target's common instructions
+//! RUSTFLAGS="-C target-cpu=native" cargo bench --bench lanes   by those of this machine
+//! cargo bench --bench lanes -- count f64-lanes 1000            1000 steps of all tops by one kernel, nothing else
 //! ```
 //!
 //! The last is for counting instructions, as in `heavy_top_step.rs`; the kernels are `f64`, `f64-lanes`, `f32` and
