@@ -92,11 +92,16 @@ impl<W: Write> Sink for ArrowStream<W> {
     fn write(&mut self, rows: &[f64]) -> Result<(), SinkError> {
         let Stage::Writing(writer, schema) = &mut self.stage else { return Err(order()) };
         let width = schema.fields().len();
+        if width == 0 {
+            return Err(ArrowError::IpcError("rows of no columns aren't written".to_owned()).into());
+        }
         let column = |place: usize| -> ArrayRef {
             Arc::new(rows.chunks_exact(width).map(|row| row[place]).collect::<Float64Array>())
         };
         let batch = RecordBatch::try_new(Arc::clone(schema), (0..width).map(column).collect());
-        Ok(batch.and_then(|batch| writer.write(&batch))?)
+        batch.and_then(|batch| writer.write(&batch))?;
+        // Else a killed run would lack what a buffer holds.
+        Ok(writer.flush()?)
     }
 
     fn end(&mut self) -> Result<(), SinkError> {
@@ -129,8 +134,10 @@ mod tests {
     use arrow_ipc::reader::StreamReader;
     use liestep::effects::RigidBody;
     use liestep::nalgebra::Vector3;
-    use liestep::with::{Background, Recorder, Sink as _, Table};
+    use liestep::with::{Background, Column, Recorder, Sink as _, Table};
     use liestep::{NonstandardInertia, SO3, Stepper};
+    use std::io::{self, Write};
+    use std::sync::{Arc, Mutex};
 
     /// What is read is what a table in memory has, to the bit, with names and units.
     #[test]
@@ -159,6 +166,42 @@ mod tests {
             });
             assert!(read.eq(table.column(&column.name).unwrap()), "{}", column.name);
         }
+    }
+
+    /// What has come out of it by now.
+    #[derive(Clone, Default)]
+    struct Shared(Arc<Mutex<Vec<u8>>>);
+
+    impl Write for Shared {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.lock().unwrap().write(bytes)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    /// A killed run leaves its buffers behind.
+    #[test]
+    fn each_block_is_there_before_the_end() {
+        let file = Shared::default();
+        let mut stream = ArrowStream::new(io::BufWriter::with_capacity(1 << 20, file.clone()));
+        stream.begin(&[Column { name: "t".to_owned(), unit: "s".to_owned() }]).unwrap();
+        for block in 1..4 {
+            stream.write(&[0.0, 0.5]).unwrap();
+            let bytes = file.0.lock().unwrap().clone();
+            let batches: Vec<_> = StreamReader::try_new(bytes.as_slice(), None).unwrap().map(Result::unwrap).collect();
+            assert_eq!(batches.len(), block);
+        }
+    }
+
+    #[test]
+    fn a_table_of_no_columns_has_no_rows() {
+        let mut stream = ArrowStream::new(Vec::new());
+        stream.begin(&[]).unwrap();
+        assert!(stream.write(&[]).is_err() && stream.write(&[1.0]).is_err());
+        stream.end().unwrap();
     }
 
     #[test]
