@@ -66,14 +66,7 @@ impl<M: Integrator> Group<M> for Alone<M> {
         if self.error.is_some() {
             return;
         }
-        let mut next = self.state.clone();
-        match self.stepper.run(&mut next, steps) {
-            Ok(_) => self.state = next,
-            Err(error) => {
-                let found = (0..steps).find_map(|_| self.stepper.step(&mut self.state).err());
-                self.error = Some(found.unwrap_or(error));
-            }
-        }
+        self.error = self.stepper.run_as_far(&mut self.state, steps).err();
     }
 
     fn state(&self, _: usize) -> M::State {

@@ -11,6 +11,7 @@ use common::{Folder, Top, axis, contents, top, tops, with_columns};
 use liestep::effects::RigidBody;
 use liestep::mechanics::InertiaError;
 use liestep::methods::CompositionScheme;
+use liestep::motion::{Integrator, Motion, StepReport};
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use liestep_ensemble::{
     Engine, Ensemble, Failed, Failure, Fault, Histogram, Local, MakeChunk, Reduced, Reduction, Report, Shard, Status,
@@ -352,6 +353,59 @@ fn a_run_can_be_watched_and_stopped() {
     assert_eq!(*seen.lock().unwrap(), [(1, 7), (2, 7), (3, 7)]);
     assert_eq!((report.made, report.missing), (3, 4));
     assert_eq!(run(&ensemble, &Local::threads(2), &folder).made, 4);
+}
+
+/// A top whose steps can be made one by one only, as digits of a splitting may have it.
+#[derive(Clone)]
+struct OnlySteps(Top);
+
+impl Integrator for OnlySteps {
+    type Group = SO3;
+    type Advected = <Top as Integrator>::Advected;
+    type State = common::State;
+
+    fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
+        self.0.step(state)
+    }
+
+    fn run(&self, _: &mut Self::State, _: u64) -> Result<u64, StepError> {
+        Err(StepError::Singular)
+    }
+
+    fn part(&self, state: &Self::State, fraction: f64) -> Result<Motion<SO3, Self::Advected>, StepError> {
+        self.0.part(state, fraction)
+    }
+
+    fn adopt(&self, motion: &Motion<SO3, Self::Advected>) -> Self::State {
+        self.0.adopt(motion)
+    }
+
+    fn step_size(&self) -> f64 {
+        self.0.step_size()
+    }
+
+    fn velocity(&self, motion: &Motion<SO3, Self::Advected>) -> Vector3<f64> {
+        self.0.velocity(motion)
+    }
+
+    fn energy(&self, motion: &Motion<SO3, Self::Advected>) -> f64 {
+        self.0.energy(motion)
+    }
+}
+
+/// A run's error stops nobody whose steps have none.
+#[test]
+fn members_go_as_far_as_their_steps_do() {
+    let stepwise = Ensemble::one_by_one("tops", 20, STEPS, |member| {
+        let (stepper, state) = top(member)?;
+        Ok((OnlySteps(stepper), state))
+    });
+    let stepwise = stepwise.seed(7).keep(["x", "y", "z"], |run| axis(run.state)).chunk(0, &|| false).unwrap();
+    let expected = tops(20, STEPS).chunk(0, &|| false).unwrap();
+    assert_eq!((stepwise.finished, &stepwise.failures), (17, &expected.failures));
+    assert_eq!(stepwise.rows.step, expected.rows.step);
+    let bits = |shard: &Shard| -> Vec<u64> { shard.rows.columns[..3].iter().flatten().map(|x| x.to_bits()).collect() };
+    assert_eq!(bits(&stepwise), bits(&expected));
 }
 
 /// A member that ends where it was last kept has no second row for it.

@@ -5,7 +5,13 @@ use crate::motion::integrator::Integrator;
 use crate::numbers::{InLanes, Lanes};
 
 /// A stepper that can be one of several in [lanes](crate::numbers::Real#lanes) of the scalar `W`: every one whose scene and
-/// method can.
+/// method [can](InLanes).
+#[diagnostic::on_unimplemented(
+    message = "bodies stepped by `{Self}` can't be in lanes of `{W}`",
+    label = "can't be put into lanes",
+    note = "a scene generic over its scalar can: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here",
+    note = "of methods the declared step can, compositions of it, and both with compensated sums; others go one by one"
+)]
 pub trait Batchable<W>:
     Integrator + InLanes<W, Together: Integrator<State: Lanes<Lane = <Self as Integrator>::State>>>
 {
@@ -90,8 +96,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state)
     }
 
-    /// So many steps of every body that hasn't stopped, as by [`run`](Integrator::run) of its own. One whose run has an
-    /// error makes it step by step, as far as it comes.
+    /// So many steps of every body that hasn't stopped, as by [`run_as_far`](Integrator::run_as_far) of its own.
     pub fn run(&mut self, steps: u64) {
         if self.running().next().is_none() {
             return;
@@ -110,12 +115,9 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         let mut moved: Vec<(usize, M, M::State)> = Vec::with_capacity(running.len());
         for lane in running {
             let (stepper, mut state) = (self.stepper.lane(lane), self.state.lane(lane));
-            match stepper.run(&mut state, steps) {
+            match stepper.run_as_far(&mut state, steps) {
                 Ok(_) => moved.push((lane, stepper, state)),
-                Err(error) => {
-                    let error = (0..steps).find_map(|_| stepper.step(&mut state).err()).unwrap_or(error);
-                    self.seats[lane] = Seat::Stopped(state, error);
-                }
+                Err(error) => self.seats[lane] = Seat::Stopped(state, error),
             }
         }
         let Some(((_, stepper, state), others)) = moved.split_first() else { return };

@@ -45,6 +45,18 @@ pub trait Integrator {
         self.run(state, steps).is_ok()
     }
 
+    /// As [`run`](Self::run), but where there are fewer steps it makes those: on an error the state is that of the last.
+    ///
+    /// Where the run has an error and none of its single steps has, which digits of a splitting may do, it is made of
+    /// these.
+    ///
+    /// # Errors
+    ///
+    /// Of the step that has no solution, as [`Stepper::step`].
+    fn run_as_far(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
+    }
+
     /// The motion a fraction of a step after this state, which stays where it is.
     ///
     /// It is a step of the same method with that fraction of `h`. So it has the method's order and keeps what its steps
@@ -138,6 +150,15 @@ pub trait Integrator {
         }
         self.part(&state, real(steps - whole))
     }
+}
+
+#[cold]
+fn step_by_step<I: Integrator + ?Sized>(integrator: &I, state: &mut I::State, steps: u64) -> Result<u64, StepError> {
+    let mut iterations = 0;
+    for _ in 0..steps {
+        iterations += u64::from(integrator.step(state)?.iterations);
+    }
+    Ok(iterations)
 }
 
 /// The scalar of an integrator.

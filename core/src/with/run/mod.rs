@@ -204,21 +204,8 @@ impl<'a, I: Integrator> Run<'a, I> {
 
     /// So many steps, and where there are none the most there are.
     fn advance(&mut self, steps: u64) -> Result<u64, RunError> {
-        match self.integrator.run(self.state, steps) {
-            Ok(iterations) => Ok(iterations),
-            Err(error) => Err(self.as_far_as_possible(steps, error)),
-        }
-    }
-
-    #[cold]
-    fn as_far_as_possible(&mut self, steps: u64, mut cause: crate::error::StepError) -> RunError {
-        for _ in 0..steps {
-            if let Err(error) = self.integrator.step(self.state) {
-                cause = error;
-                break;
-            }
-        }
-        RunError::Step { time: reported(self.integrator.time(self.state)), cause }
+        let made = self.integrator.run_as_far(self.state, steps);
+        made.map_err(|cause| RunError::Step { time: reported(self.integrator.time(self.state)), cause })
     }
 
     /// Shows a step to those whose turn it is; returns whether one of them stops the run.
