@@ -58,8 +58,10 @@ impl<M: Integrator> Ensemble<M> {
     /// none; it has to give the same each time. Who changes `make` takes another name or another folder: of what it
     /// makes the [fingerprint](Self::fingerprint) sees three members only.
     ///
-    /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Any other
-    /// is taken by [`one_by_one`](Self::one_by_one).
+    /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Of methods,
+    /// [`Stepper::new`](liestep::Stepper::new), [`composed`](liestep::Stepper::composed) and both
+    /// [`compensated`](liestep::Stepper::compensated) have lanes. Members of any other scene or method go
+    /// [`one_by_one`](Self::one_by_one).
     pub fn new(
         name: &str,
         members: u64,

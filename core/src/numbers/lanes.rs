@@ -62,10 +62,15 @@ pub trait Lanes: Sized {
 }
 
 /// What can be put into lanes of the scalar `W`, and what it is there.
+///
+/// Scenes that are generic over their scalar can, and the methods [`Stepper::new`](crate::Stepper::new),
+/// [`composed`](crate::Stepper::composed), and both [`compensated`](crate::Stepper::compensated). Bodies that are stepped by
+/// another method take their turns.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",
-    note = "a declaration generic over its scalar can be: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here"
+    note = "a declaration generic over its scalar can be: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here",
+    note = "of methods the declared step can, compositions of it, and both with compensated sums; others go one by one"
 )]
 pub trait InLanes<W>: Sized {
     /// Several of them.
