@@ -54,8 +54,9 @@
 //!
 //! # Not here
 //!
-//! Points where a motion crosses a surface aren't found: between steps there is no state yet. Columns at times have the
-//! nodes of the motion only.
+//! Columns are kept at the ends of steps. Points where a motion crosses a surface lie between them:
+//! [`Run::event`](liestep::with::Run::event) finds them, by [`sections`](liestep::with::sections) for example, in a run of
+//! one motion and not in lanes.
 
 mod chunk;
 mod digest;
