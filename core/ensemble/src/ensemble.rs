@@ -226,7 +226,9 @@ impl<M: Integrator> Ensemble<M> {
         }
         let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
         looked_at.dedup();
-        looked_at.into_iter().for_each(|member| self.look_at(member, &mut digest));
+        for member in looked_at {
+            self.look_at(member, &mut digest);
+        }
         digest.value()
     }
 
