@@ -97,6 +97,8 @@ impl Failure {
             "setup.group" => SetupError::NotInGroup { defect: number()? }.into(),
             "setup.separable" => SetupError::NotSeparable { defect: number()? }.into(),
             "setup.inertia" => SetupError::InertiaMismatch { difference: number()? }.into(),
+            "setup.varying" => SetupError::VaryingInertia.into(),
+            "setup.second" => SetupError::NoSecondDerivatives.into(),
             "setup.bias" => SetupError::BiasMismatch.into(),
             "setup.gradient" => SetupError::NoForceGradient.into(),
             "setup.potential" => SetupError::PotentialMismatch.into(),
@@ -137,6 +139,8 @@ fn of_setup(error: &SetupError) -> Parts<'_> {
         SetupError::NotInGroup { defect } => ("setup.group", vec![*defect], vec![]),
         SetupError::NotSeparable { defect } => ("setup.separable", vec![*defect], vec![]),
         SetupError::InertiaMismatch { difference } => ("setup.inertia", vec![*difference], vec![]),
+        SetupError::VaryingInertia => ("setup.varying", vec![], vec![]),
+        SetupError::NoSecondDerivatives => ("setup.second", vec![], vec![]),
         SetupError::BiasMismatch => ("setup.bias", vec![], vec![]),
         SetupError::NoForceGradient => ("setup.gradient", vec![], vec![]),
         SetupError::PotentialMismatch => ("setup.potential", vec![], vec![]),
@@ -191,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_failure_is_read_as_it_was_written() {
-        let failures: [Failure; 26] = [
+        let failures: [Failure; 28] = [
             SetupError::Parameter { field: "rho", cause: "is not finite" }.into(),
             SetupError::InvalidStep { step: f64::INFINITY }.into(),
             SetupError::SingularKinetic { determinant: 1e-300 }.into(),
@@ -201,6 +205,8 @@ mod tests {
             SetupError::NotInGroup { defect: 0.1 }.into(),
             SetupError::NotSeparable { defect: 0.1 }.into(),
             SetupError::InertiaMismatch { difference: 0.1 }.into(),
+            SetupError::VaryingInertia.into(),
+            SetupError::NoSecondDerivatives.into(),
             SetupError::BiasMismatch.into(),
             SetupError::NoForceGradient.into(),
             SetupError::PotentialMismatch.into(),
