@@ -30,13 +30,13 @@ pub(crate) fn command() -> Command {
                 .about("Simulates scenes and draws them")
                 .arg(scenes())
                 .arg(out())
-                .arg(flag("csv", "Also write the samples as CSV"))
+                .arg(flag("csv", "Also write a table as CSV, while it runs"))
                 .arg(flag("html", "Also write a page that plays the motion, to be opened in a browser")),
         )
         .subcommand(Command::new("check").about("Reads scenes and makes their first step").arg(scenes()))
         .subcommand(
             Command::new("sweep")
-                .about("Runs every scene of a file's table `sweep`, and writes a row of CSV for each")
+                .about("Runs every scene of a file's table `sweep`, and writes a row of FILE.sweep.csv for each")
                 .arg(scenes())
                 .arg(out()),
         )
@@ -48,7 +48,7 @@ pub(crate) fn command() -> Command {
         .subcommand(
             Command::new("replay")
                 .about("Makes pages that play recorded runs, to be opened in a browser")
-                .arg(files("Runs that were written by `run --csv`"))
+                .arg(files("Tables that were written by `run --csv`"))
                 .arg(out()),
         )
         .subcommand(

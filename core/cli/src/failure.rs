@@ -7,7 +7,7 @@ use liestep_scene::{Kind, Mistake};
 
 /// Why there is no answer: one exit code each, as `liestep --help` lists them.
 pub(crate) enum Failure {
-    /// 1 where a file is wrong, 3 where its run stopped.
+    /// 1 where a file is wrong, 3 where its run stopped, 4 where its table can't be written.
     Scene(Mistake),
     /// 2, as for all that is wrong with a command line.
     Command(String),
@@ -22,6 +22,7 @@ impl Failure {
         ExitCode::from(match self {
             Self::Scene(mistake) if mistake.kind() == Kind::File => 1,
             Self::Command(_) => 2,
+            Self::Scene(mistake) if mistake.kind() == Kind::Table => 4,
             Self::Scene(_) | Self::Runs(_) => 3,
             Self::Output(_) => 4,
         })

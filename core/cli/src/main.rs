@@ -16,10 +16,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::ArgMatches;
-use liestep_scene::SceneFile;
+use liestep::with::Csv;
+use liestep_scene::{Mistake, Run, SceneFile};
 
 use failure::Failure;
-use output::{Output, print, progress};
+use output::{Growing, Output, Progress, print};
 
 fn main() -> ExitCode {
     // A wrong command line ends here, with its message and the code 2.
@@ -46,8 +47,20 @@ fn answer(matches: &ArgMatches) -> Result<(), Failure> {
 }
 
 /// The files that a command is given.
-pub(crate) fn files(given: &ArgMatches) -> Vec<&PathBuf> {
+fn files(given: &ArgMatches) -> Vec<&PathBuf> {
     given.get_many("FILE").map(Iterator::collect).unwrap_or_default()
+}
+
+/// The same of a command that writes a file for each, by its name.
+pub(crate) fn different_files(given: &ArgMatches) -> Result<Vec<&PathBuf>, Failure> {
+    let paths = files(given);
+    for (number, path) in paths.iter().enumerate() {
+        if let Some(other) = paths[..number].iter().find(|other| other.file_stem() == path.file_stem()) {
+            let message = format!("{} and {} would be written to the same files", other.display(), path.display());
+            return Err(Failure::Command(message));
+        }
+    }
+    Ok(paths)
 }
 
 pub(crate) fn folder(given: &ArgMatches) -> Result<Output, Failure> {
@@ -57,31 +70,26 @@ pub(crate) fn folder(given: &ArgMatches) -> Result<Output, Failure> {
 
 /// Reads all files, so a mistake in the last doesn't come after minutes.
 pub(crate) fn scenes(paths: &[&PathBuf]) -> Result<Vec<SceneFile>, Failure> {
-    for (number, path) in paths.iter().enumerate() {
-        if let Some(other) = paths[..number].iter().find(|other| other.file_stem() == path.file_stem()) {
-            let message = format!("{} and {} would be written to the same files", other.display(), path.display());
-            return Err(Failure::Command(message));
-        }
-    }
     paths.iter().map(|path| liestep_scene::read(path).map_err(Failure::from)).collect()
 }
 
 fn run(given: &ArgMatches) -> Result<(), Failure> {
-    let paths = files(given);
+    let paths = different_files(given)?;
     let scenes = scenes(&paths)?;
     let mut output = folder(given)?;
     for (number, (path, scene)) in (1..).zip(paths.iter().zip(&scenes)) {
         if paths.len() > 1 {
             eprintln!("[{number}/{}] {}", paths.len(), path.display());
         }
-        let run = scene.run_told(&mut progress())?;
+        let run = simulate(scene, given.get_flag("csv").then(|| output.grows(&name(path, "csv"))))?;
         let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
         output.write(&name(path, "svg"), &picture)?;
         if given.get_flag("csv") {
-            output.write(&name(path, "csv"), &run.table(scene))?;
+            output.grown(&name(path, "csv"))?;
         }
         if given.get_flag("csv") && scene.events().next().is_some() {
-            output.write(&name(path, "events.csv"), &run.event_table(scene))?;
+            let table = run.event_table(scene).map_err(|cause| Failure::Output(cause.to_string()))?;
+            output.write(&name(path, "events.csv"), &table)?;
         }
         if given.get_flag("html") {
             output.write(&name(path, "html"), &scene.page(&run))?;
@@ -92,6 +100,16 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
         }
     }
     print(&output.to_string())
+}
+
+/// The run, with its table as it grows if there is a file for it.
+fn simulate(scene: &SceneFile, table: Option<Growing>) -> Result<Run, Mistake> {
+    let mut progress = Progress::new();
+    let mut told = |share| progress.show(share);
+    match table {
+        Some(table) => scene.run_recorded(&mut told, &mut Csv::new(table)),
+        None => scene.run_told(&mut told),
+    }
 }
 
 /// All files, whatever is wrong with one.
@@ -140,7 +158,7 @@ fn derive(given: &ArgMatches) -> Result<(), Failure> {
 }
 
 fn replay(given: &ArgMatches) -> Result<(), Failure> {
-    let paths = files(given);
+    let paths = different_files(given)?;
     let recordings: Vec<_> = paths.iter().map(liestep_scene::Recording::read).collect::<Result<_, _>>()?;
     let mut output = folder(given)?;
     for (path, recording) in paths.iter().zip(&recordings) {

@@ -1,8 +1,9 @@
 //! Every scene of a sweep, on all processors.
 
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
 use std::thread;
 
 use clap::ArgMatches;
@@ -10,10 +11,10 @@ use liestep_scene::{Mistake, SceneFile, Sweep};
 
 use crate::failure::Failure;
 use crate::output::print;
-use crate::{files, folder, name, scenes};
+use crate::{different_files, folder, name, scenes};
 
 pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
-    let paths = files(given);
+    let paths = different_files(given)?;
     let scenes = scenes(&paths)?;
     let sweeps: Vec<(&Path, &Sweep)> = paths
         .iter()
@@ -26,53 +27,71 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     let mut output = folder(given)?;
     let mut stopped = 0;
     for (path, sweep) in sweeps {
-        let points: Vec<&SceneFile> = sweep.points().iter().map(|(_, scene)| scene).collect();
-        let ends = in_parallel(&points, |scene| scene.run().map(|run| scene.end(&run)));
-        let mut text = sweep.names().join(",");
-        for name in points.first().map(|scene| scene.end_names()).unwrap_or_default() {
-            text.extend([",", &name]);
-        }
-        text.push('\n');
-        for ((values, scene), end) in sweep.points().iter().zip(ends) {
-            text.push_str(&values.join(","));
+        // Beside the table of a run.
+        let name = name(path, "sweep.csv");
+        let mut file = output.grows(&name);
+        let points = sweep.points();
+        let ends = points.first().map(|(_, scene)| scene.end_names()).unwrap_or_default();
+        file.add(&format!(
+            "{}\n",
+            sweep.names().iter().chain(&ends).map(String::as_str).collect::<Vec<_>>().join(",")
+        ))?;
+        let end = |(_, scene): &(Vec<String>, SceneFile)| scene.run().map(|run| scene.end(&run));
+        in_order(points, end, |(values, _), end| {
+            let mut row = values.join(",");
             match end {
-                Ok(end) => text.extend(end.iter().map(|value| format!(",{value:e}"))),
+                Ok(end) => row.extend(end.iter().map(|value| format!(",{value:?}"))),
                 Err(mistake) => {
                     stopped += 1;
-                    text.extend(scene.end_names().iter().map(|_| ","));
+                    row.push_str(&",".repeat(ends.len()));
                     let point: Vec<_> =
                         sweep.names().iter().zip(values).map(|(name, value)| format!("{name} = {value}")).collect();
                     eprintln!("note: {} gave no row: {mistake}", point.join(", "));
                 }
             }
-            text.push('\n');
-        }
-        output.write(&name(path, "csv"), &text)?;
+            row.push('\n');
+            file.add(&row)
+        })?;
+        output.grown(&name)?;
     }
     print(&output.to_string())?;
     if stopped == 0 { Ok(()) } else { Err(Failure::Runs(format!("{stopped} scenes of the sweep stopped"))) }
 }
 
-/// The answers in their order, whoever gives them.
-fn in_parallel<T: Sync, R: Send>(questions: &[T], answer: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let answers: Vec<Mutex<Option<R>>> = questions.iter().map(|_| Mutex::new(None)).collect();
+/// Takes the answers in their order, as soon as they are there, whoever gives them.
+fn in_order<T: Sync, R: Send>(
+    questions: &[T],
+    answer: impl Fn(&T) -> R + Sync,
+    mut take: impl FnMut(&T, R) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let (next, answer) = (&AtomicUsize::new(0), &answer);
     let threads = thread::available_parallelism().map_or(1, usize::from).min(questions.len());
     thread::scope(|scope| {
+        let (sender, answers) = mpsc::channel();
         for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some((question, place)) = {
+            let sender = sender.clone();
+            scope.spawn(move || {
+                while let Some((number, question)) = {
                     let number = next.fetch_add(1, Ordering::Relaxed);
-                    questions.get(number).zip(answers.get(number))
+                    questions.get(number).map(|question| (number, question))
                 } {
-                    let answer = answer(question);
-                    if let Ok(mut place) = place.lock() {
-                        *place = Some(answer);
+                    // Nobody takes it where a row couldn't be written.
+                    if sender.send((number, answer(question))).is_err() {
+                        break;
                     }
                 }
             });
         }
-    });
-    // A thread that panicked has ended the scope with its panic, so each has an answer.
-    answers.into_iter().filter_map(|answer| answer.into_inner().ok().flatten()).collect()
+        drop(sender);
+        let mut waiting = BTreeMap::new();
+        let mut due = 0;
+        for (number, answer) in answers {
+            waiting.insert(number, answer);
+            while let Some(answer) = waiting.remove(&due) {
+                take(&questions[due], answer)?;
+                due += 1;
+            }
+        }
+        Ok(())
+    })
 }

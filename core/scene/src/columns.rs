@@ -1,19 +1,19 @@
 //! What a table of a run has: the table `output`.
 
+use liestep::groups::LieGroup as _;
+use liestep::with;
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use crate::file::{Pace, Schedule};
 use crate::run::Sample;
-use crate::tables::csv;
 
-/// What is known of a state: one column of a table for each number.
+/// What is known of a state beside its time: one column of a table for each number.
+///
+/// Those that [`Recorder`](liestep::with::Recorder) has, too, are called as there and have the same numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Column {
-    /// The time, s.
-    Time,
-    /// The attitude, body to space, as the unit quaternion `w, x, y, z`.
+    /// The attitude, body to space, as the unit quaternion `w, x, y, z`: of the two the one nearer to the row before.
     Quaternion,
     /// The third axis of the body, in space.
     Axis,
@@ -35,8 +35,7 @@ pub enum Column {
 
 impl Column {
     /// All of them.
-    pub const ALL: [Self; 10] = [
-        Self::Time,
+    pub const ALL: [Self; 9] = [
         Self::Quaternion,
         Self::Axis,
         Self::Velocity,
@@ -52,7 +51,6 @@ impl Column {
     #[must_use]
     pub const fn names(self) -> &'static [&'static str] {
         match self {
-            Self::Time => &["t"],
             Self::Quaternion => &["q_w", "q_x", "q_y", "q_z"],
             Self::Axis => &["axis_x", "axis_y", "axis_z"],
             Self::Velocity => &["velocity_x", "velocity_y", "velocity_z"],
@@ -65,16 +63,24 @@ impl Column {
         }
     }
 
-    /// Its numbers for a state of a run that began with `first`.
-    pub(crate) fn values(self, sample: &Sample, first: &Sample) -> Vec<f64> {
+    /// The unit of its numbers.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Quaternion | Self::Axis => "1",
+            Self::Velocity => "rad/s",
+            Self::Momentum | Self::SpatialMomentum | Self::VerticalMomentumError | Self::MomentumError => "kg m²/s",
+            Self::Energy | Self::EnergyError => "J",
+        }
+    }
+
+    /// Its numbers in a row.
+    pub(crate) fn values(self, row: &Row) -> Vec<f64> {
+        let Row { sample, first, quaternion } = row;
         let three = |vector: Vector3<f64>| vec![vector.x, vector.y, vector.z];
         let added = || sample.spatial_momentum() - first.spatial_momentum();
         match self {
-            Self::Time => vec![sample.time],
-            Self::Quaternion => {
-                let quaternion = sample.attitude.to_quaternion();
-                vec![quaternion.w, quaternion.i, quaternion.j, quaternion.k]
-            }
+            Self::Quaternion => quaternion.to_vec(),
             Self::Axis => three(sample.matrix().column(2).into()),
             Self::Velocity => three(sample.velocity),
             Self::Momentum => three(sample.momentum),
@@ -85,21 +91,63 @@ impl Column {
             Self::MomentumError => vec![added().norm()],
         }
     }
+
+    /// The columns of a table, behind the time.
+    pub(crate) fn listed(columns: &[Self]) -> impl Iterator<Item = with::Column> {
+        columns.iter().flat_map(|column| {
+            let unit = column.unit();
+            column.names().iter().map(move |&name| with::Column { name: name.to_owned(), unit: unit.to_owned() })
+        })
+    }
 }
 
-/// What is kept of a run.
+/// A sample, and what its numbers need of those before it.
+#[derive(Clone, Copy)]
+pub(crate) struct Row {
+    sample: Sample,
+    first: Sample,
+    quaternion: [f64; 4],
+}
+
+impl Row {
+    /// The first of a run.
+    pub(crate) fn new(first: Sample) -> Self {
+        let mut row = Self { sample: first, first, quaternion: [0.0; 4] };
+        row.show(first);
+        row
+    }
+
+    /// Goes on to a sample that is later.
+    pub(crate) fn show(&mut self, sample: Sample) {
+        self.sample = sample;
+        sample.attitude.write_numbers(&mut self.quaternion);
+    }
+
+    /// The numbers of these columns.
+    pub(crate) fn numbers(&self, columns: &[Column]) -> Vec<f64> {
+        columns.iter().flat_map(|column| column.values(self)).collect()
+    }
+
+    /// The quaternion `w, x, y, z`.
+    pub(crate) fn quaternion(&self) -> [f64; 4] {
+        self.quaternion
+    }
+}
+
+/// What a table has.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct Output {
+    #[serde(deserialize_with = "different")]
     pub(crate) columns: Vec<Column>,
-    /// In steps; as many as a picture has room for, where it isn't given.
+    /// In steps from row to row; as many as a picture has room for, where it isn't given.
     pub(crate) every: Option<Stride>,
 }
 
 impl Default for Output {
     fn default() -> Self {
-        use Column::{Axis, Energy, Quaternion, SpatialMomentum, Time, Velocity};
-        Self { columns: vec![Time, Velocity, SpatialMomentum, Energy, Axis, Quaternion], every: None }
+        use Column::{Axis, Energy, Quaternion, SpatialMomentum, Velocity};
+        Self { columns: vec![Velocity, SpatialMomentum, Energy, Axis, Quaternion], every: None }
     }
 }
 
@@ -120,33 +168,26 @@ impl TryFrom<i64> for Stride {
     }
 }
 
-/// More samples than a picture has room for.
-const DRAWN_SAMPLES: u64 = 20_000;
-
-/// Some hundred megabytes of them.
-const MOST_SAMPLES: u64 = 2_000_000;
-
-impl Output {
-    /// Steps from one sample to the next, of so many.
-    pub(crate) fn stride(&self, steps: u64) -> u64 {
-        self.every.map_or_else(|| steps.div_ceil(DRAWN_SAMPLES), |every| every.0).max(1)
-    }
-
-    /// What is wrong with `every`.
-    pub(crate) fn at_odds(&self, run: &Schedule) -> Option<String> {
-        let (every, Pace::Step { steps, .. }) = (self.every?.0, run.pace) else { return None };
-        let samples = u64::from(steps) / every;
-        (samples > MOST_SAMPLES).then(|| {
-            format!("`every` makes {samples} samples, more than {MOST_SAMPLES}; take more steps from one to the next")
-        })
+/// Columns of different names.
+fn different<'de, D: serde::Deserializer<'de>>(source: D) -> Result<Vec<Column>, D::Error> {
+    let columns = Vec::<Column>::deserialize(source)?;
+    match (1..columns.len()).find(|&place| columns[..place].contains(&columns[place])) {
+        Some(_) => Err(serde::de::Error::custom("a table has each of its columns once")),
+        None => Ok(columns),
     }
 }
 
-/// The samples as comma-separated values, of a run that began with `first`.
-pub(crate) fn table(columns: &[Column], first: Option<&Sample>, samples: &[Sample]) -> String {
-    let names: Vec<_> = columns.iter().flat_map(|column| column.names()).copied().collect();
-    let row = |sample: &Sample| {
-        columns.iter().flat_map(|column| column.values(sample, first.unwrap_or(sample))).collect::<Vec<_>>()
-    };
-    csv(&names, samples.iter().map(row))
+/// More samples than a picture has room for.
+const DRAWN_SAMPLES: u64 = 20_000;
+
+/// Steps from one sample of a picture to the next, of so many.
+pub(crate) fn drawn(steps: u64) -> u64 {
+    steps.div_ceil(DRAWN_SAMPLES).max(1)
+}
+
+impl Output {
+    /// Steps from one row to the next, of so many.
+    pub(crate) fn stride(&self, steps: u64) -> u64 {
+        self.every.map_or_else(|| drawn(steps), |every| every.0)
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use liestep::with::Sink;
 use serde::Deserialize;
 
 use crate::body::Body;
@@ -16,7 +17,7 @@ use crate::method::Method;
 use crate::mistake::Mistake;
 use crate::picture::Picture;
 use crate::quantity::{Duration, Number, Positive};
-use crate::run::Run;
+use crate::run::{Run, Stopped, Told};
 use crate::start::Start;
 use crate::sweep::Sweep;
 use crate::tables::short;
@@ -40,8 +41,10 @@ use crate::tables::short;
 /// | `run` | `duration`; `step` or `accuracy`; `method`: `"step"`, `{ composition = "Suzuki 4" }`, `{ splitting = "Nyström 6-4" }`, `{ processed = "processed 3-6 a" }`, `{ collocation = 8 }` |
 /// | `picture` | `path`: `axis`, `momentum`, `velocity`; `axis`; `panels`: `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error` |
 /// | `[[event]]` | `name`; one of `tilt`, `speed`, `energy`, `velocity_1` to `_3`, `axis_1` to `_3`: the value that is passed; `direction`: `rising`, `falling`, `either`; `stop` |
-/// | `output` | `columns`, see [`Column`]; `every`: so many steps |
+/// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: so many steps from row to row |
 /// | `sweep` | any of the keys above: a list of values, or `{ from, to, count }` |
+///
+/// There is no table for random starts or parameters: the crate `liestep-ensemble` draws those, in programs.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -178,7 +181,7 @@ impl SceneFile {
         self.event.iter().map(|event| event.name.as_str())
     }
 
-    /// What a table of the run has.
+    /// What a table of the run has behind the time.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
         &self.output.columns
@@ -199,9 +202,35 @@ impl SceneFile {
     ///
     /// As [`run`](Self::run).
     pub fn run_told(&self, told: &mut dyn FnMut(f64)) -> Result<Run, Mistake> {
+        self.run_by(Told { progress: told, table: None })
+    }
+
+    /// As [`run_told`](Self::run_told), and writes the time and the scene's [columns](Self::columns), a row of each
+    /// `every`-th step and of the last, as they come: of a run that stops those up to then.
+    ///
+    /// ```
+    /// # fn recorded(scene: &liestep_scene::SceneFile) -> Result<(), Box<dyn std::error::Error>> {
+    /// use liestep::with::Csv;
+    ///
+    /// scene.run_recorded(&mut |_| (), &mut Csv::create("top.csv")?)?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and of the kind [`Table`](crate::Kind::Table) where a row can't be written.
+    pub fn run_recorded(&self, told: &mut dyn FnMut(f64), table: &mut dyn Sink) -> Result<Run, Mistake> {
+        self.run_by(Told { progress: told, table: Some(table) })
+    }
+
+    fn run_by(&self, told: Told<'_>) -> Result<Run, Mistake> {
         choose::run(self, told).map_err(|stopped| {
             let Origin { path, places } = &self.origin;
-            Mistake::of_run(path, stopped.place(places), stopped.to_string())
+            match stopped {
+                Stopped::Table(message) => Mistake::of_table(path, message),
+                stopped => Mistake::of_run(path, stopped.place(places), stopped.to_string()),
+            }
         })
     }
 

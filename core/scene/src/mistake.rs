@@ -25,6 +25,8 @@ pub enum Kind {
     File,
     /// The run of a scene that could be: a parameter out of range, a step that is too long.
     Run,
+    /// The table of a run can't be written.
+    Table,
 }
 
 impl Mistake {
@@ -55,6 +57,10 @@ impl Mistake {
 
     pub(crate) fn of_run(path: &Path, place: (usize, usize), message: String) -> Self {
         Self { kind: Kind::Run, ..Self::at(path, place, message) }
+    }
+
+    pub(crate) fn of_table(path: &Path, message: String) -> Self {
+        Self { path: path.to_owned(), place: None, message, kind: Kind::Table }
     }
 
     /// That a file has no table of this name.

@@ -179,8 +179,9 @@ const charts = motion.charts.map(chart => {
     const first = Math.max(0, frameAt(stretch.from)), last = Math.min(frames - 1, frameAt(stretch.to) + 1);
     let low = Infinity, high = -Infinity;
     for (const line of chart.lines) for (let k = first; k <= last; k++) {
-      if (chart.logarithmic && !(line.values[k] > 0)) continue;
-      const y = height(line.values[k]); low = Math.min(low, y); high = Math.max(high, y);
+      const y = height(line.values[k]);
+      if (!Number.isFinite(y)) continue;
+      low = Math.min(low, y); high = Math.max(high, y);
     }
     if (!(high >= low)) { low = chart.logarithmic ? -17 : 0; high = low + 1; }
     const margin = chart.logarithmic ? 0.15 : 0.06 * (high - low) || 0.5 * Math.abs(high) || 1; low -= margin; high += margin;
@@ -204,12 +205,22 @@ const charts = motion.charts.map(chart => {
     pen.save(); pen.beginPath(); pen.rect(LEFT, TOP, wide, deep); pen.clip();
     chart.lines.forEach((line, number) => {
       pen.strokeStyle = COLOURS[number % 3]; pen.lineWidth = 1.3; pen.beginPath();
-      let column = null, least = 0, most = 0, exit = 0;
+      let column = null, gap = true, least = 0, most = 0, exit = 0;
       const flush = x => { pen.lineTo(x, up(least)); pen.lineTo(x, up(most)); pen.lineTo(x, up(exit)); };
       for (let k = first; k <= last; k++) {
-        if (chart.logarithmic && !(line.values[k] > 0)) continue;
+        if (!Number.isFinite(line.values[k])) {
+          if (column !== null) flush(column);
+          column = null; gap = true;
+          continue;
+        }
         const x = Math.round(across(times[k])), y = height(line.values[k]);
-        if (x !== column) { if (column !== null) flush(column); column = x; least = most = y; pen.lineTo(x, up(y)); }
+        if (!Number.isFinite(y)) continue;
+        if (x !== column) {
+          if (column !== null) flush(column);
+          column = x; least = most = y;
+          if (gap) pen.moveTo(x, up(y)); else pen.lineTo(x, up(y));
+          gap = false;
+        }
         least = Math.min(least, y); most = Math.max(most, y); exit = y;
       }
       if (column !== null) flush(column);

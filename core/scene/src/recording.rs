@@ -5,7 +5,7 @@ use std::path::Path;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::columns::Column;
+use crate::columns::{Column, Row};
 use crate::events::Happening;
 use crate::file::SceneFile;
 use crate::mistake::Mistake;
@@ -29,8 +29,9 @@ pub struct Recording {
 const MOST_BYTES: u64 = 1 << 30;
 
 impl Recording {
-    /// Reads a table that `liestep run --csv` wrote: comma-separated values below names. It needs the time and the
-    /// quaternion; energy, momentum and velocity are drawn where they are there.
+    /// Reads a table that `liestep run --csv` or [`Csv`](liestep::with::Csv) wrote: comma-separated values below names. It
+    /// needs the time and the quaternion; energy, momentum and velocity are drawn where they are there, with gaps where
+    /// they aren't finite.
     ///
     /// # Errors
     ///
@@ -44,29 +45,30 @@ impl Recording {
         let bytes = fs::read(path).map_err(|cause| Mistake::unreadable(path, &cause))?;
         let text = String::from_utf8(bytes).map_err(|error| Mistake::not_text(path, &error))?;
         let wrong = |line, column, message: String| Mistake::at(path, (line, column), message);
-        let (names, columns) = numbers(&text).map_err(|(line, column, message)| wrong(line, column, message))?;
-        let get = |name: &str| names.iter().position(|other| *other == name).map(|place| columns[place].clone());
+        let Table { names, columns, below, lines } =
+            numbers(&text).map_err(|(line, column, message)| wrong(line, column, message))?;
+        let get = |name: &str| names.iter().position(|other| other == name).map(|place| columns[place].clone());
         let all = |column: Column| column.names().iter().map(|name| get(name)).collect::<Option<Vec<_>>>();
-        let missing = |column: Column| {
-            let names = column.names().join(", ");
+        let missing = |names: &[&str]| {
+            let names = names.join(", ");
             wrong(1, 1, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
         };
-        let times = get("t").ok_or_else(|| missing(Column::Time))?;
+        let times = get("t").ok_or_else(|| missing(&["t"]))?;
         if times.is_empty() {
-            return Err(wrong(2, 1, "has no row".to_owned()));
+            return Err(wrong(below, 1, "has no row".to_owned()));
         }
         if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
-            return Err(wrong(row + 3, 1, "is not later than the row before".to_owned()));
+            return Err(wrong(lines[row + 1], 1, "is not later than the row before".to_owned()));
         }
-        let [w, x, y, z] = &all(Column::Quaternion).ok_or_else(|| missing(Column::Quaternion))?[..] else {
-            return Err(missing(Column::Quaternion));
+        let [w, x, y, z] = &all(Column::Quaternion).ok_or_else(|| missing(Column::Quaternion.names()))?[..] else {
+            return Err(missing(Column::Quaternion.names()));
         };
         let attitude = |row: usize| {
             let quaternion = Quaternion::new(w[row], x[row], y[row], z[row]);
             UnitQuaternion::try_new(quaternion, 0.5).filter(|unit| (quaternion.norm() - unit.norm()).abs() < 0.01)
         };
         let attitudes = (0..times.len())
-            .map(|row| attitude(row).ok_or_else(|| wrong(row + 2, 1, "the quaternion isn't a unit one".to_owned())))
+            .map(|row| attitude(row).ok_or_else(|| wrong(lines[row], 1, "the quaternion isn't a unit one".to_owned())))
             .collect::<Result<Vec<_>, _>>()?;
         let mut charts = vec![tilt(&attitudes, &Vector3::z())];
         if let Some(energy) = get("energy") {
@@ -88,7 +90,7 @@ impl Recording {
     fn of(scene: &SceneFile, run: &Run) -> Self {
         let samples = run.samples();
         let collect = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).collect::<Vec<_>>();
-        let attitudes: Vec<_> = samples.iter().map(|sample| sample.attitude.to_quaternion()).collect();
+        let attitudes = attitudes(samples);
         let momentum: Vec<_> = samples.iter().map(Sample::spatial_momentum).collect();
         let (axis, arm) = (scene.picture.axis.0, scene.gravity.map(|gravity| gravity.rho.value));
         let charts = vec![
@@ -128,19 +130,32 @@ impl SceneFile {
     }
 }
 
+/// As a table has them.
+fn attitudes(samples: &[Sample]) -> Vec<UnitQuaternion<f64>> {
+    let mut row = samples.first().copied().map(Row::new);
+    let attitude = |sample: &Sample| {
+        let row = row.get_or_insert_with(|| Row::new(*sample));
+        row.show(*sample);
+        let [w, x, y, z] = row.quaternion();
+        UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
+    };
+    samples.iter().map(attitude).collect()
+}
+
 fn tilt(attitudes: &[UnitQuaternion<f64>], axis: &Vector3<f64>) -> Chart {
     let degrees = attitudes.iter().map(|attitude| (attitude * axis).angle(&Vector3::z()).to_degrees());
     Chart::linear("Tilt of the axis from e₃", "°", vec![("tilt", degrees.collect())])
 }
 
 fn energy_error(energy: &[f64]) -> Chart {
-    let start = energy.first().copied().unwrap_or_default();
+    let start = energy.iter().copied().find(|energy| energy.is_finite()).unwrap_or_default();
     let error = energy.iter().map(|energy| (energy - start).abs()).collect();
     Chart::logarithmic("Energy, from its start", "J", vec![("energy", error)])
 }
 
 fn momentum_error(momentum: &[Vector3<f64>]) -> Chart {
-    let start = momentum.first().copied().unwrap_or_default();
+    let is_finite = |momentum: &Vector3<f64>| momentum.iter().all(|part| part.is_finite());
+    let start = momentum.iter().copied().find(is_finite).unwrap_or_default();
     let error = |length: fn(Vector3<f64>) -> f64| momentum.iter().map(|m| length(m - start)).collect();
     let lines = vec![("along e₃", error(|m| m.z.abs())), ("all", error(|m| m.norm()))];
     Chart::logarithmic("Momentum in space, from its start", "kg m²/s", lines)
@@ -151,20 +166,31 @@ fn rates(components: [Vec<f64>; 3]) -> Chart {
     Chart::linear("Angular velocity in the body", "rad/s", lines)
 }
 
-type Table<'a> = (Vec<&'a str>, Vec<Vec<f64>>);
+/// Comma-separated values.
+struct Table {
+    names: Vec<String>,
+    columns: Vec<Vec<f64>>,
+    /// The line below the names.
+    below: usize,
+    /// Of each row.
+    lines: Vec<usize>,
+}
 
-/// Names and columns of comma-separated values, or line, column and what is wrong.
-fn numbers(text: &str) -> Result<Table<'_>, (usize, usize, String)> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut lines = (1..).zip(text.lines());
-    let names: Vec<&str> = lines.next().map(|(_, line)| line.split(',').map(str::trim).collect()).unwrap_or_default();
-    let mut columns = vec![Vec::new(); names.len()];
-    for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+/// The table in a text, or line, column and what is wrong.
+fn numbers(text: &str) -> Result<Table, (usize, usize, String)> {
+    let (names, below, rows) = header(text.strip_prefix('\u{feff}').unwrap_or(text));
+    // Without these there is no motion.
+    let is_needed = |name: &String| name == "t" || Column::Quaternion.names().contains(&name.as_str());
+    let needed: Vec<_> = names.iter().map(is_needed).collect();
+    let (mut columns, mut lines) = (vec![Vec::new(); names.len()], Vec::new());
+    for (number, line) in (below..).zip(rows.lines()).filter(|(_, line)| !line.trim().is_empty()) {
         let mut place = 1;
         let mut found = 0;
         for (column, cell) in line.split(',').enumerate() {
-            let value = cell.trim().parse::<f64>().ok().filter(|value| value.is_finite());
-            let value = value.ok_or_else(|| (number, place, "isn't a finite number".to_owned()))?;
+            let value = cell.trim().parse::<f64>().map_err(|_| (number, place, "isn't a number".to_owned()))?;
+            if !value.is_finite() && needed.get(column).is_some_and(|needed| *needed) {
+                return Err((number, place, "isn't a finite number".to_owned()));
+            }
             if let Some(values) = columns.get_mut(column) {
                 values.push(value);
             }
@@ -174,6 +200,26 @@ fn numbers(text: &str) -> Result<Table<'_>, (usize, usize, String)> {
         if found != names.len() {
             return Err((number, 1, format!("has {found} values below {} names", names.len())));
         }
+        lines.push(number);
     }
-    Ok((names, columns))
+    Ok(Table { names, columns, below, lines })
+}
+
+/// The names, of which those with commas, quotes or line feeds are quoted, the number of the next line, and what is there.
+fn header(text: &str) -> (Vec<String>, usize, &str) {
+    let (mut names, mut is_quoted, mut line) = (vec![String::new()], false, 2);
+    let trimmed = |names: Vec<String>| names.iter().map(|name| name.trim().to_owned()).collect();
+    let mut letters = text.char_indices().peekable();
+    while let Some((at, letter)) = letters.next() {
+        match letter {
+            '"' if !is_quoted || letters.next_if(|(_, next)| *next == '"').is_none() => is_quoted = !is_quoted,
+            ',' if !is_quoted => names.push(String::new()),
+            '\n' if !is_quoted => return (trimmed(names), line, &text[at + 1..]),
+            letter => {
+                line += usize::from(letter == '\n');
+                names.iter_mut().last().into_iter().for_each(|name| name.push(letter));
+            }
+        }
+    }
+    (trimmed(names), line, "")
 }

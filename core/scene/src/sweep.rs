@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::columns::Column;
+use crate::columns::{Column, Row};
 use crate::document::{Document, Wrong, set};
 use crate::file::SceneFile;
 use crate::mistake::Mistake;
@@ -23,21 +23,32 @@ impl SceneFile {
     #[must_use]
     pub fn end_names(&self) -> Vec<String> {
         let columns = self.columns().iter().flat_map(|column| column.names()).copied();
-        let columns = columns.chain(["greatest_energy_error", "greatest_momentum_error"]).map(str::to_owned);
+        let columns = std::iter::once("t")
+            .chain(columns)
+            .chain(["greatest_energy_error", "greatest_momentum_error"])
+            .map(str::to_owned);
         let events = self.events().flat_map(|name| [format!("{name}_times"), format!("{name}_first")]);
         columns.chain(events).collect()
     }
 
-    /// The scene's columns at the end of a run, how far energy and angular momentum in space were from their start, and of
-    /// each event how often and when first it happened, s; NaN if never.
+    /// The time and the scene's columns at the end of a run, how far energy and angular momentum in space were from their
+    /// start, and of each event how often and when first it happened, s; NaN if never.
+    ///
+    /// The greatest are those of the [samples](Run::samples), which are all steps of a run of up to 20 000; NaN where one
+    /// of them has no value.
     #[must_use]
     pub fn end(&self, run: &Run) -> Vec<f64> {
         let (Some(first), Some(last)) = (run.samples().first(), run.samples().last()) else { return Vec::new() };
-        let greatest = |column: Column| {
-            let values = run.samples().iter().flat_map(|sample| column.values(sample, first));
-            values.map(f64::abs).fold(0.0, f64::max)
-        };
-        let columns = self.columns().iter().flat_map(|column| column.values(last, first));
+        let (mut row, mut greatest) = (Row::new(*first), [0.0_f64; 2]);
+        for sample in run.samples() {
+            row.show(*sample);
+            for (greatest, value) in greatest.iter_mut().zip(row.numbers(&[Column::EnergyError, Column::MomentumError]))
+            {
+                // `max` would leave out what isn't a number.
+                *greatest = if greatest.is_nan() || value.is_nan() { f64::NAN } else { greatest.max(value.abs()) };
+            }
+        }
+        let columns = std::iter::once(last.time).chain(row.numbers(self.columns()));
         let events = (0..self.event.len()).flat_map(|number| {
             let mut times = run.happenings().iter().filter(|happening| happening.event == number);
             let first = times.next().map_or(f64::NAN, |happening| happening.sample.time);
@@ -45,7 +56,7 @@ impl SceneFile {
             let count = times.count() as f64 + if first.is_nan() { 0.0 } else { 1.0 };
             [count, first]
         });
-        columns.chain([greatest(Column::EnergyError), greatest(Column::MomentumError)]).chain(events).collect()
+        columns.chain(greatest).chain(events).collect()
     }
 }
 

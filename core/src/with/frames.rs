@@ -78,7 +78,7 @@ where
     pub fn advance(&mut self, elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
         let h: f64 = self.integrator.step_size().into();
         let due = self.left + elapsed.max(0.0) / h.abs();
-        // A step of zero makes none.
+        // A time without end makes the most there are, and so does any time where steps are zero: they change nothing.
         let due = if due.is_finite() { due } else { self.most_steps as f64 };
         let whole = due.floor().min(self.most_steps as f64);
         self.left = 0.0;

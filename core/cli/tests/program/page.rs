@@ -60,9 +60,20 @@ fn a_table_is_replayed() {
     refused(names, ":2:1: has no row");
     refused(&format!("{names}0,1,0,0,0\n0,1,0,0,0\n"), ":3:1: is not later than the row before");
     refused(&format!("{names}0,1,0,0,0\n1,1,0,0\n"), ":3:1: has 4 values below 5 names");
-    refused(&format!("{names}0,1,0,x,0\n"), ":2:7: isn't a finite number");
+    refused(&format!("{names}0,1,0,x,0\n"), ":2:7: isn't a number");
     refused(&format!("{names}0,1,0,nan,0\n"), ":2:7: isn't a finite number");
     refused(&format!("{names}0,1,1,0,0\n"), ":2:1: the quaternion isn't a unit one");
+    refused(&format!("\"a \"\"b\"\",\nc\",{names}1,0,1,0,0,0\n\n1,0,1,0,0,0\n"), ":5:1: is not later");
+
+    // What else a recorder's table may have: names in quotes, and gaps.
+    let table = "t,q_w,q_x,q_y,q_z,\"drag, N\",energy\n0,1,0,0,0,inf,NaN\n1,1,0,0,0,1e-3,2.5\n2,1,0,0,0,-inf,NaN\n";
+    fs::write(folder.join("gaps.csv"), table).unwrap();
+    let output =
+        Command::new(PROGRAM).current_dir(&folder).args(["replay", "gaps.csv", "--out", "."]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    // NaN, 0 and NaN, of single precision.
+    let energy = "{name: \"energy\", values: \"AADAfwAAAAAAAMB/\"}";
+    assert!(fs::read_to_string(folder.join("gaps.html")).unwrap().contains(energy));
 }
 
 /// Chromium by one of its names.

@@ -48,7 +48,7 @@ fn its_commands_are_run() {
         assert!(is_run, "{command}");
     }
     assert!(checks.contains("cargo test --locked --workspace"));
-    for word in ["run", "check", "derive", "replay"] {
+    for word in ["run", "check", "sweep", "derive", "replay", "completions"] {
         assert!(
             readme.contains(&format!("`liestep {word} ")) && checks.contains(&format!("liestep {word} ")),
             "{word}"

@@ -10,7 +10,9 @@ use liestep::accuracy::Accuracy;
 use liestep::effects::CayleyBody;
 use liestep::effects::{Dipole, Drag, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
+use liestep::motion::Moment;
 use liestep::prelude::*;
+use liestep::with::{Csv, Recorder};
 use nalgebra::{UnitQuaternion, Vector3};
 
 pub(crate) const TOP: &str = r#"title = "A heavy top with drag"
@@ -204,8 +206,8 @@ fn mistakes_in_choices_have_places() {
         ("duration = 2", "duration = 2\nmethod = \"euler\""),
         ("duration = 2", "duration = 2\nmethod = { collocation = 5 }"),
         ("[drag]\nc = 1e-3", "[output]\nevery = 0"),
-        ("[drag]\nc = 1e-3", "[output]\ncolumns = [\"time\", \"phase\"]"),
-        ("duration = 2", "duration = 5e4\n[output]\nevery = 1"),
+        ("[drag]\nc = 1e-3", "[output]\ncolumns = [\"axis\", \"phase\"]"),
+        ("[drag]\nc = 1e-3", "[output]\ncolumns = [\"axis\", \"energy\", \"axis\"]"),
         ("[run]", "[sweep]\ngravity.m = [1, 2, \"3 m\"]\n[run]"),
         ("[run]", "[sweep]\ngravity.n = [1, 2]\n[run]"),
         ("[run]", "[sweep]\ngravity.m = 1\n[run]"),
@@ -229,8 +231,8 @@ fn mistakes_in_choices_have_places() {
         error: top.toml:22:10: unknown variant `euler`, expected one of `step`, `composition`, `splitting`, `processed`, `collocation`
         error: top.toml:22:10: a collocation has 4 or 8 stages
         error: top.toml:13:9: must be a whole number of steps, above zero
-        error: top.toml:13:20: unknown variant `phase`, expected one of `time`, `quaternion`, `axis`, `velocity`, `momentum`, `spatial-momentum`, `energy`, `energy-error`, `vertical-momentum-error`, `momentum-error`
-        error: top.toml:23:9: `every` makes 5000000 samples, more than 2000000; take more steps from one to the next
+        error: top.toml:13:20: unknown variant `phase`, expected one of `quaternion`, `axis`, `velocity`, `momentum`, `spatial-momentum`, `energy`, `energy-error`, `vertical-momentum-error`, `momentum-error`
+        error: top.toml:13:11: a table has each of its columns once
         error: top.toml:20:20: a mass isn't in `m` but in `kg`, `g`, `t`
         error: top.toml:20:9: unknown field `n`, expected one of `m`, `g`, `rho`, `up`
         error: top.toml:20:13: a sweep is a list of values, or `{ from = …, to = …, count = … }`
@@ -335,19 +337,32 @@ fn command_lines() {
     refused(&["run", "top.toml", "--out="], 2, "a value is required");
     refused(&["run", "top.toml", "--pictures"], 2, "unexpected argument '--pictures'");
     refused(&["run", "top.toml", "./top.toml"], 2, "would be written to the same files");
+    refused(&["sweep", "top.toml", "./top.toml"], 2, "would be written to the same files");
+    refused(&["replay", "a/top.csv", "b/top.csv"], 2, "would be written to the same files");
     refused(&["check", "no-such.toml"], 1, "no-such.toml: cannot be read");
     refused(&["sweep", "top.toml"], 1, "top.toml:1:1: has no table `sweep`");
-    refused(&["replay", "top.toml"], 1, "top.toml:3:1: isn't a finite number");
+    refused(&["replay", "top.toml"], 1, "top.toml:3:1: isn't a number");
     refused(&["derive", "no-such-effect"], 2, "'no-such-effect' is neither a scene file (*.toml) nor one of");
     refused(&["derive", "no-such.toml"], 1, "no-such.toml: cannot be read");
     refused(&["completions", "cmd"], 2, "invalid value 'cmd'");
     refused(&["ran"], 2, "unrecognized subcommand 'ran'");
 }
 
-/// What can't be printed is a message and an exit code.
+/// What can't be printed or written is a message and an exit code.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk() {
+    let folder = folder("full");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    let table = folder.join("top.csv");
+    // What was there may be a file.
+    let _ = fs::remove_file(&table);
+    std::os::unix::fs::symlink("/dev/full", &table).unwrap();
+    let output = simulate(&folder, &["top.toml"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{text}");
+    assert!(text.starts_with("error: top.toml: the table can't be written: No space left on device"), "{text}");
+
     let full = fs::File::options().write(true).open("/dev/full").unwrap();
     let output = Command::new(PROGRAM).args(["derive", "gravity"]).stdout(full).output().unwrap();
     let text = String::from_utf8(output.stderr).unwrap();
@@ -399,6 +414,45 @@ fn a_step_that_is_too_large() {
     assert_eq!(output.status.code(), Some(3));
     assert!(message.starts_with("error: fast.toml:20:8: stopped at t = 0 s: no solution at the step"), "{message}");
     assert!(message.ends_with(", and is `kinetic = \"cayley\"` of the body here\n"), "{message}");
+}
+
+/// The table of a file has the numbers, the signs and the digits of a program's.
+#[test]
+fn a_table_is_that_of_a_recorder() {
+    let folder = folder("recorded");
+    // The body turns over several times, so the quaternion that is nearer to the row before isn't that with `w ≥ 0`.
+    let columns = "[output]\ncolumns = [\"quaternion\", \"velocity\", \"momentum\", \"energy\"]\nevery = 7\n";
+    fs::write(folder.join("top.toml"), TOP.replace("[drag]\nc = 1e-3\n", columns)).unwrap();
+    printed(&folder, &["run", "top.toml", "--csv", "--out", "."]);
+    let table = fs::read_to_string(folder.join("top.csv")).unwrap();
+
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let scene = PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let stepper = Stepper::new(scene, 10.0 * 1e-3).unwrap();
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    let mut recorder = Recorder::new(&stepper, Csv::new(Vec::new()));
+    stepper.observed(&mut state).every(7, |now| recorder.record(now)).steps(200).unwrap();
+    recorder.record(&Moment::of_step(&stepper, &state)).unwrap();
+    let expected = String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap();
+    // All but the defect.
+    let expected: Vec<_> = expected.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
+    assert_eq!(table.lines().collect::<Vec<_>>(), expected);
+    assert!(self::table(&table).iter().any(|row| row[1] < -0.1), "{table}");
+}
+
+/// A run that stops leaves the rows that there were.
+#[test]
+fn a_run_that_stops_has_a_table() {
+    let folder = folder("stops");
+    let thrust = "[torque]\ntorque = [0, 0, 400]\n";
+    fs::write(folder.join("top.toml"), TOP.replace("[drag]\nc = 1e-3\n", thrust)).unwrap();
+    let output = simulate(&folder, &["top.toml"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(3) && text.contains(": stopped at t = "), "{text}");
+    let rows = table_of(&folder.join("top.csv"));
+    let last = rows.last().unwrap()[0];
+    assert!(rows.len() > 20 && text.contains(&format!("stopped at t = {last} s")), "{text}");
 }
 
 /// Every file that is there runs, moves, and has a picture and a table.
@@ -587,16 +641,16 @@ fn events() {
 fn events_of_a_sweep() {
     let folder = folder("events-of-a-sweep");
     let text = "title = \"ball\"\nbody.moments = [1, 1, 1]\nstart.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\n\
-                run.step = 0.07\nrun.duration = 7\nrun.method = { splitting = \"Strang\" }\noutput.columns = [\"time\"]\n\
+                run.step = 0.07\nrun.duration = 7\nrun.method = { splitting = \"Strang\" }\noutput.columns = []\n\
                 sweep.start.velocity = [[2, 0, 0], [0, 0, 1]]\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\n";
     fs::write(folder.join("ball.toml"), text).unwrap();
     printed(&folder, &["sweep", "ball.toml", "--out", "."]);
-    let table = fs::read_to_string(folder.join("ball.csv")).unwrap();
+    let table = fs::read_to_string(folder.join("ball.sweep.csv")).unwrap();
     let rows: Vec<Vec<_>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows[0][4..], ["low_times", "low_first"]);
-    assert_eq!((rows[1][0], rows[1][4]), ("2 0 0", "5e0"));
+    assert_eq!((rows[1][0], rows[1][4]), ("2 0 0", "5.0"));
     assert!((rows[1][5].parse::<f64>().unwrap() - PI / 6.0).abs() < 1e-13, "{table}");
-    assert_eq!(rows[2][4..], ["0e0", "NaN"]);
+    assert_eq!(rows[2][4..], ["0.0", "NaN"]);
 }
 
 fn table_of(path: &Path) -> Vec<Vec<f64>> {
@@ -610,7 +664,7 @@ fn sweeps() {
     let sweep = "[sweep]\ngravity.m = [\"1 kg\", 1.5]\ndrag.c = { from = 0.001, to = 0.002, count = 3 }\n[run]";
     fs::write(folder.join("sweep.toml"), TOP.replace("[run]", sweep)).unwrap();
     printed(&folder, &["sweep", "sweep.toml", "--out", "."]);
-    let table = fs::read_to_string(folder.join("sweep.csv")).unwrap();
+    let table = fs::read_to_string(folder.join("sweep.sweep.csv")).unwrap();
     let mut lines = table.lines();
     assert!(lines.next().unwrap().starts_with("gravity.m,drag.c,t,velocity_x,"));
     let points: Vec<_> = lines.map(|line| line.split(',').take(2).collect::<Vec<_>>().join(" ")).collect();
@@ -628,7 +682,7 @@ fn sweeps() {
     assert_eq!(output.status.code(), Some(3));
     assert!(message.starts_with("note: start.velocity = 0 0 1000 gave no row: faster.toml:22:8: stopped at t = 0 s: "));
     assert!(message.ends_with("error: 1 scenes of the sweep stopped\n"), "{message}");
-    let table = fs::read_to_string(folder.join("faster.csv")).unwrap();
+    let table = fs::read_to_string(folder.join("faster.sweep.csv")).unwrap();
     assert_eq!(table.lines().nth(2).unwrap(), format!("0 0 1000{}", ",".repeat(17)));
 }
 

@@ -50,6 +50,20 @@ pub trait Sink {
     fn end(&mut self) -> Result<(), SinkError>;
 }
 
+impl<S: Sink + ?Sized> Sink for &mut S {
+    fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
+        (**self).begin(columns)
+    }
+
+    fn write(&mut self, rows: &[f64]) -> Result<(), SinkError> {
+        (**self).write(rows)
+    }
+
+    fn end(&mut self) -> Result<(), SinkError> {
+        (**self).end()
+    }
+}
+
 /// Why a table couldn't be written.
 #[derive(Debug)]
 #[non_exhaustive]
