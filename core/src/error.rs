@@ -56,7 +56,7 @@ pub enum SetupError {
     BiasMismatch,
     /// A splitting with force gradients needs the derivative of the torque.
     NoForceGradient,
-    /// A splitting with force gradients hasn't got the derivatives of its kicks.
+    /// The derivatives of force gradients aren't known, so such a splitting can't be linearised.
     NoSecondDerivatives,
     /// One of the candidates for an accuracy is another scene than the first.
     PotentialMismatch,

@@ -3,7 +3,7 @@
 use declarations::Motion;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::groups::LieGroup as _;
-use liestep::{SO3, Stepper};
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::{Rotation3, Vector3};
 
 const STEP: f64 = 0.02;
@@ -46,4 +46,22 @@ fn of_a_chaotic_top() {
     // Of a Poisson map they come in pairs, and their sum is zero exactly.
     assert!(exponents.iter().sum::<f64>().abs() < 1e-10);
     assert!((exponents[0] + exponents[5]).abs() < 0.02, "{exponents:?}");
+}
+
+#[test]
+fn without_time_there_are_none() {
+    let Motion { top, attitude, velocity, .. } = Motion::chaotic();
+    let scene = PrincipalBody { J_d: top.J_d } + Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up };
+    let stepper = Stepper::new(scene, 0.0).expect("a stepper");
+    let linear = stepper.linearised().expect("derivatives");
+    let start = stepper.start(attitude, velocity).expect("a start");
+    let mut state = start;
+    let none = Err(StepError::NonFinite { what: "Lyapunov exponent" });
+    assert_eq!(linear.lyapunov_exponents(&mut state, 3, 1), none);
+    assert_eq!(state, start);
+    let stepper = Stepper::new(scene, STEP).expect("a stepper");
+    let linear = stepper.linearised().expect("derivatives");
+    assert_eq!(linear.lyapunov_exponents(&mut state, 0, 1), Ok(vec![0.0; 6]));
+    let each = linear.lyapunov_exponents(&mut { start }, 3, 1);
+    assert_eq!(linear.lyapunov_exponents(&mut { start }, 3, 0), each);
 }

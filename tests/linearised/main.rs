@@ -2,8 +2,10 @@
 
 #![allow(non_snake_case)] // the letters of the field
 
+mod declared;
 mod dual;
 mod exponents;
+mod products;
 mod random;
 mod scenes;
 mod structure;

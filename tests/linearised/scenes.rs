@@ -1,6 +1,7 @@
 //! Sums of the library's effects, with a force, and the methods that are made of their steps.
 
-use liestep::effects::{Drag, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
+use liestep::effects::{CayleyBody, Dipole, Drag, GeodesicBody, Gravity, GravityGradient, MagneticDamping};
+use liestep::effects::{PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Sum};
 use liestep::methods::{CompositionScheme, SplittingScheme};
 use liestep::{SetupError, Stepper};
@@ -9,30 +10,30 @@ use num_dual::Dual64;
 
 use super::dual::{STEP, assert_linearised};
 
-const SEEDS: std::ops::Range<u64> = 0..2;
+pub(crate) const SEEDS: std::ops::Range<u64> = 0..2;
 
 /// The values, one of which may have a unit of its own; the entries of a matrix that is symmetric vary together.
-struct Numbers<T> {
+pub(crate) struct Numbers<T> {
     next: usize,
     varied: Option<(usize, T)>,
 }
 
 impl<T: RealField + Copy> Numbers<T> {
-    fn new(varied: Option<(usize, T)>) -> Self {
+    pub(crate) fn new(varied: Option<(usize, T)>) -> Self {
         Self { next: 0, varied }
     }
 
-    fn number(&mut self, value: f64) -> T {
+    pub(crate) fn number(&mut self, value: f64) -> T {
         self.next += 1;
         let value: T = nalgebra::convert(value);
         self.varied.filter(|(number, _)| number + 1 == self.next).map_or(value, |(_, unit)| value + unit)
     }
 
-    fn vector(&mut self, x: f64, y: f64, z: f64) -> Vector3<T> {
+    pub(crate) fn vector(&mut self, x: f64, y: f64, z: f64) -> Vector3<T> {
         Vector3::new(self.number(x), self.number(y), self.number(z))
     }
 
-    fn symmetric(&mut self, value: &Matrix3<f64>) -> Matrix3<T> {
+    pub(crate) fn symmetric(&mut self, value: &Matrix3<f64>) -> Matrix3<T> {
         let rows = [0, 1, 2].map(|row| [0, 1, 2].map(|column| self.number(value[(row, column)])));
         let matrix = Matrix3::from_fn(|row, column| rows[row][column]);
         (matrix + matrix.transpose()) * nalgebra::convert::<f64, T>(0.5)
@@ -49,11 +50,11 @@ impl<T: RealField + Copy> Numbers<T> {
     }
 }
 
-fn unit(number: Option<usize>) -> Option<(usize, Dual64)> {
+pub(crate) fn unit(number: Option<usize>) -> Option<(usize, Dual64)> {
     number.map(|number| (number, Dual64::new(0.0, 1.0)))
 }
 
-const J_D: Matrix3<f64> = Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.6, 0.3, -0.1, 0.3, 2.4);
+pub(crate) const J_D: Matrix3<f64> = Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.6, 0.3, -0.1, 0.3, 2.4);
 
 type Damped<T> = Sum<Sum<Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>, Rotor<T>>, Drag<T>>;
 
@@ -99,6 +100,29 @@ fn a_damped_scene() {
     }
 }
 
+type Magnetic<T> = Sum<Sum<Sum<GeodesicBody<T>, CayleyBody<T>>, Dipole<T>>, MagneticDamping<T>>;
+
+/// A body of both kinetic terms: their derivatives go through a logarithm, and through a quotient.
+fn magnetic<T: RealField + Copy>(varied: Option<(usize, T)>) -> Magnetic<T> {
+    let mut n = Numbers::new(varied);
+    let J = Matrix3::identity() * J_D.trace() - J_D;
+    let inertia = |n: &mut Numbers<T>| Inertia::new(n.symmetric(&J)).expect("a body");
+    let geodesic = GeodesicBody { J: inertia(&mut n) };
+    let cayley = CayleyBody { J: inertia(&mut n) };
+    let dipole = Dipole { moment: n.vector(0.7, -0.4, 0.2), field: n.vector(0.3, 0.9, -0.5) };
+    let damping = MagneticDamping { k: n.number(0.4), field: n.vector(0.3, 0.9, -0.5), J: inertia(&mut n) };
+    geodesic + cayley + dipole + damping
+}
+
+#[test]
+fn a_magnet() {
+    for seed in SEEDS {
+        let stepper = Stepper::new(magnetic::<f64>(None), STEP).expect("a stepper");
+        let dual = |number| Stepper::new(magnetic(unit(number)), STEP.into()).expect("a stepper");
+        assert_linearised(&stepper, dual, seed);
+    }
+}
+
 #[test]
 fn a_composition() {
     let scheme = CompositionScheme::SUZUKI_4;
@@ -112,7 +136,13 @@ fn a_composition() {
 /// The flow's inertia is a parameter of its own, behind those of the scene: where both are varied, both derivatives add.
 #[test]
 fn a_splitting() {
-    let scheme = SplittingScheme::STRANG;
+    // Of three shares, and of more, from a kick to a kick and from a drift to a drift.
+    assert_split(SplittingScheme::STRANG);
+    assert_split(SplittingScheme::NYSTROM_6);
+    assert_split(SplittingScheme::NEAR_INTEGRABLE_8_6_4);
+}
+
+fn assert_split(scheme: SplittingScheme) {
     let split = |number: Option<usize>| {
         // The scene's own inertia has to be the flow's to its rounding, which a dual number's value is.
         let of_flow = number.filter(|&number| number >= 17).map(|number| number - 17);
@@ -142,6 +172,19 @@ fn a_force_gradient_is_refused() {
     let scene = top::<f64>(None);
     let stepper = Stepper::split(scene, STEP, scene.first, SplittingScheme::FORCE_GRADIENT_4).expect("a stepper");
     assert_eq!(stepper.linearised().err(), Some(SetupError::NoSecondDerivatives));
+}
+
+/// The tangent of a composition hasn't the parameters of a splitting's flow.
+#[test]
+#[should_panic(expected = "a plan with 17 parameters, and this one has 26")]
+fn the_tangent_of_another_plan_is_refused() {
+    let scene = top::<f64>(None);
+    let own = Stepper::new(scene, STEP).expect("a stepper");
+    let split = Stepper::split(scene, STEP, scene.first, SplittingScheme::STRANG).expect("a stepper");
+    let mut tangent = own.linearised().expect("derivatives").tangent(&[0]);
+    let mut state =
+        split.start(liestep::SO3::from_matrix_unchecked(Matrix3::identity()), Vector3::x()).expect("a start");
+    let _ = split.linearised().expect("derivatives").step(&mut state, &mut tangent);
 }
 
 /// Of a stepper of no step nothing changes, whatever the parameters.

@@ -70,9 +70,9 @@ pub(crate) fn readings_without(
     let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
         let (group, increments) = (declaration.group.clone(), increments.clone());
         let (advected, names) = (advected.clone(), names.clone());
-        let has_gradients = declaration.gradients.is_some();
+        let has_derivatives = declaration.gradients.is_some();
         let declared =
-            Declared { group, symbols, lets, expression, increments, step, advected, displacements, has_gradients };
+            Declared { group, symbols, lets, expression, increments, step, advected, displacements, has_derivatives };
         Lowered { declared, names }
     };
     let multiplied_out = attempt(None);

@@ -146,7 +146,7 @@ fn gradients(header: &Header) -> TokenStream {
         #[allow(clippy::all, clippy::pedantic)]
         #implementation {
             const PARAMETERS: #core::primitive::usize = 0;
-            fn blocks(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #private::Blocks<#square> { loop {} }
+            fn step_derivatives(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #private::StepDerivatives<#square> { loop {} }
             #(#visits)*
             fn carried_parameters(
                 _: &Self::Advected,

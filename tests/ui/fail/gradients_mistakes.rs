@@ -19,4 +19,10 @@ struct WithoutAStep {
     J: Matrix3<f64>,
 }
 
+// What is asked for doesn't add a message to that of the mistake.
+#[lagrangian(group = SO3, gradients, l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h))]
+struct Misspelt {
+    J_d: NonstandardInertia,
+}
+
 fn main() {}

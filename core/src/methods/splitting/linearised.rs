@@ -9,6 +9,8 @@ use crate::numbers::{Real, real};
 
 /// A kinetic flow that can be differentiated: one that is declared with `gradients`.
 ///
+/// Every such declaration is one; there is nothing to implement by hand.
+///
 /// Its parameters are behind those of the scene, as a term of their own: in a splitting the body moves by the flow's
 /// inertia, not by the scene's. What depends on both, as an inertia that the two share, sums both derivatives.
 #[diagnostic::on_unimplemented(
@@ -17,10 +19,10 @@ use crate::numbers::{Real, real};
     note = "take a declared body for the flow, as `RigidBody`, `PrincipalBody` or `GeodesicBody` of `liestep::effects`"
 )]
 pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
-    /// What is declared.
+    /// The declaration.
     type Declared: SecondDerivatives<Scalar = T, Group = SO3<T>, Advected = ()>;
 
-    /// What is declared.
+    /// The declaration of a flow.
     fn declared(flow: &Self) -> &Self::Declared;
 }
 

@@ -17,8 +17,8 @@ use crate::numbers::{Coordinates as _, is_finite, real};
 pub enum Tape {
     /// Every stage: on SO(3) 200 bytes each.
     All,
-    /// A state at every `√N`th of `N` steps, and the stages between two of them, which are stepped twice. The gradient
-    /// is the same to the bit.
+    /// A state at every `√N`th of `N` steps, and the stages between two of them. All steps but those behind the last of
+    /// these states are made twice. The gradient is the same to the bit.
     SquareRoot,
 }
 

@@ -5,7 +5,7 @@ use crate::groups::LieGroup as _;
 use crate::mechanics::{Group, Scalar, SecondDerivatives};
 use crate::motion::linearised::{Linearisable, Linearised};
 use crate::motion::stepper::StateOf;
-use crate::numbers::real;
+use crate::numbers::{is_finite, real};
 use nalgebra::SimdComplexField as _;
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
@@ -16,14 +16,17 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     /// enough. Those of a Poisson map come in pairs `±λ`. In the components of the declared basis, an exponent of a finite
     /// time depends on the units, but not its limit.
     ///
+    /// `steps = 0` gives zeros, and `between = 0` is taken for one.
+    ///
     /// # Errors
     ///
-    /// As [`step`](Self::step).
+    /// As [`step`](Self::step), and [`StepError::NonFinite`] where an exponent isn't a number: at `h = 0`, where no time
+    /// passes, and where the length of a column is zero or out of range.
     ///
     /// # Source
     ///
     /// \[BGGS80\]; see [`conventions`](crate::conventions).
-    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
+    #[allow(clippy::cast_precision_loss)] // exact up to 2⁵³
     pub fn lyapunov_exponents(
         &self,
         state: &mut StateOf<S, P>,
@@ -41,8 +44,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
                 }
             }
         }
-        *state = next;
         let time = self.stepper.step_size() * real(steps.max(1) as f64);
-        Ok(sums.into_iter().map(|sum| sum / time).collect())
+        let exponents: Vec<Scalar<S>> = sums.into_iter().map(|sum| sum / time).collect();
+        if !exponents.iter().all(|&exponent| is_finite(exponent)) {
+            return Err(StepError::NonFinite { what: "Lyapunov exponent" });
+        }
+        *state = next;
+        Ok(exponents)
     }
 }

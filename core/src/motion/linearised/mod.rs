@@ -92,7 +92,9 @@ use crate::motion::report::StepReport;
 use crate::motion::stepper::{StateOf, Stepper};
 use recorded::Recorded;
 
-/// A plan whose steps can be differentiated.
+/// A plan whose steps can be differentiated: some of the library's own plans.
+///
+/// A plan written elsewhere can't be one, as only the library makes a [`Stage`].
 #[diagnostic::on_unimplemented(
     message = "the derivatives of a step of `{Self}` aren't known",
     label = "not with this method",
@@ -224,8 +226,16 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     /// # Errors
     ///
     /// As [`Stepper::step`], and [`StepError::NonFinite`] where a derivative overflows, as it does in chaos.
+    ///
+    /// # Panics
+    ///
+    /// Where the tangent has columns for the parameters of another plan, which has more of them or fewer.
     pub fn step(&self, state: &mut StateOf<S, P>, tangent: &mut TangentOf<S>) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
+        if let Some(count) = tangent.parameters() {
+            let own = plan.parameters();
+            assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
+        }
         let mut next = *state;
         tangent.events.get_mut().clear();
         let report = self.recorded(&mut next, &tangent.events)?;

@@ -6,7 +6,7 @@ use crate::groups::{Advected, LieGroup};
 use crate::motion::summation::{Motion, Proceeded, Summation};
 use crate::numbers::zero;
 
-/// One change that a plan has made: a turn, a push, or both.
+/// One change that one of the library's own plans has made: a turn, a push, or both.
 #[derive(Clone, Copy, Debug)]
 pub struct Change<G: LieGroup, A> {
     /// The motion before.

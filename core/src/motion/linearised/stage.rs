@@ -6,7 +6,10 @@ use crate::motion::linearised::recorded::Change;
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
 use crate::solving::pattern;
 
-/// One stage of a step, which an effect has made: what is differentiated.
+/// One change of the motion and the effect that made it: what is differentiated, by an own step of the effect or by a
+/// kick of its potential.
+///
+/// The library's own plans make stages, and its derivatives read them; there is nothing else to do with one.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a, E: Effect> {
     effect: &'a E,
@@ -224,7 +227,7 @@ impl<V> Cotangent<V> {
     }
 }
 
-/// What is done with the stages of a step, one after the other.
+/// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
 pub trait Pass<G: LieGroup> {
     /// Takes notice of a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);

@@ -48,6 +48,12 @@ impl<G: LieGroup, A> Tangent<G, A> {
         Self { columns, kept: Vec::new(), shares, events: RefCell::default() }
     }
 
+    /// How many parameters its plan has; `None` without columns for them, where any plan of the scene will do.
+    #[inline(always)]
+    pub(super) fn parameters(&self) -> Option<usize> {
+        (!self.shares.is_empty()).then_some(self.shares.len())
+    }
+
     /// The columns: how the attitude moves, `g ← g exp ζ̂`, and the change `δμ` of the momentum, for each.
     pub fn columns(&self) -> impl ExactSizeIterator<Item = (G::Vector, G::Vector)> + '_ {
         self.columns.iter().map(|column| (column.attitude, column.momentum))

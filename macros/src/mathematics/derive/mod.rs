@@ -48,7 +48,7 @@ pub(crate) struct Declared {
     /// Those of a force's virtual work; a Lagrangian has none.
     pub(crate) displacements: Option<Displacements>,
     /// Whether the derivatives of a step are asked for.
-    pub(crate) has_gradients: bool,
+    pub(crate) has_derivatives: bool,
 }
 
 /// Why nothing can be derived.
@@ -311,7 +311,7 @@ impl Context<'_> {
         };
         let moved =
             self.declared.advected.iter().map(|&w| (w.symbol, action::along(self, w, &|factor| self.first(factor))));
-        self.declared.has_gradients.then(|| Ends { momenta: momenta.map(small), moved: moved.collect() })
+        self.declared.has_derivatives.then(|| Ends { momenta: momenta.map(small), moved: moved.collect() })
     }
 
     fn product(&self, left: &Expression, right: &Expression) -> Expression {
