@@ -91,7 +91,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 
 /// Makes a row of each moment that it is shown, of named columns, and hands the rows on in blocks.
 ///
-/// | columns | | unit on SO(3) |
+/// | columns | | unit on SO(3) and products of it |
 /// |---|---|---|
 /// | `t` | the time since the start | s |
 /// | `q_w`, `q_x`, `q_y`, `q_z` | the attitude, body to space; on other groups the matrix, `g_11`, `g_12`, … | 1 |
@@ -100,6 +100,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 /// | `energy` | the energy | J |
 /// | `defect` | how far the attitude has left the group | 1 |
 ///
+/// On a product of groups a name has the place of its factor behind it: `q_w_1`, …, `velocity_x_1`, …, `velocity_x_2`.
 /// Of the two quaternions of an attitude the one nearer to the row before is written. Other columns are
 /// [quantities](Self::quantity) of one's own. [`Run`](crate::with::Run) has an example.
 ///
@@ -127,23 +128,17 @@ where
     /// A table of all columns above, of motions that this integrator steps.
     pub fn new(integrator: &I, sink: S) -> Self {
         let mut recorder = Self::bare(integrator, sink);
-        let is_of_space = I::Group::component_names().first().is_some_and(|name| name == "x");
-        let unit = |unit: &'static str| if is_of_space { unit } else { "" };
-        let components = |quantity: &'static str| {
-            I::Group::component_names().into_iter().map(move |component| format!("{quantity}_{component}"))
-        };
-        let attitude = I::Group::number_names();
+        let (attitude, components) = (I::Group::named_numbers(), I::Group::named_components());
         recorder.attitude = vec![real(0.0); attitude.len()];
         recorder.shows_motion = true;
-        for (names, unit) in [
-            (attitude, unit("1")),
-            (components("velocity").collect(), unit("rad/s")),
-            (components("momentum").collect(), unit("kg m²/s")),
-            (vec!["energy".to_owned()], unit("J")),
-            (vec!["defect".to_owned()], "1"),
-        ] {
-            recorder.columns.extend(names.into_iter().map(|name| Column { name, unit: unit.to_owned() }));
-        }
+        let named = |quantity: &'static str, which: usize| {
+            components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
+        };
+        // A product of a velocity and a momentum.
+        let energy = if components.iter().all(|(_, units)| *units == ["rad/s", "kg m²/s"]) { "J" } else { "" };
+        let columns = attitude.into_iter().chain(named("velocity", 0)).chain(named("momentum", 1));
+        let columns = columns.chain([("energy".to_owned(), energy), ("defect".to_owned(), "1")]);
+        recorder.columns.extend(columns.map(|(name, unit)| Column { name, unit: unit.to_owned() }));
         recorder
     }
 
