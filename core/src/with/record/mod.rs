@@ -105,7 +105,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 /// [quantities](Self::quantity) of one's own. [`Run`](crate::with::Run) has an example.
 ///
 /// Rows that are left when the recorder is dropped are written then, but an error is lost:
-/// [`finish`](Self::finish) reports it.
+/// [`finish`](Self::finish) reports it. After an error the sink gets nothing more, and no end.
 pub struct Recorder<'a, I: Integrator, S: Sink> {
     columns: Vec<Column>,
     shows_motion: bool,
@@ -114,9 +114,20 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     quantities: Vec<Quantity<'a, I>>,
     block: Vec<f64>,
     rows_in_a_block: usize,
-    begun: bool,
+    stage: Stage,
     /// Gone when the table is finished.
     sink: Option<S>,
+}
+
+/// How far a table is.
+#[derive(Clone, Copy, PartialEq)]
+enum Stage {
+    /// The sink doesn't know the columns yet.
+    Before,
+    /// It has them.
+    Begun,
+    /// It has failed, and gets nothing more: rows behind a gap would look like a whole table.
+    Failed,
 }
 
 impl<'a, I, S> Recorder<'a, I, S>
@@ -151,7 +162,7 @@ where
             quantities: Vec::new(),
             block: Vec::new(),
             rows_in_a_block: ROWS_IN_A_BLOCK,
-            begun: false,
+            stage: Stage::Before,
             sink: Some(sink),
         }
     }
@@ -186,8 +197,10 @@ where
     ///
     /// # Errors
     ///
-    /// [`RecordError`] where two columns have one name, and where a full block of rows can't be written.
+    /// [`RecordError`] with the first row where two columns have one name or the table can't be begun, and later where a
+    /// full block of rows can't be written. After an error of the sink each further row is one, too.
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
+        self.begin()?;
         let Self { block, attitude, .. } = self;
         block.push(now.time().into());
         if self.shows_motion {
@@ -201,7 +214,8 @@ where
         for quantity in &mut self.quantities {
             block.push(quantity(now));
         }
-        if self.block.len() >= self.rows_in_a_block * self.columns.len() { self.flush() } else { Ok(()) }
+        let full = self.rows_in_a_block.saturating_mul(self.columns.len());
+        if self.block.len() >= full { self.flush() } else { Ok(()) }
     }
 
     /// Writes what is left, and returns what was written to.
@@ -224,24 +238,34 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
     ///
     /// [`RecordError`] where they can't be written.
     pub fn flush(&mut self) -> Result<(), RecordError> {
+        self.begin()?;
         let sink = self.sink.as_mut().ok_or_else(unreachable)?;
-        let failed = |cause| RecordError::Sink { cause };
-        if !self.begun {
-            let repeated = self
-                .columns
-                .iter()
-                .enumerate()
-                .find(|(place, column)| self.columns[..*place].iter().any(|before| before.name == column.name));
-            if let Some((_, column)) = repeated {
-                self.block.clear();
-                return Err(RecordError::SameName { name: column.name.clone() });
-            }
-            self.begun = true;
-            sink.begin(&self.columns).map_err(failed)?;
-        }
         let written = if self.block.is_empty() { Ok(()) } else { sink.write(&self.block) };
         self.block.clear();
-        written.map_err(failed)
+        written.map_err(|cause| self.failed(cause))
+    }
+
+    /// Hands on the columns, if that hasn't been done.
+    fn begin(&mut self) -> Result<(), RecordError> {
+        match self.stage {
+            Stage::Begun => return Ok(()),
+            Stage::Failed => return Err(RecordError::Sink { cause: "it has failed before".into() }),
+            Stage::Before => {}
+        }
+        let columns = &self.columns;
+        let is_repeated = |place: usize| columns[..place].iter().any(|before| before.name == columns[place].name);
+        if let Some(place) = (0..columns.len()).find(|&place| is_repeated(place)) {
+            return Err(RecordError::SameName { name: columns[place].name.clone() });
+        }
+        let begun = self.sink.as_mut().ok_or_else(unreachable)?.begin(columns);
+        begun.map_err(|cause| self.failed(cause))?;
+        self.stage = Stage::Begun;
+        Ok(())
+    }
+
+    fn failed(&mut self, cause: SinkError) -> RecordError {
+        self.stage = Stage::Failed;
+        RecordError::Sink { cause }
     }
 }
 
