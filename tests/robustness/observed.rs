@@ -31,7 +31,7 @@ fn top(h: f64) -> (Top, TopState) {
 fn csv_of(stepper: &Top, state: &mut TopState, every: u64, until: f64) -> String {
     let mut recorder = Recorder::new(stepper, Csv::new(Vec::new()));
     stepper.observed(state).every(every, |now| recorder.record(now)).until(until).unwrap();
-    String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap()
+    String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap()
 }
 
 /// Each number is read back to the bit, and the numbers are those of the motion.
@@ -72,7 +72,7 @@ fn a_run_may_be_made_in_parts() {
         assert!(stepper.time(&state) > until - 1e-12);
     }
     let sink = recorder.finish().unwrap().into_inner().unwrap();
-    assert_eq!(String::from_utf8(sink.into_inner()).unwrap(), whole);
+    assert_eq!(String::from_utf8(sink.into_inner().unwrap()).unwrap(), whole);
 }
 
 #[test]
@@ -373,12 +373,12 @@ fn a_table_is_well_formed() {
         .quantity("steps", "1", |now| u32::try_from(now.steps()).unwrap());
     assert_eq!(recorder.columns()[2].unit, "1");
     stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(5).unwrap();
-    let text = String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap();
+    let text = String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap();
     assert_eq!(
         text,
         "t,\"a, \"\"b\"\"\",steps\n0.0,NaN,0.0\n0.01,inf,1.0\n0.02,-inf,2.0\n0.03,-0.0,3.0\n0.04,1e300,4.0\n0.05,5e-324,5.0\n"
     );
-    let empty = Recorder::bare(&stepper, Csv::new(Vec::new())).finish().unwrap().into_inner();
+    let empty = Recorder::bare(&stepper, Csv::new(Vec::new())).finish().unwrap().into_inner().unwrap();
     assert_eq!(empty, b"t\n");
     let table = Recorder::bare(&stepper, Table::new()).finish().unwrap();
     assert_eq!((table.rows().len(), table.column("t").unwrap().len()), (0, 0));

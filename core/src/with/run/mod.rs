@@ -45,7 +45,7 @@ type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 ///     .every(100, |now| recorder.record(now))
 ///     .stop_when(|now| now.velocity().norm() < 0.1)
 ///     .until(1000.0)?;
-/// let table = String::from_utf8(recorder.finish()?.into_inner())?;
+/// let table = String::from_utf8(recorder.finish()?.into_inner()?)?;
 ///
 /// assert!(matches!(ended.reason, Reason::Stopped { time } if time < 100.0));
 /// assert!(damped.velocity(&state).norm() < 0.1);
