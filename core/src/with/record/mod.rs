@@ -202,18 +202,21 @@ where
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
         self.begin()?;
         let Self { block, attitude, .. } = self;
-        block.push(now.time().into());
+        let begun = block.len();
+        block.resize(begun + self.columns.len(), 0.0);
+        let mut places = block[begun..].iter_mut();
+        let mut write = |number: f64| places.next().map_or((), |place| *place = number);
+        write(now.time().into());
         if self.shows_motion {
             now.attitude().write_numbers(attitude);
-            block.extend(attitude.iter().map(|&number| number.into()));
+            attitude.iter().for_each(|&number| write(number.into()));
             let (velocity, energy) = now.integrator().velocity_and_energy(now);
-            velocity.each(&mut |number| block.push(number.into()));
-            now.momentum().each(&mut |number| block.push(number.into()));
-            block.extend([energy.into(), now.orthogonality_defect().into()]);
+            velocity.each(&mut |number| write(number.into()));
+            now.momentum().each(&mut |number| write(number.into()));
+            write(energy.into());
+            write(now.orthogonality_defect().into());
         }
-        for quantity in &mut self.quantities {
-            block.push(quantity(now));
-        }
+        self.quantities.iter_mut().for_each(|quantity| write(quantity(now)));
         let full = self.rows_in_a_block.saturating_mul(self.columns.len());
         if self.block.len() >= full { self.flush() } else { Ok(()) }
     }
