@@ -209,7 +209,9 @@ where
         write(now.time().into());
         if self.shows_motion {
             now.attitude().write_numbers(attitude);
-            attitude.iter().for_each(|&number| write(number.into()));
+            for &mut number in attitude {
+                write(number.into());
+            }
             let (velocity, energy) = now.integrator().velocity_and_energy(now);
             velocity.each(&mut |number| write(number.into()));
             now.momentum().each(&mut |number| write(number.into()));
