@@ -223,3 +223,22 @@ fn components_are_in_the_order_of_the_factors() {
     let back = <CayleyRetraction as Retraction<Four>>::local_coordinates(&f).unwrap();
     assert!((back - xi * 0.05).norm() < 1e-14);
 }
+
+/// In a table, one factor after the other.
+#[test]
+fn numbers_of_a_product_are_those_of_its_factors() {
+    let names: Vec<_> = Product::named_numbers().into_iter().map(|(name, unit)| format!("{name} {unit}")).collect();
+    let expected = "q_w_1 1,q_x_1 1,q_y_1 1,q_z_1 1,\
+        g_11_2 ,g_12_2 ,g_13_2 ,g_21_2 ,g_22_2 ,g_23_2 ,g_31_2 ,g_32_2 ,g_33_2 ";
+    assert_eq!(names.join(","), expected);
+    let components: Vec<_> = Product::named_components().into_iter().map(|(name, units)| (name, units[0])).collect();
+    let expected = [("x_1", "rad/s"), ("y_1", "rad/s"), ("z_1", "rad/s"), ("1_2", ""), ("2_2", ""), ("3_2", "")];
+    assert_eq!(components, expected.map(|(name, unit)| (name.to_owned(), unit)));
+
+    let second = SE2::from_matrix_unchecked(Matrix3::new(0.6, -0.8, 3.0, 0.8, 0.6, 4.0, 0.0, 0.0, 1.0));
+    // The quaternion before was the other one.
+    let mut numbers = [0.0; 14];
+    numbers[0] = -1.0;
+    assert_eq!((SO3::identity(), second).write_numbers(&mut numbers).len(), 1);
+    assert_eq!(numbers, [-1.0, 0.0, 0.0, 0.0, 0.6, -0.8, 3.0, 0.8, 0.6, 4.0, 0.0, 0.0, 1.0, 0.0]);
+}

@@ -11,7 +11,9 @@ use liestep::mechanics::Sum;
 use liestep::methods::CotangentGauss;
 use liestep::motion::AnyStepper;
 use liestep::prelude::*;
-use liestep::with::{Background, Csv, Ended, Event, Reason, RecordError, Recorder, RunError, Table, sections};
+use liestep::with::{
+    Background, Column, Csv, Ended, Event, Reason, RecordError, Recorder, RunError, Sink, SinkError, Table, sections,
+};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const VELOCITY: Vector3<f64> = Vector3::new(0.5, 2.0, 12.0);
@@ -29,7 +31,7 @@ fn top(h: f64) -> (Top, TopState) {
 fn csv_of(stepper: &Top, state: &mut TopState, every: u64, until: f64) -> String {
     let mut recorder = Recorder::new(stepper, Csv::new(Vec::new()));
     stepper.observed(state).every(every, |now| recorder.record(now)).until(until).unwrap();
-    String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap()
+    String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap()
 }
 
 /// Each number is read back to the bit, and the numbers are those of the motion.
@@ -70,7 +72,7 @@ fn a_run_may_be_made_in_parts() {
         assert!(stepper.time(&state) > until - 1e-12);
     }
     let sink = recorder.finish().unwrap().into_inner().unwrap();
-    assert_eq!(String::from_utf8(sink.into_inner()).unwrap(), whole);
+    assert_eq!(String::from_utf8(sink.into_inner().unwrap()).unwrap(), whole);
 }
 
 #[test]
@@ -91,7 +93,11 @@ fn a_run_ends_when_it_is_told_to() {
     let Ended { steps, reason: Reason::Stopped { time }, iterations } = ended else { panic!("{ended:?}") };
     assert!(state.momentum().x < -0.5 && iterations >= steps);
     assert_eq!((state.steps(), time), (steps, stepper.time(&state)));
-    // Where it is so at the start, no step is made.
+    // Where it is so at the start, no step is made, of a run that goes on neither.
+    for _ in 0..2 {
+        let ended = stepper.observed(&mut state).stop_when(|now| now.momentum().x < -0.5).steps(1000).unwrap();
+        assert_eq!((ended.steps, ended.reason, state.steps()), (0, Reason::Stopped { time }, steps));
+    }
     let ended = stepper.observed(&mut start.clone()).stop_when(|_| true).steps(1000).unwrap();
     assert_eq!((ended.steps, ended.reason), (0, Reason::Stopped { time: 0.0 }));
 
@@ -273,9 +279,9 @@ impl Write for Full {
 fn what_cannot_be_recorded_ends_the_run() {
     let (stepper, start) = top(0.01);
     let mut state = start.clone();
-    let mut recorder = Recorder::new(&stepper, Csv::new(Full)).in_blocks_of(3);
+    let mut recorder = Recorder::new(&stepper, Csv::new(Full)).in_blocks_of(usize::MAX);
     let error = stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
-    assert!(matches!(error, RunError::Observer { .. }) && state.steps() == 2, "{error}");
+    assert!(matches!(error, RunError::Observer { .. }) && state.steps() == 0, "{error}");
     assert!(error.to_string().contains("no storage space"), "{error}");
     drop(recorder);
 
@@ -285,10 +291,10 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(error.to_string().contains("no storage space"), "{error}");
     assert!(recorder.finish().is_err());
 
-    let mut recorder =
-        Recorder::new(&stepper, Table::new()).quantity("energy", "kJ", |now| 1e-3 * now.energy()).in_blocks_of(1);
-    let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
-    assert!(error.to_string().contains("two columns are called `energy`"), "{error}");
+    let mut recorder = Recorder::new(&stepper, Table::new()).quantity("energy", "kJ", |now| 1e-3 * now.energy());
+    let mut state = start.clone();
+    let error = stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
+    assert!(error.to_string().contains("two columns are called `energy`") && state.steps() == 0, "{error}");
     assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));
 
     // An observer of one's own.
@@ -298,6 +304,63 @@ fn what_cannot_be_recorded_ends_the_run() {
     let stop_after_five = |steps| if steps > 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let ended = stepper.observed(&mut state).every(3, |now| stop_after_five(now.steps())).steps(10).unwrap();
     assert_eq!(ended.steps, 6);
+}
+
+/// Fails once, and writes down what it is asked.
+struct Once {
+    fails: &'static str,
+    asked: Rc<RefCell<Vec<&'static str>>>,
+}
+
+impl Once {
+    fn ask(&self, what: &'static str) -> Result<(), SinkError> {
+        let mut asked = self.asked.borrow_mut();
+        asked.push(what);
+        let is_first = asked.iter().filter(|asked| **asked == what).count() == 1;
+        if is_first && what == self.fails { Err("once".into()) } else { Ok(()) }
+    }
+}
+
+impl Sink for Once {
+    fn begin(&mut self, _: &[Column]) -> Result<(), SinkError> {
+        self.ask("begin")
+    }
+
+    fn write(&mut self, _: &[f64]) -> Result<(), SinkError> {
+        self.ask("write")
+    }
+
+    fn end(&mut self) -> Result<(), SinkError> {
+        self.ask("end")
+    }
+}
+
+/// Rows below no header or behind a gap, or the mark of the end behind them, would make a broken table look whole.
+#[test]
+fn a_sink_that_has_failed_gets_nothing_more() {
+    let (stepper, start) = top(0.01);
+    for (fails, expected) in [
+        ("begin", &["begin"] as &[_]),
+        ("write", &["begin", "write"]),
+        ("end", &["begin", "write", "write", "write", "end"]),
+    ] {
+        for finishes in [true, false] {
+            let asked = Rc::new(RefCell::new(Vec::new()));
+            let sink = Once { fails, asked: asked.clone() };
+            let mut recorder = Recorder::bare(&stepper, sink).in_blocks_of(2);
+            let run = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(3);
+            assert_eq!(run.is_ok(), fails == "end");
+            // Who goes on all the same is told each time.
+            let run = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(0);
+            assert_eq!(run.is_ok(), fails == "end");
+            if finishes {
+                assert!(recorder.finish().is_err());
+            } else {
+                drop(recorder);
+            }
+            assert_eq!(*asked.borrow(), expected, "{fails}");
+        }
+    }
 }
 
 /// Names with commas and quotes, numbers that aren't any, and a table without rows.
@@ -310,12 +373,12 @@ fn a_table_is_well_formed() {
         .quantity("steps", "1", |now| u32::try_from(now.steps()).unwrap());
     assert_eq!(recorder.columns()[2].unit, "1");
     stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(5).unwrap();
-    let text = String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap();
+    let text = String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap();
     assert_eq!(
         text,
         "t,\"a, \"\"b\"\"\",steps\n0.0,NaN,0.0\n0.01,inf,1.0\n0.02,-inf,2.0\n0.03,-0.0,3.0\n0.04,1e300,4.0\n0.05,5e-324,5.0\n"
     );
-    let empty = Recorder::bare(&stepper, Csv::new(Vec::new())).finish().unwrap().into_inner();
+    let empty = Recorder::bare(&stepper, Csv::new(Vec::new())).finish().unwrap().into_inner().unwrap();
     assert_eq!(empty, b"t\n");
     let table = Recorder::bare(&stepper, Table::new()).finish().unwrap();
     assert_eq!((table.rows().len(), table.column("t").unwrap().len()), (0, 0));

@@ -14,7 +14,7 @@
 //! let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 2.0, 0.2))?;
 //! let mut recorder = Recorder::new(&stepper, ArrowStream::new(Vec::new())); // or ArrowStream::create("body.arrows")?
 //! stepper.observed(&mut state).every(10, |now| recorder.record(now)).until(100.0)?;
-//! let bytes = recorder.finish()?.into_inner().ok_or("it isn't finished")?;
+//! let bytes = recorder.finish()?.into_inner()?;
 //! assert!(bytes.len() > 1000 * 13 * 8);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -68,11 +68,15 @@ impl<W: Write> ArrowStream<W> {
         Self { stage: Stage::Before(writer) }
     }
 
-    /// What was written to, where the table is finished or wasn't begun.
-    pub fn into_inner(self) -> Option<W> {
+    /// What was written to.
+    ///
+    /// # Errors
+    ///
+    /// Where the table is begun and isn't finished.
+    pub fn into_inner(self) -> Result<W, SinkError> {
         match self.stage {
-            Stage::Before(writer) | Stage::Done(writer) => Some(writer),
-            Stage::Writing(..) | Stage::Failed => None,
+            Stage::Before(writer) | Stage::Done(writer) => Ok(writer),
+            Stage::Writing(..) | Stage::Failed => Err("the table isn't finished".into()),
         }
     }
 }
@@ -208,6 +212,6 @@ mod tests {
     fn rows_come_after_the_columns() {
         assert!(ArrowStream::new(Vec::new()).write(&[1.0]).is_err());
         assert!(ArrowStream::new(Vec::new()).end().is_err());
-        assert_eq!(ArrowStream::new(vec![1]).into_inner(), Some(vec![1]));
+        assert_eq!(ArrowStream::new(vec![1]).into_inner().unwrap(), vec![1]);
     }
 }

@@ -162,30 +162,34 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
         None
     }
 
-    /// The names of the numbers by which a table shows an element: on SO(3) those of its unit quaternion, elsewhere the
-    /// entries of the matrix, row by row.
+    /// The numbers by which a table shows an element, a name and a unit each: on SO(3) its unit quaternion, on a product
+    /// those of its factors, elsewhere the entries of the matrix, row by row. Where nothing is known of a unit it is empty.
     #[must_use]
-    fn number_names() -> Vec<String> {
+    fn named_numbers() -> Vec<(String, &'static str)> {
         let mut entries = 0;
         Self::identity().matrix().each(&mut |_| entries += 1);
         let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
-        (0..entries).map(|entry| format!("g_{}{}", entry / rows + 1, entry % rows + 1)).collect()
+        (0..entries).map(|entry| (format!("g_{}{}", entry / rows + 1, entry % rows + 1), "")).collect()
     }
 
-    /// Writes these numbers over those of the element before, or over zeros: of two quaternions it is the nearer one.
-    fn write_numbers(&self, numbers: &mut [Self::Scalar]) {
+    /// Writes these numbers over those of the element before, or over zeros, and returns the places behind them. Of two
+    /// quaternions it is the nearer one.
+    fn write_numbers<'a>(&self, numbers: &'a mut [Self::Scalar]) -> &'a mut [Self::Scalar] {
         let mut places = numbers.iter_mut();
         self.matrix().each(&mut |entry| {
             if let Some(place) = places.next() {
                 *place = entry;
             }
         });
+        places.into_slice()
     }
 
-    /// The names of the components of algebra elements and covectors: `x`, `y`, `z` on SO(3), elsewhere numbers from one.
+    /// The components of algebra elements and covectors: a name, and the units of a velocity and of a momentum. They are
+    /// `x`, `y`, `z` on SO(3), on a product those of its factors, elsewhere numbers from one. Where nothing is known of a
+    /// unit it is empty.
     #[must_use]
-    fn component_names() -> Vec<String> {
-        (1..=Self::DIMENSION).map(|component| component.to_string()).collect()
+    fn named_components() -> Vec<(String, [&'static str; 2])> {
+        (1..=Self::DIMENSION).map(|component| (component.to_string(), [""; 2])).collect()
     }
 
     /// How far the matrix is from satisfying the relation of the group; zero on it.

@@ -35,6 +35,15 @@ pub trait Factor<const K: usize>: LieGroup {
 /// What stands side by side.
 type Joined<A, B, T> = <A as Join<T, B>>::Joined;
 
+/// The names of all factors, each with the place of its factor behind it: `x_1`, `x_2`.
+fn of_factors<U, const N: usize>(factors: [Vec<(String, U)>; N]) -> Vec<(String, U)> {
+    let named = (1..).zip(factors).map(|(place, names)| {
+        let place: u32 = place;
+        names.into_iter().map(move |(name, unit)| (format!("{name}_{place}"), unit))
+    });
+    named.flatten().collect()
+}
+
 /// For each factor its type, its place, and a name for its part; then how their components are joined, and how they are
 /// taken apart again into these names.
 macro_rules! product {
@@ -150,6 +159,19 @@ macro_rules! product {
                 let ($($part,)+) = $split;
                 let ($($part,)+) = ($($group::adjoint_transpose_increment(&increment.$place, &$part),)+);
                 $join
+            }
+
+            fn named_numbers() -> Vec<(String, &'static str)> {
+                of_factors([$($group::named_numbers()),+])
+            }
+
+            fn write_numbers<'a>(&self, numbers: &'a mut [$scalar]) -> &'a mut [$scalar] {
+                $(let numbers = self.$place.write_numbers(numbers);)+
+                numbers
+            }
+
+            fn named_components() -> Vec<(String, [&'static str; 2])> {
+                of_factors([$($group::named_components()),+])
             }
 
             /// The sum of those of the factors.

@@ -289,19 +289,21 @@ impl<T: Real> LieGroup for SO3<T> {
         Some(Self(rotation))
     }
 
-    fn number_names() -> Vec<String> {
-        ["q_w", "q_x", "q_y", "q_z"].map(str::to_owned).into()
+    fn named_numbers() -> Vec<(String, &'static str)> {
+        ["q_w", "q_x", "q_y", "q_z"].map(|name| (name.to_owned(), "1")).into()
     }
 
-    fn write_numbers(&self, numbers: &mut [T]) {
+    fn write_numbers<'a>(&self, numbers: &'a mut [T]) -> &'a mut [T] {
         let quaternion = quaternion(&self.0);
-        let before = numbers.iter().zip(&quaternion).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+        let (own, behind) = numbers.split_at_mut(numbers.len().min(4));
+        let before = own.iter().zip(&quaternion).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
         let sign = (-T::one()).select(before.simd_lt(T::zero()), T::one());
-        numbers.iter_mut().zip(quaternion).for_each(|(number, part)| *number = part * sign);
+        own.iter_mut().zip(quaternion).for_each(|(number, part)| *number = part * sign);
+        behind
     }
 
-    fn component_names() -> Vec<String> {
-        ["x", "y", "z"].map(str::to_owned).into()
+    fn named_components() -> Vec<(String, [&'static str; 2])> {
+        ["x", "y", "z"].map(|name| (name.to_owned(), ["rad/s", "kg m²/s"])).into()
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.

@@ -9,6 +9,7 @@ use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect};
 use liestep::methods::CompositionScheme;
+use liestep::with::{Recorder, Table};
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
 
@@ -182,6 +183,37 @@ fn vertical_momentum_and_energy() {
     let mut returned = back.adopt(&state);
     back.run(&mut returned, 20).unwrap();
     assert!((returned.momentum() - there.momentum()).norm() < 1e-11);
+}
+
+/// A table has the columns of each body, with its place behind their names.
+#[test]
+fn a_record_has_the_columns_of_each_body() {
+    let stepper = Stepper::new(pendulum(), 0.01).unwrap();
+    let velocity = Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5);
+    let mut state = stepper.start(element(&mut Random::new(8), 1.0), velocity).unwrap();
+    let mut recorder = Recorder::new(&stepper, Table::new());
+    stepper.observed(&mut state).every(10, |now| recorder.record(now)).steps(50).unwrap();
+    let table = recorder.finish().unwrap();
+    let columns: Vec<_> = table.columns().iter().map(|column| format!("{} {}", column.name, column.unit)).collect();
+    let of_bodies = |of: &str, names: &[&str], unit: &str| -> Vec<String> {
+        [1, 2].iter().flat_map(|body| names.iter().map(move |name| format!("{of}_{name}_{body} {unit}"))).collect()
+    };
+    let axes = ["x", "y", "z"];
+    let expected = [
+        vec!["t s".to_owned()],
+        of_bodies("q", &["w", "x", "y", "z"], "1"),
+        of_bodies("velocity", &axes, "rad/s"),
+        of_bodies("momentum", &axes, "kg m²/s"),
+        vec!["energy J".to_owned(), "defect 1".to_owned()],
+    ];
+    assert_eq!(columns, expected.concat());
+    let last = |name: &str| table.column(name).unwrap().last().unwrap();
+    for (place, attitude) in [(1, state.attitude().0), (2, state.attitude().1)] {
+        let [w, x, y, z] = ["w", "x", "y", "z"].map(|part| last(&format!("q_{part}_{place}")));
+        let read = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z)).to_rotation_matrix();
+        assert!((read.matrix() - attitude.as_matrix()).norm() < 1e-14);
+    }
+    assert_eq!((last("velocity_z_1"), last("momentum_x_2")), (stepper.velocity(&state)[2], state.momentum()[3]));
 }
 
 /// Four bodies in a row, coupled by their attitudes.

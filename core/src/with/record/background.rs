@@ -40,9 +40,13 @@ impl<S: Sink + Send + 'static> Background<S> {
         Self { work: Some(work), written, thread: Some(thread), sink: None }
     }
 
-    /// What was written to, where the table is finished.
-    pub fn into_inner(self) -> Option<S> {
-        self.sink
+    /// What was written to.
+    ///
+    /// # Errors
+    ///
+    /// Where the table isn't finished.
+    pub fn into_inner(self) -> Result<S, SinkError> {
+        self.sink.ok_or_else(|| "the table isn't finished".into())
     }
 
     fn send(&mut self, work: Work) -> Result<(), SinkError> {

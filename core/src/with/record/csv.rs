@@ -37,8 +37,13 @@ impl<W: Write> Csv<W> {
     }
 
     /// What was written to.
-    pub fn into_inner(self) -> W {
-        self.writer
+    ///
+    /// # Errors
+    ///
+    /// Where it doesn't take what was written.
+    pub fn into_inner(mut self) -> Result<W, SinkError> {
+        self.writer.flush()?;
+        Ok(self.writer)
     }
 
     fn write_text(&mut self) -> Result<(), SinkError> {

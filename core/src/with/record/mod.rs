@@ -105,7 +105,7 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 
 /// Makes a row of each moment that it is shown, of named columns, and hands the rows on in blocks.
 ///
-/// | columns | | unit on SO(3) |
+/// | columns | | unit on SO(3) and products of it |
 /// |---|---|---|
 /// | `t` | the time since the start | s |
 /// | `q_w`, `q_x`, `q_y`, `q_z` | the attitude, body to space; on other groups the matrix, `g_11`, `g_12`, … | 1 |
@@ -114,11 +114,12 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 /// | `energy` | the energy | J |
 /// | `defect` | how far the attitude has left the group | 1 |
 ///
+/// On a product of groups a name has the place of its factor behind it: `q_w_1`, …, `velocity_x_1`, …, `velocity_x_2`.
 /// Of the two quaternions of an attitude the one nearer to the row before is written. Other columns are
 /// [quantities](Self::quantity) of one's own. [`Run`](crate::with::Run) has an example.
 ///
 /// Rows that are left when the recorder is dropped are written then, but an error is lost:
-/// [`finish`](Self::finish) reports it.
+/// [`finish`](Self::finish) reports it. After an error the sink gets nothing more, and no end.
 pub struct Recorder<'a, I: Integrator, S: Sink> {
     columns: Vec<Column>,
     shows_motion: bool,
@@ -127,9 +128,20 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     quantities: Vec<Quantity<'a, I>>,
     block: Vec<f64>,
     rows_in_a_block: usize,
-    begun: bool,
+    stage: Stage,
     /// Gone when the table is finished.
     sink: Option<S>,
+}
+
+/// How far a table is.
+#[derive(Clone, Copy, PartialEq)]
+enum Stage {
+    /// The sink doesn't know the columns yet.
+    Before,
+    /// It has them.
+    Begun,
+    /// It has failed, and gets nothing more: rows behind a gap would look like a whole table.
+    Failed,
 }
 
 impl<'a, I, S> Recorder<'a, I, S>
@@ -141,23 +153,17 @@ where
     /// A table of all columns above, of motions that this integrator steps.
     pub fn new(integrator: &I, sink: S) -> Self {
         let mut recorder = Self::bare(integrator, sink);
-        let is_of_space = I::Group::component_names().first().is_some_and(|name| name == "x");
-        let unit = |unit: &'static str| if is_of_space { unit } else { "" };
-        let components = |quantity: &'static str| {
-            I::Group::component_names().into_iter().map(move |component| format!("{quantity}_{component}"))
-        };
-        let attitude = I::Group::number_names();
+        let (attitude, components) = (I::Group::named_numbers(), I::Group::named_components());
         recorder.attitude = vec![real(0.0); attitude.len()];
         recorder.shows_motion = true;
-        for (names, unit) in [
-            (attitude, unit("1")),
-            (components("velocity").collect(), unit("rad/s")),
-            (components("momentum").collect(), unit("kg m²/s")),
-            (vec!["energy".to_owned()], unit("J")),
-            (vec!["defect".to_owned()], "1"),
-        ] {
-            recorder.columns.extend(names.into_iter().map(|name| Column { name, unit: unit.to_owned() }));
-        }
+        let named = |quantity: &'static str, which: usize| {
+            components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
+        };
+        // A product of a velocity and a momentum.
+        let energy = if components.iter().all(|(_, units)| *units == ["rad/s", "kg m²/s"]) { "J" } else { "" };
+        let columns = attitude.into_iter().chain(named("velocity", 0)).chain(named("momentum", 1));
+        let columns = columns.chain([("energy".to_owned(), energy), ("defect".to_owned(), "1")]);
+        recorder.columns.extend(columns.map(|(name, unit)| Column { name, unit: unit.to_owned() }));
         recorder
     }
 
@@ -170,7 +176,7 @@ where
             quantities: Vec::new(),
             block: Vec::new(),
             rows_in_a_block: ROWS_IN_A_BLOCK,
-            begun: false,
+            stage: Stage::Before,
             sink: Some(sink),
         }
     }
@@ -205,22 +211,30 @@ where
     ///
     /// # Errors
     ///
-    /// [`RecordError`] where two columns have one name, and where a full block of rows can't be written.
+    /// [`RecordError`] with the first row where two columns have one name or the table can't be begun, and later where a
+    /// full block of rows can't be written. After an error of the sink each further row is one, too.
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
+        self.begin()?;
         let Self { block, attitude, .. } = self;
-        block.push(now.time().into());
+        let begun = block.len();
+        block.resize(begun + self.columns.len(), 0.0);
+        let mut places = block[begun..].iter_mut();
+        let mut write = |number: f64| places.next().map_or((), |place| *place = number);
+        write(now.time().into());
         if self.shows_motion {
             now.attitude().write_numbers(attitude);
-            block.extend(attitude.iter().map(|&number| number.into()));
+            for &mut number in attitude {
+                write(number.into());
+            }
             let (velocity, energy) = now.integrator().velocity_and_energy(now);
-            velocity.each(&mut |number| block.push(number.into()));
-            now.momentum().each(&mut |number| block.push(number.into()));
-            block.extend([energy.into(), now.orthogonality_defect().into()]);
+            velocity.each(&mut |number| write(number.into()));
+            now.momentum().each(&mut |number| write(number.into()));
+            write(energy.into());
+            write(now.orthogonality_defect().into());
         }
-        for quantity in &mut self.quantities {
-            block.push(quantity(now));
-        }
-        if self.block.len() >= self.rows_in_a_block * self.columns.len() { self.flush() } else { Ok(()) }
+        self.quantities.iter_mut().for_each(|quantity| write(quantity(now)));
+        let full = self.rows_in_a_block.saturating_mul(self.columns.len());
+        if self.block.len() >= full { self.flush() } else { Ok(()) }
     }
 
     /// Writes what is left, and returns what was written to.
@@ -243,24 +257,34 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
     ///
     /// [`RecordError`] where they can't be written.
     pub fn flush(&mut self) -> Result<(), RecordError> {
+        self.begin()?;
         let sink = self.sink.as_mut().ok_or_else(unreachable)?;
-        let failed = |cause| RecordError::Sink { cause };
-        if !self.begun {
-            let repeated = self
-                .columns
-                .iter()
-                .enumerate()
-                .find(|(place, column)| self.columns[..*place].iter().any(|before| before.name == column.name));
-            if let Some((_, column)) = repeated {
-                self.block.clear();
-                return Err(RecordError::SameName { name: column.name.clone() });
-            }
-            self.begun = true;
-            sink.begin(&self.columns).map_err(failed)?;
-        }
         let written = if self.block.is_empty() { Ok(()) } else { sink.write(&self.block) };
         self.block.clear();
-        written.map_err(failed)
+        written.map_err(|cause| self.failed(cause))
+    }
+
+    /// Hands on the columns, if that hasn't been done.
+    fn begin(&mut self) -> Result<(), RecordError> {
+        match self.stage {
+            Stage::Begun => return Ok(()),
+            Stage::Failed => return Err(RecordError::Sink { cause: "it has failed before".into() }),
+            Stage::Before => {}
+        }
+        let columns = &self.columns;
+        let is_repeated = |place: usize| columns[..place].iter().any(|before| before.name == columns[place].name);
+        if let Some(place) = (0..columns.len()).find(|&place| is_repeated(place)) {
+            return Err(RecordError::SameName { name: columns[place].name.clone() });
+        }
+        let begun = self.sink.as_mut().ok_or_else(unreachable)?.begin(columns);
+        begun.map_err(|cause| self.failed(cause))?;
+        self.stage = Stage::Begun;
+        Ok(())
+    }
+
+    fn failed(&mut self, cause: SinkError) -> RecordError {
+        self.stage = Stage::Failed;
+        RecordError::Sink { cause }
     }
 }
 

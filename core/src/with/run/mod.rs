@@ -21,6 +21,7 @@ use crate::numbers::{real, reported};
 /// What an observer answers.
 type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
 type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Verdict + 'a>;
+type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 
 /// A run that is to be observed, by [`Stepper::observed`].
 ///
@@ -44,7 +45,7 @@ type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Verdict + 'a>;
 ///     .every(100, |now| recorder.record(now))
 ///     .stop_when(|now| now.velocity().norm() < 0.1)
 ///     .until(1000.0)?;
-/// let table = String::from_utf8(recorder.finish()?.into_inner())?;
+/// let table = String::from_utf8(recorder.finish()?.into_inner()?)?;
 ///
 /// assert!(matches!(ended.reason, Reason::Stopped { time } if time < 100.0));
 /// assert!(damped.velocity(&state).norm() < 0.1);
@@ -65,6 +66,7 @@ pub struct Run<'a, I: Integrator> {
     integrator: &'a I,
     state: &'a mut I::State,
     regular: Vec<Regular<'a, I>>,
+    conditions: Vec<Condition<'a, I>>,
     timed: Vec<Timed<'a, I>>,
     watched: Vec<Watched<'a, I>>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
@@ -110,10 +112,19 @@ where
 
 impl<'a, I: Integrator> Run<'a, I> {
     fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
-        Self { integrator, state, regular: Vec::new(), timed: Vec::new(), watched: Vec::new(), progress: None }
+        Self {
+            integrator,
+            state,
+            regular: Vec::new(),
+            conditions: Vec::new(),
+            timed: Vec::new(),
+            watched: Vec::new(),
+            progress: None,
+        }
     }
 
-    /// Shows the motion after every so many steps, counted from its start, and at its start.
+    /// Shows the motion after every so many steps, counted from its start, and at step zero. A run that goes on doesn't show
+    /// its first state again: it was the last of the run before.
     ///
     /// Zero is never.
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
@@ -124,12 +135,14 @@ impl<'a, I: Integrator> Run<'a, I> {
         self
     }
 
-    /// Stops the run after the first step, or at the start, where this is so.
-    pub fn stop_when(self, mut condition: impl FnMut(&Moment<'_, I>) -> bool + 'a) -> Self {
-        self.every(1, move |now| if condition(now) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    /// Stops the run at its start, or after the first step, where this is so. A run that goes on from there makes no step
+    /// while it is.
+    pub fn stop_when(mut self, condition: impl FnMut(&Moment<'_, I>) -> bool + 'a) -> Self {
+        self.conditions.push(Box::new(condition));
+        self
     }
 
-    /// Tells what share of the run is made, from 0 to 1, a hundred times.
+    /// Tells what share of the run is made, from 0 to 1, at most a hundred times.
     pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
         self.progress = Some(Box::new(progress));
         self
@@ -147,6 +160,7 @@ impl<'a, I: Integrator> Run<'a, I> {
         self.look_first()?;
         if self.show_timed(None, reported(self.integrator.time(self.state)), &mut ended)?
             || start == 0 && self.show_regular(&mut ended)?
+            || self.condition_holds(&mut ended)
         {
             return Ok(ended);
         }
@@ -163,7 +177,7 @@ impl<'a, I: Integrator> Run<'a, I> {
                 ended.steps += made;
                 false
             };
-            if stops || self.show_regular(&mut ended)? {
+            if stops || self.show_regular(&mut ended)? || self.condition_holds(&mut ended) {
                 break;
             }
             self.show_progress(start, end);
@@ -189,7 +203,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// The next step after which something is to be done.
     fn next_shown(&self, start: u64, end: u64) -> u64 {
         let now = self.state.steps();
-        if self.looks_between() {
+        if self.looks_between() || !self.conditions.is_empty() {
             return now + 1;
         }
         let after = |every: u64| (now / every).saturating_add(1).saturating_mul(every);
@@ -218,6 +232,16 @@ impl<'a, I: Integrator> Run<'a, I> {
             }
         }
         Ok(stops)
+    }
+
+    /// Whether the run stops here by a condition.
+    fn condition_holds(&mut self, ended: &mut Ended) -> bool {
+        let now = Moment::of_step(self.integrator, self.state);
+        let holds = self.conditions.iter_mut().any(|condition| condition(&now));
+        if holds {
+            ended.reason = Reason::Stopped { time: reported(now.time()) };
+        }
+        holds
     }
 
     /// Shows the times from the state before up to this time.
