@@ -94,6 +94,9 @@ pub(crate) fn as_far_as_readable(
     let is_readable = errors.is_empty();
     let named = std::mem::take(&mut arguments.factors);
     let (group_path, group, factors) = if named.len() > 1 {
+        if let Some((key, _)) = &arguments.generators {
+            errors.push(key.span(), "`generators` belong to `group = Name`: remove them");
+        }
         if let Some((key, _)) = &arguments.continuous {
             let message = "several bodies are declared by their steps: write `l_d = …` in their increments";
             errors.push_decisive(key.span(), message);
@@ -123,6 +126,12 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
+    let taken = group::Taken {
+        fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
+        advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),
+        velocity: arguments.velocity.as_ref().map(|(_, name)| name.unraw().to_string()),
+    };
+    group::check_increments(&factors, &taken, errors);
     let advected = advected(
         role,
         &arguments.advected,
