@@ -46,7 +46,7 @@ fn the_page_names_the_bodies() {
     };
     let together = page("w = up.seen_from(F_1), Q = F_2.seen_from(F_1)", "(w.z + Q.trace())");
     assert!(together.contains("`up·Σ R Π` over the bodies of `F_down`, `F_w`."));
-    assert!(together.contains("w⁺ = F_down⁻¹·w = F_down⁻¹ w for w in V"));
+    assert!(together.contains("w⁺ = F_down⁻¹·w = F_downᵀ w for w in V*"));
     let alone = page("w = up.seen_from(F_1)", "w.z");
     assert!(alone.contains("`up·R Π` over the body of `F_down`; `R Π` over the body of `F_w`."));
 }
