@@ -398,13 +398,13 @@ impl Checker<'_> {
                 Some(velocity) => format!("`{}`", velocity.unraw()),
                 None => "`Omega`, named by `velocity = Omega`".to_owned(),
             };
-            let what = if name != "h" {
+            let what = if name == "h" {
+                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
+                    .to_owned()
+            } else {
                 format!(
                     "`{name}` is the increment of a step, and `l` has no steps: write it in the velocity {velocity}"
                 )
-            } else {
-                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
-                    .to_owned()
             };
             self.errors.push(span, format!("{what}, or declare `l_d = …`"));
         }
