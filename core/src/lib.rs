@@ -40,6 +40,7 @@
 //! |---|---|
 //! | simulate a body with gravity, a spring, drag, … | [`effects`]: bodies and what acts on them; they add with `+` |
 //! | declare a Lagrangian or a force of your own | [`lagrangian`], [`force`](macro@force) |
+//! | move two to four bodies that turn together, without forces, the effects or a splitting | [`lagrangian`] with `group(F_1 = SO3, F_2 = SO3)` |
 //! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |
 //! | hand the equations of motion to an ODE solver, or integrate them on any group | [`motion::RightHandSide`], [`methods::CotangentGauss`] |
 //! | step, run, force, save and resume a motion | [`Stepper`], [`State`] |

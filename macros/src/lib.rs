@@ -53,9 +53,14 @@ mod program;
 /// | `R = F_2.seen_from(space)` | `g_2` itself | `R F_2` |
 ///
 /// Vectors of two bodies meet by `Q`, as in `x.dot(&(Q * y))`. The states are tuples: `stepper.start((R_1, R_2), …)`, with
-/// the components of both velocities one after the other, and `state.momentum_of::<1>()` is the momentum of the second.
-/// What they conserve together, and whether a step solves them together, is in the documentation of the struct. They have
-/// no `ContinuousLagrangian`. `examples/declarations/double_pendulum.rs` is one.
+/// the components of both velocities one after the other. Of the second body `state.momentum_of::<1>()` is the momentum,
+/// `state.attitude().1` the attitude, and `<(SO3, SO3) as Factor<1>>::components(&stepper.velocity(&state))` the velocity.
+/// What they conserve together, and whether a step solves them together, is in the documentation of the struct.
+/// `examples/declarations/double_pendulum.rs` is one.
+///
+/// Two to four bodies are declared together, each of which turns by `SO3`. They have no `ContinuousLagrangian`; no
+/// `#[force]` acts on them, and no effect of the library, as those are of one body; and no splitting has their kinetic
+/// flow. Compositions, substeps and the derivatives of a step are there for them.
 ///
 /// # Continuous Lagrangians
 ///
@@ -72,9 +77,9 @@ mod program;
 /// | `chord`, `chord(Cayley)`, `chord(exp)` | `h l(ξ, (w + F⁻¹·w)/2)` | as for the trapezoid |
 ///
 /// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. A step needs one inertia for
-/// all velocities, so a `discretise`d `l` is quadratic in the velocity. For the matrix `(F − I)/h` the velocity stands as `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A
-/// logarithm is known on SO(3) and where all generators are strictly triangular. A declared `l_d` has the continuous
-/// equations of its limit.
+/// all velocities, so a `discretise`d `l` is quadratic in the velocity. For the matrix `(F − I)/h` the velocity stands as
+/// `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A logarithm is known on SO(3) and where
+/// all generators are strictly triangular. A declared `l_d` has the continuous equations of its limit.
 ///
 /// # The parameters
 ///

@@ -20,7 +20,7 @@ mod stepping;
 
 use core::hint::black_box;
 
-use declarations::HeavyTop;
+use declarations::{DoublePendulum, HeavyTop};
 use liestep::effects::{
     CayleyBody, Dipole, Drag, FourthOrderBody, GeodesicBody, GravityGradient, MagneticDamping, Rotor, SixthOrderBody,
     Spring, Thrust, Torque,
@@ -31,7 +31,7 @@ use liestep_scene::Switched;
 use nalgebra::Vector3;
 
 use counting::{Uncounted, built, instructions};
-use stepping::{Count, Time, Visit};
+use stepping::{Begin, Count, Time, Visit};
 
 /// Body and rotor in one piece.
 #[lagrangian(
@@ -69,6 +69,25 @@ fn visit_all(visit: &mut impl Visit) {
     visit.visit("body of fourth order", FourthOrderBody { J });
     visit.visit("body of sixth order", SixthOrderBody { J });
     visit.visit("body, full inertia", RigidBody { J_d: J.to_nonstandard() });
+    visit.visit("double pendulum", double_pendulum());
+}
+
+/// Two links of unit mass and length.
+fn double_pendulum() -> DoublePendulum {
+    let rod = |beyond: f64| {
+        let J_d = Vector3::new(0.02, 0.02, 1.0 / 3.0 + beyond);
+        NonstandardInertia::from_diagonal(J_d).expect("a rod")
+    };
+    let down = -Vector3::z();
+    DoublePendulum {
+        J_1: rod(1.0),
+        J_2: rod(0.0),
+        rho: down,
+        s_1: down * 1.5,
+        s_2: down * 0.5,
+        g: 9.81,
+        up: Vector3::z(),
+    }
 }
 
 const COUNTED: u32 = 10_000;
@@ -77,7 +96,7 @@ const COUNTED: u32 = 10_000;
 struct Instructions(Result<(), Uncounted>);
 
 impl Visit for Instructions {
-    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, _: L) {
+    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, _: L) {
         let count = || -> Result<(), Uncounted> {
             let steps = instructions(&std::env::current_exe()?, &["count", name], COUNTED)?;
             println!("{name:<28}{steps:>8.1} instructions a step");

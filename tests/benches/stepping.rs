@@ -3,9 +3,10 @@
 use core::hint::black_box;
 use std::time::Instant;
 
+use liestep::groups::LieGroup;
 use liestep::mechanics::Regular;
 use liestep::{SO3, State, Stepper};
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 const STEP: f64 = 0.01;
 /// Long enough to hide the clock, short enough that a disturbance spoils few batches.
@@ -14,21 +15,41 @@ const ROUNDS: usize = 100;
 
 /// What is done with each scene.
 pub(crate) trait Visit {
-    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L);
+    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L);
 }
 
 #[inline(never)]
-fn run<L: Regular<Scalar = f64, Group = SO3>>(stepper: &Stepper<L>, state: &mut State<SO3, L::Advected>, steps: u32) {
+fn run<L: Regular<Scalar = f64>>(stepper: &Stepper<L>, state: &mut State<L::Group, L::Advected>, steps: u32) {
     for _ in 0..steps {
         stepper.step(state).expect("a solvable step");
     }
 }
 
-/// The scene, with the tilt and the spin of the thesis' looping top.
-fn start<L: Regular<Scalar = f64, Group = SO3>>(scene: L) -> (Stepper<L>, State<SO3, L::Advected>) {
+/// Where the scenes of a group begin.
+pub(crate) trait Begin: LieGroup<Scalar = f64> {
+    fn begin() -> (Self, Self::Vector);
+}
+
+/// The tilt and the spin of the thesis' looping top.
+impl Begin for SO3 {
+    fn begin() -> (Self, Vector3<f64>) {
+        let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+        (attitude.into(), Vector3::new(0.5, 2.0, 12.0))
+    }
+}
+
+/// Two links that swing.
+impl Begin for (SO3, SO3) {
+    fn begin() -> (Self, Vector6<f64>) {
+        let attitude = |angle: f64| SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(angle, 0.0, 0.0)));
+        ((attitude(0.8), attitude(-0.4)), Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5))
+    }
+}
+
+fn start<L: Regular<Scalar = f64, Group: Begin>>(scene: L) -> (Stepper<L>, State<L::Group, L::Advected>) {
     let stepper = Stepper::new(scene, STEP).expect("a usable step");
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-    let state = stepper.start(attitude, Vector3::new(0.5, 2.0, 12.0)).expect("a usable start");
+    let (attitude, velocity) = L::Group::begin();
+    let state = stepper.start(attitude, velocity).expect("a usable start");
     (stepper, state)
 }
 
@@ -36,7 +57,7 @@ fn start<L: Regular<Scalar = f64, Group = SO3>>(scene: L) -> (Stepper<L>, State<
 pub(crate) struct Time;
 
 impl Visit for Time {
-    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L) {
+    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L) {
         let (stepper, first) = start(scene);
         let mut times: Vec<f64> = (0..ROUNDS)
             .map(|_| {
@@ -67,7 +88,7 @@ impl<'a> Count<'a> {
 }
 
 impl Visit for Count<'_> {
-    fn visit<L: Regular<Scalar = f64, Group = SO3>>(&mut self, name: &'static str, scene: L) {
+    fn visit<L: Regular<Scalar = f64, Group: Begin>>(&mut self, name: &'static str, scene: L) {
         if name == self.wanted {
             self.found = true;
             let (stepper, mut state) = start(scene);

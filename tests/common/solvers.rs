@@ -1,4 +1,4 @@
-//! A Lagrangian whose momentum equation is solved in the other way: with the Jacobian, or without.
+//! A Lagrangian whose momentum equation is solved in the other way, with the Jacobian or without; or badly.
 
 use core::cell::Cell;
 use core::fmt::Debug;
@@ -220,6 +220,60 @@ where
     }
 
     fn kick_after((constants, ..): &Self::Constants, increment: &Matrix3<T>, next: &Self::Advected) -> Vector3<T> {
+        L::kick_after(constants, increment, next)
+    }
+}
+
+/// The momentum equation is solved for another body, that is badly: a root of it is off by some thousandths.
+#[derive(Clone, Debug)]
+pub struct Badly<L>(pub L);
+
+impl<L: DiscreteLagrangian> DiscreteLagrangian for Badly<L> {
+    declared_as!(L);
+}
+
+impl<L: Effect> Effect for Badly<L> {
+    type Constants = L::Constants;
+    type StepTerms = L::StepTerms;
+
+    const DENOMINATORS: u32 = L::DENOMINATORS;
+
+    staged_as!(L);
+
+    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
+        self.0.inertia(w)
+    }
+
+    fn constants(&self, h: Self::Scalar) -> Self::Constants {
+        self.0.constants(h)
+    }
+
+    fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
+        L::kick_before(constants, w)
+    }
+
+    fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
+        L::step_terms(constants, a, w)
+    }
+
+    fn newton_system(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        let (residual, jacobian) = L::newton_system(constants, terms, half);
+        (residual + *half * nalgebra::convert::<f64, Self::Scalar>(1e-3), jacobian)
+    }
+
+    fn newton_residual(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> Residual<Vector<Self>> {
+        Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
+    }
+
+    fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
         L::kick_after(constants, increment, next)
     }
 }

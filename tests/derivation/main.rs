@@ -13,5 +13,6 @@ mod lanes;
 mod other_groups;
 mod self_adjoint;
 mod sensitivities;
+mod several_bodies;
 mod terms;
 mod thesis;

@@ -14,7 +14,7 @@
 //! | Casimirs; on SO(3) with one vector `w·w` and `p·w = e₃·R p`, (3.20) | exactly | every Lagrangian |
 //! | the Lie–Poisson structure of `(μ, w)` | exactly | every Lagrangian |
 //! | `R p`, the spatial momentum | exactly | nothing advected |
-//! | of several bodies that see each other `Σ R_a p_a`, or its component along the one vector that they see | exactly | no body as it is in space is seen; a declaration's page says which |
+//! | `Σ R_a p_a` over bodies that see each other; its component along `a` where they also see one vector `a` | exactly | none of them is `seen_from(space)` |
 //! | `p_3` | exactly | `J_1 = J_2`, `ρ` along the third axis |
 //! | a step back by `−h` undoes the step | exactly | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`; (3.13) is such, others by [`SELF_ADJOINT`](crate::mechanics::DiscreteLagrangian::SELF_ADJOINT) |
 //! | kinetic energy `½ p·J⁻¹p` | exactly | the kinetic term of (3.13) alone; not for other kinetic terms |

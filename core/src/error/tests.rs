@@ -50,7 +50,7 @@ fn setup_errors() {
             SetupError::NotInGroup { .. } => &["attitude", "group", "1.25e-1", "more than rounding"],
             SetupError::NotSeparable { .. } => &["K(F) − (h/2) (V(w) + V(F⁻¹·w))", "2.5e-1", "more than rounding"],
             SetupError::InertiaMismatch { .. } => &["another body", "5e-1"],
-            SetupError::VaryingInertia => &["inertia", "advected", "same everywhere"],
+            SetupError::VaryingInertia => &["inertia", "advected or given", "same everywhere"],
             SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
             SetupError::NoSecondDerivatives => &["derivatives", "force gradients"],

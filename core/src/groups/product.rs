@@ -65,7 +65,10 @@ macro_rules! product {
             type Matrix = ($($group::Matrix,)+);
 
             const DIMENSION: usize = $dimension;
-            const FACTORS: Blocks = $factors;
+            const FACTORS: Blocks = {
+                assert!(Self::DIMENSION <= Blocks::MOST, "a product of groups has at most 64 dimensions");
+                $factors
+            };
 
             fn identity() -> Self {
                 ($($group::identity(),)+)

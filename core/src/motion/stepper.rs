@@ -41,6 +41,8 @@ pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as P
 /// - With a scalar of several [lanes](crate::numbers::Real#lanes) all of them move or none does, each as it would alone.
 /// - The same state gives the same next state, bit for bit. In Cayley coordinates no library function is called, so
 ///   that holds from machine to machine.
+/// - An inertia that depends on what is advected or given is checked where a motion starts, and nowhere after that: a
+///   scene in which it can become degenerate has to look itself.
 /// - Nothing is allocated, and no loop is unbounded.
 ///
 /// # Examples
@@ -100,7 +102,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
-    /// is advected is degenerate there.
+    /// is advected or given is degenerate there.
     pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
@@ -116,7 +118,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
-    /// is advected is degenerate there.
+    /// is advected or given is degenerate there.
     pub fn start_with_momentum(
         &self,
         attitude: impl Into<Group<S>>,
@@ -281,7 +283,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// declaration names in `given(…)`, a torque for example. The values are those of `scene.advected()`, in a sum a pair,
     /// and are held over the step: taken in the middle of it, the scheme stays of second order. Each step is variational
     /// by itself. Between the steps the state sees the scene's own values again, which
-    /// [`energy`](Self::energy) is computed with.
+    /// [`energy`](Self::energy) is computed with. An inertia that depends on the values isn't checked with these.
     ///
     /// # Errors
     ///
@@ -332,7 +334,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The state of another scene or of another method on the same group, to go on in this one: its attitude and momentum
     /// are kept to the bit, and time counts from here.
     ///
-    /// What both scenes conserve goes on being conserved, as the discrete momentum belongs to a time, not to a step.
+    /// What both scenes conserve goes on being conserved, as the discrete momentum belongs to a time, not to a step. As
+    /// there is no error to return, an inertia of this scene that depends on what is advected isn't checked;
+    /// [`start_with_momentum`](Self::start_with_momentum) does that.
     ///
     /// # Examples
     ///

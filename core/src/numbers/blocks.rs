@@ -6,11 +6,15 @@ use nalgebra::{Const, DimAdd, SMatrix, SVector};
 use super::coordinates::{Coordinates, adjugate_2, adjugate_3};
 use super::scalar::{Mask, Real, nowhere};
 
-/// Where the blocks on the diagonal of a matrix end: the unknowns of a body are in one block.
+/// Where the blocks on the diagonal of a matrix end: the unknowns of a body are in one block. Of at most
+/// [`MOST`](Self::MOST) unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocks(u64);
 
 impl Blocks {
+    /// As many unknowns as may be in several blocks. A product of groups with more doesn't compile.
+    pub const MOST: usize = 64;
+
     /// One block.
     pub const WHOLE: Self = Self(0);
 

@@ -212,7 +212,7 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
             Variance::Fixed => return format!("    {} is given for each step\n", w.plain_name()),
         };
         if is_discrete {
-            let moved = moved.replace('F', f).replace('w', &name);
+            let moved = with_names(moved, f, &name);
             format!("    {name}⁺ = {f}⁻¹·{name} = {moved} for {name} in {space}\n")
         } else {
             format!("    {name} = g⁻¹·a₀ in {space}\n")
@@ -221,11 +221,25 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
     let advected: String = advected.collect();
     let increments = declaration.factors.iter().map(|factor| factor.name.as_str()).collect::<Vec<_>>().join(", ");
     let element = match (is_discrete, is_product) {
-        (true, true) => format!("({increments}) = g⁻¹ g⁺"),
+        (true, true) => format!("F = ({increments}) = g⁻¹ g⁺"),
+        (true, false) if increments != "F" => format!("F = {increments} = g⁻¹ g⁺"),
         (true, false) => "F = g⁻¹ g⁺".to_owned(),
         (false, _) => "g".to_owned(),
     };
     format!("group\n    {element} in {group}\n{advected}")
+}
+
+/// `F⁻¹ w` with the names of an increment and of what it moves, which may have the letters of each other.
+fn with_names(formula: &str, increment: &str, moved: &str) -> String {
+    let mut text = String::new();
+    for letter in formula.chars() {
+        match letter {
+            'F' => text.push_str(increment),
+            'w' => text.push_str(moved),
+            other => text.push(other),
+        }
+    }
+    text
 }
 
 /// The unknown of the Newton system, how it is written, and how it might have been.
@@ -260,4 +274,15 @@ fn adjoint(found: SelfAdjointness) -> String {
         SelfAdjointness::Unknown => ("≟", "no value at the random points", "not known to be its own adjoint"),
     };
     format!("l_d(F, w, h) {sign} −l_d(F⁻¹, F⁻¹·w, −h)    [{how}: {consequence}]")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_names;
+
+    #[test]
+    fn names_have_letters_of_each_other() {
+        assert_eq!(with_names("Fᵀ w F", "F_down", "F_w"), "F_downᵀ F_w F_down");
+        assert_eq!(with_names("F⁻¹ w F⁻ᵀ", "F", "up"), "F⁻¹ up F⁻ᵀ");
+    }
 }

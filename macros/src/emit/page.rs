@@ -92,19 +92,17 @@ pub(super) fn page(
 fn momenta(declaration: &Declaration) -> String {
     let name = |field: usize| declaration.fields.get(field).map(Field::plain_name).unwrap_or_default();
     let all = judged::conserved(declaration).into_iter().map(|one| {
-        let terms: Vec<String> = one.bodies.iter().map(|body| format!("R_{0} Π_{0}", body + 1)).collect();
-        let sum = terms.join(" + ");
-        match one.along {
-            None => format!("`{sum}`"),
-            Some(field) if terms.len() > 1 => format!("`{}·({sum})`", name(field)),
-            Some(field) => format!("`{}·{sum}`", name(field)),
-        }
+        let increments = one.bodies.iter().filter_map(|&body| declaration.factors.get(body));
+        let increments: Vec<String> = increments.map(|factor| format!("`{}`", factor.name)).collect();
+        let (sum, of) = if increments.len() > 1 { ("Σ R Π", "the bodies") } else { ("R Π", "the body") };
+        let along = one.along.map(|field| name(field) + "·").unwrap_or_default();
+        format!("`{along}{sum}` over {of} of {}", increments.join(", "))
     });
     let all: Vec<String> = all.collect();
     if all.is_empty() {
         return "Conserved: no momentum, as what is seen asks for every direction.".to_owned();
     }
-    format!("Conserved, however well a step is solved: {}.", all.join(" and "))
+    format!("Conserved, however well a step is solved, with attitudes `R` and body momenta `Π`: {}.", all.join("; "))
 }
 
 /// Which bodies a step solves together.

@@ -32,11 +32,13 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
     let operations = operations(lowered);
     let mut used = Vec::new();
     if declaration.group.orthogonal {
+        // The derivation has them as the components of `F`.
+        let each = if declaration.group.is_product() { " of each component" } else { "" };
         if changes_equations(Name::Increment(0), Structure::General) {
-            used.push("FᵀF = I".to_owned());
+            used.push(format!("FᵀF = I{each}"));
         }
         if changes_equations(Name::Increment(0), Structure::Orthogonal) {
-            used.push("det F = 1".to_owned());
+            used.push(format!("det F = 1{each}"));
         }
     }
     for (index, w) in declaration.advected.iter().enumerate() {

@@ -2,7 +2,8 @@
 //!
 //! `discretise` makes `l_d` of a continuous `l`, `continuous` has the continuous equations, `choose` counts operations,
 //! `verify` evaluates the declared tree on numbers and compares, `hypotheses` finds what the equations rest on,
-//! `momenta` finds what several bodies conserve, `findings` has what comes of both, and `explain` says at the tokens of the declaration why nothing could be derived.
+//! `momenta` finds what several bodies conserve, `findings` has what comes of both, and `explain` says at the tokens of
+//! the declaration why nothing could be derived.
 //!
 //! Deliberately not here: any derivation, which is mathematics, and any text of the generated documentation, which is
 //! emitted. The room knows `declared`, `program` and `mathematics`.

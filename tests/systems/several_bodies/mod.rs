@@ -1,5 +1,5 @@
-//! Several bodies on a product of groups, by hand: a chain of links, all of which feel each other's velocities, and
-//! bodies that feel each other's attitudes alone.
+//! Several bodies on a product of groups: by hand a chain of links, all of which feel each other's velocities, and bodies
+//! that feel each other's attitudes alone; a double pendulum, and these bodies, as declared.
 
 mod attitudes;
 mod chain;

@@ -119,9 +119,10 @@ impl<S: Effect> Stepper<S> {
     ///
     /// # Errors
     ///
-    /// [`SetupError::NotSeparable`], [`SetupError::VaryingInertia`], [`SetupError::InertiaMismatch`] and [`SetupError::BiasMismatch`] where the
-    /// Lagrangian can't be split or the flow isn't that of its body; [`SetupError::NoForceGradient`] where the scheme
-    /// asks for one and the scene was written without; otherwise as [`Stepper::new`].
+    /// [`SetupError::NotSeparable`], [`SetupError::VaryingInertia`], [`SetupError::InertiaMismatch`] and
+    /// [`SetupError::BiasMismatch`] where the Lagrangian can't be split or the flow isn't that of its body;
+    /// [`SetupError::NoForceGradient`] where the scheme asks for one and the scene was written without; otherwise as
+    /// [`Stepper::new`].
     pub fn split<K>(
         scene: S,
         h: Scalar<S>,

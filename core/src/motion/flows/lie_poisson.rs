@@ -22,7 +22,8 @@ pub struct DiscreteLiePoisson<L: Effect> {
 impl<L: Effect> DiscreteLiePoisson<L> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.
     ///
-    /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity.
+    /// A negative `h` is the inverse map of `−h` where `l_d` is self-adjoint; `h = 0` is the identity. An inertia that
+    /// depends on what is advected or given isn't checked, here or in a step.
     ///
     /// # Errors
     ///

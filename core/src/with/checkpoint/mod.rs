@@ -128,7 +128,8 @@ impl<S: Effect<Scalar: Stored>, P: Plan<S>> Stepper<S, P> {
         checkpoint
     }
 
-    /// The state of a checkpoint, which goes on with the same bits as the one that was written.
+    /// The state of a checkpoint, which goes on with the same bits as the one that was written. An inertia that depends on
+    /// what is advected isn't checked again, as the digest shows that a stepper like this one wrote it.
     ///
     /// # Errors
     ///

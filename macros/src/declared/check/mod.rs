@@ -351,7 +351,8 @@ impl Checker<'_> {
         let increment = self.declaration.factors.iter().position(|factor| factor.name == name);
         let (shape, found) = match name.as_str() {
             "I" => return Some(Tree::new(span, square, Kind::Identity)),
-            "F" | "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
+            "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
+            _ if increment.is_some() && self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
             _ if increment.is_some() => (square, Name::Increment(increment.unwrap_or(0))),
             "h" => (Shape::Scalar, Name::Step),
             _ if self.declaration.velocity().is_some_and(|velocity| velocity.unraw() == name) => {
@@ -397,11 +398,13 @@ impl Checker<'_> {
                 Some(velocity) => format!("`{}`", velocity.unraw()),
                 None => "`Omega`, named by `velocity = Omega`".to_owned(),
             };
-            let what = if name == "F" {
-                format!("`F` is the increment of a step, and `l` has no steps: write it in the velocity {velocity}")
-            } else {
+            let what = if name == "h" {
                 "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
                     .to_owned()
+            } else {
+                format!(
+                    "`{name}` is the increment of a step, and `l` has no steps: write it in the velocity {velocity}"
+                )
             };
             self.errors.push(span, format!("{what}, or declare `l_d = …`"));
         }

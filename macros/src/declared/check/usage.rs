@@ -32,10 +32,9 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
     }
     // A potential at the beginning of a step alone has no `F`, and still pushes.
     if !used.iter().any(|name| matches!(name, Name::Increment(_) | Name::Advected(_))) {
-        errors.push_over(
-            declaration.expression.as_ref().map(super::value),
-            "the Lagrangian doesn't depend on `F`, the increment of a step: nothing would move",
-        );
+        let name = declaration.factors.first().map_or("F", |factor| &factor.name);
+        let message = format!("the Lagrangian doesn't depend on `{name}`, the increment of a step: nothing would move");
+        errors.push_over(declaration.expression.as_ref().map(super::value), message);
     }
     if declaration.group.is_product() {
         for (index, factor) in declaration.factors.iter().enumerate() {

@@ -82,7 +82,10 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
     match key.to_string().as_str() {
         "group" => {
             once(arguments.group.is_some() || !arguments.factors.is_empty());
-            if role == Role::Lagrangian && input.peek(syn::token::Paren) {
+            if input.peek(syn::token::Paren) {
+                if role == Role::Force {
+                    return Err(syn::Error::new(key.span(), "a force acts on one body: write `group = SO3`"));
+                }
                 let content;
                 parenthesized!(content in input);
                 let factors = factors(&content, errors);

@@ -107,10 +107,6 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
     let (mut factors, mut groups): (Vec<Factor>, Vec<Group>) = (Vec::new(), Vec::new());
     for (increment, named) in named {
         let name = increment.unraw().to_string();
-        if Role::Lagrangian.reserved().contains(&name.as_str()) && name != "F" {
-            let message = format!("`{name}` already has a meaning in the Lagrangian: choose another name");
-            errors.push_decisive(increment.span(), message);
-        }
         if factors.iter().any(|other| other.name == name) {
             let message = format!("`{name}` is declared twice: each factor has its own increment");
             errors.push_decisive(increment.span(), message);
@@ -136,6 +132,34 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
 
 /// More would make the derived code grow without bound.
 const MOST_FACTORS: usize = 4;
+
+/// Mistakes where an increment, of one body or of several, has a name that means something else: it would hide that.
+pub(super) fn check_increments(factors: &[Factor], taken: &Taken, errors: &mut Errors) {
+    // One that isn't named is `F`, which no other can be.
+    for Factor { name, place, .. } in factors.iter().filter(|factor| factor.name != "F") {
+        let meaning = if Role::Lagrangian.reserved().contains(&name.as_str()) {
+            "already has a meaning in the Lagrangian"
+        } else if name == "space" {
+            "is what isn't a body, as in `seen_from(space)`"
+        } else if taken.fields.contains(name) {
+            "is a field already"
+        } else if taken.advected.contains(name) {
+            "is advected already"
+        } else if taken.velocity.as_ref() == Some(name) {
+            "is the velocity already"
+        } else {
+            continue;
+        };
+        errors.push_decisive(*place, format!("`{name}` {meaning}: choose another name for the increment"));
+    }
+}
+
+/// Names that something else has.
+pub(super) struct Taken {
+    pub(super) fields: Vec<String>,
+    pub(super) advected: Vec<String>,
+    pub(super) velocity: Option<String>,
+}
 
 /// The generators, to be read when the group is known.
 pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {

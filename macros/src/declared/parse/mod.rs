@@ -94,6 +94,9 @@ pub(crate) fn as_far_as_readable(
     let is_readable = errors.is_empty();
     let named = std::mem::take(&mut arguments.factors);
     let (group_path, group, factors) = if named.len() > 1 {
+        if let Some((key, _)) = &arguments.generators {
+            errors.push(key.span(), "`generators` belong to `group = Name`: remove them");
+        }
         if let Some((key, _)) = &arguments.continuous {
             let message = "several bodies are declared by their steps: write `l_d = …` in their increments";
             errors.push_decisive(key.span(), message);
@@ -123,6 +126,12 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
+    let taken = group::Taken {
+        fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
+        advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),
+        velocity: arguments.velocity.as_ref().map(|(_, name)| name.unraw().to_string()),
+    };
+    group::check_increments(&factors, &taken, errors);
     let advected = advected(
         role,
         &arguments.advected,
@@ -217,7 +226,7 @@ fn advected(
     let mut parameters: Vec<AdvectedParameter> = Vec::new();
     for &(ref name, ref source, is_given) in pairs {
         let unraw = name.unraw().to_string();
-        let Some((field, seen)) = seen(source, is_given, group, errors) else {
+        let Some(moved) = seen(source, is_given, group, errors) else {
             // After a mistake, so that the name isn't one more.
             parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen: Seen::From(0) });
             continue;
@@ -239,9 +248,12 @@ fn advected(
             errors.push(name.span(), format!("`{unraw}` is declared twice: remove one"));
             continue;
         }
-        let Some(field) = field else {
-            parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen });
-            continue;
+        let (field, seen) = match moved {
+            Moved::Field(field, seen) => (field, seen),
+            Moved::Body(seen) => {
+                parameters.push(AdvectedParameter { name: name.clone(), field: None, is_given, seen });
+                continue;
+            }
         };
         let wanted = field.unraw().to_string();
         let index = field_names.iter().position(|known| *known == wanted);
@@ -279,14 +291,19 @@ fn advected(
     parameters
 }
 
-/// The field that an advected parameter has its value from, if it isn't a body, and which bodies move it; nothing after a
-/// mistake.
+/// What an advected parameter is, and which bodies move it.
+enum Moved<'a> {
+    Field(&'a Ident, Seen),
+    Body(Seen),
+}
+
+/// Nothing after a mistake.
 fn seen<'a>(
     source: &'a Source,
     is_given: bool,
     group: Option<(&Group, &[Factor])>,
     errors: &mut Errors,
-) -> Option<(Option<&'a Ident>, Seen)> {
+) -> Option<Moved<'a>> {
     let factors = group.map_or(&[][..], |(_, factors)| factors);
     let place = |name: &Ident| factors.iter().position(|factor| *name == factor.name);
     match source {
@@ -296,7 +313,7 @@ fn seen<'a>(
             errors.push_decisive(field.span(), format!("who sees `{field}`? write {}", asked.join(" or ")));
             None
         }
-        Source::Field(field) => Some((Some(field), Seen::From(0))),
+        Source::Field(field) => Some(Moved::Field(field, Seen::From(0))),
         Source::Seen { what, .. } if is_given => {
             errors.push_decisive(what.span(), format!("what is given is seen as it is: write `{what}`"));
             None
@@ -316,9 +333,9 @@ fn seen<'a>(
                     errors.push_decisive(what.span(), message);
                     None
                 }
-                (Some(of), Some(from)) => Some((None, Seen::Relative { of, from })),
-                (Some(of), None) => Some((None, Seen::Configuration(of))),
-                (None, Some(factor)) => Some((Some(what), Seen::From(factor))),
+                (Some(of), Some(from)) => Some(Moved::Body(Seen::Relative { of, from })),
+                (Some(of), None) => Some(Moved::Body(Seen::Configuration(of))),
+                (None, Some(factor)) => Some(Moved::Field(what, Seen::From(factor))),
                 (None, None) => {
                     let message = format!("seen from space `{what}` doesn't change: use the field itself, `{what}`");
                     errors.push_decisive(what.span(), message);

@@ -32,6 +32,25 @@ fn conserved_momenta_are_read_off_what_is_seen() {
     assert_eq!(momenta("R = F_1.seen_from(space), Q = F_2.seen_from(F_1)"), []);
 }
 
+/// By the names that the user gave.
+#[test]
+fn the_page_names_the_bodies() {
+    let page = |advected: &str, potential: &str| {
+        let arguments =
+            format!("group(F_1 = SO3, F_2 = SO3), advected({advected}), l_d = {KINETIC} - h * k * {potential}")
+                .replace("F_1", "F_down")
+                .replace("F_2", "F_w");
+        let expansion = expanded(&arguments, &BODIES.replace(", other: Vector3<f64>", ""));
+        assert!(!is_refused(&expansion), "{expansion}");
+        expansion.to_string()
+    };
+    let together = page("w = up.seen_from(F_1), Q = F_2.seen_from(F_1)", "(w.z + Q.trace())");
+    assert!(together.contains("`up·Σ R Π` over the bodies of `F_down`, `F_w`."));
+    assert!(together.contains("w⁺ = F_down⁻¹·w = F_downᵀ w for w in V*"));
+    let alone = page("w = up.seen_from(F_1)", "w.z");
+    assert!(alone.contains("`up·R Π` over the body of `F_down`; `R Π` over the body of `F_w`."));
+}
+
 /// Attitudes couple bodies at the ends of a step, and velocities in the middle of it.
 #[test]
 fn what_couples_is_solved_together() {
@@ -52,6 +71,7 @@ fn what_couples_is_solved_together() {
         together.contains("const INERTIA_IS_CONSTANT : :: liestep :: __private :: core :: primitive :: bool = false")
     );
     assert!(apart.contains("Conserved: no momentum"));
+    assert!(apart.contains("F = (F_1, F_2) = g⁻¹ g⁺"));
 }
 
 /// One body by another name.
