@@ -124,7 +124,7 @@ pub struct Run {
 
 /// Who is told of a run while it is made.
 pub(crate) struct Told<'a> {
-    /// The share that is made, from 0 to 1, a hundred times.
+    /// The share that is made, from 0 to 1, at most a hundred times.
     pub(crate) progress: &'a mut dyn FnMut(f64),
     /// Where the rows of its table go.
     pub(crate) table: Option<&'a mut dyn Sink>,
@@ -248,7 +248,7 @@ impl Run {
             let numbers = row.numbers(scene.columns());
             rows.write(&std::iter::once(sample.time).chain(numbers).collect::<Vec<_>>())?;
         }
-        let rows = String::from_utf8(rows.into_inner())?;
+        let rows = String::from_utf8(rows.into_inner()?)?;
         let mut rows = rows.lines();
         let mut text = format!("event,rising,{}\n", rows.next().unwrap_or_default());
         for (happening, row) in self.happenings.iter().zip(rows) {

@@ -434,7 +434,7 @@ fn a_table_is_that_of_a_recorder() {
     let mut recorder = Recorder::new(&stepper, Csv::new(Vec::new()));
     stepper.observed(&mut state).every(7, |now| recorder.record(now)).steps(200).unwrap();
     recorder.record(&Moment::of_step(&stepper, &state)).unwrap();
-    let expected = String::from_utf8(recorder.finish().unwrap().into_inner()).unwrap();
+    let expected = String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap();
     // All but the defect.
     let expected: Vec<_> = expected.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
     assert_eq!(table.lines().collect::<Vec<_>>(), expected);
