@@ -32,7 +32,7 @@ use std::sync::Arc;
 use arrow_array::{ArrayRef, Float64Array, RecordBatch};
 use arrow_ipc::writer::StreamWriter;
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
-use liestep::with::{Column, Sink, SinkError};
+use liestep::with::{Column, RecordError, Sink, SinkError};
 
 /// A table as an Arrow IPC stream, a record batch for each block of rows.
 ///
@@ -73,10 +73,10 @@ impl<W: Write> ArrowStream<W> {
     /// # Errors
     ///
     /// Where the table is begun and isn't finished.
-    pub fn into_inner(self) -> Result<W, SinkError> {
+    pub fn into_inner(self) -> Result<W, RecordError> {
         match self.stage {
             Stage::Before(writer) | Stage::Done(writer) => Ok(writer),
-            Stage::Writing(..) | Stage::Failed => Err("the table isn't finished".into()),
+            Stage::Writing(..) | Stage::Failed => Err(RecordError::Sink { cause: "the table isn't finished".into() }),
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 
-use super::{Column, Sink, SinkError};
+use super::{Column, RecordError, Sink, SinkError};
 
 /// A sink that writes in a thread of its own, so that a run waits only where it makes rows faster than they are written.
 ///
@@ -45,8 +45,8 @@ impl<S: Sink + Send + 'static> Background<S> {
     /// # Errors
     ///
     /// Where the table isn't finished.
-    pub fn into_inner(self) -> Result<S, SinkError> {
-        self.sink.ok_or_else(|| "the table isn't finished".into())
+    pub fn into_inner(self) -> Result<S, RecordError> {
+        self.sink.ok_or_else(|| RecordError::Sink { cause: "the table isn't finished".into() })
     }
 
     fn send(&mut self, work: Work) -> Result<(), SinkError> {

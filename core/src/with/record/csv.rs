@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
-use super::{Column, Sink, SinkError};
+use super::{Column, RecordError, Sink, SinkError};
 
 /// A table as comma-separated values (RFC 4180, with line feeds): a line of names, then a line for each row.
 ///
@@ -41,8 +41,8 @@ impl<W: Write> Csv<W> {
     /// # Errors
     ///
     /// Where it doesn't take what was written.
-    pub fn into_inner(mut self) -> Result<W, SinkError> {
-        self.writer.flush()?;
+    pub fn into_inner(mut self) -> Result<W, RecordError> {
+        self.writer.flush().map_err(|cause| RecordError::Sink { cause: cause.into() })?;
         Ok(self.writer)
     }
 
