@@ -91,6 +91,8 @@ fn double_pendulum() -> DoublePendulum {
 }
 
 const COUNTED: u32 = 10_000;
+/// A run of a file samples its motion for a picture, as often in so many steps as in twice as many.
+const COUNTED_OF_FILES: u32 = 40_000;
 
 /// Counts the instructions of every scene, each in a process of its own.
 struct Instructions(Result<(), Uncounted>);
@@ -111,7 +113,7 @@ impl Visit for Instructions {
 /// Counts the instructions of scenes from files.
 fn from_files() -> Result<(), Uncounted> {
     for (name, _) in files::FILES {
-        let steps = instructions(&std::env::current_exe()?, &["count-file", name], COUNTED)?;
+        let steps = instructions(&std::env::current_exe()?, &["count-file", name], COUNTED_OF_FILES)?;
         println!("{name:<28}{steps:>8.1} instructions a step from a file");
     }
     Ok(())

@@ -147,7 +147,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// [`StepError`] where an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
-    #[inline]
+    // Where a program is to be fast, for certain: what is called isn't kept in registers. Elsewhere builds are to be.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    #[cfg_attr(debug_assertions, inline)]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         let made = if const { P::STEPS_BY_RUNS } {
             self.run_unexplained(state, 1).map(StepReport::of_run)
