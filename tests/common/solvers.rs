@@ -77,6 +77,34 @@ macro_rules! staged_as {
     };
 }
 
+/// Its own stages and constants, so that only its Newton system is another.
+macro_rules! solved_as {
+    ($L:ident) => {
+        type Constants = $L::Constants;
+        type StepTerms = $L::StepTerms;
+
+        const DENOMINATORS: u32 = $L::DENOMINATORS;
+
+        staged_as!($L);
+
+        fn inertia(&self, w: &Self::Advected) -> Square<Self> {
+            self.0.inertia(w)
+        }
+
+        fn constants(&self, h: Self::Scalar) -> Self::Constants {
+            self.0.constants(h)
+        }
+
+        fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
+            $L::kick_before(constants, w)
+        }
+
+        fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
+            $L::step_terms(constants, a, w)
+        }
+    };
+}
+
 /// Newton's iteration, whatever the Jacobian costs.
 #[derive(Clone, Debug)]
 pub struct WithJacobian<L>(pub L);
@@ -86,28 +114,7 @@ impl<L: DiscreteLagrangian> DiscreteLagrangian for WithJacobian<L> {
 }
 
 impl<L: Effect> Effect for WithJacobian<L> {
-    type Constants = L::Constants;
-    type StepTerms = L::StepTerms;
-
-    const DENOMINATORS: u32 = L::DENOMINATORS;
-
-    staged_as!(L);
-
-    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
-        self.0.inertia(w)
-    }
-
-    fn constants(&self, h: Self::Scalar) -> Self::Constants {
-        self.0.constants(h)
-    }
-
-    fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
-        L::kick_before(constants, w)
-    }
-
-    fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
-        L::step_terms(constants, a, w)
-    }
+    solved_as!(L);
 
     fn newton_system(
         constants: &Self::Constants,
@@ -233,28 +240,7 @@ impl<L: DiscreteLagrangian> DiscreteLagrangian for Badly<L> {
 }
 
 impl<L: Effect> Effect for Badly<L> {
-    type Constants = L::Constants;
-    type StepTerms = L::StepTerms;
-
-    const DENOMINATORS: u32 = L::DENOMINATORS;
-
-    staged_as!(L);
-
-    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
-        self.0.inertia(w)
-    }
-
-    fn constants(&self, h: Self::Scalar) -> Self::Constants {
-        self.0.constants(h)
-    }
-
-    fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
-        L::kick_before(constants, w)
-    }
-
-    fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
-        L::step_terms(constants, a, w)
-    }
+    solved_as!(L);
 
     fn newton_system(
         constants: &Self::Constants,
