@@ -68,10 +68,13 @@ pub trait Plan<S: Effect> {
         motion: &mut M,
         kept: &mut Self::Kept,
         steps: u64,
-    ) -> Result<u64, StepError> {
+    ) -> Result<u64, StepError>
+    where
+        Self: Sized,
+    {
         let mut iterations = 0;
         for _ in 0..steps {
-            iterations += u64::from(self.step(scene, motion, kept)?.iterations);
+            iterations += u64::from(step(self, scene, motion, kept)?.iterations);
         }
         Ok(iterations)
     }
@@ -127,6 +130,22 @@ pub trait Plan<S: Effect> {
 
     /// How much arithmetic a step is, about.
     fn cost(&self) -> Cost;
+}
+
+/// [`Plan::step`] where steps are many: inlined, as what is called isn't kept in registers. Builds with debug assertions
+/// are to be built soon, and call it where no vector instructions would be lost: a step is half of what a test compiles.
+#[inline(always)]
+pub(crate) fn step<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
+    plan: &P,
+    scene: &S,
+    motion: &mut M,
+    kept: &mut P::Kept,
+) -> Result<StepReport, StepError> {
+    if const { cfg!(debug_assertions) && matches!(P::VECTORS, Vectors::AsCompiled) } {
+        rare_step(plan, scene, motion, kept)
+    } else {
+        plan.step(scene, motion, kept)
+    }
 }
 
 /// [`Plan::step`] where steps are rare: compiled once, and not anew into each of its callers.

@@ -8,7 +8,7 @@ use crate::mechanics::{
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::{Plan, Steerable, rare_step};
+use crate::motion::plan::{Plan, Steerable, rare_step, step};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -537,7 +537,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
 
     #[inline(always)]
     fn run(self) -> Self::Output {
-        self.0.plan.step(&self.0.scene, &mut self.1.motion, &mut self.1.kept)
+        step(&self.0.plan, &self.0.scene, &mut self.1.motion, &mut self.1.kept)
     }
 }
 
