@@ -109,7 +109,9 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
 fn chapters() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/guide");
     let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    files.map(|path| (path.file_stem().unwrap().to_str().unwrap().to_owned(), fs::read_to_string(path).unwrap())).collect()
+    files
+        .map(|path| (path.file_stem().unwrap().to_str().unwrap().to_owned(), fs::read_to_string(path).unwrap()))
+        .collect()
 }
 
 #[test]
@@ -150,7 +152,8 @@ fn commands_of_readme_are_run_or_said_to_be_long() {
     let (_, list) = readme.split_once("`.ci/run` runs these commands, but for").unwrap();
     let (list, _) = list.split_once("\n\n").unwrap();
     let long: Vec<&str> = quoted(list).collect();
-    let blocks = readme.split("```sh\n").skip(1).filter_map(|rest| rest.split_once("```")).flat_map(|(block, _)| block.lines());
+    let blocks =
+        readme.split("```sh\n").skip(1).filter_map(|rest| rest.split_once("```")).flat_map(|(block, _)| block.lines());
     let mut found = 0;
     for command in quoted(&readme).chain(blocks.map(|line| line.split('#').next().unwrap_or(line))) {
         let words: Vec<&str> = command.split_whitespace().collect();

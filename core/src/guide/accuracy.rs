@@ -115,7 +115,7 @@
 //!
 //! // What can't be had is said, with what can.
 //! let refused = Stepper::for_accuracy(body, Accuracy { tolerance: 1e-17, ..accuracy }, attitude, velocity);
-//! assert!(matches!(refused, Err(AccuracyError::Unreachable { floor, .. }) if floor < 1e-10));
+//! assert!(matches!(refused, Err(AccuracyError::Unreachable { floor, .. }) if floor < 1e-9));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

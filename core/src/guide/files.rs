@@ -111,3 +111,5 @@
 //! * Arrow: the stream has the columnar format of Apache Arrow, version 5 of its metadata, uncompressed, with fields of
 //!   64-bit floats that are never null. `Arrow.Table(path)` of Julia's package Arrow reads streams and files of that format.
 //! * JSON: an array of objects; what isn't finite is `null`.
+
+#![allow(clippy::doc_markdown)] // names of libraries aren't code

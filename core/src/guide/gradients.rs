@@ -81,9 +81,9 @@
 //! let whole = liestep::nalgebra::Matrix6::from_fn(|i, j| blocks[2 * (i / 3) + j / 3][(i % 3, j % 3)]);
 //! assert!((whole.determinant() - 1.0).abs() < 1e-9);
 //!
-//! // And exponents come in pairs ±λ.
+//! // So the exponents add up to nothing, over any time. Over a long one they come in pairs ±λ.
 //! let exponents = linear.lyapunov_exponents(&mut state, 2_000, 20)?;
-//! assert!((exponents[0] + exponents[5]).abs() < 1e-6 && exponents.iter().sum::<f64>().abs() < 1e-9);
+//! assert!(exponents[0] > 0.1 && exponents.iter().sum::<f64>().abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
