@@ -12,7 +12,7 @@
 //! processor for the run, constants folded and nothing printed. The tables say which of our methods is the cheapest for
 //! an error, how its time compares with that of the fastest rival, what a million steps leave of the invariants, and
 //! what of them is lost where Newton's iteration stops early. The rivals integrate unit quaternion and momentum.
-//! `with_heyoka.py` runs a Taylor integrator on the same scenes.
+//! All runs are written as CSV and as JSON. `with_heyoka.py` runs a Taylor integrator on the same scenes.
 //!
 //! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
 //! fixed choice; the column `trials` says how many such runs the choice itself took.

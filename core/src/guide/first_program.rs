@@ -6,7 +6,7 @@
 //!
 //! ```toml
 //! [dependencies]
-//! liestep = "0.1" # or { path = "…/core" } of a clone
+//! liestep = { path = "../liestep/core" } # a clone beside your package
 //! ```
 //!
 //! nalgebra comes with it, as [`liestep::nalgebra`](crate::nalgebra), so that the versions always fit. What most programs
