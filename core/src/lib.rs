@@ -48,11 +48,13 @@
 //! | read a motion between its steps | [`motion::Integrator::state_at`] |
 //! | be more accurate | [`methods`]: orders 4 to 16 |
 //! | say how accurate, and not how | [`accuracy`] |
+//! | measure errors, orders and costs | [`accuracy::convergence`], [`accuracy::work_precision`] |
 //! | go on where a step has no solution, or lose less to rounding | [`with`] |
 //! | move on another group, or on one of your own | [`groups`], [`laws`] |
 //! | use `f32`, SIMD lanes, dual numbers | [`numbers::Real`] |
 //! | know how a motion depends on its start and its parameters; Lyapunov exponents | [`motion::linearised`] |
 //! | know what is conserved, and what left and right mean here | [`conventions::guarantees`], [`conventions`] |
+//! | read from the beginning: first program, effects, groups, accuracy, hard cases, recording, … | [`guide`] |
 //! | come from the thesis' equations to a program | [`guide::thesis`] |
 //! | find an equation of the thesis | [`conventions::equations`] |
 //! | step by a method of your own | [`motion::Plan`], [`Stepper::with_plan`] |

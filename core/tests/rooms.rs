@@ -1,4 +1,4 @@
-//! The rooms of the sources import each other in one direction.
+//! The rooms of the sources import each other in one direction; and what the guide and README name is there.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -88,4 +88,87 @@ fn rooms_import_in_one_direction() {
             assert!(MAY_IMPORT[..place].iter().any(|(below, _)| below == other), "`{name}` is below `{other}`");
         }
     }
+}
+
+/// The root of the repository, which a published package doesn't have.
+fn root() -> Option<&'static Path> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent()?;
+    if root.join(".ci/run").exists() {
+        return Some(root);
+    }
+    println!("skipped: there is no repository around this package");
+    None
+}
+
+/// What stands between backquotes.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().flat_map(|line| line.split('`').skip(1).step_by(2))
+}
+
+/// The chapters, and the pages that they lead to.
+fn chapters() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/guide");
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    files
+        .map(|path| (path.file_stem().unwrap().to_str().unwrap().to_owned(), fs::read_to_string(path).unwrap()))
+        .collect()
+}
+
+#[test]
+fn the_guide_and_readme_name_files_that_there_are() {
+    let Some(root) = root() else { return };
+    let mut pages = chapters();
+    pages.push(("README".to_owned(), fs::read_to_string(root.join("README.md")).unwrap()));
+    let mut named = 0;
+    for (page, text) in &pages {
+        for word in quoted(text) {
+            let is_path = ["core/", "macros/", "examples/", "tests/"].iter().any(|room| word.starts_with(room));
+            if is_path && !word.contains([' ', '*']) {
+                assert!(root.join(word).exists(), "{page} names {word}");
+                named += 1;
+            }
+        }
+    }
+    assert!(named > 40, "{named} paths are named");
+}
+
+#[test]
+fn every_chapter_is_listed_and_leads_on() {
+    let chapters = chapters();
+    let (_, list) = chapters.iter().find(|(name, _)| name == "mod").unwrap();
+    for (name, text) in chapters.iter().filter(|(name, _)| name != "mod") {
+        assert!(list.contains(&format!("| [`{name}`] |")), "the list has no {name}");
+        assert!(text.contains("](super::") || text.contains("crate::"), "{name} leads nowhere");
+        assert!(text.lines().count() <= 400, "{name} is too long to be read at once");
+    }
+}
+
+/// README says that continuous integration runs its commands, but for those of a list.
+#[test]
+fn commands_of_readme_are_run_or_said_to_be_long() {
+    let Some(root) = root() else { return };
+    let readme = fs::read_to_string(root.join("README.md")).unwrap();
+    let script = fs::read_to_string(root.join(".ci/run")).unwrap();
+    let (_, list) = readme.split_once("`.ci/run` runs these commands, but for").unwrap();
+    let (list, _) = list.split_once("\n\n").unwrap();
+    let long: Vec<&str> = quoted(list).collect();
+    let blocks =
+        readme.split("```sh\n").skip(1).filter_map(|rest| rest.split_once("```")).flat_map(|(block, _)| block.lines());
+    let mut found = 0;
+    for command in quoted(&readme).chain(blocks.map(|line| line.split('#').next().unwrap_or(line))) {
+        let words: Vec<&str> = command.split_whitespace().collect();
+        let Some(place) = words.iter().position(|word| *word == "cargo") else { continue };
+        let [_, verb, ..] = words[place..] else { continue };
+        if long.iter().any(|long| command.contains(long)) {
+            continue;
+        }
+        let example = words.iter().position(|word| *word == "--example").map(|place| words[place + 1]);
+        let is_run = match example {
+            Some(name) => script.contains(&format!("built {name}")) || script.contains(&format!("--example {name}")),
+            None => script.contains(&format!("cargo {verb} ")),
+        };
+        assert!(is_run, "`{command}` isn't in .ci/run");
+        found += 1;
+    }
+    assert!(found >= 8, "{found} commands were found");
 }

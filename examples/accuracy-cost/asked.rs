@@ -4,12 +4,12 @@ use std::error::Error;
 use std::time::Duration;
 
 use liestep::SO3;
-use liestep::accuracy::{Accuracy, AccurateStepper, Candidates};
+use liestep::accuracy::{Accuracy, AccurateStepper, Candidates, Effort};
 use liestep::methods::{ExactBody, PreprocessedFlow, PreprocessedOrder, SplitBody, SymmetricBody};
 use nalgebra::Vector3;
 use workbench::table::{aligned, number};
 
-use crate::measure::{Effort, cost_of, ladder, timed};
+use crate::measure::ladder;
 use crate::methods::{self, Family, Prepared};
 use crate::others;
 use crate::scenes::{Kind, Scene, error};
@@ -18,7 +18,7 @@ use crate::scenes::{Kind, Scene, error};
 const TOLERANCES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
 /// The table, and whether all choices are within their tolerance and twice the best time.
-pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> Effort) -> Result<String, Box<dyn Error>> {
+pub fn compare(scenes: &[Scene], effort: impl Fn(f64) -> (Effort, f64)) -> Result<String, Box<dyn Error>> {
     let heading = ["scene", "t, s", "asked", "chosen", "step, s", "error", "µs", "best fixed", "µs", "ratio", "trials"];
     let mut rows = vec![heading.map(str::to_owned).to_vec()];
     for t in [10.0, 100.0] {
@@ -131,7 +131,7 @@ where
     Box::new(move |accuracy| candidates.for_accuracy(accuracy, attitude, velocity).map(Answer::new))
 }
 
-fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, effort: Effort) {
+fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, effort: (Effort, f64)) {
     let Some(exact) = scene.reference(t) else { return };
     let runs: Vec<_> = question.fixed.iter().map(|method| (method, ladder(method, scene, t, effort))).collect();
     for tolerance in TOLERANCES {
@@ -141,9 +141,10 @@ fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, 
                 let best = runs
                     .iter()
                     .filter(|(method, _)| method.family != Family::Rival)
-                    .filter_map(|(method, runs)| Some((method.name.as_str(), cost_of(runs, tolerance)?)))
+                    .filter_map(|(method, runs)| Some((method.name.as_str(), runs.seconds_to(tolerance)?)))
                     .min_by(|a, b| a.1.total_cmp(&b.1));
-                let Some((end, cost)) = timed(&answer.run, effort.repeated.max(Duration::from_millis(5))) else {
+                let repeated = effort.0.repeated.max(Duration::from_millis(5));
+                let (Some(end), cost) = (Effort { repeated, ..effort.0 }).time(&answer.run) else {
                     rows.push(row.into_iter().chain([answer.name, "a step failed".to_owned()]).collect());
                     continue;
                 };

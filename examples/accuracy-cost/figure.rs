@@ -121,7 +121,7 @@ fn losses(area: &Area<'_>, title: &str, methods: &[Kept], of: impl Fn(&Lost) -> 
 
 impl Panel<'_> {
     fn draw(&self, area: &Area<'_>) -> Drawn {
-        let points = || self.methods.iter().flat_map(|method| &method.runs).map(|run| (run.cost * 1e6, run.error));
+        let points = || self.methods.iter().flat_map(costs);
         let (least, most) = points().fold((f64::INFINITY, 0.0_f64), |(low, high), (x, _)| (low.min(x), high.max(x)));
         if !least.is_finite() {
             return Ok(());
@@ -152,7 +152,7 @@ impl Panel<'_> {
 
 /// The runs that no other run of the family beats in both respects, by cost.
 fn envelope<'a>(methods: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> {
-    let mut runs: Vec<_> = methods.flat_map(|method| &method.runs).map(|run| (run.cost * 1e6, run.error)).collect();
+    let mut runs: Vec<_> = methods.flat_map(costs).collect();
     runs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best = f64::INFINITY;
     runs.retain(|(_, error)| {
@@ -161,4 +161,9 @@ fn envelope<'a>(methods: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> 
         keep
     });
     runs
+}
+
+/// Time in µs and error of each run.
+fn costs(method: &Measured) -> impl Iterator<Item = (f64, f64)> + '_ {
+    method.runs.rows().iter().filter_map(|run| Some((run.seconds? * 1e6, run.error)))
 }

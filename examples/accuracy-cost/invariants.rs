@@ -6,7 +6,6 @@ use declarations::motions::End;
 use nalgebra::Matrix3;
 use workbench::table::{aligned, number};
 
-use crate::measure::Run;
 use crate::methods::{Family, Method};
 use crate::report::Measured;
 use crate::scenes::Scene;
@@ -51,7 +50,7 @@ pub fn kept(scene: &Scene, methods: &[Method], measured: &[Measured], most: u32)
     });
     chosen
         .map(|(i, method)| {
-            let step = longest(&measured[i].runs);
+            let step = measured[i].runs.longest_step_to(ERROR);
             let (mut losses, mut failed) = (Vec::new(), None);
             for steps in decades(most) {
                 let run = step.and_then(|step| (method.prepare)(scene, steps * step, step));
@@ -64,11 +63,6 @@ pub fn kept(scene: &Scene, methods: &[Method], measured: &[Measured], most: u32)
             Kept { name: method.name.clone(), family: method.family, step, failed, lost: losses }
         })
         .collect()
-}
-
-/// The longest step of those that reach the error.
-fn longest(runs: &[Run]) -> Option<f64> {
-    runs.iter().filter(|run| run.error <= ERROR).map(|run| run.parameter).max_by(f64::total_cmp)
 }
 
 /// Ten, then twice or more and five times or more as many, up to the most.

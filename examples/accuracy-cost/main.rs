@@ -12,7 +12,7 @@
 //! processor for the run, constants folded and nothing printed. The tables say which of our methods is the cheapest for
 //! an error, how its time compares with that of the fastest rival, what a million steps leave of the invariants, and
 //! what of them is lost where Newton's iteration stops early. The rivals integrate unit quaternion and momentum.
-//! `with_heyoka.py` runs a Taylor integrator on the same scenes.
+//! All runs are written as CSV and as JSON. `with_heyoka.py` runs a Taylor integrator on the same scenes.
 //!
 //! With `--asked` an accuracy is asked for, and the time of the method that is chosen compared with that of the fastest
 //! fixed choice; the column `trials` says how many such runs the choice itself took.
@@ -23,10 +23,11 @@ use std::process::{Command, ExitCode};
 use std::time::Duration;
 
 use accuracy_cost::figure::{Panel, figure, invariants_figure};
-use accuracy_cost::measure::{Effort, ladder};
+use accuracy_cost::measure::ladder;
 use accuracy_cost::report::Measured;
 use accuracy_cost::scenes::{Kind, Scene};
 use accuracy_cost::{invariants, methods, newton, report};
+use liestep::accuracy::Effort;
 use workbench::args::{Failure, example};
 use workbench::output::{Output, print};
 use workbench::progress::Progress;
@@ -98,11 +99,12 @@ const TIMES: [f64; 2] = [10.0, 100.0];
 const TOLERANCE_SCENE: &str = "looping";
 
 fn compare(arguments: &Arguments) -> Result<(), Failure> {
+    // The effort, and by what each step is shorter than the one before.
     let effort = |t: f64| {
         if arguments.quick {
-            Effort { longest: 2e-4 * t, repeated: Duration::from_millis(2), ratio: 1.6 }
+            (Effort { longest: 2e-4 * t, repeated: Duration::from_millis(2) }, 1.6)
         } else {
-            Effort { longest: 4e-3 * t, repeated: Duration::from_millis(15), ratio: 1.25 }
+            (Effort { longest: 4e-3 * t, repeated: Duration::from_millis(15) }, 1.25)
         }
     };
     let mut scenes = Vec::from(Scene::all());
@@ -117,7 +119,7 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let mut output = Output::new(arguments.out.clone())?;
-    let (mut text, mut csv, mut results) = (String::new(), report::CSV_HEADING.to_owned(), Vec::new());
+    let (mut text, mut data, mut results) = (String::new(), report::Data::default(), Vec::new());
     let count: usize = scenes.iter().map(|scene| TIMES.len() * methods::all(scene).len()).sum();
     let mut progress = Progress::new(count.try_into()?);
     let mut kept = Vec::new();
@@ -133,7 +135,7 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
             let title = format!("{}, {t} s", scene.name);
             // Writing to a string can't fail.
             let _ = write!(text, "{title}\n\n{}\n\n{}\n\n", report::costs(&measured), report::best(&measured));
-            csv.push_str(&report::csv(scene.short, t, &measured));
+            data.add(scene.short, t, &measured);
             // The energies of the others aren't those of a top.
             if t == TIMES[0] && !matches!(scene.kind, Kind::Sprung | Kind::Satellite) {
                 progress.add(0, &format!("{}, invariants", scene.name));
@@ -160,7 +162,8 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
     }
     output.write("accuracy-cost.svg", &picture)?;
     output.write("invariants.svg", &invariants_figure(&kept)?)?;
-    output.write("accuracy-cost.csv", &csv)?;
+    output.write("accuracy-cost.csv", &data.to_csv())?;
+    output.write("accuracy-cost.json", &data.to_json())?;
     if arguments.heyoka {
         let _ = write!(text, "{}\n\n", with_heyoka(arguments));
     }

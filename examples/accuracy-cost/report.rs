@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use liestep::accuracy::Refinement;
 use workbench::table::aligned;
 
-use crate::measure::{Run, cost_of};
 use crate::methods::{Family, Method};
 
 /// The errors asked for.
@@ -15,17 +15,17 @@ pub const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 pub struct Measured {
     pub name: String,
     pub family: Family,
-    pub runs: Vec<Run>,
+    pub runs: Refinement,
 }
 
 impl Measured {
-    pub fn new(method: &Method, runs: Vec<Run>) -> Self {
+    pub fn new(method: &Method, runs: Refinement) -> Self {
         Self { name: method.name.clone(), family: method.family, runs }
     }
 
     /// The least time to an error, s.
     pub fn cost(&self, error: f64) -> Option<f64> {
-        cost_of(&self.runs, error)
+        self.runs.seconds_to(error)
     }
 }
 
@@ -106,18 +106,37 @@ pub fn put_into_readme(table: &str, figure: &str) -> Result<(), std::io::Error> 
     std::fs::write(root.join("examples/figures/accuracy-cost.svg"), figure)
 }
 
-/// All runs, a line each.
-pub fn csv(scene: &str, t: f64, methods: &[Measured]) -> String {
-    let mut text = String::new();
-    for method in methods {
-        for Run { parameter, error, cost } in &method.runs {
-            let name = method.name.replace(',', " +");
-            // Writing to a string can't fail.
-            let _ = writeln!(text, "{scene},{t},{name},{parameter:e},{error:e},{cost:e}");
-        }
-    }
-    text
+/// All runs of all methods, for programs to read.
+#[derive(Default)]
+pub struct Data {
+    csv: String,
+    json: Vec<String>,
 }
 
-/// The first line of the file.
-pub const CSV_HEADING: &str = "scene,t_s,method,step_s_or_tolerance,error,cost_s\n";
+impl Data {
+    /// Of a scene over a time, s.
+    pub fn add(&mut self, scene: &str, t: f64, methods: &[Measured]) {
+        for Measured { name, family, runs } in methods {
+            let name = name.replace(',', " +");
+            for line in runs.to_csv().lines().skip(1) {
+                // Writing to a string can't fail.
+                let _ = writeln!(self.csv, "{scene},{t},{name},{line}");
+            }
+            self.json.push(format!(
+                "{{\"scene\":\"{scene}\",\"time\":{t:?},\"method\":\"{name}\",\"family\":\"{family:?}\",\"runs\":{}}}",
+                runs.to_json()
+            ));
+        }
+    }
+
+    /// A line for each run.
+    pub fn to_csv(&self) -> String {
+        let columns = Refinement::default().to_csv();
+        format!("scene,time,method,{columns}{}", self.csv)
+    }
+
+    /// An array with an object for each method, scene and time.
+    pub fn to_json(&self) -> String {
+        format!("[{}]\n", self.json.join(",\n"))
+    }
+}

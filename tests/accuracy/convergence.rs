@@ -2,8 +2,9 @@
 
 use declarations::Motion;
 use liestep::SO3;
+use liestep::accuracy::Refinement;
 use nalgebra::{Matrix3, Vector3};
-use workbench::measure::{order, relative};
+use workbench::measure::relative;
 
 /// The tops whose equations are nonlinear in every variable: three of the thesis, and one without any symmetry.
 pub(crate) const TOPS: [&str; 4] = ["looping A", "cuspidal B", "third A", "chaotic"];
@@ -30,17 +31,13 @@ pub(crate) fn assert_order(
 ) {
     let read = Motion::read(motion);
     let reference = read.at(t);
-    let errors: Vec<_> = counts
-        .iter()
-        .map(|&steps| {
-            let h = t / f64::from(steps);
-            (h, error(&run(&read, h, steps), &reference))
-        })
-        .collect();
-    let order = order(&errors, PLATEAU);
-    let listed: Vec<_> = errors.iter().map(|(_, error)| format!("{error:.1e}")).collect();
-    println!("{name}, {motion}: order {order:.3}, errors {}", listed.join(" "));
-    assert!((order - f64::from(expected)).abs() < 0.1, "{name}, {motion}: order {order}, errors {errors:?}");
+    let errors = Refinement::of(counts.iter().map(|&steps| {
+        let h = t / f64::from(steps);
+        (h, error(&run(&read, h, steps), &reference))
+    }));
+    let order = errors.order_above(PLATEAU).expect(name);
+    println!("{name}, {motion}: order {order:.3}\n{errors}");
+    assert!((order - f64::from(expected)).abs() < 0.1, "{name}, {motion}: order {order}\n{errors}");
 }
 
 /// `count` numbers of steps, each about a `ratio` more than the one before.

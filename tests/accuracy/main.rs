@@ -17,5 +17,6 @@ mod many_digits;
 mod poisson;
 mod preprocessed;
 mod processed;
+mod refinement;
 mod split_body;
 mod splitting;

@@ -1,29 +1,29 @@
 //! Orders of declared Lagrangians, measured at motions of `tests/data`.
 
 use declarations::Motion;
+use liestep::accuracy::{End, Reference, Refinement, convergence};
 use liestep::mechanics::Regular;
 use liestep::prelude::*;
-use workbench::measure::{four_halvings, order, relative, steps_in};
+use workbench::measure::steps_in;
 
 /// Above what some hundred steps lose to rounding.
 const PLATEAU: f64 = 2e-14;
 
-/// Steps and errors at the time `t` for a coarsest step and four halvings of it: errors of attitude and body velocity
-/// together, relative to the sizes of both.
+/// The errors at the time `t` with a coarsest step and four halvings of it.
 pub fn errors<L: Regular<Scalar = f64, Group = SO3>>(
     motion: &Motion,
     (t, coarsest): (f64, f64),
     lagrangian: impl Fn() -> L,
-) -> [(f64, f64); 5] {
+) -> Refinement {
     let (attitude, velocity) = motion.at(t);
-    four_halvings(coarsest).map(|h| {
-        let stepper = Stepper::new(lagrangian(), h).unwrap();
-        let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
-        for _ in 0..steps_in(t, h) {
-            stepper.step(&mut state).unwrap();
-        }
-        (h, relative(&state.attitude().matrix(), &attitude).hypot(relative(&stepper.velocity(&state), &velocity)))
-    })
+    let exact = Reference::End(End { attitude: SO3::from_matrix_unchecked(attitude), velocity });
+    let family = |h| {
+        let stepper = Stepper::new(lagrangian(), h)?;
+        let start = stepper.start(motion.attitude, motion.velocity)?;
+        Ok((stepper, start))
+    };
+    let counts = [1, 2, 4, 8, 16].map(|times| times * steps_in(t, coarsest));
+    convergence(family, t, counts, exact).expect(motion.name)
 }
 
 /// Asserts the order from the errors at a time for a coarsest step and its halvings.
@@ -35,7 +35,7 @@ pub fn assert_order<L: Regular<Scalar = f64, Group = SO3>>(
 ) {
     let motion = Motion::read(name);
     let errors = errors(&motion, span, || lagrangian(&motion));
-    let order = order(&errors, PLATEAU);
-    println!("{name}: order {order:.3}, errors {:.2e} to {:.2e}", errors[0].1, errors[4].1);
-    assert!((order - expected).abs() < 0.1, "{name}: order {order}, errors {errors:?}");
+    let order = errors.order_above(PLATEAU).expect(name);
+    println!("{name}: order {order:.3}\n{errors}");
+    assert!((order - expected).abs() < 0.1, "{name}: order {order}\n{errors}");
 }

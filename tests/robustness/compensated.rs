@@ -6,7 +6,7 @@ use liestep::motion::{self, Declared};
 use liestep::prelude::*;
 use liestep::with::Compensated;
 use nalgebra::{SVector, Vector3};
-use workbench::measure::{relative, slope, steps_in};
+use workbench::measure::{order, relative, steps_in};
 
 type TopMotion = motion::Motion<SO3, Vector3<f64>>;
 
@@ -73,8 +73,8 @@ fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Ve
 fn exponents(growth: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
         // Four decades, whichever they are.
-        let points: Vec<_> = DECADES.iter().zip(growth).map(|(n, sizes)| ((*n as f64).ln(), sizes[k].ln())).collect();
-        slope(&points)
+        let points: Vec<_> = DECADES.iter().zip(growth).map(|(n, sizes)| (*n as f64, sizes[k])).collect();
+        order(&points, 0.0)
     })
 }
 

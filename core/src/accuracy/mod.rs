@@ -1,4 +1,13 @@
-//! Asking by accuracy: the cheapest method and its step.
+//! Asking by accuracy: the cheapest method and its step; and measuring it: orders, and what an error costs.
+//!
+//! | | |
+//! |---|---|
+//! | the cheapest method and step for an error | [`Stepper::for_accuracy`](crate::motion::Stepper::for_accuracy), [`Candidates`] |
+//! | errors and orders of a method with ever shorter steps | [`convergence`] |
+//! | what an error costs in time | [`work_precision`] |
+//! | the same of anything else that runs | [`Refinement`] |
+//!
+//! # How a choice is made
 //!
 //! All methods are tried over a short part of the very motion, with one step, two, four and so on. Their errors there
 //! rank them by the operations that their steps make, by no clock, so that the same question has the same answer each
@@ -17,6 +26,7 @@ mod choice;
 mod error;
 mod ladder;
 mod part;
+mod refinement;
 mod saved;
 mod search;
 mod trials;
@@ -24,6 +34,7 @@ mod trials;
 pub use candidates::Candidates;
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
+pub use refinement::{Effort, End, Measurement, Reference, Refinement, RefinementError, convergence, work_precision};
 pub use saved::SavedChoice;
 pub use trials::Trials;
 

@@ -6,11 +6,13 @@ use super::error::AccuracyError;
 use crate::groups::{Advected, LieGroup};
 use crate::numbers::{Coordinates as _, Entries};
 
-/// Attitude and velocity.
+/// Where a run ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct End<G: LieGroup> {
-    attitude: G,
-    velocity: G::Vector,
+pub struct End<G: LieGroup> {
+    /// The attitude, body to space.
+    pub attitude: G,
+    /// The body velocity, on SO(3) in rad/s.
+    pub velocity: G::Vector,
 }
 
 /// Where trials start, and how far they go.

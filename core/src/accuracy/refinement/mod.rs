@@ -1,0 +1,128 @@
+//! Runs of one method with ever shorter steps: errors, orders and costs, as a table, as CSV and as JSON.
+
+mod runs;
+mod text;
+mod timed;
+
+pub use runs::{End, Reference, RefinementError, convergence};
+pub use timed::{Effort, work_precision};
+
+/// A run with one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// The step `h`, s; of a method that chooses its steps, the tolerance that it was given.
+    pub step: f64,
+    /// The error at the end of the run.
+    pub error: f64,
+    /// Iterations of a step on average, where they were counted: Newton's, or those of a fixed point.
+    pub iterations: Option<f64>,
+    /// The time of the run, s, where it was taken.
+    pub seconds: Option<f64>,
+}
+
+/// What the runs of one method with ever shorter steps show: [`convergence`] makes them, and [`work_precision`] takes their
+/// times, too.
+///
+/// As text it is a table, and [`to_csv`](Self::to_csv) and [`to_json`](Self::to_json) write the same columns; with the
+/// feature `serde` it serialises as the latter does. Errors that were measured otherwise, of another library for
+/// example, come in by [`of`](Self::of) and [`timed`](Self::timed).
+///
+/// | column | |
+/// |---|---|
+/// | `step` | `h`, s |
+/// | `error` | at the end |
+/// | `ratio` | the error before, divided by this one |
+/// | `order` | the power of the step by which the error has fallen: `ln ratio / ln (h before / h)` |
+/// | `iterations` | of a step on average |
+/// | `seconds` | of the run |
+///
+/// A number that there isn't is empty in CSV and `null` in JSON.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Refinement {
+    rows: Vec<Measurement>,
+}
+
+/// The least number of points that a slope is read off, so that it isn't that of a plateau's edge.
+const FEWEST_POINTS: usize = 4;
+
+impl Refinement {
+    /// Of steps and errors, in the order of the runs.
+    ///
+    /// # Examples
+    ///
+    /// The trapezoidal rule for `∫₀¹ eˣ dx`:
+    ///
+    /// ```
+    /// use liestep::accuracy::Refinement;
+    ///
+    /// let rule = |n: i32| {
+    ///     let h = 1.0 / f64::from(n);
+    ///     let inner: f64 = (1..n).map(|i| (f64::from(i) * h).exp()).sum();
+    ///     (h, (h * (inner + 0.5 * (1.0 + 1_f64.exp())) - (1_f64.exp() - 1.0)).abs())
+    /// };
+    /// let refinement = Refinement::of([10, 20, 40, 80].map(rule));
+    /// assert!((refinement.order_above(1e-14).ok_or("too few errors")? - 2.0).abs() < 0.01);
+    /// # Ok::<(), &str>(())
+    /// ```
+    #[must_use]
+    pub fn of(errors: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let row = |(step, error)| Measurement { step, error, iterations: None, seconds: None };
+        Self { rows: errors.into_iter().map(row).collect() }
+    }
+
+    /// The runs, in the order in which they were made.
+    #[must_use]
+    pub fn rows(&self) -> &[Measurement] {
+        &self.rows
+    }
+
+    /// For each run but the first: by what the error before is divided.
+    pub fn ratios(&self) -> impl Iterator<Item = f64> + '_ {
+        self.rows.windows(2).map(|pair| pair[0].error / pair[1].error)
+    }
+
+    /// For each run but the first: the power of the step by which the error has fallen.
+    pub fn orders(&self) -> impl Iterator<Item = f64> + '_ {
+        self.ratios().zip(self.rows.windows(2)).map(|(ratio, pair)| ratio.ln() / (pair[0].step / pair[1].step).ln())
+    }
+
+    /// The order: the slope of `ln error` over `ln h` by least squares, over the runs whose error is above what rounding
+    /// leaves.
+    ///
+    /// None where fewer than four are, so that a slope isn't read off the edge of a plateau.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // a handful of runs
+    pub fn order_above(&self, plateau: f64) -> Option<f64> {
+        let above = self.rows.iter().filter(|row| row.error > plateau);
+        let points: Vec<(f64, f64)> = above.map(|row| (row.step.abs().ln(), row.error.ln())).collect();
+        if points.len() < FEWEST_POINTS {
+            return None;
+        }
+        let count = points.len() as f64;
+        let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
+        let covariance: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+        Some(covariance / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>())
+    }
+
+    /// The least time in which the runs reach an error, s: of those that do, and on straight lines between two runs, both
+    /// axes logarithmic. None where no run comes so near, and where no times were taken.
+    #[must_use]
+    pub fn seconds_to(&self, error: f64) -> Option<f64> {
+        let reached = self.rows.iter().filter(|row| row.error <= error).filter_map(|row| row.seconds);
+        let between = self.rows.windows(2).filter_map(|pair| {
+            let [coarse, fine] = [pair[0], pair[1]];
+            let crosses = coarse.error > error && fine.error <= error;
+            let part = (coarse.error / error).ln() / (coarse.error / fine.error).ln();
+            let [cheap, dear] = [coarse.seconds?, fine.seconds?];
+            // An error of zero has no logarithm.
+            (crosses && fine.error > 0.0).then(|| cheap * (dear / cheap).powf(part))
+        });
+        reached.chain(between).min_by(f64::total_cmp)
+    }
+
+    /// The longest step whose error isn't larger than this one, s.
+    #[must_use]
+    pub fn longest_step_to(&self, error: f64) -> Option<f64> {
+        self.rows.iter().filter(|row| row.error <= error).map(|row| row.step).max_by(f64::total_cmp)
+    }
+}

@@ -1,0 +1,189 @@
+//! The same with times. This is the only file of the library that asks a clock.
+
+use std::time::{Duration, Instant};
+
+use super::runs::{Ready, Reference, RefinementError, plan};
+use super::{Measurement, Refinement};
+use crate::error::SetupError;
+use crate::groups::LieGroup;
+use crate::motion::Integrator;
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// The first run that takes longer is the last, s.
+    pub longest: f64,
+    /// Each run is repeated for about so long; the shortest counts, which other programs disturb least.
+    pub repeated: Duration,
+}
+
+/// Runs of up to 0.1 s, each repeated for 10 ms.
+impl Default for Effort {
+    fn default() -> Self {
+        Self { longest: 0.1, repeated: Duration::from_millis(10) }
+    }
+}
+
+impl Effort {
+    /// What a run returns, and how long the fastest of its repetitions took, s.
+    pub fn time<X>(&self, mut run: impl FnMut() -> X) -> (X, f64) {
+        let started = Instant::now();
+        let mut best = Duration::MAX;
+        loop {
+            let start = Instant::now();
+            let result = run();
+            best = best.min(start.elapsed());
+            if started.elapsed() > self.repeated {
+                return (result, best.as_secs_f64());
+            }
+        }
+    }
+}
+
+/// Errors that are larger are of another motion, and such runs are left out.
+const LARGEST_ERROR: f64 = 0.5;
+/// Below this a double has nothing left.
+const SMALLEST_ERROR: f64 = 1e-14;
+/// Errors that are larger may rise and fall; smaller ones that rise are rounding's.
+const NEAR_ROUNDING: f64 = 1e-10;
+/// So many runs in a row that are no better than the best are the plateau of rounding.
+const NO_BETTER: u32 = 3;
+
+/// Whether shorter steps have nothing to say any more.
+#[derive(Default)]
+struct Progress {
+    best: Option<f64>,
+    no_better: u32,
+}
+
+impl Progress {
+    fn is_done(&mut self, effort: Effort, error: f64, seconds: f64) -> bool {
+        let is_better = self.best.is_none_or(|best| error < best);
+        self.no_better = if is_better { 0 } else { self.no_better + 1 };
+        if is_better {
+            self.best = Some(error);
+        }
+        let is_plateau = error < NEAR_ROUNDING && self.no_better >= NO_BETTER;
+        seconds > effort.longest || error < SMALLEST_ERROR || is_plateau
+    }
+}
+
+impl Refinement {
+    /// Errors and times of anything that runs with a parameter: a rival, written otherwise or in another library.
+    ///
+    /// `prepare` makes a run ready for a step (or a tolerance), so that what it does isn't timed, and `error` judges where the
+    /// run ends. Runs that fail, and those with errors of 0.5 and more, are left out; shorter steps aren't tried where a run
+    /// is longer than the effort allows, or errors have stopped falling.
+    ///
+    /// # Examples
+    ///
+    /// Euler's method for `y' = −y`:
+    ///
+    /// ```
+    /// use liestep::accuracy::{Effort, Refinement};
+    ///
+    /// let costs = Refinement::timed(
+    ///     (4..10).map(|k| 0.5_f64.powi(k)),
+    ///     Effort::default(),
+    ///     |h: f64| Some(move || Some((0..(1.0 / h) as u32).fold(1.0, |y, _| y - h * y))),
+    ///     |y: &f64| (y - (-1_f64).exp()).abs(),
+    /// );
+    /// assert!((costs.order_above(0.0).ok_or("too few errors")? - 1.0).abs() < 0.05);
+    /// assert!(costs.seconds_to(1e-2) <= costs.seconds_to(2e-3));
+    /// # Ok::<(), &str>(())
+    /// ```
+    pub fn timed<X, R: FnMut() -> Option<X>>(
+        parameters: impl IntoIterator<Item = f64>,
+        effort: Effort,
+        mut prepare: impl FnMut(f64) -> Option<R>,
+        mut error: impl FnMut(&X) -> f64,
+    ) -> Self {
+        let (mut rows, mut progress) = (Vec::new(), Progress::default());
+        for step in parameters {
+            // A step may be too long to be solvable; the next is shorter.
+            let Some(mut run) = prepare(step) else { continue };
+            let (Some(end), seconds) = effort.time(&mut run) else { continue };
+            let error = error(&end);
+            if error < LARGEST_ERROR {
+                rows.push(Measurement { step, error, iterations: None, seconds: Some(seconds) });
+            }
+            if progress.is_done(effort, error, seconds) {
+                break;
+            }
+        }
+        Self { rows }
+    }
+}
+
+/// What accuracy costs in time: as [`convergence`](super::convergence), and each run is timed. What the family does
+/// isn't.
+///
+/// Runs with a step that has no solution, and those with errors of 0.5 and more, are left out. The last run is the first
+/// that takes longer than the effort allows, or one after which errors have stopped falling.
+///
+/// # Errors
+///
+/// [`RefinementError`]: of a step, where no run came to its end.
+///
+/// # Examples
+///
+/// What does an error of 1e-4 cost with either kinetic term?
+///
+/// ```
+/// use liestep::accuracy::{Effort, Reference, Refinement, RefinementError, work_precision};
+/// use liestep::effects::CayleyBody;
+/// use liestep::mechanics::Regular;
+/// use liestep::prelude::*;
+///
+/// fn costs<B>(body: B) -> Result<Refinement, RefinementError>
+/// where
+///     B: Regular<Scalar = f64, Group = SO3> + Copy,
+/// {
+///     let family = |h| {
+///         let stepper = Stepper::new(body, h)?;
+///         let start = stepper.start(SO3::identity(), Vector3::new(0.3, 2.0, 0.2))?;
+///         Ok((stepper, start))
+///     };
+///     let counts = (4..12).map(|k| 1 << k);
+///     work_precision(family, 2.0, counts, Reference::Finest, Effort::default())
+/// }
+///
+/// let J = Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
+/// for costs in [costs(RigidBody { J_d: J.to_nonstandard() })?, costs(CayleyBody { J })?] {
+///     println!("{costs}\n{:?} s", costs.seconds_to(1e-4));
+///     assert!(costs.rows().iter().all(|row| row.seconds > Some(0.0)));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn work_precision<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
+    mut family: impl FnMut(f64) -> Result<(I, I::State), SetupError>,
+    time: f64,
+    counts: impl IntoIterator<Item = u64>,
+    reference: Reference<G>,
+    effort: Effort,
+) -> Result<Refinement, RefinementError> {
+    let (counts, exact) = plan(&mut family, time, counts, reference)?;
+    let (mut rows, mut progress, mut failure) = (Vec::new(), Progress::default(), None);
+    for steps in counts {
+        let ready = Ready::new(&mut family, time, steps)?;
+        let (ended, seconds) = effort.time(|| ready.run());
+        let (end, iterations) = match ended {
+            Ok(ended) => ended,
+            Err(cause) => {
+                failure = Some(cause);
+                continue;
+            }
+        };
+        let row = ready.measurement(ready.start(time).difference(&end, &exact), iterations)?;
+        if row.error < LARGEST_ERROR {
+            rows.push(Measurement { seconds: Some(seconds), ..row });
+        }
+        if progress.is_done(effort, row.error, seconds) {
+            break;
+        }
+    }
+    match failure {
+        Some(cause) if rows.is_empty() => Err(cause),
+        _ => Ok(Refinement { rows }),
+    }
+}

@@ -1,0 +1,87 @@
+//! Several bodies that turn together.
+//!
+//! Before: [groups](super::groups). Next: [accuracy and cost](super::accuracy).
+//!
+//! # A double pendulum
+//!
+//! Two to four bodies are declared together, each with an increment of its own. Each advected parameter says who sees it:
+//!
+//! | `advected(…)` | |
+//! |---|---|
+//! | `w = up.seen_from(F_1)` | the field `up`, as the body of `F_1` sees it |
+//! | `Q = F_2.seen_from(F_1)` | `g_1⁻¹ g_2`: brings a vector from the second body to the first |
+//! | `R = F_2.seen_from(space)` | `g_2` itself |
+//!
+//! Two links on ball joints. The kinetic energy couples them, because the lower link hangs at the upper one's end:
+//!
+//! ```
+//! use liestep::groups::{Factor, LieGroup as _};
+//! use liestep::nalgebra::Vector6;
+//! use liestep::prelude::*;
+//!
+//! #[lagrangian(
+//!     group(F_1 = SO3, F_2 = SO3),
+//!     advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
+//!     l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+//!         + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+//!         + ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s_2))) / h
+//!         - 0.5 * h * g * (w_1.dot(&(s_1 + F_1 * s_1)) + w_2.dot(&(s_2 + F_2 * s_2))),
+//! )]
+//! struct DoublePendulum {
+//!     J_1: NonstandardInertia, // about the pivot, with the mass of the lower link at the joint
+//!     J_2: NonstandardInertia, // about the joint
+//!     rho: Vector3<f64>,       // the joint from the pivot, upper link
+//!     s_1: Vector3<f64>,       // first moment of the upper link, with that mass
+//!     s_2: Vector3<f64>,       // and of the lower one, about the joint
+//!     g: f64,
+//!     up: Vector3<f64>,
+//! }
+//!
+//! // Links of 1 kg and 1 m, a little thick.
+//! let down = -Vector3::z();
+//! let J_1 = NonstandardInertia::from_diagonal(Vector3::new(0.01, 0.01, 1.0 / 3.0 + 1.0))?;
+//! let J_2 = NonstandardInertia::from_diagonal(Vector3::new(0.01, 0.01, 1.0 / 3.0))?;
+//! let scene = DoublePendulum { J_1, J_2, rho: down, s_1: down * 1.5, s_2: down * 0.5, g: 9.81, up: Vector3::z() };
+//! let stepper = Stepper::new(scene, 0.002)?;
+//!
+//! let tilt = |angle: f64| SO3::exp(Vector3::x() * angle);
+//! let mut state = stepper.start((tilt(1.0), tilt(0.4)), Vector6::new(0.0, 0.0, 1.0, 0.0, 0.0, 2.0))?;
+//! let energy = stepper.energy(&state);
+//! // What both carry about the vertical, each seen in space.
+//! let mut vertical = Vec::new();
+//! for _ in 0..10 {
+//!     let (upper, lower) = state.attitude();
+//!     vertical.push((upper.matrix() * state.momentum_of::<0>() + lower.matrix() * state.momentum_of::<1>()).z);
+//!     stepper.run(&mut state, 100)?;
+//! }
+//! assert!(vertical.iter().all(|now: &f64| (now - vertical[0]).abs() < 1e-11));
+//! assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
+//!
+//! let rates = stepper.velocity(&state); // of both, six numbers
+//! let _second = <(SO3, SO3) as Factor<1>>::components(&rates);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! States are tuples: `attitude().1` is the second attitude, `momentum_of::<1>()` its momentum. What the bodies keep
+//! together, at any tolerance of the solver, is read off the declaration and said in the documentation of the struct; so is
+//! whether a step solves for them together or one after the other.
+//!
+//! # What there is, and what isn't
+//!
+//! | | |
+//! |---|---|
+//! | compositions to order 10, substeps, compensated sums, [gradients](super::gradients) | yes |
+//! | [recording and events](super::recording) | yes; columns have the number of the body behind their names |
+//! | forces, the effects of the library, splittings | no: those are of one body |
+//! | `l = …`, the continuous Lagrangian | no |
+//! | contact, impacts, closed loops of joints | no |
+//!
+//! `tests/systems/several_bodies` has chains, coupled attitudes and a spherical double pendulum, with references of 25
+//! digits. By hand any tuple of groups up to four can be written a Lagrangian for:
+//! `examples/how-to-write-a-lagrangian-by-hand.rs` says how, for one group.
+//!
+//! # Bodies that don't see each other
+//!
+//! Bodies without a coupling are no product but a list: run each by its own stepper, or many of one kind in the
+//! lanes of [ensembles](super::ensembles). A balanced wheel that spins at a constant momentum in its body is the effect
+//! [`Rotor`](crate::effects::Rotor).
