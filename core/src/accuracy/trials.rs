@@ -6,6 +6,10 @@ use super::error::AccuracyError;
 use crate::groups::{Advected, LieGroup};
 use crate::numbers::{Coordinates as _, Entries};
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 /// Attitude and velocity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct End<G: LieGroup> {

@@ -63,6 +63,10 @@ pub use so3::{NotARotation, SO3};
 pub use su2::{SU2, SU2Generators};
 pub use translations::{R1, R2, R3, TranslationGenerators};
 
+use alloc::format;
+use alloc::string::String;
+use alloc::string::ToString as _;
+use alloc::vec::Vec;
 use core::fmt::Debug;
 
 use nalgebra::Matrix3;

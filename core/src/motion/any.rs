@@ -1,5 +1,6 @@
 //! A stepper whose scene and method aren't in its type.
 
+use alloc::boxed::Box;
 use core::any::Any;
 use core::fmt::{self, Debug};
 
@@ -117,7 +118,7 @@ where
 
     fn step(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
         let mut state = own(self, motion, kept);
-        let report = self.step_called(&mut state)?;
+        let report = self.step_or_run(&mut state)?;
         back(state, motion, kept);
         Ok(report)
     }

@@ -79,6 +79,10 @@ pub trait Plan<S: Effect> {
     /// Whether a step is a [`run`](Self::run) of one, to the bit and in what an error leaves: then only that is compiled.
     const STEPS_BY_RUNS: bool = false;
 
+    /// Whether a [`run`](Self::run) is its steps one after the other, so that an error leaves what the last of them made,
+    /// and these report nothing but their iterations.
+    const RUNS_BY_STEPS: bool = false;
+
     /// Adds an impulse to the momentum between two steps, and to what is kept of it.
     #[inline(always)]
     fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, impulse: &Vector<S>) {

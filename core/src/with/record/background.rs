@@ -1,5 +1,6 @@
 //! A sink in a thread of its own.
 
+use alloc::vec::Vec;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 

@@ -1,5 +1,8 @@
 //! Events: zeros of a function of the motion, in the order in which they are crossed.
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
 use super::crossing::{Looks, zeros};
 use super::error::{Ended, Reason, RunError};
 use super::{Observer, Run, show};
