@@ -351,13 +351,10 @@ fn quaternion_of_a_large_turn<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
     let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
-    let parts = [
-        (one + r.m11 + r.m22 + r.m33, [one + r.m11 + r.m22 + r.m33, wx, wy, wz]),
-        (one + r.m11 - r.m22 - r.m33, [wx, one + r.m11 - r.m22 - r.m33, xy, xz]),
-        (one - r.m11 + r.m22 - r.m33, [wy, xy, one - r.m11 + r.m22 - r.m33, yz]),
-        (one - r.m11 - r.m22 + r.m33, [wz, xz, yz, one - r.m11 - r.m22 + r.m33]),
-    ];
-    let [(mut largest, mut products), others @ ..] = parts;
+    let [ww, xx] = [one + r.m11 + r.m22 + r.m33, one + r.m11 - r.m22 - r.m33];
+    let [yy, zz] = [one - r.m11 + r.m22 - r.m33, one - r.m11 - r.m22 + r.m33];
+    let (mut largest, mut products) = (ww, [ww, wx, wy, wz]);
+    let others = [(xx, [wx, xx, xy, xz]), (yy, [wy, xy, yy, yz]), (zz, [wz, xz, yz, zz])];
     for (square, others) in others {
         let larger = square.simd_gt(largest);
         largest = square.select(larger, largest);

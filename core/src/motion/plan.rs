@@ -5,7 +5,7 @@ use crate::mechanics::{Effect, Group, Operations, Scalar, SceneVisitor, Vector};
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation};
-use crate::numbers::{Vectors, real};
+use crate::numbers::{Kernel, Vectors, dispatch, real};
 use crate::solving::largest_fraction;
 use nalgebra::SimdValue;
 
@@ -119,7 +119,7 @@ pub trait Plan<S: Effect> {
         let solvable = |fraction: f64| {
             self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
                 let (mut motion, mut kept) = (*motion, part.keep(scene, motion));
-                rare_step(&part, scene, &mut motion, &mut kept).is_ok()
+                run_called(&part, scene, &mut motion, &mut kept, 1).is_ok()
             })
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.step_size() * real(fraction))
@@ -131,6 +131,33 @@ pub trait Plan<S: Effect> {
 
     /// How much arithmetic a step is, about.
     fn cost(&self) -> Cost;
+}
+
+/// So many steps.
+struct Run<'a, S: Effect, P: Plan<S>>(&'a P, &'a S, &'a mut Motion<Group<S>, S::Advected>, &'a mut P::Kept, u64);
+
+impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
+    type Output = Result<u64, StepError>;
+    const VECTORS: Vectors = P::VECTORS;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self(plan, scene, motion, kept, steps) = self;
+        plan.run(scene, motion, kept, steps)
+    }
+}
+
+/// [`Plan::run`] with the vector instructions of the machine; called, so that there is one copy of a method's steps for all
+/// that runs them.
+#[inline(never)]
+pub(crate) fn run_called<S: Effect, P: Plan<S>>(
+    plan: &P,
+    scene: &S,
+    motion: &mut Motion<Group<S>, S::Advected>,
+    kept: &mut P::Kept,
+    steps: u64,
+) -> Result<u64, StepError> {
+    dispatch(Run(plan, scene, motion, kept, steps))
 }
 
 /// [`Plan::step`] where steps are rare: compiled once, and not anew into each of its callers.

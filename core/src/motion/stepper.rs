@@ -8,7 +8,7 @@ use crate::mechanics::{
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::{Plan, Steerable};
+use crate::motion::plan::{Plan, Steerable, run_called};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -553,31 +553,4 @@ impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     fn run(self) -> Self::Output {
         self.0.plan.step(&self.0.scene, &mut self.1.motion, &mut self.1.kept)
     }
-}
-
-/// So many of them.
-struct Run<'a, S: Effect, P: Plan<S>>(&'a P, &'a S, &'a mut Motion<Group<S>, S::Advected>, &'a mut P::Kept, u64);
-
-impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
-    type Output = Result<u64, StepError>;
-    const VECTORS: Vectors = P::VECTORS;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        let Self(plan, scene, motion, kept, steps) = self;
-        plan.run(scene, motion, kept, steps)
-    }
-}
-
-/// [`Plan::run`] with the vector instructions of the machine; called, so that there is one copy of a method's steps for all
-/// that runs them.
-#[inline(never)]
-fn run_called<S: Effect, P: Plan<S>>(
-    plan: &P,
-    scene: &S,
-    motion: &mut Motion<Group<S>, S::Advected>,
-    kept: &mut P::Kept,
-    steps: u64,
-) -> Result<u64, StepError> {
-    dispatch(Run(plan, scene, motion, kept, steps))
 }

@@ -83,6 +83,11 @@ pub enum RecordError {
         /// The name.
         name: String,
     },
+    /// A column was added behind the first row.
+    Late {
+        /// Its name.
+        name: String,
+    },
     /// What the rows are written to has failed.
     Sink {
         /// Its error.
@@ -94,6 +99,9 @@ impl fmt::Display for RecordError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::SameName { name } => write!(f, "two columns are called `{name}`; give one of them another name"),
+            Self::Late { name } => {
+                write!(f, "the column `{name}` was added behind the first row; add all columns before that")
+            }
             Self::Sink { cause } => write!(f, "the table can't be written: {cause}"),
         }
     }
@@ -102,7 +110,7 @@ impl fmt::Display for RecordError {
 impl core::error::Error for RecordError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
-            Self::SameName { .. } => None,
+            Self::SameName { .. } | Self::Late { .. } => None,
             Self::Sink { cause } => Some(cause.as_ref()),
         }
     }
@@ -154,6 +162,8 @@ enum Stage {
     Before,
     /// It has them.
     Begun,
+    /// A column came after that, which it doesn't know.
+    Late,
     /// It has failed, and gets nothing more: rows behind a gap would look like a whole table.
     Failed,
 }
@@ -197,7 +207,7 @@ where
         }
     }
 
-    /// A column of one's own, with its unit.
+    /// A column of one's own, with its unit; before the first row, or each further one is an error.
     #[must_use]
     pub fn quantity<T: Into<f64>>(
         mut self,
@@ -207,6 +217,9 @@ where
     ) -> Self {
         self.columns.push(Column { name: name.into(), unit: unit.into() });
         self.quantities.push(Box::new(move |now| quantity(now).into()));
+        if self.stage == Stage::Begun {
+            self.stage = Stage::Late;
+        }
         self
     }
 
@@ -228,7 +241,7 @@ where
     /// # Errors
     ///
     /// [`RecordError`] with the first row where two columns have one name or the table can't be begun, and later where a
-    /// full block of rows can't be written. After an error of the sink each further row is one, too.
+    /// column was added or a full block of rows can't be written. After an error of the sink each further row is one, too.
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
         if self.stage != Stage::Begun {
             self.begin()?;
@@ -294,6 +307,10 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         match self.stage {
             Stage::Begun => return Ok(()),
             Stage::Failed => return Err(RecordError::Sink { cause: "it has failed before".into() }),
+            Stage::Late => {
+                let name = self.columns.last().map_or_else(String::new, |column| column.name.clone());
+                return Err(RecordError::Late { name });
+            }
             Stage::Before => {}
         }
         let columns = &self.columns;
