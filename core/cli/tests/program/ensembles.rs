@@ -122,7 +122,7 @@ fn mistakes_in_ensembles_have_places() {
         ("draw.gravity.g = 5", 18, "a value is drawn by"),
         ("draw.gravity.g = { from = \"1 kg\", to = \"2 kg\" }", 18, "an acceleration isn't in `kg`"),
         ("draw.gravity.height = { from = 1, to = 2 }", 14, "unknown field `height`"),
-        ("draw.start.velocity = [0, { from = 1, to = 2 }]", 24, "expected three components, found 2"),
+        ("draw.start.velocity = [0, { from = 1, to = 2 }]", 23, "expected three components, found 2"),
         ("draw.start.velocity = [0, 1, 2]", 23, "a value is drawn by"),
         ("draw.run.duration = { from = 1, to = 2 }", 6, "an ensemble draws what is in `body`"),
         ("every = 0", 9, "`every` is a whole number from 1"),
