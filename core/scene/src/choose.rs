@@ -7,11 +7,12 @@ use liestep::accuracy::{Accuracy, Choice};
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
 use liestep::methods::ExactBody;
-use liestep::motion::{AnyState, AnyStepper};
+use liestep::motion::AnyStepper;
 use liestep::{SO3, SetupError, Stepper};
 
 use crate::body::{Distribution, Kinetic};
 use crate::effects::Table as _;
+use crate::ensemble::Started;
 use crate::file::{Pace, SceneFile};
 use crate::method::{Method, Stages};
 use crate::run::{Run, Stopped, Told, make};
@@ -53,7 +54,7 @@ pub(crate) fn run(file: &SceneFile, told: Told<'_>) -> Result<Run, Stopped> {
 }
 
 /// What steps the scene by its `step`, and its start.
-pub(crate) fn stepper(file: &SceneFile) -> Result<(AnyStepper<SO3, ()>, AnyState<SO3, ()>), Stopped> {
+pub(crate) fn stepper(file: &SceneFile) -> Result<Started, Stopped> {
     let mut stepper = None;
     match file.run.pace {
         Pace::Accuracy(_) => return Err(Stopped::Other("the step is chosen for an accuracy by trial runs".to_owned())),

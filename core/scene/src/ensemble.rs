@@ -28,6 +28,9 @@ pub struct Ensemble {
     text: String,
 }
 
+/// What steps a scene, and the state that it starts from.
+pub type Started = (AnyStepper<SO3, ()>, AnyState<SO3, ()>);
+
 /// What a value is drawn from; in the unit that the file has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Distribution {
@@ -193,7 +196,7 @@ impl SceneFile {
     /// # Errors
     ///
     /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where it can't be started.
-    pub fn stepper(&self) -> Result<(AnyStepper<SO3, ()>, AnyState<SO3, ()>), Mistake> {
+    pub fn stepper(&self) -> Result<Started, Mistake> {
         choose::stepper(self).map_err(|stopped| self.stopped(stopped))
     }
 

@@ -367,7 +367,7 @@ fn long_run(steps: u64) {
     let limited = format!("ulimit -d 51200 && exec '{PROGRAM}' run top.toml --csv --out .");
     let output = Command::new("sh").current_dir(&folder).args(["-c", &limited]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let rows = fs::read(folder.join("top.csv")).unwrap().iter().filter(|byte| **byte == b'\n').count();
+    let rows = fs::read_to_string(folder.join("top.csv")).unwrap().lines().count();
     assert_eq!(rows as u64, steps / 100 + 2);
     fs::remove_dir_all(&folder).unwrap();
 }
