@@ -65,6 +65,8 @@
 //! | feature | |
 //! |---|---|
 //! | `dispatch` (default) | lanes and collocation take the vector instructions that the machine is found to have; no digit depends on it |
+//! | `std` (default) | tables as files and in threads of their own: [`with::Csv`], [`with::Background`] |
+//! | `libm` | in the place of `std` on targets without a standard library, which need an allocator: roots and sines are those of the crate `libm`, and so may differ in their last bit |
 //! | `glam033`, `mint` | nalgebra's vectors, matrices and rotations are converted from and to those of glam 0.33 and of mint; attitudes by way of `UnitQuaternion` |
 //! | `serde` | [`Stepper::checkpoint`](motion::Stepper#method.checkpoint): files that a run goes on from, bit for bit |
 //!
@@ -76,6 +78,17 @@
 //! ```text
 //! error, numbers ← groups ← mechanics ← {effects, solving} ← motion ← methods ← {with, accuracy};  groups ← laws
 //! ```
+
+#![no_std]
+
+extern crate alloc;
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
+#[cfg(not(any(feature = "std", feature = "libm")))]
+compile_error!(
+    "without a standard library liestep takes its roots and sines from libm: turn on its feature `std` or `libm`"
+);
 
 // Expansions name this crate by its path from outside; our own documentation and tests do too.
 extern crate self as liestep;

@@ -297,6 +297,14 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(error.to_string().contains("two columns are called `energy`") && state.steps() == 0, "{error}");
     assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));
 
+    // Rows of two lengths would run into each other.
+    let mut recorder = Recorder::new(&stepper, Table::new());
+    recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
+    let mut recorder = recorder.quantity("late", "1", |_| 0.0);
+    let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
+    assert!(error.to_string().contains("the column `late` was added behind the first row"), "{error}");
+    assert!(matches!(recorder.finish(), Err(RecordError::Late { .. })));
+
     // An observer of one's own.
     let error = stepper.observed(&mut start.clone()).every(3, |_| Err::<(), _>("enough")).steps(10).unwrap_err();
     assert!(matches!(error, RunError::Observer { time: 0.0, .. }) && error.to_string().ends_with("enough"));
@@ -304,6 +312,45 @@ fn what_cannot_be_recorded_ends_the_run() {
     let stop_after_five = |steps| if steps > 5 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let ended = stepper.observed(&mut state).every(3, |now| stop_after_five(now.steps())).steps(10).unwrap();
     assert_eq!(ended.steps, 6);
+}
+
+/// Says that it has come to its end, and that it is gone.
+struct Ends(std::sync::mpsc::Sender<&'static str>);
+
+impl Sink for Ends {
+    fn begin(&mut self, _: &[Column]) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    fn write(&mut self, _: &[f64]) -> Result<(), SinkError> {
+        Ok(())
+    }
+
+    fn end(&mut self) -> Result<(), SinkError> {
+        Ok(self.0.send("ended")?)
+    }
+}
+
+impl Drop for Ends {
+    fn drop(&mut self) {
+        let _ = self.0.send("gone");
+    }
+}
+
+/// A file that isn't whole doesn't look so.
+#[test]
+fn a_table_in_a_thread_has_an_end_only_if_it_is_given_one() {
+    for (is_ended, expected) in [(true, ["ended", "gone"].as_slice()), (false, &["gone"])] {
+        let (sender, said) = std::sync::mpsc::channel();
+        let mut sink = Background::new(Ends(sender));
+        sink.begin(&[Column { name: "t".to_owned(), unit: "s".to_owned() }]).unwrap();
+        sink.write(&[0.0]).unwrap();
+        if is_ended {
+            sink.end().unwrap();
+        }
+        drop(sink);
+        assert_eq!(said.iter().collect::<Vec<_>>(), expected);
+    }
 }
 
 /// Fails once, and writes down what it is asked.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PathBufValueParser, TypedValueParser as _};
 use clap::{Arg, ArgAction, ArgMatches, Command, ValueHint, value_parser};
 use clap_complete::Shell;
+use liestep_ensemble::share_of;
 
 use crate::failure::Failure;
 use crate::output::print;
@@ -31,6 +32,7 @@ pub(crate) fn command() -> Command {
                 .arg(scenes())
                 .arg(out())
                 .arg(flag("csv", "Also write a table as CSV, while it runs"))
+                .arg(flag("arrow", "Also write the table as a stream of Arrow IPC, while it runs"))
                 .arg(flag("html", "Also write a page that plays the motion, to be opened in a browser")),
         )
         .subcommand(Command::new("check").about("Reads scenes and makes their first step").arg(scenes()))
@@ -38,6 +40,27 @@ pub(crate) fn command() -> Command {
             Command::new("sweep")
                 .about("Runs every scene of a file's table `sweep`, and writes a row of FILE.sweep.csv for each")
                 .arg(scenes())
+                .arg(out()),
+        )
+        .subcommand(
+            Command::new("ensemble")
+                .about("Runs the members that a file's table `ensemble` draws, and keeps them in files of Arrow IPC in the folder FILE.ensemble; stopped at any moment, the next run goes on")
+                .arg(scenes())
+                .arg(
+                    Arg::new("threads")
+                        .long("threads")
+                        .value_name("N")
+                        .help("So many threads; 0 for as many as there are processors")
+                        .default_value("0")
+                        .value_parser(value_parser!(usize)),
+                )
+                .arg(
+                    Arg::new("shard")
+                        .long("shard")
+                        .value_name("I/N")
+                        .help("Only this share of the members, from 0/N on: for an array of jobs, which write to one folder")
+                        .value_parser(share_of),
+                )
                 .arg(out()),
         )
         .subcommand(

@@ -8,6 +8,7 @@
 //! `liestep help` lists the commands. Its exit codes are those of [`Failure`].
 
 mod command;
+mod ensemble;
 mod failure;
 mod output;
 mod sweep;
@@ -16,7 +17,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::ArgMatches;
-use liestep::with::Csv;
+use liestep::with::{Column, Csv, Sink, SinkError};
+use liestep_arrow::ArrowStream;
 use liestep_scene::{Mistake, Run, SceneFile};
 
 use failure::Failure;
@@ -39,6 +41,7 @@ fn answer(matches: &ArgMatches) -> Result<(), Failure> {
         Some(("run", given)) => run(given),
         Some(("check", given)) => check(given),
         Some(("sweep", given)) => sweep::sweep(given),
+        Some(("ensemble", given)) => ensemble::ensemble(given),
         Some(("derive", given)) => derive(given),
         Some(("replay", given)) => replay(given),
         Some(("completions", given)) => command::complete(given),
@@ -81,11 +84,13 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
         if paths.len() > 1 {
             eprintln!("[{number}/{}] {}", paths.len(), path.display());
         }
-        let run = simulate(scene, given.get_flag("csv").then(|| output.grows(&name(path, "csv"))))?;
+        let grows = |table: &&str| given.get_flag(table);
+        let tables: Vec<_> = ["csv", "arrow"].into_iter().filter(grows).collect();
+        let run = simulate(scene, tables.iter().map(|table| (*table, output.grows(&name(path, table)))))?;
         let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
         output.write(&name(path, "svg"), &picture)?;
-        if given.get_flag("csv") {
-            output.grown(&name(path, "csv"))?;
+        for table in &tables {
+            output.grown(&name(path, table))?;
         }
         if given.get_flag("csv") && scene.events().next().is_some() {
             let table = run.event_table(scene).map_err(|cause| Failure::Output(cause.to_string()))?;
@@ -98,17 +103,38 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
         if let Some(sweep) = scene.sweep() {
             eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points().len());
         }
+        if let Some(ensemble) = scene.ensemble() {
+            eprintln!("note: `liestep ensemble` runs the {} members of the file's ensemble", ensemble.members());
+        }
     }
     print(&output.to_string())
 }
 
-/// The run, with its table as it grows if there is a file for it.
-fn simulate(scene: &SceneFile, table: Option<Growing>) -> Result<Run, Mistake> {
+/// The run, with its tables as they grow.
+fn simulate<'a>(scene: &SceneFile, tables: impl Iterator<Item = (&'a str, Growing)>) -> Result<Run, Mistake> {
     let mut progress = Progress::new();
     let mut told = |share| progress.show(share);
-    match table {
-        Some(table) => scene.run_recorded(&mut told, &mut Csv::new(table)),
-        None => scene.run_told(&mut told),
+    let sink = |(kind, file): (&str, Growing)| -> Box<dyn Sink> {
+        if kind == "arrow" { Box::new(ArrowStream::new(file)) } else { Box::new(Csv::new(file)) }
+    };
+    let mut tables = Tables(tables.map(sink).collect());
+    if tables.0.is_empty() { scene.run_told(&mut told) } else { scene.run_recorded(&mut told, &mut tables) }
+}
+
+/// Several tables of one run.
+struct Tables(Vec<Box<dyn Sink>>);
+
+impl Sink for Tables {
+    fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
+        self.0.iter_mut().try_for_each(|table| table.begin(columns))
+    }
+
+    fn write(&mut self, rows: &[f64]) -> Result<(), SinkError> {
+        self.0.iter_mut().try_for_each(|table| table.write(rows))
+    }
+
+    fn end(&mut self) -> Result<(), SinkError> {
+        self.0.iter_mut().try_for_each(|table| table.end())
     }
 }
 

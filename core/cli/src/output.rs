@@ -51,6 +51,11 @@ impl Output {
         Growing { path: self.folder.join(name), file: None }
     }
 
+    /// A folder within it.
+    pub(crate) fn inner(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
     /// Lists a file that has grown.
     pub(crate) fn grown(&mut self, name: &str) -> Result<(), Failure> {
         let path = self.folder.join(name);

@@ -12,6 +12,7 @@ use liestep::{SO3, SetupError, Stepper};
 
 use crate::body::{Distribution, Kinetic};
 use crate::effects::Table as _;
+use crate::ensemble::Started;
 use crate::file::{Pace, SceneFile};
 use crate::method::{Method, Stages};
 use crate::run::{Run, Stopped, Told, make};
@@ -44,26 +45,57 @@ macro_rules! sums {
 /// Every run by (3.13) has the bits of the sum of just those. By other kinetic terms it is the same to rounding: beside an
 /// unknown part that is switched off, their equation is solved with its Jacobian from the first iteration on.
 pub(crate) fn run(file: &SceneFile, told: Told<'_>) -> Result<Run, Stopped> {
-    match (file.run.pace, file.run.method) {
-        (Pace::Accuracy(tolerance), _) => ask(file, tolerance, told),
-        (Pace::Step { step, steps }, Method::Step | Method::Composition(_)) => stepped(file, (step, steps), told),
-        (Pace::Step { step, steps }, _) => with_exact_body(file, (step, steps), told),
+    let mut run = None;
+    match file.run.pace {
+        Pace::Accuracy(tolerance) => return ask(file, tolerance, told),
+        Pace::Step { step, steps } => by_steps(file, step, Wanted::Run { steps, told, run: &mut run })?,
+    }
+    run.ok_or_else(nothing)
+}
+
+/// What steps the scene by its `step`, and its start.
+pub(crate) fn stepper(file: &SceneFile) -> Result<Started, Stopped> {
+    let mut stepper = None;
+    match file.run.pace {
+        Pace::Accuracy(_) => return Err(Stopped::Other("the step is chosen for an accuracy by trial runs".to_owned())),
+        Pace::Step { step, .. } => by_steps(file, step, Wanted::Stepper(&mut stepper))?,
+    }
+    let stepper = stepper.ok_or_else(nothing)?;
+    let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stopped::Start)?;
+    Ok((stepper, state))
+}
+
+/// What is done with the stepper of a scene: asked for in its type, each would be compiled for every scene's.
+enum Wanted<'a, 'b> {
+    Run { steps: u32, told: Told<'b>, run: &'a mut Option<Run> },
+    Stepper(&'a mut Option<AnyStepper<SO3, ()>>),
+}
+
+/// A stepper that is made is used.
+fn nothing() -> Stopped {
+    Stopped::Other("there is no such scene".to_owned())
+}
+
+fn by_steps(file: &SceneFile, h: f64, wanted: Wanted<'_, '_>) -> Result<(), Stopped> {
+    match file.run.method {
+        Method::Step | Method::Composition(_) => stepped(file, h, wanted),
+        _ => with_exact_body(file, h, wanted),
     }
 }
 
 /// By the declared steps of one of the kinetic terms, or a composition of them.
-fn stepped(file: &SceneFile, (h, steps): (f64, u32), told: Told<'_>) -> Result<Run, Stopped> {
+fn stepped(file: &SceneFile, h: f64, wanted: Wanted<'_, '_>) -> Result<(), Stopped> {
     macro_rules! step {
         ($scene:expr) => {
             match file.run.method {
                 Method::Composition(scheme) => {
-                    simulate(file, Stepper::composed($scene, h, scheme.0).map(Stepper::into_any), steps, told)
+                    simulate(file, Stepper::composed($scene, h, scheme.0).map(Stepper::into_any), wanted)
                 }
                 _ => step!(only $scene),
             }
         };
         (only $scene:expr) => {
-            simulate(file, Stepper::new($scene, h).map(Stepper::into_any), steps, told)
+            simulate(file, Stepper::new($scene, h).map(Stepper::into_any), wanted)
         };
     }
     macro_rules! with_effects {
@@ -96,7 +128,7 @@ fn stepped(file: &SceneFile, (h, steps): (f64, u32), told: Told<'_>) -> Result<R
 }
 
 /// By methods that look at inertia and potential only.
-fn with_exact_body(file: &SceneFile, (h, steps): (f64, u32), told: Told<'_>) -> Result<Run, Stopped> {
+fn with_exact_body(file: &SceneFile, h: f64, wanted: Wanted<'_, '_>) -> Result<(), Stopped> {
     let J = file.body.inertia();
     let (_, scene, _, _) = sums!(file, RigidBody { J_d: J.to_nonstandard() });
     let stepper = match file.run.method {
@@ -106,19 +138,24 @@ fn with_exact_body(file: &SceneFile, (h, steps): (f64, u32), told: Told<'_>) -> 
         Method::Collocation(Stages::Four) => Stepper::collocated::<2>(scene, h).map(Stepper::into_any),
         Method::Collocation(Stages::Eight) => Stepper::collocated::<4>(scene, h).map(Stepper::into_any),
     };
-    simulate(file, stepper, steps, told)
+    simulate(file, stepper, wanted)
 }
 
-/// Makes the steps of a scene.
-fn simulate<A: Advected<SO3>>(
+/// Makes the steps of a scene, or hands over what makes them.
+fn simulate<A: Advected<SO3> + 'static>(
     file: &SceneFile,
     stepper: Result<AnyStepper<SO3, A>, SetupError>,
-    steps: u32,
-    told: Told<'_>,
-) -> Result<Run, Stopped> {
+    wanted: Wanted<'_, '_>,
+) -> Result<(), Stopped> {
     let stepper = stepper.map_err(Stopped::Setup)?;
-    let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stopped::Start)?;
-    make(file, &stepper, state, (u64::from(steps), None), told)
+    match wanted {
+        Wanted::Run { steps, told, run } => {
+            let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stopped::Start)?;
+            *run = Some(make(file, &stepper, state, (u64::from(steps), None), told)?);
+        }
+        Wanted::Stepper(place) => *place = Some(stepper.hiding_advected()),
+    }
+    Ok(())
 }
 
 /// Makes the steps that an accuracy takes.

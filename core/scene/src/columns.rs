@@ -74,6 +74,11 @@ impl Column {
         }
     }
 
+    /// Whether it is measured from the start of a run, and so isn't known of a state alone.
+    pub(crate) const fn is_since_the_start(self) -> bool {
+        matches!(self, Self::EnergyError | Self::VerticalMomentumError | Self::MomentumError)
+    }
+
     /// Its numbers in a row.
     pub(crate) fn values(self, row: &Row) -> Vec<f64> {
         let Row { sample, first, quaternion } = row;

@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Deserializer};
 
 use crate::body::Kinetic;
+use crate::ensemble;
 use crate::file::{Origin, Pace, Places, SceneFile};
 use crate::method::{Method, Scheme as _};
 use crate::mistake::{Mistake, place_of};
@@ -29,17 +30,20 @@ pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, Mistake> {
     let path = path.as_ref();
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-    let sweep = document.get_mut().remove("sweep");
+    let [sweep, drawn] = ["sweep", "ensemble"].map(|table| document.get_mut().remove(table));
     let read = |document: &Document<'_>| scene(path, text, document);
     let mut file = read(&document)?;
     if let Some(table) = sweep {
         file.sweep = Some(sweep::read(&document, &table, &located, &read)?);
     }
+    if let Some(table) = drawn {
+        file.ensemble = Some(ensemble::read((path, text), &document, &table, &file)?);
+    }
     Ok(file)
 }
 
-/// The scene of a document without a sweep.
-fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
+/// The scene of a document without a sweep and an ensemble.
+pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
     let mut file = SceneFile::deserialize(Deserializer::from(document.clone()))
         .map_err(|error| Mistake::of_toml(path, text, &error))?;
     if let Some((span, message)) = at_odds(document, &file) {
@@ -54,7 +58,7 @@ fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, 
 }
 
 /// Where a value is, or the innermost table that there is around it.
-fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
+pub(crate) fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
     let mut span = document.span();
     let mut table = Some(document.get_ref());
     for key in keys {

@@ -12,6 +12,7 @@ use crate::effects::{
     DipoleTable, DragTable, GravityGradientTable, GravityTable, MagneticDampingTable, RotorTable, SpringTable,
     ThrustTable, TorqueTable,
 };
+use crate::ensemble::Ensemble;
 use crate::events::Event;
 use crate::method::Method;
 use crate::mistake::Mistake;
@@ -43,8 +44,7 @@ use crate::tables::short;
 /// | `[[event]]` | `name`; one of `tilt`, `speed`, `energy`, `velocity_1` to `_3`, `axis_1` to `_3`: the value that is passed; `direction`: `rising`, `falling`, `either`; `stop` |
 /// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: so many steps from row to row |
 /// | `sweep` | any of the keys above: a list of values, or `{ from, to, count }` |
-///
-/// There is no table for random starts or parameters: the crate `liestep-ensemble` draws those, in programs.
+/// | `ensemble` | `members`; `seed`; `every`: so many steps from row to row, and if it isn't given the ends only; `chunk`: so many members to a file; `draw`: any of the keys of body, effects and start, each drawn from `{ from, to }` or `{ mean, deviation }`, and of lists each component by itself |
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -71,6 +71,9 @@ pub struct SceneFile {
     /// Only in a file as a whole, and not in a point of its sweep.
     #[serde(skip)]
     pub(crate) sweep: Option<Sweep>,
+    /// The same.
+    #[serde(skip)]
+    pub(crate) ensemble: Option<Ensemble>,
     #[serde(skip)]
     pub(crate) origin: Origin,
 }
@@ -187,6 +190,12 @@ impl SceneFile {
         &self.output.columns
     }
 
+    /// The scenes that are drawn, if the file has a table `ensemble`.
+    #[must_use]
+    pub fn ensemble(&self) -> Option<&Ensemble> {
+        self.ensemble.as_ref()
+    }
+
     /// Simulates the scene.
     ///
     /// # Errors
@@ -225,13 +234,16 @@ impl SceneFile {
     }
 
     fn run_by(&self, told: Told<'_>) -> Result<Run, Mistake> {
-        choose::run(self, told).map_err(|stopped| {
-            let Origin { path, places } = &self.origin;
-            match stopped {
-                Stopped::Table(message) => Mistake::of_table(path, message),
-                stopped => Mistake::of_run(path, stopped.place(places), stopped.to_string()),
-            }
-        })
+        choose::run(self, told).map_err(|stopped| self.stopped(stopped))
+    }
+
+    /// What stopped a run, with the place that it is about.
+    pub(crate) fn stopped(&self, stopped: Stopped) -> Mistake {
+        let Origin { path, places } = &self.origin;
+        match stopped {
+            Stopped::Table(message) => Mistake::of_table(path, message),
+            stopped => Mistake::of_run(path, stopped.place(places), stopped.to_string()),
+        }
     }
 
     /// Whether the step is chosen for an accuracy, by trial runs.
@@ -261,7 +273,8 @@ impl SceneFile {
             Pace::Accuracy(tolerance) => format!("{} s to {tolerance:e}", short(self.run.duration)),
         };
         let sweep = self.sweep.as_ref().map(|sweep| format!(", a sweep of {}", sweep.points().len()));
-        format!("{}, {pace}{}", self.sum(), sweep.unwrap_or_default())
+        let ensemble = self.ensemble.as_ref().map(|ensemble| format!(", an ensemble of {}", ensemble.members()));
+        format!("{}, {pace}{}{}", self.sum(), sweep.unwrap_or_default(), ensemble.unwrap_or_default())
     }
 
     /// The effects by their names in the file.

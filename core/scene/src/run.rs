@@ -32,7 +32,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    fn of<A: Advected<SO3>>(now: &Moment<'_, AnyStepper<SO3, A>>) -> Self {
+    pub(crate) fn of<A: Advected<SO3>>(now: &Moment<'_, AnyStepper<SO3, A>>) -> Self {
         Self {
             time: now.time(),
             attitude: now.attitude(),

@@ -200,7 +200,7 @@ fn spread(range: &DeTable<'_>, span: &Range<usize>) -> Result<Vec<String>, Wrong
 }
 
 /// A number and its unit.
-fn measured(value: &DeValue<'_>) -> Option<(f64, String)> {
+pub(crate) fn measured(value: &DeValue<'_>) -> Option<(f64, String)> {
     let (number, unit) = match value {
         DeValue::Integer(number) if number.radix() == 10 => (number.as_str().to_owned(), String::new()),
         DeValue::Float(number) => (number.as_str().to_owned(), String::new()),

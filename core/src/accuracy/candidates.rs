@@ -1,5 +1,11 @@
 //! The methods to choose from.
 
+use alloc::borrow::ToOwned as _;
+use alloc::boxed::Box;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
 use super::error::AccuracyError;
 use super::search::{Found, again, search};
 use super::trials::Start;
@@ -13,6 +19,10 @@ use crate::methods::{
     SplittingScheme, SymmetricBody, has_force_gradient,
 };
 use crate::motion::{AnyStepper, Cost, Plan, Stepper};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
 
 /// A method, to be made for a step.
 pub(super) struct Candidate<G: LieGroup, A> {

@@ -1,5 +1,8 @@
 //! What was chosen, and what else there was.
 
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
 use core::fmt;
 
 use super::Accuracy;

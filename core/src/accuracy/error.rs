@@ -1,5 +1,6 @@
 //! Why no step was chosen.
 
+use alloc::string::String;
 use core::fmt;
 
 use super::trials::Trials;

@@ -1,9 +1,15 @@
 //! The trials of one method with ever shorter steps, and what they say of the steps that an error takes.
 
+use alloc::vec::Vec;
+
 use super::candidates::Candidate;
 use super::error::AccuracyError;
 use super::trials::{End, Start, Trial, Trials};
 use crate::groups::{Advected, LieGroup};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
 
 /// Errors that are larger fall by no law of powers.
 pub(super) const LARGEST_ERROR: f64 = 0.05;

@@ -34,7 +34,9 @@ mod trials;
 pub use candidates::Candidates;
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
-pub use refinement::{Effort, End, Measurement, Reference, Refinement, RefinementError, convergence, work_precision};
+#[cfg(feature = "std")]
+pub use refinement::{Effort, work_precision};
+pub use refinement::{End, Measurement, Reference, Refinement, RefinementError, convergence};
 pub use saved::SavedChoice;
 pub use trials::Trials;
 

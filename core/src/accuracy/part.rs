@@ -5,6 +5,9 @@
 //! that one of them is known to have there when it has the error asked for at the horizon; before any is known to, for
 //! one that grows in proportion to time.
 
+use alloc::string::String;
+use alloc::vec::Vec;
+
 use super::Accuracy;
 use super::candidates::Candidate;
 use super::error::AccuracyError;
@@ -12,6 +15,10 @@ use super::ladder::{Estimate, LARGEST_ERROR, Ladder, SMALLEST_ERROR};
 use super::search::MOST_IN_VAIN;
 use super::trials::{End, Start, Trials};
 use crate::groups::{Advected, LieGroup};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
 
 /// The part is shortened by this factor until so many steps are enough for a motion.
 const SHORTER: f64 = 8.0;

@@ -1,5 +1,7 @@
 //! A choice that is kept for the next time.
 
+use alloc::string::String;
+
 /// A [`Choice`](super::Choice) in short, by [`Choice::saved`](super::Choice::saved): what the same scene is given when
 /// it is asked again, by [`Candidates::with_saved`](super::Candidates::with_saved).
 ///

@@ -1,6 +1,9 @@
 //! The search for the cheapest method: all are ranked over a short part of the motion, and the first of them are run to
 //! the horizon.
 
+use alloc::string::String;
+use alloc::vec::Vec;
+
 use super::Accuracy;
 use super::candidates::Candidate;
 use super::error::AccuracyError;
@@ -8,6 +11,10 @@ use super::ladder::{Ladder, SMALLEST_ERROR};
 use super::part::{FAR, Part};
 use super::trials::{End, Start, Trial, Trials};
 use crate::groups::{Advected, LieGroup};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
 
 /// All trials together may cost so many runs of the method chosen.
 pub(super) const MOST_RUNS: f64 = 30.0;

@@ -6,6 +6,10 @@ use super::error::AccuracyError;
 use crate::groups::{Advected, LieGroup};
 use crate::numbers::{Coordinates as _, Entries};
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 /// Where a run ends.
 #[derive(Clone, Copy, Debug)]
 pub struct End<G: LieGroup> {

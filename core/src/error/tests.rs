@@ -2,6 +2,9 @@
 //!
 //! A variant that isn't listed here doesn't compile: the matches are without a wildcard.
 
+use alloc::string::ToString as _;
+use std::println;
+
 use super::{SetupError, StepError};
 use crate::groups::{NotARotation, NotInGroup};
 use crate::mechanics::InertiaError;

@@ -63,6 +63,10 @@ pub use so3::{NotARotation, SO3};
 pub use su2::{SU2, SU2Generators};
 pub use translations::{R1, R2, R3, TranslationGenerators};
 
+use alloc::format;
+use alloc::string::String;
+use alloc::string::ToString as _;
+use alloc::vec::Vec;
 use core::fmt::Debug;
 
 use nalgebra::Matrix3;
@@ -163,13 +167,15 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     }
 
     /// The numbers by which a table shows an element, a name and a unit each: on SO(3) its unit quaternion, on a product
-    /// those of its factors, elsewhere the entries of the matrix, row by row. Where nothing is known of a unit it is empty.
+    /// those of its factors, elsewhere the entries of the matrix, row by row: `g_12`, and `g_1_12` of ten rows or more. Where nothing is known of a unit it is empty.
     #[must_use]
     fn named_numbers() -> Vec<(String, &'static str)> {
         let mut entries = 0;
         Self::identity().matrix().each(&mut |_| entries += 1);
         let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
-        (0..entries).map(|entry| (format!("g_{}{}", entry / rows + 1, entry % rows + 1), "")).collect()
+        // Of two numbers that run together 1 and 11 would be 11 and 1.
+        let between = if rows > 9 { "_" } else { "" };
+        (0..entries).map(|entry| (format!("g_{}{between}{}", entry / rows + 1, entry % rows + 1), "")).collect()
     }
 
     /// Writes these numbers over those of the element before, or over zeros, and returns the places behind them. Of two

@@ -1,5 +1,9 @@
 //! Products of groups: several bodies.
 
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
 use super::{LieGroup, Retraction};
 use crate::numbers::{Blocks, Coordinates, Join, Mask, nowhere};
 use nalgebra::SimdBool as _;

@@ -1,5 +1,8 @@
 //! The rotations of space.
 
+use alloc::borrow::ToOwned as _;
+use alloc::string::String;
+use alloc::vec::Vec;
 use core::fmt;
 
 use nalgebra::{Matrix3, RealField, Rotation3, SimdBool as _, UnitQuaternion, Vector3};
@@ -293,12 +296,14 @@ impl<T: Real> LieGroup for SO3<T> {
         ["q_w", "q_x", "q_y", "q_z"].map(|name| (name.to_owned(), "1")).into()
     }
 
+    #[inline]
     fn write_numbers<'a>(&self, numbers: &'a mut [T]) -> &'a mut [T] {
         let quaternion = quaternion(&self.0);
-        let (own, behind) = numbers.split_at_mut(numbers.len().min(4));
-        let before = own.iter().zip(&quaternion).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+        let Some((own, behind)) = numbers.split_first_chunk_mut::<4>() else { return &mut [] };
+        let [w, x, y, z] = quaternion;
+        let before = own[0] * w + own[1] * x + own[2] * y + own[3] * z;
         let sign = (-T::one()).select(before.simd_lt(T::zero()), T::one());
-        own.iter_mut().zip(quaternion).for_each(|(number, part)| *number = part * sign);
+        *own = quaternion.map(|part| part * sign);
         behind
     }
 
@@ -308,8 +313,11 @@ impl<T: Real> LieGroup for SO3<T> {
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
     fn defect(&self) -> T {
-        let gram = self.0.transpose() * self.0 - Matrix3::identity();
-        gram.norm_squared().simd_sqrt()
+        let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
+        let on = [0, 1, 2].map(|i| entry(i, i) - T::one());
+        let off = [entry(0, 1), entry(0, 2), entry(1, 2)];
+        let square = |[a, b, c]: [T; 3]| a * a + b * b + c * c;
+        (square(on) + square(off) * real(2.0)).simd_sqrt()
     }
 
     /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
@@ -325,30 +333,32 @@ impl<T: Real> LieGroup for SO3<T> {
 }
 
 /// The unit quaternion of a rotation, real part first, from its largest part. Every lane has its own.
+#[inline(always)]
 fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
+    // Four times the square of a part, and that part times all.
+    let largest = T::one() + r.m11 + r.m22 + r.m33;
+    // Within 120° of the identity no other part need be asked: this one keeps all digits.
+    if !largest.simd_ge(T::one()).all() {
+        return quaternion_of_a_large_turn(r);
+    }
+    let scale = real::<T>(0.5) / largest.simd_sqrt();
+    [largest, r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12].map(|product| product * scale)
+}
+
+/// The same by the largest part.
+#[inline(never)]
+fn quaternion_of_a_large_turn<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
     let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
-    // Four times the square of a part, and that part times all.
-    let parts = [
-        (one + r.m11 + r.m22 + r.m33, [wx, wy, wz]),
-        (one + r.m11 - r.m22 - r.m33, [wx, xy, xz]),
-        (one - r.m11 + r.m22 - r.m33, [wy, xy, yz]),
-        (one - r.m11 - r.m22 + r.m33, [wz, xz, yz]),
-    ];
-    let mut largest = parts[0].0;
-    let mut products = [largest, wx, wy, wz];
-    // Within 120° of the identity no other part need be asked: this one keeps all digits.
-    if largest.simd_ge(one).all() {
-        let scale = real::<T>(0.5) / largest.simd_sqrt();
-        return products.map(|product| product * scale);
-    }
-    for (place, (square, others)) in parts.into_iter().enumerate().skip(1) {
+    let [ww, xx] = [one + r.m11 + r.m22 + r.m33, one + r.m11 - r.m22 - r.m33];
+    let [yy, zz] = [one - r.m11 + r.m22 - r.m33, one - r.m11 - r.m22 + r.m33];
+    let (mut largest, mut products) = (ww, [ww, wx, wy, wz]);
+    let others = [(xx, [wx, xx, xy, xz]), (yy, [wy, xy, yy, yz]), (zz, [wz, xz, yz, zz])];
+    for (square, others) in others {
         let larger = square.simd_gt(largest);
         largest = square.select(larger, largest);
-        let mut others = others.into_iter();
-        for (k, product) in products.iter_mut().enumerate() {
-            let part = if k == place { square } else { others.next().unwrap_or(one) };
+        for (product, part) in products.iter_mut().zip(others) {
             *product = part.select(larger, *product);
         }
     }

@@ -7,6 +7,10 @@ use super::samples::{
     derivative, eliminated_inverse,
 };
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 /// Closure, associativity, neutral and inverse elements.
 pub fn group_axioms<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>() {
     let mut random = Random::new(1);

@@ -1,5 +1,7 @@
 //! Where the laws are tried, and how two sides are compared.
 
+use alloc::vec;
+use alloc::vec::Vec;
 use core::ops::{Add, Mul, Sub};
 
 use nalgebra::{SMatrix, SVector};

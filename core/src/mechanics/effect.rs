@@ -1,5 +1,7 @@
 //! The trait of a term of a scene: its share of each stage of a step.
 
+use alloc::borrow::ToOwned as _;
+use alloc::string::String;
 use core::fmt::Debug;
 
 use crate::error::SetupError;

@@ -1,8 +1,15 @@
 //! Symmetries of a continuous Lagrangian at given parameters, and what they conserve (Noether).
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::continuous::ContinuousLagrangian;
 use crate::numbers::{Coordinates, Entries, real, reported};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
 
 type Vector<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
 

@@ -1,5 +1,7 @@
 //! Scenes: sums of effects.
 
+use alloc::format;
+use alloc::string::String;
 use core::ops::Add;
 
 use crate::error::SetupError;

@@ -1,10 +1,12 @@
 //! A stepper whose scene and method aren't in its type.
 
+use alloc::boxed::Box;
+use alloc::rc::Rc;
 use core::any::Any;
 use core::fmt::{self, Debug};
 
 use crate::error::{SetupError, StepError};
-use crate::groups::LieGroup;
+use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, Vector};
 use crate::motion::plan::{Cost, Plan};
 use crate::motion::report::StepReport;
@@ -17,7 +19,15 @@ use crate::numbers::real;
 /// they run what they step.
 ///
 /// A step costs an indirect call more.
-pub struct AnyStepper<G: LieGroup, A>(Box<dyn Erased<G, A>>);
+///
+/// A copy is the same stepper, and costs nothing.
+pub struct AnyStepper<G: LieGroup, A>(Rc<dyn Erased<G, A>>);
+
+impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
+    fn clone(&self) -> Self {
+        Self(Rc::clone(&self.0))
+    }
+}
 
 /// The state of an [`AnyStepper`].
 pub type AnyState<G, A> = State<G, A, AnyKept>;
@@ -32,9 +42,9 @@ trait ErasedKept: Any + Debug {
     fn equals(&self, other: &dyn ErasedKept) -> bool;
 }
 
-impl<K: Any + Copy + Debug + PartialEq> ErasedKept for K {
+impl<K: Any + Clone + Debug + PartialEq> ErasedKept for K {
     fn copied(&self) -> Box<dyn ErasedKept> {
-        Box::new(*self)
+        Box::new(self.clone())
     }
 
     fn as_any(&self) -> &dyn Any {
@@ -117,7 +127,7 @@ where
 
     fn step(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
         let mut state = own(self, motion, kept);
-        let report = self.step_called(&mut state)?;
+        let report = self.step_or_run(&mut state)?;
         back(state, motion, kept);
         Ok(report)
     }
@@ -169,7 +179,7 @@ impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
     /// This stepper without its scene and method in the type.
     #[must_use]
     pub fn into_any(self) -> AnyStepper<Group<S>, S::Advected> {
-        AnyStepper(Box::new(self))
+        AnyStepper(Rc::new(self))
     }
 }
 
@@ -250,6 +260,111 @@ impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
     #[must_use]
     pub fn cost(&self) -> Cost {
         self.0.cost()
+    }
+}
+
+/// A stepper that hides what is advected: it is kept with what the method keeps.
+struct Hiding<G: LieGroup, A>(AnyStepper<G, A>);
+
+#[derive(Clone, Debug, PartialEq)]
+struct Hidden<A> {
+    advected: A,
+    kept: AnyKept,
+}
+
+impl<G: LieGroup, A: Advected<G> + 'static> Hiding<G, A> {
+    /// As [`own`].
+    fn own(&self, motion: &Motion<G, ()>, kept: &AnyKept) -> AnyState<G, A> {
+        match kept.0.as_ref().as_any().downcast_ref::<Hidden<A>>() {
+            Some(hidden) => State { motion: seeing(motion, hidden.advected), kept: hidden.kept.clone() },
+            None => self.anew(motion),
+        }
+    }
+
+    /// The state of this stepper with the attitude and the momentum of another.
+    fn anew(&self, motion: &Motion<G, ()>) -> AnyState<G, A> {
+        // Which values it is told to see makes no difference: it sees its own.
+        let mut state = self.0.adopt(&seeing(motion, A::from_entries(&mut || real(0.0))));
+        state.motion.steps = motion.steps;
+        state
+    }
+}
+
+/// The same motion with these advected values.
+fn seeing<G: LieGroup, A, B>(motion: &Motion<G, A>, advected: B) -> Motion<G, B> {
+    Motion { attitude: motion.attitude, momentum: motion.momentum, advected, steps: motion.steps }
+}
+
+fn hidden<G: LieGroup, A: Debug + PartialEq + Copy + 'static>(state: AnyState<G, A>) -> AnyState<G, ()> {
+    let State { motion, kept } = state;
+    State { motion: seeing(&motion, ()), kept: AnyKept(Box::new(Hidden { advected: motion.advected, kept })) }
+}
+
+fn taken_apart<G: LieGroup>(state: AnyState<G, ()>) -> (Motion<G, ()>, AnyKept) {
+    (state.motion, state.kept)
+}
+
+impl<G: LieGroup, A: Advected<G> + 'static> Erased<G, ()> for Hiding<G, A> {
+    fn start(&self, attitude: G, velocity: G::Vector) -> Result<AnyState<G, ()>, SetupError> {
+        self.0.start(attitude, velocity).map(hidden)
+    }
+
+    fn step(&self, motion: &mut Motion<G, ()>, kept: &mut AnyKept) -> Result<StepReport, StepError> {
+        let mut state = self.own(motion, kept);
+        let report = self.0.step(&mut state)?;
+        (*motion, *kept) = taken_apart(hidden(state));
+        Ok(report)
+    }
+
+    fn run(
+        &self,
+        motion: &mut Motion<G, ()>,
+        kept: &mut AnyKept,
+        (steps, explain): (u64, bool),
+    ) -> Result<u64, StepError> {
+        let mut state = self.own(motion, kept);
+        let made = if explain { self.0.run(&mut state, steps) } else { self.0.run_unexplained(&mut state, steps) };
+        let iterations = made?;
+        (*motion, *kept) = taken_apart(hidden(state));
+        Ok(iterations)
+    }
+
+    fn part(&self, motion: &Motion<G, ()>, kept: &AnyKept, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
+        let part = self.0.fraction_of_a_step(&self.own(motion, kept), fraction)?;
+        Ok(seeing(&part, ()))
+    }
+
+    fn adopt(&self, motion: &Motion<G, ()>) -> AnyState<G, ()> {
+        let mut state = self.anew(motion);
+        state.motion.steps = 0;
+        hidden(state)
+    }
+
+    fn step_size(&self) -> G::Scalar {
+        self.0.step_size()
+    }
+
+    fn velocity(&self, motion: &Motion<G, ()>) -> G::Vector {
+        self.0.velocity(&self.anew(motion))
+    }
+
+    fn energy(&self, motion: &Motion<G, ()>) -> G::Scalar {
+        self.0.energy(&self.anew(motion))
+    }
+
+    fn cost(&self) -> Cost {
+        self.0.cost()
+    }
+}
+
+impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {
+    /// The same without what is advected in its type: for programs that keep steppers of different scenes side by side.
+    ///
+    /// The steps are the same to the bit. Of a motion alone what is advected is as its attitude sees it, so that a
+    /// [velocity](Self::velocity) and an [energy](Self::energy) that depend on it are the same to rounding.
+    #[must_use]
+    pub fn hiding_advected(self) -> AnyStepper<G, ()> {
+        AnyStepper(Rc::new(Hiding(self)))
     }
 }
 

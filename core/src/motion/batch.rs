@@ -1,5 +1,7 @@
 //! Bodies in lanes, of which each may stop by itself.
 
+use alloc::vec::Vec;
+
 use crate::error::{SetupError, StepError};
 use crate::motion::integrator::Integrator;
 use crate::numbers::{InLanes, Lanes};

@@ -1,5 +1,6 @@
 //! What all that steps has in common: what is written for it goes with every method.
 
+use alloc::boxed::Box;
 use core::ops::{ControlFlow, Deref};
 
 use crate::error::StepError;
@@ -11,6 +12,10 @@ use crate::motion::report::StepReport;
 use crate::motion::stepper::{StateOf, Stepper};
 use crate::motion::summation::Motion;
 use crate::numbers::real;
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
 
 /// Something that steps a motion by a fixed step: a [`Stepper`] with any plan, an [`AnyStepper`], a
 /// [`CotangentGauss`](crate::methods::CotangentGauss).
@@ -181,6 +186,14 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         self.run_unexplained(state, steps).is_ok()
     }
 
+    fn run_as_far(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
+        if const { P::RUNS_BY_STEPS } {
+            // It stops where they do, and nothing need be copied.
+            return self.run_in_place(state, steps);
+        }
+        self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
+    }
+
     fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {
         self.fraction_of_a_step(state, fraction)
     }
@@ -201,6 +214,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         Stepper::energy(self, motion)
     }
 
+    #[inline]
     fn velocity_and_energy(&self, motion: &Motion<Group<S>, S::Advected>) -> (Vector<S>, Scalar<S>) {
         let velocity = Stepper::velocity(self, motion);
         (velocity, energy_of_velocity(self.scene(), &velocity, &motion.advected))

@@ -5,6 +5,10 @@ use core::fmt::Debug;
 use crate::numbers::{Coordinates, Real, real, reported};
 use crate::solving::{DIFFERENCES, Guess, History, Warm};
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 /// What a [`Plan`](crate::motion::Plan) keeps from step to step, as numbers that a checkpoint stores.
 pub trait Kept<T: Real>: Copy + Debug + PartialEq {
     /// Visits all of it, in a fixed order and number.
@@ -66,6 +70,7 @@ pub(crate) fn counted<T: Real>(number: T) -> Option<usize> {
 mod tests {
     use super::Kept as _;
     use crate::solving::Warm;
+    use alloc::vec::Vec;
     use nalgebra::Vector2;
 
     /// Half the increment, a guess, how many increments there were, and their differences.

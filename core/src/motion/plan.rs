@@ -5,7 +5,7 @@ use crate::mechanics::{Effect, Group, Operations, Scalar, SceneVisitor, Vector};
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation};
-use crate::numbers::{Vectors, real};
+use crate::numbers::{Kernel, Vectors, dispatch, real};
 use crate::solving::largest_fraction;
 use nalgebra::SimdValue;
 
@@ -82,6 +82,10 @@ pub trait Plan<S: Effect> {
     /// Whether a step is a [`run`](Self::run) of one, to the bit and in what an error leaves: then only that is compiled.
     const STEPS_BY_RUNS: bool = false;
 
+    /// Whether a [`run`](Self::run) is its steps one after the other, so that an error leaves what the last of them made,
+    /// and these report nothing but their iterations.
+    const RUNS_BY_STEPS: bool = false;
+
     /// Adds an impulse to the momentum between two steps, and to what is kept of it.
     #[inline(always)]
     fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, impulse: &Vector<S>) {
@@ -118,7 +122,7 @@ pub trait Plan<S: Effect> {
         let solvable = |fraction: f64| {
             self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
                 let (mut motion, mut kept) = (*motion, part.keep(scene, motion));
-                rare_step(&part, scene, &mut motion, &mut kept).is_ok()
+                run_called(&part, scene, &mut motion, &mut kept, 1).is_ok()
             })
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.step_size() * real(fraction))
@@ -146,6 +150,33 @@ pub(crate) fn step<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     } else {
         plan.step(scene, motion, kept)
     }
+}
+
+/// So many steps.
+struct Run<'a, S: Effect, P: Plan<S>>(&'a P, &'a S, &'a mut Motion<Group<S>, S::Advected>, &'a mut P::Kept, u64);
+
+impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
+    type Output = Result<u64, StepError>;
+    const VECTORS: Vectors = P::VECTORS;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self(plan, scene, motion, kept, steps) = self;
+        plan.run(scene, motion, kept, steps)
+    }
+}
+
+/// [`Plan::run`] with the vector instructions of the machine; called, so that there is one copy of a method's steps for all
+/// that runs them.
+#[inline(never)]
+pub(crate) fn run_called<S: Effect, P: Plan<S>>(
+    plan: &P,
+    scene: &S,
+    motion: &mut Motion<Group<S>, S::Advected>,
+    kept: &mut P::Kept,
+    steps: u64,
+) -> Result<u64, StepError> {
+    dispatch(Run(plan, scene, motion, kept, steps))
 }
 
 /// [`Plan::step`] where steps are rare: compiled once, and not anew into each of its callers.

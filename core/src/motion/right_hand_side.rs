@@ -1,5 +1,7 @@
 //! The continuous equations of motion as numbers, for any ODE solver.
 
+use alloc::vec::Vec;
+
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, Legendre, check_inertia, left_symmetries, right_symmetries};

@@ -8,7 +8,7 @@ use crate::mechanics::{
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::{Plan, Steerable, rare_step, step};
+use crate::motion::plan::{Plan, Steerable, run_called, step};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -180,16 +180,30 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// As [`step`](Self::step).
     pub fn run(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
         let mut next = *state;
-        let iterations = self
-            .run_unexplained(&mut next, steps)
-            .map_err(|error| self.plan.explained(error, &self.scene, &next.motion, &next.kept))?;
+        let iterations = self.run_in_place(&mut next, steps)?;
         *state = next;
         Ok(iterations)
     }
 
+    /// As [`run`](Self::run), but after an error the state may be anywhere.
+    pub(crate) fn run_in_place(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
+        let made = self.run_unexplained(state, steps);
+        made.map_err(|error| self.plan.explained(error, &self.scene, &state.motion, &state.kept))
+    }
+
     /// As [`run`](Self::run), but after an error the state may be anywhere, and what would do isn't looked for.
+    #[inline]
     pub(crate) fn run_unexplained(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
-        dispatch(Run(self, state, steps))
+        run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, steps)
+    }
+
+    /// One step as a run of one, where that is the same: for callers that would else have another copy of it compiled.
+    pub(crate) fn step_or_run(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
+        if const { P::STEPS_BY_RUNS || P::RUNS_BY_STEPS } {
+            self.run_in_place(state, 1).map(StepReport::of_run)
+        } else {
+            self.step_called(state)
+        }
     }
 
     /// The motion after a step of this fraction of `h`; see [`Integrator::part`](crate::motion::Integrator::part).
@@ -208,7 +222,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
         let mut next = state.motion;
         let mut kept = part.keep(scene, &next);
-        rare_step(&part, scene, &mut next, &mut kept)
+        run_called(&part, scene, &mut next, &mut kept, 1)
             .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
         next.steps = state.steps;
         Ok(next)
@@ -538,18 +552,5 @@ impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     #[inline(always)]
     fn run(self) -> Self::Output {
         step(&self.0.plan, &self.0.scene, &mut self.1.motion, &mut self.1.kept)
-    }
-}
-
-/// So many of them.
-struct Run<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>, u64);
-
-impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
-    type Output = Result<u64, StepError>;
-    const VECTORS: Vectors = P::VECTORS;
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.0.plan.run(&self.0.scene, &mut self.1.motion, &mut self.1.kept, self.2)
     }
 }

@@ -1,5 +1,7 @@
 //! Values of several lanes, put together of one for each and taken apart again.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Point, SMatrix};
 
 use crate::numbers::scalar::Real;

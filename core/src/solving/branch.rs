@@ -1,5 +1,8 @@
 //! Where the Jacobian is near that of the free body.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::problem::{newton_system, step_terms};
 use crate::groups::{Advected as _, LieGroup as _, Retraction};
 use crate::mechanics::{Effect, Group, Scalar, Square, Vector};

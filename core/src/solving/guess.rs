@@ -203,6 +203,7 @@ impl<V: Lanes> Lanes for History<V> {
 #[cfg(test)]
 mod tests {
     use super::{DIFFERENCES, History};
+    use alloc::vec::Vec;
     use nalgebra::Vector1;
 
     /// A polynomial of as high a degree as there are differences goes on as it was; one of a higher degree doesn't.

@@ -12,6 +12,8 @@
 //! where `h|a| < J_min` there is exactly one solution below 90°. In between it depends on the direction, and the solver
 //! decides.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, SimdRealField as _, Vector3};
 
 use crate::groups::LieGroup;

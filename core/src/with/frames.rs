@@ -6,6 +6,10 @@ use crate::error::StepError;
 use crate::motion::{Integrator, Motion, ScalarIn};
 use crate::numbers::real;
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 /// A motion that is shown at times of its viewer's: frames of a game, samples of a loudspeaker, slow motion.
 ///
 /// The steps have their fixed length whatever the frames', so the motion is the same at all rates, to the bit. What of the

@@ -16,6 +16,8 @@ pub mod sections;
 pub use checkpoint::{Checkpoint, CheckpointError, Stored};
 pub use compensated::{Carried, Compensable, Compensated};
 pub use frames::Frames;
-pub use record::{Background, Column, Csv, RecordError, Recorder, Sink, SinkError, Table};
+#[cfg(feature = "std")]
+pub use record::{Background, Csv};
+pub use record::{Column, RecordError, Recorder, Sink, SinkError, Table};
 pub use remedies::{Instead, OrElse, Substeps};
 pub use run::{Ended, Event, Reason, Run, RunError};

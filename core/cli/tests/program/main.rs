@@ -3,7 +3,10 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+mod called;
+mod ensembles;
 mod mutated;
 mod page;
 mod readme;
-mod scene_files;
+mod runs;
+mod wrong_files;

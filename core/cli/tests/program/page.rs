@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::scene_files::{PROGRAM, TOP, folder};
+use crate::called::{PROGRAM, TOP, folder};
 
 /// Runs the top and returns the text of its page.
 fn page(folder: &Path, title: &str) -> String {

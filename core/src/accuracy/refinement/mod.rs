@@ -2,9 +2,17 @@
 
 mod runs;
 mod text;
+#[cfg(feature = "std")]
 mod timed;
 
+use alloc::vec::Vec;
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 pub use runs::{End, Reference, RefinementError, convergence};
+#[cfg(feature = "std")]
 pub use timed::{Effort, work_precision};
 
 /// A run with one step.

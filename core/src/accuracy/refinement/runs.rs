@@ -1,5 +1,6 @@
 //! Runs of an integrator with ever shorter steps, and their errors.
 
+use alloc::vec::Vec;
 use core::fmt;
 
 use super::{Measurement, Refinement};

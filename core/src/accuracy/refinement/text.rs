@@ -1,5 +1,9 @@
 //! Refinements as tables, as CSV and as JSON.
 
+use alloc::borrow::ToOwned as _;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
 use core::fmt::{self, Write as _};
 
 use super::{Measurement, Refinement};

@@ -1,5 +1,6 @@
 //! The same with times. This is the only file of the library that asks a clock.
 
+use alloc::vec::Vec;
 use std::time::{Duration, Instant};
 
 use super::runs::{Ready, Reference, RefinementError, plan};

@@ -4,6 +4,8 @@ mod scheme;
 
 pub use scheme::CompositionScheme;
 
+use alloc::vec::Vec;
+
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{
     DiscreteLagrangian, Effect, Group, Matrix, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector,
@@ -209,6 +211,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
 
     /// [`StepError::BeyondSolvable`] speaks of the whole step.
     const EXPLAINS: bool = true;
+    const RUNS_BY_STEPS: bool = true;
 
     #[cold]
     fn explained(

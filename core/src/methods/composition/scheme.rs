@@ -3,6 +3,8 @@
 // The digits are those of the papers, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
+use alloc::vec::Vec;
+
 /// The coefficients `γ_1, …, γ_s` of a symmetric composition, `γ_{s+1−i} = γ_i` and `Σ γ_i = 1`.
 ///
 /// # Examples

@@ -1,5 +1,8 @@
 //! Gauss's coefficients, by pairs of stages that mirror each other.
 
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _; // roots and powers
+
 /// Coefficients of a collocation with `2 PAIRS` stages on the unit interval.
 ///
 /// Stage `k` of the first half has the node `c_k < 1/2`, its mirror image `k̄` the node `1 − c_k`. With
@@ -99,6 +102,7 @@ fn root(n: usize, k: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::Coefficients;
+    use alloc::vec::Vec;
 
     /// Butcher's simplifying assumptions `B(2s)` and `C(s)`, from which order `2s` follows for a symplectic method; in
     /// powers of `x = 2c − 1`, which are well conditioned, on `[−1, 1]`.

@@ -9,6 +9,10 @@ use crate::mechanics::{ContinuousLagrangian, check_inertia};
 use crate::motion::{Integrator, Motion, State, StepReport};
 use crate::numbers::Coordinates;
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 /// A step of order `4 PAIRS`, by Gauss collocation with `2 PAIRS` stages in attitude and conjugate momentum, for any
 /// smooth `l(ξ, w)` on a group of `N` × `N` matrices.
 ///

@@ -5,6 +5,8 @@
 use super::coefficients::Coefficients;
 use super::lift::{Lifted, each};
 use crate::error::StepError;
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _; // roots and powers
 
 /// A number for each component and each stage: for those of the first half of the step, then for their mirror images.
 pub(super) type Numbers<const PAIRS: usize> = [[[f64; PAIRS]; 2]; 8];

@@ -23,6 +23,8 @@ pub use processed::{Inside, Processed, ProcessedScheme};
 pub use scheme::{Flow, SplittingScheme};
 pub use split_body::SplitBody;
 
+use alloc::vec::Vec;
+
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{

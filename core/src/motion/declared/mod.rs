@@ -255,6 +255,8 @@ impl<S: Effect> Steerable for Declared<S> {}
 impl<S: Effect> Plan<S> for Declared<S> {
     type Kept = Warm<Vector<S>>;
 
+    const RUNS_BY_STEPS: bool = true;
+
     fn step_size(&self) -> Scalar<S> {
         self.h
     }

@@ -1,5 +1,7 @@
 //! The adjoint, backwards: the gradient of a number by the start and by all parameters at once.
 
+use alloc::vec;
+use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::error::{SetupError, StepError};

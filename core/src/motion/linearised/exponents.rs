@@ -1,5 +1,8 @@
 //! Lyapunov exponents, of the tangent map by `QR`.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use crate::error::StepError;
 use crate::groups::LieGroup as _;
 use crate::mechanics::{Group, Scalar, SecondDerivatives};

@@ -81,6 +81,7 @@ pub use recorded::Change;
 pub use stage::{Cotangent, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
+use alloc::vec::Vec;
 use core::cell::RefCell;
 use core::ops::Range;
 

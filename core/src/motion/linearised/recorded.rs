@@ -1,5 +1,6 @@
 //! What a step has done to a motion, stage by stage.
 
+use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::groups::{Advected, LieGroup};

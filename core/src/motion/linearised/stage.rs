@@ -1,5 +1,7 @@
 //! The tangent map of one stage and its transpose.
 
+use alloc::vec::Vec;
+
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;

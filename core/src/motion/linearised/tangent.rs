@@ -1,5 +1,7 @@
 //! The tangent map, forwards: columns that are carried along with a motion.
 
+use alloc::vec;
+use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::groups::LieGroup;

@@ -1,5 +1,6 @@
 //! Why a checkpoint isn't taken.
 
+use alloc::string::String;
 use core::fmt;
 
 /// Why a checkpoint can't be resumed.

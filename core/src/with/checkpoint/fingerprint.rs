@@ -1,5 +1,8 @@
 //! What a checkpoint is compared by.
 
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
 use core::fmt;
 
 use serde::de::{Error as _, Unexpected};

@@ -7,6 +7,9 @@
 mod error;
 mod fingerprint;
 
+use alloc::string::String;
+use alloc::vec::Vec;
+
 use nalgebra::{SimdComplexField as _, SimdRealField as _};
 use serde::{Deserialize, Serialize};
 

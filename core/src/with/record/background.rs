@@ -1,5 +1,6 @@
 //! A sink in a thread of its own.
 
+use alloc::vec::Vec;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{JoinHandle, spawn};
 
@@ -8,7 +9,7 @@ use super::{Column, RecordError, Sink, SinkError};
 /// A sink that writes in a thread of its own, so that a run waits only where it makes rows faster than they are written.
 ///
 /// Blocks that wait to be written are four at most, so memory doesn't grow. An error of the sink is reported with a
-/// later block, or at the end.
+/// later block, or at the end. If this is dropped before its end the sink gets none either.
 #[derive(Debug)]
 pub struct Background<S> {
     /// Gone when the table is finished.
@@ -23,6 +24,7 @@ pub struct Background<S> {
 enum Work {
     Begin(Vec<Column>),
     Write(Vec<f64>),
+    End,
 }
 
 /// Blocks that wait.
@@ -75,9 +77,11 @@ fn write_all(sink: &mut impl Sink, waiting: &Receiver<Work>, back: &SyncSender<V
                 // Where it isn't taken it is freed.
                 let _ = back.try_send(rows);
             }
+            Work::End => return sink.end(),
         }
     }
-    sink.end()
+    // Dropped before its end: what isn't whole isn't to look so.
+    Ok(())
 }
 
 impl<S: Sink + Send + 'static> Sink for Background<S> {
@@ -93,6 +97,10 @@ impl<S: Sink + Send + 'static> Sink for Background<S> {
     }
 
     fn end(&mut self) -> Result<(), SinkError> {
+        if let Some(work) = &self.work {
+            // A thread that has ended says why.
+            let _ = work.send(Work::End);
+        }
         self.join()
     }
 }

@@ -1,13 +1,23 @@
 //! A table of a run: a row for each moment that is recorded, handed on in blocks to a file or to memory.
 
+#[cfg(feature = "std")]
 mod background;
+#[cfg(feature = "std")]
 mod csv;
 mod table;
 
+#[cfg(feature = "std")]
 pub use background::Background;
+#[cfg(feature = "std")]
 pub use csv::Csv;
 pub use table::Table;
 
+use alloc::borrow::ToOwned as _;
+use alloc::boxed::Box;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
 use core::fmt;
 
 use crate::groups::LieGroup;
@@ -73,6 +83,11 @@ pub enum RecordError {
         /// The name.
         name: String,
     },
+    /// A column was added behind the first row.
+    Late {
+        /// Its name.
+        name: String,
+    },
     /// What the rows are written to has failed.
     Sink {
         /// Its error.
@@ -84,6 +99,9 @@ impl fmt::Display for RecordError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::SameName { name } => write!(f, "two columns are called `{name}`; give one of them another name"),
+            Self::Late { name } => {
+                write!(f, "the column `{name}` was added behind the first row; add all columns before that")
+            }
             Self::Sink { cause } => write!(f, "the table can't be written: {cause}"),
         }
     }
@@ -92,7 +110,7 @@ impl fmt::Display for RecordError {
 impl core::error::Error for RecordError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
-            Self::SameName { .. } => None,
+            Self::SameName { .. } | Self::Late { .. } => None,
             Self::Sink { cause } => Some(cause.as_ref()),
         }
     }
@@ -126,8 +144,12 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     /// The numbers of the attitude in the row before.
     attitude: Vec<ScalarIn<I>>,
     quantities: Vec<Quantity<'a, I>>,
+    /// Rows, of which so many numbers are there.
     block: Vec<f64>,
+    filled: usize,
     rows_in_a_block: usize,
+    /// As many numbers are handed on.
+    full: usize,
     stage: Stage,
     /// Gone when the table is finished.
     sink: Option<S>,
@@ -140,6 +162,8 @@ enum Stage {
     Before,
     /// It has them.
     Begun,
+    /// A column came after that, which it doesn't know.
+    Late,
     /// It has failed, and gets nothing more: rows behind a gap would look like a whole table.
     Failed,
 }
@@ -175,13 +199,15 @@ where
             attitude: Vec::new(),
             quantities: Vec::new(),
             block: Vec::new(),
+            filled: 0,
             rows_in_a_block: ROWS_IN_A_BLOCK,
+            full: 0,
             stage: Stage::Before,
             sink: Some(sink),
         }
     }
 
-    /// A column of one's own, with its unit.
+    /// A column of one's own, with its unit; before the first row, or each further one is an error.
     #[must_use]
     pub fn quantity<T: Into<f64>>(
         mut self,
@@ -191,6 +217,9 @@ where
     ) -> Self {
         self.columns.push(Column { name: name.into(), unit: unit.into() });
         self.quantities.push(Box::new(move |now| quantity(now).into()));
+        if self.stage == Stage::Begun {
+            self.stage = Stage::Late;
+        }
         self
     }
 
@@ -212,29 +241,38 @@ where
     /// # Errors
     ///
     /// [`RecordError`] with the first row where two columns have one name or the table can't be begun, and later where a
-    /// full block of rows can't be written. After an error of the sink each further row is one, too.
+    /// column was added or a full block of rows can't be written. After an error of the sink each further row is one, too.
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
-        self.begin()?;
-        let Self { block, attitude, .. } = self;
-        let begun = block.len();
-        block.resize(begun + self.columns.len(), 0.0);
-        let mut places = block[begun..].iter_mut();
-        let mut write = |number: f64| places.next().map_or((), |place| *place = number);
-        write(now.time().into());
-        if self.shows_motion {
-            now.attitude().write_numbers(attitude);
-            for &mut number in attitude {
-                write(number.into());
-            }
-            let (velocity, energy) = now.integrator().velocity_and_energy(now);
-            velocity.each(&mut |number| write(number.into()));
-            now.momentum().each(&mut |number| write(number.into()));
-            write(energy.into());
-            write(now.orthogonality_defect().into());
+        if self.stage != Stage::Begun {
+            self.begin()?;
         }
-        self.quantities.iter_mut().for_each(|quantity| write(quantity(now)));
-        let full = self.rows_in_a_block.saturating_mul(self.columns.len());
-        if self.block.len() >= full { self.flush() } else { Ok(()) }
+        let end = self.filled + self.columns.len();
+        if self.block.len() < end {
+            self.make_room(end);
+        }
+        let (time, mut row) = self.block[self.filled..end].split_at_mut(1);
+        time.fill(now.time().into());
+        if self.shows_motion {
+            now.attitude.write_numbers(&mut self.attitude);
+            let (attitude, behind) = row.split_at_mut(self.attitude.len());
+            attitude.iter_mut().zip(&self.attitude).for_each(|(place, &number)| *place = number.into());
+            let (velocity, energy) = now.integrator().velocity_and_energy(now);
+            let behind = write::<I>(behind, &velocity);
+            row = write::<I>(behind, &now.momentum);
+            if let [of_energy, of_defect, own @ ..] = row {
+                (*of_energy, *of_defect) = (energy.into(), now.attitude.defect().into());
+                row = own;
+            }
+        }
+        row.iter_mut().zip(&mut self.quantities).for_each(|(place, quantity)| *place = quantity(now));
+        self.filled = end;
+        if end >= self.full { self.flush() } else { Ok(()) }
+    }
+
+    /// A block as long as this, and longer as more rows come: of very many rows that are asked for there may be few.
+    #[cold]
+    fn make_room(&mut self, end: usize) {
+        self.block.resize(end.max(2 * self.block.len()).min(self.full.max(end)), 0.0);
     }
 
     /// Writes what is left, and returns what was written to.
@@ -259,8 +297,8 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
     pub fn flush(&mut self) -> Result<(), RecordError> {
         self.begin()?;
         let sink = self.sink.as_mut().ok_or_else(unreachable)?;
-        let written = if self.block.is_empty() { Ok(()) } else { sink.write(&self.block) };
-        self.block.clear();
+        let rows = &self.block[..core::mem::take(&mut self.filled)];
+        let written = if rows.is_empty() { Ok(()) } else { sink.write(rows) };
         written.map_err(|cause| self.failed(cause))
     }
 
@@ -269,6 +307,10 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         match self.stage {
             Stage::Begun => return Ok(()),
             Stage::Failed => return Err(RecordError::Sink { cause: "it has failed before".into() }),
+            Stage::Late => {
+                let name = self.columns.last().map_or_else(String::new, |column| column.name.clone());
+                return Err(RecordError::Late { name });
+            }
             Stage::Before => {}
         }
         let columns = &self.columns;
@@ -279,6 +321,7 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         let begun = self.sink.as_mut().ok_or_else(unreachable)?.begin(columns);
         begun.map_err(|cause| self.failed(cause))?;
         self.stage = Stage::Begun;
+        self.full = self.rows_in_a_block.saturating_mul(self.columns.len());
         Ok(())
     }
 
@@ -286,6 +329,20 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         self.stage = Stage::Failed;
         RecordError::Sink { cause }
     }
+}
+
+/// Writes components to the beginning of a row, and returns what is behind them.
+#[inline(always)]
+fn write<'r, I>(row: &'r mut [f64], components: &<I::Group as LieGroup>::Vector) -> &'r mut [f64]
+where
+    I: Integrator,
+    ScalarIn<I>: Into<f64>,
+{
+    // Of a length that the compiler knows.
+    let (own, behind) = row.split_at_mut(<I::Group as LieGroup>::DIMENSION);
+    let mut places = own.iter_mut();
+    components.each(&mut |component| places.next().map_or((), |place| *place = component.into()));
+    behind
 }
 
 /// The sink is there until the recorder is gone.

@@ -1,5 +1,7 @@
 //! A table in memory.
 
+use alloc::vec::Vec;
+
 use super::{Column, Sink, SinkError};
 
 /// A table in memory, for runs whose rows are few: it is the only [`Sink`] that grows with the run.

@@ -1,5 +1,8 @@
 //! The zeros of a function on the interval from 0 to 1, isolated and located.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use super::event::side;
 
 /// What is known of the function, and how closely it is looked at.
@@ -137,6 +140,7 @@ fn located<E>(
 #[cfg(test)]
 mod tests {
     use super::{Looks, zeros};
+    use alloc::vec::Vec;
     use core::convert::Infallible;
     use std::cell::Cell;
 

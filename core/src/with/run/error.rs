@@ -1,5 +1,6 @@
 //! How a run ends.
 
+use alloc::boxed::Box;
 use core::fmt;
 
 use crate::error::StepError;

@@ -1,5 +1,8 @@
 //! Events: zeros of a function of the motion, in the order in which they are crossed.
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
 use super::crossing::{Looks, zeros};
 use super::error::{Ended, Reason, RunError};
 use super::{Observer, Run, show};
@@ -93,7 +96,8 @@ where
     /// whichever function they are of.
     ///
     /// Between two steps the motion is [`Integrator::part`] of one, and a zero is located on it until its time has no
-    /// further digit. The moment that is shown has that time and the motion then, and [`Moment::rising`] the direction.
+    /// further digit: to two roundings of its time, and as long as the function takes for four of its own roundings, which
+    /// where it is slow or the time is short is more. The moment that is shown has that time and the motion then, and [`Moment::rising`] the direction.
     /// The steps stay what they are. [`sections`](crate::with::sections) has functions that are ready made.
     ///
     /// A function that is zero at the end of a step, to the bit, is crossed there if its signs before and after differ; one

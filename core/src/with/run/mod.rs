@@ -7,6 +7,9 @@ mod event;
 pub use error::{Ended, Reason, RunError};
 pub use event::Event;
 
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
 use event::Watched;
 
 use core::iter::Peekable;
@@ -17,6 +20,10 @@ use crate::mechanics::Effect;
 use crate::methods::CotangentGauss;
 use crate::motion::{Answer, AnyState, AnyStepper, Integrator, Moment, Plan, ScalarIn, StateOf, Stepper};
 use crate::numbers::{real, reported};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
 
 /// What an observer answers.
 type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
@@ -75,6 +82,8 @@ pub struct Run<'a, I: Integrator> {
 /// An observer that is shown every so many steps.
 struct Regular<'a, I: Integrator> {
     every: u64,
+    /// The next of its steps.
+    due: u64,
     observer: Observer<'a, I>,
 }
 
@@ -130,7 +139,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
         if steps > 0 {
             let observer = Box::new(move |now: &Moment<'_, I>| observer(now).verdict());
-            self.regular.push(Regular { every: steps, observer });
+            self.regular.push(Regular { every: steps, due: 0, observer });
         }
         self
     }
@@ -157,17 +166,23 @@ impl<'a, I: Integrator> Run<'a, I> {
         let mut ended = Ended { steps: 0, iterations: 0, reason: Reason::Done };
         let start = self.state.steps();
         let end = start.saturating_add(steps);
+        for Regular { every, due, .. } in &mut self.regular {
+            *due = if start == 0 { 0 } else { (start / *every).saturating_add(1).saturating_mul(*every) };
+        }
         self.look_first()?;
         if self.show_timed(None, reported(self.integrator.time(self.state)), &mut ended)?
-            || start == 0 && self.show_regular(&mut ended)?
+            || self.show_regular(&mut ended)?
             || self.condition_holds(&mut ended)
         {
             return Ok(ended);
         }
+        let looks_between = !(self.timed.is_empty() && self.watched.is_empty());
+        let goes_step_by_step = looks_between || !self.conditions.is_empty();
+        let mut told = start.saturating_add(part_told(start, end));
         while self.state.steps() < end {
-            let made = self.next_shown(start, end) - self.state.steps();
+            let made = if goes_step_by_step { 1 } else { self.next_shown(told, end) - self.state.steps() };
             // Else nothing is copied.
-            let stops = if self.looks_between() {
+            let stops = if looks_between {
                 let before = self.state.clone();
                 ended.iterations += self.advance(made)?;
                 ended.steps += made;
@@ -180,14 +195,9 @@ impl<'a, I: Integrator> Run<'a, I> {
             if stops || self.show_regular(&mut ended)? || self.condition_holds(&mut ended) {
                 break;
             }
-            self.show_progress(start, end);
+            self.show_progress(start, end, &mut told);
         }
         Ok(ended)
-    }
-
-    /// Whether something may be shown that isn't the end of a step.
-    fn looks_between(&self) -> bool {
-        !(self.timed.is_empty() && self.watched.is_empty())
     }
 
     /// Shows what there is within a step.
@@ -201,19 +211,9 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     /// The next step after which something is to be done.
-    fn next_shown(&self, start: u64, end: u64) -> u64 {
-        let now = self.state.steps();
-        if self.looks_between() || !self.conditions.is_empty() {
-            return now + 1;
-        }
-        let after = |every: u64| (now / every).saturating_add(1).saturating_mul(every);
-        let regular = self.regular.iter().map(|regular| after(regular.every));
-        let next = regular.fold(end, u64::min);
-        if self.progress.is_none() {
-            return next;
-        }
-        let part = part_told(start, end);
-        next.min(start.saturating_add(((now - start) / part + 1) * part))
+    fn next_shown(&self, told: u64, end: u64) -> u64 {
+        let next = self.regular.iter().fold(end, |next, regular| next.min(regular.due));
+        if self.progress.is_some() { next.min(told) } else { next }
     }
 
     /// So many steps, and where there are none the most there are.
@@ -226,8 +226,9 @@ impl<'a, I: Integrator> Run<'a, I> {
     fn show_regular(&mut self, ended: &mut Ended) -> Result<bool, RunError> {
         let now = Moment::of_step(self.integrator, self.state);
         let mut stops = false;
-        for Regular { every, observer } in &mut self.regular {
-            if now.steps().is_multiple_of(*every) {
+        for Regular { every, due, observer } in &mut self.regular {
+            if *due == now.steps() {
+                *due = due.saturating_add(*every);
                 stops |= show(observer, &now, ended)?;
             }
         }
@@ -236,6 +237,9 @@ impl<'a, I: Integrator> Run<'a, I> {
 
     /// Whether the run stops here by a condition.
     fn condition_holds(&mut self, ended: &mut Ended) -> bool {
+        if self.conditions.is_empty() {
+            return false;
+        }
         let now = Moment::of_step(self.integrator, self.state);
         let holds = self.conditions.iter_mut().any(|condition| condition(&now));
         if holds {
@@ -275,11 +279,12 @@ impl<'a, I: Integrator> Run<'a, I> {
     }
 
     #[allow(clippy::cast_precision_loss)] // a share
-    fn show_progress(&mut self, start: u64, end: u64) {
+    fn show_progress(&mut self, start: u64, end: u64, told: &mut u64) {
         let now = self.state.steps();
         if let Some(progress) = &mut self.progress
-            && (now == end || (now - start).is_multiple_of(part_told(start, end)))
+            && (now == end || now == *told)
         {
+            *told = now.saturating_add(part_told(start, end));
             progress((now - start) as f64 / (end - start) as f64);
         }
     }

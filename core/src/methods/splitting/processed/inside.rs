@@ -68,6 +68,7 @@ impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
 mod tests {
     use super::Inside;
     use crate::motion::Kept as _;
+    use alloc::vec::Vec;
     use nalgebra::Vector3;
 
     /// Whether it is inside, an attitude, a momentum, a vector and the step.

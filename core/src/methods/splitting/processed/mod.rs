@@ -6,6 +6,8 @@ mod scheme;
 pub use inside::Inside;
 pub use scheme::ProcessedScheme;
 
+use alloc::vec::Vec;
+
 use inside::Stepped;
 
 use super::scheme::Flow;

@@ -73,6 +73,7 @@ impl<T: Real> Rotor<T> {
 #[cfg(test)]
 mod tests {
     use super::{NINE, REACH, Rotor, SEVEN};
+    use alloc::vec::Vec;
 
     /// All shares of each axis, in order, of a palindrome given to its middle.
     fn apart(half: &[f64]) -> [Vec<f64>; 2] {

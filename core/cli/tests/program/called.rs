@@ -1,0 +1,60 @@
+//! The program as tests call it, and a scene for it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+pub(crate) const TOP: &str = r#"title = "A heavy top with drag"
+
+[body]
+moments = [3, 3, 4]
+
+[gravity]
+m = "1 kg"
+g = 9.81
+rho = [0, 0, 1.0]
+up = [0, 0, 1]
+
+[drag]
+c = 1e-3
+
+[start]
+euler = [0, "45 deg", 0]
+velocity = [0, 0, "60 rpm"]
+
+[run]
+step = "10 ms"
+duration = 2
+"#;
+
+/// The program: a scene's types are compiled into its library once, and not a second time into this test.
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_liestep");
+
+/// A folder of a test's own.
+pub(crate) fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+pub(crate) fn simulate(folder: &Path, files: &[&str]) -> Output {
+    Command::new(PROGRAM).current_dir(folder).args(["run", "--csv", "--out", "."]).args(files).output().unwrap()
+}
+
+/// The rows of a scene's table, after a run of a text.
+pub(crate) fn rows(folder: &Path, text: &str) -> Vec<Vec<f64>> {
+    fs::write(folder.join("scene.toml"), text).unwrap();
+    let output = simulate(folder, &["scene.toml"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    table(&fs::read_to_string(folder.join("scene.csv")).unwrap())
+}
+
+pub(crate) fn table(csv: &str) -> Vec<Vec<f64>> {
+    csv.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+pub(crate) fn printed(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(PROGRAM).current_dir(folder).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}

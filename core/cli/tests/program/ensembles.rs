@@ -1,0 +1,149 @@
+//! The table `ensemble`: members that are drawn, kept and gone on with.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use liestep_ensemble::{Shard, Status, Store};
+
+use crate::called::{PROGRAM, TOP, folder, printed, rows};
+
+/// The top, and what is drawn of it.
+fn drawn(ensemble: &str) -> String {
+    format!("{TOP}\n[ensemble]\nmembers = 40\nseed = 7\n{ensemble}")
+}
+
+fn shards(folder: &Path) -> Vec<Shard> {
+    let files = Store::folder(folder).unwrap().files().unwrap();
+    files.iter().map(|(_, path)| Store::read(path).unwrap()).collect()
+}
+
+fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let files = Store::folder(folder).unwrap().files().unwrap();
+    let within = |path: PathBuf| (path.strip_prefix(folder).unwrap().to_owned(), fs::read(path).unwrap());
+    files.into_iter().map(|(_, path)| within(path)).collect()
+}
+
+/// Of a distribution without a spread each member is the file with that value, but for the rounding of what is advected.
+#[test]
+fn a_member_is_the_file_with_its_values() {
+    let folder = folder("a_member_is_the_file_with_its_values");
+    let own = TOP.replace("\"60 rpm\"", "\"72 rpm\"").replace("g = 9.81", "g = 5");
+    let expected = rows(&folder, &own).pop().unwrap();
+    let text = drawn(
+        "every = 100\ndraw.start.velocity = [0, 0, { mean = \"72 rpm\", deviation = \"0 rpm\" }]\n\
+         draw.gravity.g = { mean = 5, deviation = 0 }\n",
+    );
+    fs::write(folder.join("top.toml"), text).unwrap();
+    let told = printed(&folder, &["ensemble", "top.toml", "--out", "."]);
+    assert!(told.contains("40 finished, 0 failed"), "{told}");
+    let shards = shards(&folder.join("top.ensemble"));
+    assert_eq!(shards.iter().map(|shard| shard.finished).sum::<u64>(), 40);
+    for shard in &shards {
+        // At the start, after a hundred steps, and at the end.
+        assert_eq!(shard.rows.step[..3], [0, 100, 200]);
+        for (row, _) in shard.rows.status.iter().enumerate().filter(|(_, status)| **status == Status::Finished) {
+            let (time, columns) = expected.split_first().unwrap();
+            let kept: Vec<f64> = shard.rows.columns.iter().map(|column| column[row]).collect();
+            let (own_time, own) = kept.split_last().unwrap();
+            assert!((own_time - time).abs() < 1e-12);
+            let distance = |sign: f64| own.iter().zip(columns).map(move |(a, b)| (a - sign * b).abs());
+            // Of the two quaternions, which come last, it may be the other.
+            let quaternion = columns.len() - 4;
+            assert!(distance(1.0).take(quaternion).all(|distance| distance < 1e-12));
+            assert!([1.0, -1.0].iter().any(|sign| distance(*sign).skip(quaternion).all(|d| d < 1e-12)));
+        }
+    }
+}
+
+/// Numbers lie where they are drawn from, differ from member to member, and the files are the same however they are made.
+#[test]
+fn shares_and_a_second_run_make_the_same_files() {
+    let folder = folder("shares_and_a_second_run_make_the_same_files");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let text = drawn("chunk = 8\ndraw.start.velocity = [0, 0, { from = \"60 rpm\", to = \"90 rpm\" }]\n");
+    fs::write(folder.join("top.toml"), text.replace("[drag]\nc = 1e-3\n", "")).unwrap();
+    let whole = printed(&folder, &["ensemble", "top.toml", "--out", "whole"]);
+    assert!(whole.contains("40 finished") && whole.contains("velocity_z"), "{whole}");
+    printed(&folder, &["ensemble", "top.toml", "--shard", "1/2", "--threads", "1", "--out", "parts"]);
+    let part = files(&folder.join("parts/top.ensemble")).len();
+    printed(&folder, &["ensemble", "top.toml", "--shard", "0/2", "--out", "parts"]);
+    let [one, other] = ["whole", "parts"].map(|out| files(&folder.join(out).join("top.ensemble")));
+    assert!(one == other && one.len() > part && part > 0, "{} {part}", one.len());
+    let again = printed(&folder, &["ensemble", "top.toml", "--out", "whole"]);
+    assert!(again.contains(", 0 of them now"), "{again}");
+
+    let spin: Vec<f64> = shards(&folder.join("whole/top.ensemble"))
+        .into_iter()
+        .flat_map(|shard| {
+            let place = shard.names.iter().position(|name| name == "velocity_z").unwrap();
+            shard.rows.columns[place].clone()
+        })
+        .collect();
+    // A symmetric top keeps its spin.
+    let rpm = std::f64::consts::PI / 30.0;
+    assert!(spin.iter().all(|spin| (59.9 * rpm..90.1 * rpm).contains(spin)) && spin.len() == 40);
+    assert!(spin.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-9));
+}
+
+/// A mass that is drawn below zero is a member that fails, with its number; the others are made.
+#[test]
+fn members_fail_by_themselves() {
+    let folder = folder("members_fail_by_themselves");
+    let _ = fs::remove_dir_all(folder.join("top.ensemble"));
+    let text = drawn("draw.gravity.m = { mean = \"1 kg\", deviation = \"1 kg\" }\n");
+    fs::write(folder.join("top.toml"), text).unwrap();
+    let output =
+        Command::new(PROGRAM).current_dir(&folder).args(["ensemble", "top.toml", "--out", "."]).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    assert!(told.contains("failed after 0 steps: top.toml:") && told.contains("must be above zero"), "{told}");
+    let (finished, failed) = shards(&folder.join("top.ensemble"))
+        .iter()
+        .fold((0, 0), |(finished, failed), shard| (finished + shard.finished, failed + shard.failures.len()));
+    assert!(finished > 20 && failed > 0 && finished + failed as u64 == 40, "{finished} {failed}");
+}
+
+#[test]
+fn mistakes_in_ensembles_have_places() {
+    let folder = folder("mistakes_in_ensembles_have_places");
+    let checked = |text: &str| {
+        fs::write(folder.join("top.toml"), text).unwrap();
+        let output = Command::new(PROGRAM).current_dir(&folder).args(["check", "top.toml"]).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let line = drawn("").lines().count() + 1;
+    for (wrong, column, message) in [
+        ("draw.gravity.g = { from = 1, to = \"2 m/s²\" }", 18, "two numbers, or texts with the same unit"),
+        ("draw.gravity.g = { from = 2, to = 1 }", 18, "a range goes from a number to a larger one"),
+        ("draw.gravity.g = { mean = 2, deviation = -1 }", 18, "isn't below zero"),
+        ("draw.gravity.g = 5", 18, "a value is drawn by"),
+        ("draw.gravity.g = { from = \"1 kg\", to = \"2 kg\" }", 18, "an acceleration isn't in `kg`"),
+        ("draw.gravity.height = { from = 1, to = 2 }", 14, "unknown field `height`"),
+        ("draw.start.velocity = [0, { from = 1, to = 2 }]", 23, "expected three components, found 2"),
+        ("draw.start.velocity = [0, 1, 2]", 23, "a value is drawn by"),
+        ("draw.run.duration = { from = 1, to = 2 }", 6, "an ensemble draws what is in `body`"),
+        ("every = 0", 9, "`every` is a whole number from 1"),
+        ("column = 1", 1, "`ensemble` has `members`"),
+    ] {
+        let told = checked(&drawn(wrong));
+        assert!(told.contains(&format!("top.toml:{line}:{column}:")) && told.contains(message), "{wrong}: {told}");
+    }
+    let draws = "draw.gravity.g = { from = 1, to = 2 }";
+    let told = checked(&drawn(draws).replace("members = 40", ""));
+    assert!(told.contains("an ensemble has `members`"), "{told}");
+    let told = checked(&drawn(""));
+    assert!(told.contains("`ensemble` draws nothing"), "{told}");
+    let told = checked(&drawn(draws).replace("[drag]\nc = 1e-3\n", "").replace("step = \"10 ms\"", "accuracy = 1e-6"));
+    assert!(told.contains("the members of an ensemble make the same steps"), "{told}");
+    let told = checked(&format!("{}\n[output]\ncolumns = [\"energy-error\"]\n", drawn(draws)));
+    assert!(told.contains("`energy_error` is measured from the start"), "{told}");
+    let output = {
+        fs::write(folder.join("top.toml"), TOP).unwrap();
+        Command::new(PROGRAM).current_dir(&folder).args(["ensemble", "top.toml"]).output().unwrap()
+    };
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(1) && told.contains("has no table `ensemble`"), "{told}");
+}

@@ -1,0 +1,387 @@
+//! What the runs of scene files give: what programs of one's own do, and every file of `examples/scenes`.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use liestep::accuracy::Accuracy;
+use liestep::effects::CayleyBody;
+use liestep::effects::{Dipole, Drag, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque};
+use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
+use liestep::motion::Moment;
+use liestep::prelude::*;
+use liestep::with::{Csv, Recorder};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::called::{PROGRAM, TOP, folder, printed, rows, simulate, table};
+
+/// A step that is too large is found out while running: with the file, the time and the largest step.
+#[test]
+fn a_step_that_is_too_large() {
+    let folder = folder("fast");
+    fs::write(folder.join("fast.toml"), TOP.replace("60 rpm", "60000 rpm")).unwrap();
+    let output = simulate(&folder, &["fast.toml"]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(message.starts_with("error: fast.toml:20:8: stopped at t = 0 s: no solution at the step"), "{message}");
+    assert!(message.ends_with(", and is `kinetic = \"cayley\"` of the body here\n"), "{message}");
+}
+
+/// The table of a file has the numbers, the signs and the digits of a program's.
+#[test]
+fn a_table_is_that_of_a_recorder() {
+    let folder = folder("recorded");
+    // The body turns over several times, so the quaternion that is nearer to the row before isn't that with `w ≥ 0`.
+    let columns = "[output]\ncolumns = [\"quaternion\", \"velocity\", \"momentum\", \"energy\"]\nevery = 7\n";
+    fs::write(folder.join("top.toml"), TOP.replace("[drag]\nc = 1e-3\n", columns)).unwrap();
+    printed(&folder, &["run", "top.toml", "--csv", "--out", "."]);
+    let table = fs::read_to_string(folder.join("top.csv")).unwrap();
+
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let scene = PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let stepper = Stepper::new(scene, 10.0 * 1e-3).unwrap();
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    let mut recorder = Recorder::new(&stepper, Csv::new(Vec::new()));
+    stepper.observed(&mut state).every(7, |now| recorder.record(now)).steps(200).unwrap();
+    recorder.record(&Moment::of_step(&stepper, &state)).unwrap();
+    let expected = String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap();
+    // All but the defect.
+    let expected: Vec<_> = expected.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
+    assert_eq!(table.lines().collect::<Vec<_>>(), expected);
+    assert!(self::table(&table).iter().any(|row| row[1] < -0.1), "{table}");
+}
+
+/// A run that stops leaves the rows that there were.
+#[test]
+fn a_run_that_stops_has_a_table() {
+    let folder = folder("stops");
+    let thrust = "[torque]\ntorque = [0, 0, 400]\n";
+    fs::write(folder.join("top.toml"), TOP.replace("[drag]\nc = 1e-3\n", thrust)).unwrap();
+    let output = simulate(&folder, &["top.toml"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(3) && text.contains(": stopped at t = "), "{text}");
+    let rows = table_of(&folder.join("top.csv"));
+    let last = rows.last().unwrap()[0];
+    assert!(rows.len() > 20 && text.contains(&format!("stopped at t = {last} s")), "{text}");
+}
+
+/// Every file that is there runs, moves, and has a picture and a table.
+#[test]
+fn the_scenes_run() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
+    let gallery = fs::read_to_string(scenes.join("README.md")).unwrap();
+    let mut files: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    assert!(files.len() >= 12, "{}", files.len());
+    let names: Vec<_> = files.iter().map(|path| path.to_str().unwrap()).collect();
+    let folder = folder("scenes");
+    let output = simulate(&folder, &names);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for path in &files {
+        let result = |ending| {
+            let name = Path::new(path.file_name().unwrap()).with_extension(ending);
+            fs::read_to_string(folder.join(name)).unwrap()
+        };
+        let rows = table(&result("csv"));
+        assert!(rows.len() > 500 && rows.first() != rows.last(), "{}", path.display());
+        assert!(rows.iter().flatten().all(|value| value.is_finite()), "{}", path.display());
+        assert!(result("svg").matches("<polyline").count() > 3, "{}", path.display());
+        // Small enough to be kept beside the file, where the gallery has it.
+        assert!(result("svg").len() < 60_000, "{}", path.display());
+        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap();
+        assert!(gallery.contains(&format!("({name}.toml)")) && gallery.contains(&format!("/{name}.svg)")), "{name}");
+    }
+}
+
+/// What a file's scene does is what the sum in a program does, bit for bit; and the units are those of SI.
+#[test]
+fn a_file_is_a_sum() {
+    let rows = rows(&folder("sum"), TOP);
+    let last = rows.last().unwrap();
+
+    let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let stepper = Stepper::new(
+        PrincipalBody { J_d: body } + gravity + Drag { c: 1e-3, J: NonstandardInertia::from(body).to_inertia() },
+        10.0 * 1e-3,
+    )
+    .unwrap();
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    for _ in 0..200 {
+        stepper.step(&mut state).unwrap();
+    }
+    assert_eq!(rows.len(), 201);
+    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
+    assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
+}
+
+/// All effects at once.
+#[test]
+fn a_file_may_have_every_effect() {
+    let others = "[gravity_gradient]\nGM = 2\nr = 3\ndirection = [1, 0, 0]\n\
+                  [dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
+                  [spring]\nk = 3\nlength = 0.5\nat = [0, 0, 1]\nanchor = [1, 0.3, 0.5]\n\
+                  [rotor]\nspin = [0, 0.4, 1]\n\
+                  [magnetic_damping]\nk = 0.1\nfield = [0, 0.5, 1]\n\
+                  [torque]\ntorque = [0.1, 0.2, -0.1]\n\
+                  [thrust]\nat = [0.3, 0, 1]\nthrust = [0, 0.2, 0.1]\n[run]";
+    let rows = rows(&folder("all"), &TOP.replace("[run]", others));
+    let last = rows.last().unwrap();
+
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let J = NonstandardInertia::from(J_d).to_inertia();
+    let scene = PrincipalBody { J_d }
+        + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
+        + GravityGradient { GM: 2.0, r: 3.0, J, direction: Vector3::x() }
+        + Dipole { moment: Vector3::new(0.0, 0.1, 1.0), field: Vector3::new(0.2, 0.0, 1.0) }
+        + Spring { k: 3.0, length: 0.5, at: Vector3::z(), anchor: Vector3::new(1.0, 0.3, 0.5) }
+        + Rotor { spin: Vector3::new(0.0, 0.4, 1.0) }
+        + Drag { c: 1e-3, J }
+        + MagneticDamping { k: 0.1, field: Vector3::new(0.0, 0.5, 1.0), J }
+        + Torque { torque: Vector3::new(0.1, 0.2, -0.1) }
+        + Thrust { at: Vector3::new(0.3, 0.0, 1.0), thrust: Vector3::new(0.0, 0.2, 0.1) };
+    let stepper = Stepper::new(scene, 10.0 * 1e-3).unwrap();
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    for _ in 0..200 {
+        stepper.step(&mut state).unwrap();
+    }
+    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
+    assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
+}
+
+/// The last row of the top without drag, with a line in its tables `body` and `run` more.
+fn last_row(test: &str, body: &str, run: &str) -> Vec<f64> {
+    let text = TOP.replace("[drag]\nc = 1e-3\n", "").replace("moments = [3, 3, 4]\n", body);
+    rows(&folder(test), &text.replace("duration = 2\n", &format!("duration = 2\n{run}\n"))).pop().unwrap()
+}
+
+/// What a program does with the same scene and method, with velocity and energy off by so much of themselves at most.
+fn same_as<S, P>(row: &[f64], stepper: Result<Stepper<S, P>, SetupError>, tolerance: f64)
+where
+    S: liestep::mechanics::Effect<Scalar = f64, Group = SO3>,
+    P: liestep::motion::Plan<S>,
+{
+    let stepper = stepper.unwrap();
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let mut state = stepper.start(tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)))).unwrap();
+    stepper.run(&mut state, 200).unwrap();
+    let (velocity, energy) = (stepper.velocity(&state), stepper.energy(&state));
+    assert!((Vector3::new(row[1], row[2], row[3]) - velocity).norm() <= tolerance * velocity.norm(), "{velocity}");
+    assert!((row[7] - energy).abs() <= tolerance * energy.abs(), "{energy}");
+}
+
+/// By (3.13) bit for bit. Of other steps a file's scene, which could have a rotor, is solved in another order.
+#[test]
+fn kinetic_terms_and_methods() {
+    let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let body = RigidBody { J_d: J.to_nonstandard() };
+    let (full, h) = ("J = [[3, 0, 0], [0, 3, 0], [0, 0, 4]]\n", 10.0 * 1e-3);
+    same_as(&last_row("full", full, ""), Stepper::new(body + gravity, h), 0.0);
+    let composed = last_row("composed", full, "method = { composition = \"Suzuki 4\" }");
+    same_as(&composed, Stepper::composed(body + gravity, h, CompositionScheme::SUZUKI_4), 0.0);
+    let cayley = last_row("cayley", "moments = [3, 3, 4]\nkinetic = \"cayley\"\n", "");
+    same_as(&cayley, Stepper::new(CayleyBody { J } + gravity, h), 1e-13);
+    let split = last_row("split", full, "method = { splitting = \"nyström 6-4\" }");
+    same_as(&split, Stepper::split(body + gravity, h, ExactBody::new(&J), SplittingScheme::NYSTROM_6), 1e-13);
+    let processed = last_row("processed", full, "method = { processed = \"processed 3-6 a\" }");
+    same_as(&processed, Stepper::processed(body + gravity, h, ExactBody::new(&J), ProcessedScheme::SIX_A), 1e-13);
+    let collocated = last_row("collocated", full, "method = { collocation = 4 }");
+    same_as(&collocated, Stepper::collocated::<2>(body + gravity, h), 1e-13);
+
+    // The others differ from these, and by no more than their order allows.
+    let exact = &collocated[1..8];
+    for (name, largest) in [("geodesic", 1e-2), ("fourth-order", 1e-2), ("sixth-order", 1e-2)] {
+        let row = last_row(name, &format!("moments = [3, 3, 4]\nkinetic = \"{name}\"\n"), "");
+        let error = row[1..8].iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(error > 1e-9 && error < largest, "{name}: {error}");
+    }
+}
+
+/// A ball that rolls on: its tilt passes 60° at π/6, 5π/6, 7π/6, … half seconds, between the steps.
+#[test]
+fn events() {
+    let folder = folder("events");
+    let text = "title = \"ball\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [2, 0, 0]\n\
+                [run]\nstep = 0.07\nduration = 7\nmethod = { splitting = \"Strang\" }\n\
+                [[event]]\nname = \"low\"\ntilt = \"60 deg\"\ndirection = \"rising\"\n\
+                [[event]]\nname = \"side\"\naxis_2 = 0.5\n";
+    fs::write(folder.join("ball.toml"), text).unwrap();
+    let report = printed(&folder, &["run", "ball.toml", "--csv", "--html", "--out", "."]);
+    assert!(
+        report.contains("\n  low: 3 times, first at t = 0.523598775598") && report.contains("\n  side: 4 times, first")
+    );
+    let table = fs::read_to_string(folder.join("ball.events.csv")).unwrap();
+    assert!(table.starts_with("event,rising,t,velocity_x,"), "{table}");
+    let mut found: Vec<(&str, &str, f64)> = Vec::new();
+    for row in table.lines().skip(1) {
+        let cells: Vec<_> = row.split(',').collect();
+        found.push((cells[0], cells[1], cells[2].parse().unwrap()));
+    }
+    // `R e₃` has the second component −sin 2t.
+    let expected = [
+        ("low", "1", 1.0),
+        ("side", "1", 3.5),
+        ("low", "1", 7.0),
+        ("side", "0", 5.5),
+        ("side", "1", 9.5),
+        ("low", "1", 13.0),
+        ("side", "0", 11.5),
+    ];
+    let mut expected = expected.map(|(name, rising, sixths)| (name, rising, sixths * PI / 6.0));
+    expected.sort_by(|a, b| a.2.total_cmp(&b.2));
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert_eq!((found.0, found.1), (expected.0, expected.1));
+        assert!((found.2 - expected.2).abs() < 1e-13, "{found:?} {expected:?}");
+    }
+    assert!(fs::read_to_string(folder.join("ball.html")).unwrap().contains("events: [\n[0.5235987755"));
+
+    fs::write(folder.join("stop.toml"), text.replace("axis_2 = 0.5", "axis_2 = 0.5\nstop = true")).unwrap();
+    let report = printed(&folder, &["run", "stop.toml", "--csv", "--out", "."]);
+    assert!(report.contains(", 27 steps of 0.07 s\n") && report.contains(", which ended the run\n"), "{report}");
+    assert_eq!(table_of(&folder.join("stop.csv")).last().unwrap()[0].to_bits(), (0.07 * 27.0_f64).to_bits());
+}
+
+/// A sweep counts events.
+#[test]
+fn events_of_a_sweep() {
+    let folder = folder("events-of-a-sweep");
+    let text = "title = \"ball\"\nbody.moments = [1, 1, 1]\nstart.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\n\
+                run.step = 0.07\nrun.duration = 7\nrun.method = { splitting = \"Strang\" }\noutput.columns = []\n\
+                sweep.start.velocity = [[2, 0, 0], [0, 0, 1]]\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\n";
+    fs::write(folder.join("ball.toml"), text).unwrap();
+    printed(&folder, &["sweep", "ball.toml", "--out", "."]);
+    let table = fs::read_to_string(folder.join("ball.sweep.csv")).unwrap();
+    let rows: Vec<Vec<_>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0][4..], ["low_times", "low_first"]);
+    assert_eq!((rows[1][0], rows[1][4]), ("2 0 0", "5.0"));
+    assert!((rows[1][5].parse::<f64>().unwrap() - PI / 6.0).abs() < 1e-13, "{table}");
+    assert_eq!(rows[2][4..], ["0.0", "NaN"]);
+}
+
+fn table_of(path: &Path) -> Vec<Vec<f64>> {
+    table(&fs::read_to_string(path).unwrap())
+}
+
+/// A point of a sweep is the file with its values.
+#[test]
+fn sweeps() {
+    let folder = folder("sweeps");
+    let sweep = "[sweep]\ngravity.m = [\"1 kg\", 1.5]\ndrag.c = { from = 0.001, to = 0.002, count = 3 }\n[run]";
+    fs::write(folder.join("sweep.toml"), TOP.replace("[run]", sweep)).unwrap();
+    printed(&folder, &["sweep", "sweep.toml", "--out", "."]);
+    let table = fs::read_to_string(folder.join("sweep.sweep.csv")).unwrap();
+    let mut lines = table.lines();
+    assert!(lines.next().unwrap().starts_with("gravity.m,drag.c,t,velocity_x,"));
+    let points: Vec<_> = lines.map(|line| line.split(',').take(2).collect::<Vec<_>>().join(" ")).collect();
+    assert_eq!(points, ["1 kg 0.001", "1 kg 0.0015", "1 kg 0.002", "1.5 0.001", "1.5 0.0015", "1.5 0.002"]);
+    let row: Vec<f64> = table.lines().nth(6).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+    let alone = self::rows(&folder, &TOP.replace("\"1 kg\"", "1.5").replace("1e-3", "0.002")).pop().unwrap();
+    assert_eq!(row[2..17], alone[..]);
+
+    // Points that stop have a row without numbers.
+    let faster = "[sweep]\nstart.velocity = [[0, 0, 1], [0, 0, 1000]]\n[run]";
+    fs::write(folder.join("faster.toml"), TOP.replace("[run]", faster)).unwrap();
+    let output =
+        Command::new(PROGRAM).current_dir(&folder).args(["sweep", "faster.toml", "--out", "."]).output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3));
+    assert!(message.starts_with("note: start.velocity = 0 0 1000 gave no row: faster.toml:22:8: stopped at t = 0 s: "));
+    assert!(message.ends_with("error: 1 scenes of the sweep stopped\n"), "{message}");
+    let table = fs::read_to_string(folder.join("faster.sweep.csv")).unwrap();
+    assert_eq!(table.lines().nth(2).unwrap(), format!("0 0 1000{}", ",".repeat(17)));
+}
+
+/// What a file asks for is what a program that asks the same gets, bit for bit.
+#[test]
+fn a_file_may_ask_for_an_accuracy() {
+    let text = TOP.replace("step = \"10 ms\"", "accuracy = 1e-7").replace("[drag]\nc = 1e-3\n", "");
+    let rows = rows(&folder("asked"), &text);
+    let last = rows.last().unwrap();
+
+    let body = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
+    let scene = PrincipalBody { J_d: body } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
+    let velocity = Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0)));
+    let accuracy = Accuracy { tolerance: 1e-7, horizon: 2.0 };
+    let stepper = Stepper::for_accuracy(scene, accuracy, tilt, velocity).unwrap();
+    let mut state = stepper.start();
+    stepper.run(&mut state).unwrap();
+    assert_eq!(rows.len() as u64, stepper.choice().steps + 1);
+    assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
+}
+
+/// The rates of Euler's angles and the body velocity that they make are those of the same motion.
+#[test]
+fn rates_of_euler_angles() {
+    let angles = Vector3::new(0.3, 0.8, -0.5);
+    let rates = Vector3::new(1.5, -0.7, 2.5);
+    let at = |t: f64| {
+        let angles = angles + rates * t;
+        let about = |axis, angle| UnitQuaternion::from_axis_angle(&axis, angle);
+        about(Vector3::z_axis(), angles.x) * about(Vector3::x_axis(), angles.y) * about(Vector3::z_axis(), angles.z)
+    };
+    let expected = (at(-1e-4).inverse() * at(1e-4)).scaled_axis() / 2e-4;
+    let start = "euler = [0.3, 0.8, -0.5]\neuler_rates = [1.5, -0.7, 2.5]\n";
+    let text = TOP.replace("euler = [0, \"45 deg\", 0]\nvelocity = [0, 0, \"60 rpm\"]\n", start);
+    let row = &self::rows(&folder("rates"), &text)[0];
+    let velocity = Vector3::new(row[1], row[2], row[3]);
+    assert!((velocity - expected).norm() < 1e-6, "{velocity} {expected}");
+    let axis = Vector3::new(row[8], row[9], row[10]);
+    assert!((axis - at(0.0) * Vector3::z()).norm() < 1e-14, "{axis}");
+}
+
+/// A stream of Arrow beside a table: the same run, which may have both.
+#[test]
+fn a_run_as_a_stream_of_arrow() {
+    let folder = folder("a_run_as_a_stream_of_arrow");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    let csv = printed(&folder, &["run", "top.toml", "--csv", "--out", "one"]);
+    let both = printed(&folder, &["run", "top.toml", "--csv", "--arrow", "--out", "both"]);
+    assert!(!csv.contains("top.arrow") && both.contains("top.arrow"), "{both}");
+    let [one, other] = ["one", "both"].map(|out| fs::read(folder.join(out).join("top.csv")).unwrap());
+    assert!(one == other);
+    // 201 rows of twelve doubles and the time, little-endian and column by column in one block.
+    let stream = fs::read(folder.join("both/top.arrow")).unwrap();
+    let rows = table(&String::from_utf8(one).unwrap());
+    for column in 0..rows[0].len() {
+        let bytes: Vec<u8> = rows.iter().flat_map(|row| row[column].to_le_bytes()).collect();
+        assert!(stream.windows(bytes.len()).any(|window| window == bytes), "column {column}");
+    }
+}
+
+/// The top, so many steps long, with a row of each hundredth, by a program that gets no more memory than this.
+#[cfg(target_os = "linux")]
+fn long_run(steps: u64) {
+    let folder = folder("long_run");
+    let duration = format!("duration = {}", steps / 100);
+    let text = TOP.replace("duration = 2", &duration).replace("[drag]\nc = 1e-3\n", "[output]\nevery = 100\n");
+    fs::write(folder.join("top.toml"), text).unwrap();
+    let limited = format!("ulimit -d 51200 && exec '{PROGRAM}' run top.toml --csv --out .");
+    let output = Command::new("sh").current_dir(&folder).args(["-c", &limited]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let rows = fs::read_to_string(folder.join("top.csv")).unwrap().lines().count();
+    assert_eq!(rows as u64, steps / 100 + 2);
+    fs::remove_dir_all(&folder).unwrap();
+}
+
+/// In 50 MB, pictures and all.
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_does_not_grow_with_a_run() {
+    long_run(2_000_000);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+#[ignore = "minutes: cargo test --release -p liestep-cli --test program -- --ignored a_run_of_a_hundred_million_steps"]
+fn a_run_of_a_hundred_million_steps() {
+    long_run(100_000_000);
+}

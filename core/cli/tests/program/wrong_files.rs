@@ -1,0 +1,342 @@
+//! Scene files and command lines that are wrong: each mistake with its place; and what is printed.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use expect_test::expect;
+
+use crate::called::{PROGRAM, TOP, folder, printed, rows, simulate};
+
+/// The message for the top with one line replaced.
+fn mistake(folder: &Path, line: &str, by: &str) -> String {
+    assert_eq!(TOP.matches(line).count(), 1, "{line}");
+    fs::write(folder.join("top.toml"), TOP.replace(line, by)).unwrap();
+    let output = simulate(folder, &["top.toml"]);
+    assert!(!output.status.success() && output.stdout.is_empty(), "{by}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// A terminal isn't told to do anything, and the picture stays XML.
+#[test]
+fn control_characters_are_written_out() {
+    let folder = folder("control-characters");
+    let text = TOP.replace("A heavy top", r"A \u0000 \u001b[31mred\r\n top");
+    fs::write(folder.join("top.toml"), text).unwrap();
+    let output = simulate(&folder, &["top.toml"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let drawn = fs::read_to_string(folder.join("top.svg")).unwrap();
+    for text in [&printed, &drawn] {
+        assert!(text.contains(r"\u{0} \u{1b}[31mred\r\n top"), "{text}");
+        assert!(!text.chars().any(|character| character.is_control() && character != '\n'));
+    }
+}
+
+#[test]
+fn mistakes_have_places() {
+    let folder = folder("mistakes");
+    let messages = [
+        ("c = 1e-3", "c = 1e-3\nviscosity = 2"),
+        ("[drag]", "[darg]"),
+        ("g = 9.81\n", ""),
+        ("[run]\nstep = \"10 ms\"\nduration = 2\n", ""),
+        ("c = 1e-3", "c = 1e-3\nrho = [0, 0, 1]"),
+        ("m = \"1 kg\"", "m = \"1 m\""),
+        ("m = \"1 kg\"", "m = \"heavy\""),
+        ("m = \"1 kg\"", "m = -1"),
+        ("m = \"1 kg\"", "m = true"),
+        ("c = 1e-3", "c = inf"),
+        ("rho = [0, 0, 1.0]", "rho = [0, 1.0]"),
+        ("rho = [0, 0, 1.0]", "rho = [0, \"1 m\", \"1 kg\"]"),
+        ("rho = [0, 0, 1.0]", "rho = 1.0"),
+        ("up = [0, 0, 1]", "up = [0, 0, 0]"),
+        ("moments = [3, 3, 4]", "moments = [1, 1, 4]"),
+        ("moments = [3, 3, 4]", "moments = [3, 3, 4]\nJ_d = [2, 2, 1]"),
+        ("euler = [0, \"45 deg\", 0]", "quaternion = [1, 0, 0]"),
+        ("euler = [0, \"45 deg\", 0]", "quaternion = [0, 0, 0, 0]"),
+        ("euler = [0, \"45 deg\", 0]", "euler = [0, 0, 0]\nquaternion = [1, 0, 0, 0]"),
+        ("velocity", "euler_rates = [0, 0, 1]\nvelocity"),
+        ("step = \"10 ms\"", "step = \"10 min\""),
+        ("step = \"10 ms\"", "step = 1e-9"),
+        ("step = \"10 ms\"", "step = 1e308"),
+        ("step = \"10 ms\"", "step = \"10 ms\"\naccuracy = 1e-6"),
+        ("step = \"10 ms\"\n", ""),
+        ("step = \"10 ms\"", "accuracy = 1e-6"),
+        ("step = \"10 ms\"", "accuracy = 0"),
+        ("[run]", "[picture]\npanels = [\"rates\", \"phase\"]\n[run]"),
+        ("[run]", "[run"),
+        ("[drag]", "[gravity]"),
+        ("m = \"1 kg\"", "m = { \"größe\" = 1, 2 }"),
+        ("velocity = [0, 0, \"60 rpm\"]", "velocity = [0, 0, 1]\neuler_rates = [0, 0, 1]"),
+        ("euler = [0, \"45 deg\", 0]\nvelocity", "quaternion = [1, 0, 0, 0]\neuler_rates"),
+        ("euler = [0, \"45 deg\", 0]\nvelocity", "euler_rates = [0, 0, 1]\nquaternion = [1, 0, 0, 0]\n#"),
+        ("euler = [0, \"45 deg\", 0]\n", ""),
+        ("moments = [3, 3, 4]\n", ""),
+        ("moments = [3, 3, 4]", "mass = 3"),
+        ("moments = [3, 3, 4]", "moments = [3, 4]"),
+        ("c = 1e-3", "c = nan"),
+        ("c = 1e-3", "c = 1e400"),
+        ("c = 1e-3", "c = 1e-400"),
+        ("c = 1e-3", "c = \"1e400 N m s\""),
+        ("c = 1e-3", "c = 99999999999999999999"),
+        ("rho = [0, 0, 1.0]", "rho = [0, \"1e306 km\", 0]"),
+        ("moments = [3, 3, 4]", "moments = [3e-160, 3e-160, 4e-160]"),
+        ("moments = [3, 3, 4]", "moments = [3e200, 3e200, 4e200]"),
+        ("step = \"10 ms\"", "step = -0.0"),
+    ]
+    .map(|(line, by)| mistake(&folder, line, by));
+    expect![[r#"
+        error: top.toml:14:1: unknown field `viscosity`, expected `c`
+        error: top.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`
+        error: top.toml:6:1: missing field `g`
+        error: top.toml:1:1: missing field `run`
+        error: top.toml:14:1: unknown field `rho`, expected `c`
+        error: top.toml:7:5: a mass isn't in `m` but in `kg`, `g`, `t`
+        error: top.toml:7:5: `heavy` doesn't begin with a number; a quantity is written as in "30 deg"
+        error: top.toml:7:5: must be above zero
+        error: top.toml:7:5: invalid type: boolean `true`, expected a mass in kg, or a text with a unit
+        error: top.toml:13:5: must be finite
+        error: top.toml:9:7: expected three components, found 2
+        error: top.toml:9:18: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
+        error: top.toml:9:7: invalid type: floating point `1.0`, expected a sequence
+        error: top.toml:10:6: a direction can't be zero
+        error: top.toml:4:11: no body has this inertia: J_d has the negative eigenvalue -1e0, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given
+        error: top.toml:4:11: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
+        error: top.toml:16:14: `quaternion` has the four components w, x, y, z, found 3
+        error: top.toml:16:14: `quaternion` can't be zero
+        error: top.toml:17:14: an attitude is given by either `euler` or `quaternion`
+        error: top.toml:18:12: a velocity is given by either `velocity` or `euler_rates`
+        error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 600 s
+        error: top.toml:19:1: `duration` makes 2.0e9 steps, more than 1e8; take a larger `step`
+        error: top.toml:19:1: `duration` is 2 s, shorter than one `step` of 1e308 s
+        error: top.toml:21:12: a run has either a `step` or an `accuracy`
+        error: top.toml:19:1: a run has either a `step` or an `accuracy`
+        error: top.toml:20:12: an accuracy can be asked for in conservative scenes; drag does work, so give a `step`
+        error: top.toml:20:12: must be above zero
+        error: top.toml:20:20: unknown variant `phase`, expected one of `rates`, `tilt`, `energy`, `energy-error`, `momentum`, `vertical-momentum-error`, `momentum-error`
+        error: top.toml:19:5: unclosed table, expected `]`
+        error: top.toml:12:2: duplicate key
+        error: top.toml:7:22: invalid literal string, expected `'`
+        error: top.toml:17:12: a velocity is given by either `velocity` or `euler_rates`
+        error: top.toml:16:14: `euler_rates` need the attitude by `euler`
+        error: top.toml:17:14: `euler_rates` need the attitude by `euler`
+        error: top.toml:15:1: an attitude is given by either `euler` or `quaternion`
+        error: top.toml:3:1: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
+        error: top.toml:4:1: unknown field `mass`, expected one of `moments`, `J_d`, `J`, `kinetic`
+        error: top.toml:4:11: expected three components, found 2
+        error: top.toml:13:5: must be finite
+        error: top.toml:13:5: floating-point number overflowed
+        error: top.toml:13:5: must be above zero
+        error: top.toml:13:5: must be finite
+        error: top.toml:13:5: invalid type: integer `99999999999999999999` as i128, expected a damping coefficient in N m s, or a text with a unit
+        error: top.toml:9:11: must be finite
+        error: top.toml:4:11: the inertia has the trace 5e-160, out of range; choose units in which it is nearer to one
+        error: top.toml:4:11: the inertia has the trace 4.999999999999999e200, out of range; choose units in which it is nearer to one
+        error: top.toml:20:8: must be above zero
+    "#]].assert_eq(&messages.concat());
+}
+
+/// The same of kinetic terms, methods, outputs and sweeps.
+#[test]
+fn mistakes_in_choices_have_places() {
+    let folder = folder("choices");
+    let messages = [
+        ("moments = [3, 3, 4]", "J = [[3, 0, 0], [0, 3, 0]]"),
+        ("moments = [3, 3, 4]", "J = [[3, 1, 0], [0, 3, 0], [0, 0, 4]]"),
+        ("moments = [3, 3, 4]", "moments = [3, 3, 4]\nkinetic = \"quartic\""),
+        ("duration = 2", "duration = 2\nmethod = { composition = \"Suzuki 4\" }"),
+        ("duration = 2", "duration = 2\nmethod = { composition = \"Suzuki 5\" }"),
+        ("duration = 2", "duration = 2\nmethod = \"euler\""),
+        ("duration = 2", "duration = 2\nmethod = { collocation = 5 }"),
+        ("[drag]\nc = 1e-3", "[output]\nevery = 0"),
+        ("[drag]\nc = 1e-3", "[output]\ncolumns = [\"axis\", \"phase\"]"),
+        ("[drag]\nc = 1e-3", "[output]\ncolumns = [\"axis\", \"energy\", \"axis\"]"),
+        ("[run]", "[sweep]\ngravity.m = [1, 2, \"3 m\"]\n[run]"),
+        ("[run]", "[sweep]\ngravity.n = [1, 2]\n[run]"),
+        ("[run]", "[sweep]\ngravity.m = 1\n[run]"),
+        ("[run]", "[sweep]\ngravity.m = []\n[run]"),
+        ("[run]", "[sweep]\ngravity.m = { from = 1, to = \"2 g\", count = 3 }\n[run]"),
+        ("[run]", "[sweep]\ngravity.m = { from = -1, to = 2, count = 3 }\n[run]"),
+        ("[run]", "[sweep]\ngravity.m.x = [1]\n[run]"),
+        ("[run]", "[[event]]\nname = \"a\"\n[run]"),
+        ("[run]", "[[event]]\nname = \"a, b\"\ntilt = 1\n[run]"),
+        ("[run]", "[[event]]\nname = \"a\"\ntilt = \"1 J\"\n[run]"),
+        ("[run]", "[sweep]\n[run]"),
+        ("[run]", "[sweep]\ngravity.m = { from = 1, to = 2, count = 200 }\ngravity.g = { from = 1, to = 2, count = 200 }\n[run]"),
+    ]
+    .map(|(line, by)| mistake(&folder, line, by));
+    expect![[r"
+        error: top.toml:4:5: `J` has three rows of three components, found 2 rows
+        error: top.toml:4:5: the inertia is not symmetric: two entries differ by 1e0, more than rounding; give it symmetric
+        error: top.toml:5:11: unknown variant `quartic`, expected one of `rigid`, `cayley`, `geodesic`, `fourth-order`, `sixth-order`
+        error: top.toml:22:10: a composition needs a conservative scene; drag does work
+        error: top.toml:22:10: no such scheme; there are `Suzuki 4`, `Kahan-Li 6`, `Kahan-Li 8`, `Sofroniou-Spaletta 10`, `Suzuki 6`, `Suzuki 8`
+        error: top.toml:22:10: unknown variant `euler`, expected one of `step`, `composition`, `splitting`, `processed`, `collocation`
+        error: top.toml:22:10: a collocation has 4 or 8 stages
+        error: top.toml:13:9: must be a whole number of steps, above zero
+        error: top.toml:13:20: unknown variant `phase`, expected one of `quaternion`, `axis`, `velocity`, `momentum`, `spatial-momentum`, `energy`, `energy-error`, `vertical-momentum-error`, `momentum-error`
+        error: top.toml:13:11: a table has each of its columns once
+        error: top.toml:20:20: a mass isn't in `m` but in `kg`, `g`, `t`
+        error: top.toml:20:9: unknown field `n`, expected one of `m`, `g`, `rho`, `up`
+        error: top.toml:20:13: a sweep is a list of values, or `{ from = …, to = …, count = … }`
+        error: top.toml:20:13: a sweep has a value at least
+        error: top.toml:20:13: a range is `{ from = …, to = …, count = … }`: two numbers, or texts with the same unit, and how many
+        error: top.toml:20:13: must be above zero
+        error: top.toml:20:9: `m` isn't a table
+        error: top.toml:19:1: an event has one of `tilt`, `speed`, `energy`, `velocity_1`, `velocity_2`, `velocity_3`, `axis_1`, `axis_2`, `axis_3`
+        error: top.toml:19:1: the `name` of an event has letters, digits, - and _ only
+        error: top.toml:21:8: an angle isn't in `J` but in `rad`, `deg`, `°`
+        error: top.toml:19:1: `sweep` has no key to vary
+        error: top.toml:19:1: `sweep` makes more than 10000 scenes
+    "]].assert_eq(&messages.concat());
+}
+
+/// What is no scene at all, with its place if there is text.
+#[test]
+fn files_of_another_kind() {
+    let folder = folder("kinds");
+    let contents: [(&str, Vec<u8>); 6] = [
+        ("empty", Vec::new()),
+        ("mark", [b"\xef\xbb\xbf", TOP.replace("[drag]", "[darg]").as_bytes()].concat()),
+        ("bytes", [b"title = \"\xc3\xb6 \xff\"", TOP.as_bytes()].concat()),
+        ("nested", [b"title = ".as_slice(), &b"[".repeat(100_000)].concat()),
+        ("large", b" \n".repeat(600_000)),
+        ("table", b"[[body]]\nmoments = [3, 3, 4]\n".to_vec()),
+    ];
+    let messages = contents.map(|(name, content)| {
+        let file = format!("{name}.toml");
+        fs::write(folder.join(&file), content).unwrap();
+        let output = simulate(&folder, &[&file]);
+        assert!(!output.status.success() && output.stdout.is_empty(), "{name}");
+        String::from_utf8(output.stderr).unwrap()
+    });
+    expect![[r"
+        error: empty.toml:1:1: missing field `title`
+        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `magnetic_damping`, `torque`, `thrust`, `start`, `run`, `picture`, `event`, `output`
+        error: bytes.toml:1:12: isn't a text in UTF-8
+        error: nested.toml:1:89: cannot recurse further; max recursion depth met
+        error: large.toml: has more than 1048576 bytes, so it is no scene
+        error: table.toml:1:1: invalid type: sequence, expected a table with an inertia
+    "]].assert_eq(&messages.concat());
+}
+
+/// A file of a hundred megabytes isn't read to its end.
+#[test]
+fn a_file_without_an_end() {
+    let folder = folder("endless");
+    fs::File::create(folder.join("endless.toml")).unwrap().set_len(100_000_000).unwrap();
+    let output = simulate(&folder, &["endless.toml"]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(message, "error: endless.toml: has more than 1048576 bytes, so it is no scene\n");
+}
+
+/// A mark of the byte order is no mistake.
+#[test]
+fn a_file_with_a_mark_of_the_byte_order() {
+    let text = format!("\u{feff}{TOP}");
+    assert_eq!(rows(&folder("mark"), &text).len(), 201);
+}
+
+/// Directions and quaternions of any length are brought to length one.
+#[test]
+fn directions_of_any_length() {
+    let folder = folder("lengths");
+    let plain = rows(&folder, &TOP.replace("euler = [0, \"45 deg\", 0]", "quaternion = [3, 4, 0, 0]"));
+    for scale in ["e250", "e-250"] {
+        let quaternion = format!("quaternion = [3{scale}, 4{scale}, 0, 0]");
+        let text = TOP.replace("euler = [0, \"45 deg\", 0]", &quaternion);
+        let text = text.replace("up = [0, 0, 1]", &format!("up = [0, 0, 7{scale}]"));
+        let rows = rows(&folder, &text);
+        assert_eq!(rows.len(), plain.len());
+        let pairs = rows.iter().flatten().zip(plain.iter().flatten());
+        assert!(pairs.into_iter().all(|(a, b)| (a - b).abs() <= 1e-12 * (1.0 + b.abs())), "{scale}");
+    }
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    let output = simulate(&folder("missing"), &["no-such.toml"]);
+    assert!(!output.status.success());
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.starts_with("error: no-such.toml: cannot be read: "), "{message}");
+}
+
+/// A folder for the pictures that can't be one, no file at all, two of the same name.
+#[test]
+fn command_lines() {
+    let folder = folder("commands");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    let refused = |arguments: &[&str], code: i32, message: &str| {
+        let output = Command::new(PROGRAM).current_dir(&folder).args(arguments).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.starts_with("error: ") && text.contains(message), "{text}");
+        assert!(output.stdout.is_empty() && output.status.code() == Some(code), "{arguments:?}: {text}");
+    };
+    refused(&["run"], 2, "required arguments were not provided");
+    refused(&["run", "."], 1, ".: cannot be read");
+    refused(&["run", "top.toml", "--out", "top.toml"], 4, "cannot write to top.toml");
+    refused(&["run", "top.toml", "--out", "top.toml/out"], 4, "cannot write to top.toml/out");
+    refused(&["run", "top.toml", "--out="], 2, "a value is required");
+    refused(&["run", "top.toml", "--pictures"], 2, "unexpected argument '--pictures'");
+    refused(&["run", "top.toml", "./top.toml"], 2, "would be written to the same files");
+    refused(&["sweep", "top.toml", "./top.toml"], 2, "would be written to the same files");
+    refused(&["replay", "a/top.csv", "b/top.csv"], 2, "would be written to the same files");
+    refused(&["check", "no-such.toml"], 1, "no-such.toml: cannot be read");
+    refused(&["sweep", "top.toml"], 1, "top.toml:1:1: has no table `sweep`");
+    refused(&["replay", "top.toml"], 1, "top.toml:3:1: isn't a number");
+    refused(&["derive", "no-such-effect"], 2, "'no-such-effect' is neither a scene file (*.toml) nor one of");
+    refused(&["derive", "no-such.toml"], 1, "no-such.toml: cannot be read");
+    refused(&["completions", "cmd"], 2, "invalid value 'cmd'");
+    refused(&["ran"], 2, "unrecognized subcommand 'ran'");
+}
+
+/// What can't be printed or written is a message and an exit code.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk() {
+    let folder = folder("full");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    let table = folder.join("top.csv");
+    // What was there may be a file.
+    let _ = fs::remove_file(&table);
+    std::os::unix::fs::symlink("/dev/full", &table).unwrap();
+    let output = simulate(&folder, &["top.toml"]);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{text}");
+    assert!(text.starts_with("error: top.toml: the table can't be written: No space left on device"), "{text}");
+
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = Command::new(PROGRAM).args(["derive", "gravity"]).stdout(full).output().unwrap();
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(4), "{text}");
+    assert!(text.starts_with("error: cannot print: No space left on device"), "{text}");
+}
+
+#[test]
+fn what_is_printed() {
+    let folder = folder("printed");
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    assert_eq!(printed(&folder, &["check", "top.toml"]), "top.toml: body + gravity + drag, 200 steps of 0.01 s\n");
+    assert!(!folder.join("out").exists());
+    // All files are looked at.
+    fs::write(folder.join("fast.toml"), TOP.replace("60 rpm", "60000 rpm")).unwrap();
+    fs::write(folder.join("wrong.toml"), TOP.replace("[drag]", "[darg]")).unwrap();
+    let files = ["check", "wrong.toml", "top.toml", "fast.toml"];
+    let output = Command::new(PROGRAM).current_dir(&folder).args(files).output().unwrap();
+    let (told, wrong) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!((told.lines().count(), wrong.lines().count(), output.status.code()), (1, 2, Some(3)), "{wrong}");
+    assert!(wrong.starts_with("error: wrong.toml:12:2: unknown field `darg`"), "{wrong}");
+    let names = printed(&folder, &["derive"]);
+    assert_eq!(names.lines().count(), 15);
+    for name in names.lines() {
+        assert!(printed(&folder, &["derive", name]).contains("momentum"), "{name}");
+    }
+    let derived = printed(&folder, &["derive", "top.toml"]);
+    let terms: Vec<_> = derived.lines().filter(|line| names.lines().any(|name| name == *line)).collect();
+    assert_eq!(terms, ["principal-body", "gravity", "drag"]);
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(printed(&folder, &["completions", shell]).contains("replay"), "{shell}");
+    }
+}
