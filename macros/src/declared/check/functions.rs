@@ -15,6 +15,9 @@ pub(super) const FUNCTIONS: [&str; 5] = ["hat", "vee", "log", "exp", "inverse"];
 
 impl Checker<'_> {
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
+        if let Some(called) = self.call_of_closure(call) {
+            return called;
+        }
         let function = match &*call.func {
             Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
             _ => String::new(),
@@ -37,8 +40,8 @@ impl Checker<'_> {
             return None;
         }
         match (function.as_str(), argument.shape) {
-            ("hat", shape) if shape == Shape::Matrix(self.factor().dimension(), 1) => {
-                let Group { size, generators, is_so3, .. } = self.factor();
+            ("hat", shape) if shape == Shape::Matrix(self.matrices.dimension(), 1) => {
+                let Group { size, generators, is_so3, .. } = &self.matrices;
                 // In cross products the relations of vectors are known.
                 if *is_so3 && self.declaration.continuous.is_some() {
                     return Some(Tree::new(span, SQUARE, Kind::CrossMatrix(argument)));
@@ -47,7 +50,7 @@ impl Checker<'_> {
                 Some(Tree::new(span, Shape::Matrix(*size, *size), Kind::Hat(argument, generators)))
             }
             ("hat", shape) => {
-                let dimension = self.factor().dimension();
+                let dimension = self.matrices.dimension();
                 self.mismatch("hat", &format!("a vector of {dimension}, one for each generator"), shape, at)
             }
             ("vee", SQUARE) => Some(Tree::new(span, VECTOR, Kind::Vee(argument))),

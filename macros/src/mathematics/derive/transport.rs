@@ -27,7 +27,9 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
     let kick_before = unknown.clone().minus(momentum.clone());
     let moved = diamond.clone().minus(kick_before.clone());
     let mut map: BTreeMap<SymbolId, Expression> = previous(context).into_iter().collect();
-    for (factor, one) in context.directions.factors.iter().enumerate() {
+    // What is added commutes with all: there `F E F⁻¹` is `E`.
+    let turning = context.directions.factors.iter().enumerate().filter(|(factor, _)| !context.is_added(*factor));
+    for (factor, one) in turning {
         let (f, inverse) = context.increment(factor);
         map.insert(one.first, context.product(&context.product(&f, &context.first(factor)), &inverse));
     }
@@ -46,9 +48,12 @@ pub(super) fn previous(context: &Context) -> Vec<(SymbolId, Expression)> {
 pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expression) -> [Expression; 2] {
     let (symbols, directions) = (context.symbols, context.directions);
     let mut map = BTreeMap::new();
-    for one in &directions.factors {
+    for (factor, one) in directions.factors.iter().enumerate() {
         let next = one.next_increment;
-        map.extend([(one.increment, context.symbol(next)), (one.inverse, Expression::inverse(next, symbols))]);
+        map.insert(one.increment, context.symbol(next));
+        if !context.is_added(factor) {
+            map.insert(one.inverse, Expression::inverse(next, symbols));
+        }
     }
     let carried = context.declared.advected.iter().zip(&directions.next);
     map.extend(carried.map(|(w, &next)| (w.symbol, context.symbol(next))));
@@ -58,9 +63,11 @@ pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expres
 
 /// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.
 pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
+    let factors = context.directions.factors.iter().enumerate();
+    let turning: Vec<_> = factors.filter(|(factor, _)| !context.is_added(*factor)).map(|(_, one)| one).collect();
     // Each F becomes two terms.
     let factors = |monomial| {
-        let degrees = context.declared.increments.iter().map(|&increment| degree(monomial, increment));
+        let degrees = turning.iter().map(|one| degree(monomial, one.increment));
         u32::try_from(degrees.sum::<usize>()).unwrap_or(u32::MAX)
     };
     let terms = unknown.terms().map(|(monomial, _)| 2_usize.saturating_pow(factors(monomial)));
@@ -71,8 +78,8 @@ pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Exp
         let symbol = context.symbol(small);
         Expression::identity(symbol.shape().0).plus(symbol)
     };
-    let factors = context.directions.factors.iter();
-    let map = factors
+    let map = turning
+        .iter()
         .flat_map(|one| [(one.increment, near_identity(one.small)), (one.inverse, near_identity(one.small_inverse))]);
     let map = map.collect();
     context.substituted(unknown, &map)
