@@ -87,7 +87,9 @@ fn momenta_of_a_top_on_a_cart() {
         badly.step(&mut state).unwrap();
         least = least.min(missed(&system, &last, &state, 0.01));
     }
-    assert!((sideways(&state.momentum()) - before).amax() < 1e-15 && least > 1e-6, "{least:e}");
+    let moved = (sideways(&state.momentum()) - before).amax();
+    println!("momentum {moved:.1e}, (2.7) missed by {least:.1e} at least");
+    assert!(moved == 0.0 && least > 1e-6);
 
     let stepper = Stepper::new(system, 0.005).unwrap();
     let mut state = stepper.start(start, velocity).unwrap();

@@ -23,7 +23,12 @@ pub(super) struct Parts {
 }
 
 pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expression) -> Parts {
-    let unknown = momentum.filtered(|monomial| stage_of_monomial(monomial, context.symbols) == Stage::Iteration);
+    // What goes like 1/h without `F` cancels what has `F`, where that is `I`: taken over to the other side, it would
+    // leave a rounding of the size of 1/h in the momentum.
+    let unknown = momentum.filtered(|monomial| {
+        stage_of_monomial(monomial, context.symbols) == Stage::Iteration
+            || monomial.exponent(context.declared.step) < 0
+    });
     let kick_before = unknown.clone().minus(momentum.clone());
     let moved = diamond.clone().minus(kick_before.clone());
     let mut map: BTreeMap<SymbolId, Expression> = previous(context).into_iter().collect();
