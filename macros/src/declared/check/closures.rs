@@ -58,7 +58,10 @@ impl Checker<'_> {
         });
         let scope: BTreeMap<_, _> = scope.collect();
         if scope.len() < parameters.len() {
-            self.errors.push(closure.inputs_begin.span, "two parameters have one name: rename one");
+            let again = |at: &usize| parameters[..*at].iter().any(|(other, _)| *other == parameters[*at].0);
+            let place =
+                (0..parameters.len()).find(again).map_or(closure.inputs_begin.span, |at| parameters[at].0.span());
+            self.errors.push(place, "two parameters have one name: rename one");
             return None;
         }
         self.scopes.push(scope);
@@ -80,7 +83,7 @@ impl Checker<'_> {
             return None;
         };
         if let Type::Reference(reference) = &*typed.ty {
-            let (mark, ty) = (reference.and_token.span, reference.elem.to_token_stream());
+            let (mark, ty) = (reference.and_token.span, reference.elem.to_token_stream().to_string().replace(' ', ""));
             self.errors.push(mark, format!("leave the `&` away, as values are passed: write `{ty}`"));
             return None;
         }

@@ -38,6 +38,19 @@ impl Checker<'_> {
         if from == of {
             return true;
         }
+        for (operand, tree, fits) in [(right, trees.1, 0), (left, trees.0, 1)] {
+            // The other way round it would fit.
+            let turned = [tree.frames[1], tree.frames[0]];
+            if tree.frames[0] != tree.frames[1] && turned[fits] == Some([from, of][fits]) && spelled(operand) != "…" {
+                let name = spelled(operand);
+                let message = match name.strip_suffix(".transpose()") {
+                    Some(plain) => format!("`{name}` brings vectors the other way: write `{plain}`"),
+                    None => format!("`{name}` brings vectors the other way: write `{name}.transpose()`"),
+                };
+                self.errors.push_over(operand, message);
+                return false;
+            }
+        }
         let (relative, declared) = self.relative(from, of);
         let advice = if trees.1.shape.is_vector() {
             format!("{} * ({relative} * {})", spelled(left), spelled(right))
@@ -108,8 +121,7 @@ impl Checker<'_> {
         let body = &self.declaration.factors[factor].name;
         match spelled(expression).as_str() {
             "…" => format!("what is seen from `{body}`"),
-            name if name == body => format!("`{name}`"),
-            name => format!("`{name}`, seen from `{body}`,"),
+            name => format!("`{name}`"),
         }
     }
 }

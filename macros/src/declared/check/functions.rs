@@ -79,6 +79,11 @@ impl Checker<'_> {
         at: proc_macro2::Span,
     ) -> Option<Rc<Tree>> {
         match (&argument.kind, shape) {
+            (Kind::Name(Name::Increment(factor)), _) if self.declaration.group.factor(*factor).is_added => {
+                let name = &self.declaration.factors[*factor].name;
+                self.errors.push(at, format!("`{name}` is a translation, which is added: its inverse is `-{name}`"));
+                None
+            }
             // The group knows the inverses of its elements.
             (Kind::Name(Name::Increment(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
             (_, Shape::Matrix(rows, columns)) if rows != columns || rows > 3 => {

@@ -113,7 +113,10 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
             continue;
         }
         if factors.len() == MOST_FACTORS {
-            let message = format!("at most {MOST_FACTORS} factors are declared together");
+            let message = format!(
+                "at most {MOST_FACTORS} factors are declared together: declare what couples fewer of them as a term of \
+                 its own"
+            );
             errors.push_decisive(increment.span(), message);
             break;
         }

@@ -1,7 +1,7 @@
 //! The step in the transport form `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`, which keeps the Casimirs at any Newton tolerance.
 //!
-//! What doesn't depend on `F` is moved to where it is cheap: with `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with
-//! all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
+//! What doesn't depend on `F`, and isn't of the size of `1/h`, is moved to where it is cheap: with
+//! `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
 //!
 //! ```text
 //! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
@@ -26,8 +26,7 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
     // What goes like 1/h without `F` cancels what has `F`, where that is `I`: taken over to the other side, it would
     // leave a rounding of the size of 1/h in the momentum.
     let unknown = momentum.filtered(|monomial| {
-        stage_of_monomial(monomial, context.symbols) == Stage::Iteration
-            || monomial.exponent(context.declared.step) < 0
+        stage_of_monomial(monomial, context.symbols) == Stage::Iteration || monomial.exponent(context.declared.step) < 0
     });
     let kick_before = unknown.clone().minus(momentum.clone());
     let moved = diamond.clone().minus(kick_before.clone());
