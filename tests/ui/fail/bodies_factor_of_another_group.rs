@@ -1,4 +1,3 @@
-use liestep::groups::SE3;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
