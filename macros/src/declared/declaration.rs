@@ -259,9 +259,8 @@ impl FieldKind {
 
     pub(crate) fn shape(self) -> Shape {
         match self {
-            Self::Scalar => Shape::Scalar,
+            Self::Scalar | Self::Place(1) => Shape::Scalar,
             Self::Given(shape) => shape,
-            Self::Place(1) => Shape::Scalar,
             Self::Vector(rows) | Self::Point(rows) | Self::Place(rows) => Shape::Matrix(rows, 1),
             Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
             Self::Matrix(rows) | Self::Configuration(rows) => Shape::Matrix(rows, rows),

@@ -47,9 +47,10 @@ pub(crate) fn readings_without(
     names.insert(Name::Step, step);
     let mut increments = Vec::new();
     for (index, (factor, group)) in declaration.factors.iter().zip(declaration.group.factors()).enumerate() {
-        let structure = match group.orthogonal && !group.is_added {
-            true => weaker(Name::Increment(index), Structure::Rotation),
-            false => Structure::General,
+        let structure = if group.orthogonal && !group.is_added {
+            weaker(Name::Increment(index), Structure::Rotation)
+        } else {
+            Structure::General
         };
         let increment = symbols.add(factor.name.clone(), group.shape(), structure, Stage::Iteration);
         names.insert(Name::Increment(index), increment);

@@ -68,16 +68,7 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
-        let kind = declaration.advected_kind(index);
-        let is_seen = declaration.group.is_product() && !matches!(kind, FieldKind::Given(_));
-        let part = if is_seen { quote_spanned!(span=> #part.0) } else { part };
-        let value = match kind {
-            FieldKind::Given(Shape::Scalar) => quote_spanned!(span=> #part.0.x),
-            FieldKind::Advected(..) | FieldKind::Given(_) => quote_spanned!(span=> #part.0),
-            FieldKind::Point(_) => quote_spanned!(span=> #private::Parameter::value(&#part)),
-            FieldKind::Place(coordinates) => translation(header, &part, coordinates),
-            _ => part,
-        };
+        let value = advected(declaration, header, index, part);
         bind(&parameter.plain_name(), value);
     }
     for field in &declaration.fields {
@@ -124,6 +115,21 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             let (#(#names,)*) = (#(#values,)*);
             #expression
         }
+    }
+}
+
+/// An advected parameter as it is written, of the part of `w` that it is.
+fn advected(declaration: &Declaration, header: &Header, index: usize, part: TokenStream) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
+    let kind = declaration.advected_kind(index);
+    let is_seen = declaration.group.is_product() && !matches!(kind, FieldKind::Given(_));
+    let part = if is_seen { quote_spanned!(span=> #part.0) } else { part };
+    match kind {
+        FieldKind::Given(Shape::Scalar) => quote_spanned!(span=> #part.0.x),
+        FieldKind::Advected(..) | FieldKind::Given(_) => quote_spanned!(span=> #part.0),
+        FieldKind::Point(_) => quote_spanned!(span=> #private::Parameter::value(&#part)),
+        FieldKind::Place(coordinates) => translation(header, &part, coordinates),
+        _ => part,
     }
 }
 

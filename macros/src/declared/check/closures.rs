@@ -24,6 +24,15 @@ pub(super) struct Closure {
     scopes: Vec<BTreeMap<Spelling, Binding>>,
 }
 
+/// What stands before the brackets of a call.
+pub(super) enum Callee {
+    /// What a `let` has named a function.
+    Closure(Ident, Rc<Closure>),
+    /// A `let` with a mistake: nothing is known of its calls.
+    Mistaken,
+    Other,
+}
+
 impl Closure {
     /// The names of what it is called with.
     pub(super) fn names(&self) -> String {
@@ -96,33 +105,35 @@ impl Checker<'_> {
                 return None;
             }
         };
-        match field_kind(&typed.ty, &self.declaration.item) {
-            Some(kind @ (FieldKind::Scalar | FieldKind::Vector(_) | FieldKind::Matrix(_))) => {
-                Some((name, kind.shape()))
+        let kind = field_kind(&typed.ty, &self.declaration.item);
+        if let Some(kind @ (FieldKind::Scalar | FieldKind::Vector(_) | FieldKind::Matrix(_))) = kind {
+            return Some((name, kind.shape()));
+        }
+        let message = "a function is called with numbers: write f64, Vector3<f64> or Matrix3<f64>, or the same with the \
+                       struct's type parameter";
+        self.errors.push_over(&typed.ty, message);
+        None
+    }
+
+    /// What is called.
+    pub(super) fn callee(&mut self, call: &ExprCall) -> Callee {
+        let Expr::Path(path) = &*call.func else { return Callee::Other };
+        let Some(name) = path.path.get_ident() else { return Callee::Other };
+        let spelling = Spelling::of(name);
+        let bound = self.scopes.iter_mut().rev().find_map(|scope| scope.get_mut(&spelling));
+        let Some(binding) = bound else { return Callee::Other };
+        match binding.closure.clone() {
+            Some(closure) => {
+                binding.used = true;
+                Callee::Closure(name.clone(), closure)
             }
-            _ => {
-                let message = "a function is called with numbers: write f64, Vector3<f64> or Matrix3<f64>, or the same \
-                               with the struct's type parameter";
-                self.errors.push_over(&typed.ty, message);
-                None
-            }
+            None if binding.tree.is_none() => Callee::Mistaken,
+            None => Callee::Other,
         }
     }
 
-    /// A call of what a `let` has named; `None` where it has named no function.
-    pub(super) fn call_of_closure(&mut self, call: &ExprCall) -> Option<Option<Rc<Tree>>> {
-        let Expr::Path(path) = &*call.func else { return None };
-        let (name, spelling) = (path.path.get_ident()?, Spelling::of(path.path.get_ident()?));
-        let binding = self.scopes.iter_mut().rev().find_map(|scope| scope.get_mut(&spelling))?;
-        let Some(closure) = binding.closure.clone() else {
-            // After a mistake in a function nothing is known of its calls.
-            return (binding.tree.is_none()).then_some(None);
-        };
-        binding.used = true;
-        Some(self.called(name, &closure, call))
-    }
-
-    fn called(&mut self, name: &Ident, closure: &Closure, call: &ExprCall) -> Option<Rc<Tree>> {
+    /// The body of a function with what it is called with.
+    pub(super) fn called(&mut self, name: &Ident, closure: &Closure, call: &ExprCall) -> Option<Rc<Tree>> {
         let arguments: Vec<_> = call.args.iter().map(|argument| (argument, self.expression(argument))).collect();
         if arguments.len() != closure.parameters.len() {
             let (wanted, found) = (closure.parameters.len(), arguments.len());

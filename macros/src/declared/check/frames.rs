@@ -10,7 +10,7 @@ use std::rc::Rc;
 use syn::{Expr, ExprReference};
 
 use super::Checker;
-use crate::declared::{Declaration, Frames, Name, Tree};
+use crate::declared::{AdvectedParameter, Declaration, Frames, Name, Tree};
 use crate::mathematics::derive::Seen;
 
 /// From where what a name stands for is seen.
@@ -104,7 +104,7 @@ impl Checker<'_> {
     fn relative(&self, from: usize, of: usize) -> (String, String) {
         let declared = |of: usize, from: usize| {
             let mut advected = self.declaration.advected.iter();
-            advected.find(|w| w.seen == Seen::Relative { of, from }).map(|w| w.plain_name())
+            advected.find(|w| w.seen == Seen::Relative { of, from }).map(AdvectedParameter::plain_name)
         };
         if let Some(name) = declared(of, from) {
             return (name, String::new());

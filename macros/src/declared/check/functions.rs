@@ -6,6 +6,7 @@ use syn::spanned::Spanned as _;
 use syn::{Expr, ExprCall};
 
 use super::Checker;
+use super::closures::Callee;
 use super::methods::{SQUARE, VECTOR};
 use crate::declared::{Kind, Name, Shape, Tree};
 use crate::mathematics::group::Group;
@@ -15,8 +16,10 @@ pub(super) const FUNCTIONS: [&str; 5] = ["hat", "vee", "log", "exp", "inverse"];
 
 impl Checker<'_> {
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
-        if let Some(called) = self.call_of_closure(call) {
-            return called;
+        match self.callee(call) {
+            Callee::Closure(name, closure) => return self.called(&name, &closure, call),
+            Callee::Mistaken => return None,
+            Callee::Other => {}
         }
         let function = match &*call.func {
             Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),

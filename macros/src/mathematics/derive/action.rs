@@ -59,7 +59,7 @@ pub(super) fn along(context: &Context, carried: Carried, e: &dyn Fn(usize) -> Ex
     let (symbols, w) = (context.symbols, context.symbol(carried.symbol));
     match carried.seen {
         Seen::Relative { of, from } if context.is_added(of) => e(from).minus(e(of)),
-        Seen::Configuration(of) if context.is_added(of) => context.negated(&e(of)),
+        Seen::Configuration(of) if context.is_added(of) => e(of).scaled(-Rational::ONE),
         Seen::From(factor) => infinitesimal(symbols, carried.variance, &e(factor), &w),
         Seen::Relative { of, from } => context.product(&e(from), &w).minus(context.product(&w, &e(of))),
         Seen::Configuration(of) => context.product(&w, &e(of)).scaled(-Rational::ONE),

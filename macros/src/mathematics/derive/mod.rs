@@ -298,8 +298,11 @@ impl Context<'_> {
             || (Expression::zero((1, 1)), Expression::zero((1, 1))),
             |id| {
                 let f = self.symbol(id);
-                let inverse =
-                    if self.is_added(factor) { self.negated(&f) } else { Expression::inverse(id, self.symbols) };
+                let inverse = if self.is_added(factor) {
+                    f.clone().scaled(-Rational::ONE)
+                } else {
+                    Expression::inverse(id, self.symbols)
+                };
                 (f, inverse)
             },
         )
@@ -308,10 +311,6 @@ impl Context<'_> {
     /// Whether the increments of a factor are vectors that are added.
     fn is_added(&self, factor: usize) -> bool {
         self.declared.group.factor(factor).is_added
-    }
-
-    fn negated(&self, expression: &Expression) -> Expression {
-        expression.clone().scaled(-Rational::ONE)
     }
 
     /// `E F`, the change of `F ↦ exp(sE) F`; of what is added `E`.
