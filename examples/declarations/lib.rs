@@ -14,6 +14,7 @@ mod flyer;
 mod fourth_order_top;
 mod free_body;
 mod full_top;
+mod gyrostat;
 mod log_top;
 mod log_trace_top;
 mod magnet;
@@ -25,8 +26,10 @@ mod sixth_order_top;
 mod sliding_top;
 mod spring;
 mod tethered_plate;
+mod top_on_cart;
 mod tops;
 mod torquer;
+mod two_bodies;
 mod underwater_body;
 
 pub use cayley_top::CayleyTop;
@@ -37,6 +40,7 @@ pub use flyer::{FluidDrag, Flyer, Thruster};
 pub use fourth_order_top::FourthOrderTop;
 pub use free_body::FreeBody;
 pub use full_top::FullTop;
+pub use gyrostat::Gyrostat;
 pub use log_top::LogTop;
 pub use log_trace_top::LogTraceTop;
 pub use magnet::Magnet;
@@ -48,8 +52,10 @@ pub use sixth_order_top::SixthOrderTop;
 pub use sliding_top::SlidingTop;
 pub use spring::Spring;
 pub use tethered_plate::TetheredPlate;
+pub use top_on_cart::TopOnCart;
 pub use tops::Top;
 pub use torquer::Torquer;
+pub use two_bodies::TwoBodies;
 pub use underwater_body::UnderwaterBody;
 
 // The first example declares this.

@@ -22,7 +22,7 @@ mod program;
 ///     group = SO3,                    the group that F belongs to
 ///     generators = […],               its generators, row by row, if it is a group of your own; of one that
 ///                                     `matrix_group!` declares, `group = Name!` finds them
-///     group(F_1 = SO3, F_2 = SO3, …), or the increments of two to four bodies that turn
+///     group(F = SO3, d = R3, …),      or the increments of two to four bodies that turn or are translated
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     given(u = torque, …),           u is the field `torque` until a step is given another value; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
@@ -39,7 +39,8 @@ mod program;
 /// `+ - * /`, unary minus, `let`, `.transpose() .trace() .dot(&v) .norm_squared() .norm() .cross(&v) .cross_matrix()
 /// .component_mul(&v) .powi(n) .sqrt() .ln() .exp() .sin() .cos()`, indexing, decimal literals, and five functions:
 /// `hat(v)`, the matrix `Σ v_k E_k` of the Lie algebra; `vee(A)`, the vector of `½ (A − Aᵀ)`; `log(F)`, the rotation
-/// vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a field or of `F`. A large Lagrangian
+/// vector of a rotation; `exp(v)`, the rotation by a vector; and `inverse(J)` of a field or of `F`. A `let` may name a
+/// function of one's own, `let U = |y: Vector3<f64>| …;`, as a potential that both ends of a step have. A large Lagrangian
 /// is best written with `let`s: what isn't cheaper multiplied out is differentiated through them, by multipliers.
 ///
 /// # Several bodies
@@ -51,6 +52,8 @@ mod program;
 /// | `w = up.seen_from(F_1)` | the field `up`, as the body of `F_1` sees it | `F_1ᵀ w` |
 /// | `Q = F_2.seen_from(F_1)` | `g_1⁻¹ g_2`: `Q` brings a vector from the second body to the first | `F_1⁻¹ Q F_2` |
 /// | `R = F_2.seen_from(space)` | `g_2` itself | `R F_2` |
+/// | `r = d_2.seen_from(d_1)`, of `R3` | the second place as it is from the first | `r + d_2 − d_1` |
+/// | `x = d_1.seen_from(space)`, of `R3` | the place | `x + d_1` |
 ///
 /// Vectors of two bodies meet by `Q`, as in `x.dot(&(Q * y))`. The states are tuples: `stepper.start((R_1, R_2), …)`, with
 /// the components of both velocities one after the other. Of the second body `state.momentum_of::<1>()` is the momentum,
@@ -58,7 +61,10 @@ mod program;
 /// What they conserve together, and whether a step solves them together, is in the documentation of the struct.
 /// `examples/declarations/double_pendulum.rs` is one.
 ///
-/// Two to four bodies are declared together, each of which turns by `SO3`. They have no `ContinuousLagrangian`; no
+/// What turns does so by `SO3`. What is translated by `R1`, `R2` or `R3` has a scalar or a vector for its increment, in the
+/// axes of space, which is added. A wheel's turn about its axis is one of `R1`, as in `examples/declarations/gyrostat.rs`.
+///
+/// Two to four factors are declared together. They have no `ContinuousLagrangian`; no
 /// `#[force]` acts on them, and no effect of the library, as those are of one body; and no splitting has their kinetic
 /// flow. Compositions, substeps and the derivatives of a step are there for them.
 ///

@@ -16,3 +16,4 @@ mod sensitivities;
 mod several_bodies;
 mod terms;
 mod thesis;
+mod translated_bodies;

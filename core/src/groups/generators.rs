@@ -201,6 +201,23 @@ pub(super) const fn structure_constants<const N: usize, const D: usize>(
     constants
 }
 
+/// Whether the product of any two generators vanishes, as those of translations do: then `(I + X)(I + Y) = I + X + Y`.
+pub(crate) const fn products_vanish<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> bool {
+    let mut place = 0;
+    while place < D * D {
+        let product = add_product(&[[0.0; N]; N], 1.0, &basis[place / D], &basis[place % D]);
+        let mut entry = 0;
+        while entry < N * N {
+            if product[entry / N][entry % N] != 0.0 {
+                return false;
+            }
+            entry += 1;
+        }
+        place += 1;
+    }
+    true
+}
+
 /// Whether the symmetrised products of any three generators lie in their span.
 ///
 /// With them all odd powers of `ξ̂` do, and then `(d/dt cay(tξ)) cay(tξ)⁻¹ = ξ̂ (I − t²ξ̂²/4)⁻¹`, so that the Cayley map

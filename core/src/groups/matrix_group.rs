@@ -6,7 +6,7 @@ use core::marker::PhantomData;
 use nalgebra::{RealField, SMatrix, SVector};
 
 use super::LieGroup;
-use super::generators::{Generators, dynamic, squared_lengths, structure_constants};
+use super::generators::{Generators, dynamic, products_vanish, squared_lengths, structure_constants};
 use crate::numbers::{Lanes, Real, real, reported};
 
 /// An element of the matrix group that `K` declares by its [`Generators`].
@@ -80,6 +80,8 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> T
 impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
     const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
+    /// Elements are multiplied by adding what they have beside `I`.
+    const IS_ADDED: bool = products_vanish(&K::GENERATORS);
 
     /// `tr(E_kᵀ M)` for all `k`.
     #[inline]
@@ -196,17 +198,26 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
 
     #[inline]
     fn inverse_increment(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        if const { Self::IS_ADDED } {
+            return -increment;
+        }
         -(K::inverse(&(increment + SMatrix::identity())) * increment)
     }
 
     #[inline]
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        if const { Self::IS_ADDED } {
+            return *increment;
+        }
         self.0 * increment
     }
 
     /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
     #[inline]
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
+        if const { Self::IS_ADDED } {
+            return SVector::zeros();
+        }
         let inverse_increment = Self::inverse_increment(increment);
         let covector = Self::dual_hat(momentum);
         let moved = increment.transpose() * covector;

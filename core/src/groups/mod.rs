@@ -47,7 +47,7 @@ pub use advected::{
 };
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
-pub(crate) use generators::{inverse, is_closed_under_cayley};
+pub(crate) use generators::{inverse, is_closed_under_cayley, products_vanish};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
 pub(crate) use matrix_group::basis;

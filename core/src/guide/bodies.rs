@@ -1,4 +1,4 @@
-//! Several bodies that turn together.
+//! Several bodies that move together.
 //!
 //! Before: [groups](super::groups). Next: [accuracy and cost](super::accuracy).
 //!
@@ -11,6 +11,11 @@
 //! | `w = up.seen_from(F_1)` | the field `up`, as the body of `F_1` sees it |
 //! | `Q = F_2.seen_from(F_1)` | `g_1⁻¹ g_2`: brings a vector from the second body to the first |
 //! | `R = F_2.seen_from(space)` | `g_2` itself |
+//! | `r = d_2.seen_from(d_1)` | the place of one from the other, of increments `d` of `R3` (`R2`, `R1`) |
+//!
+//! A body that is translated has a factor `d = R3`, and `d` is a vector in the formula; `t = R1` is a scalar.
+//! `examples/declarations` has a top on a cart (`top_on_cart.rs`), two asteroids (`two_bodies.rs`) and a spacecraft with
+//! wheels (`gyrostat.rs`).
 //!
 //! Two links on ball joints. The kinetic energy couples them, because the lower link hangs at the upper one's end:
 //!

@@ -91,6 +91,14 @@ pub(crate) struct Factor {
     pub(crate) path: Option<Path>,
 }
 
+impl Factor {
+    /// The group's name without what it is found in.
+    pub(crate) fn group_name(&self) -> String {
+        let segment = self.path.as_ref().and_then(|path| path.segments.last());
+        segment.map(|segment| segment.ident.to_string()).unwrap_or_default()
+    }
+}
+
 /// What belongs to `l = …`.
 pub(crate) struct Continuous {
     /// The name of `ξ`; a term without a velocity may leave it out.
@@ -162,10 +170,17 @@ impl Declaration {
     /// What an advected parameter's field promises; a plain vector after a mistake.
     pub(crate) fn advected_kind(&self, index: usize) -> FieldKind {
         let parameter = self.advected.get(index);
-        let size = |factor: usize| self.group.factors().get(factor).map_or(self.group.size, |factor| factor.size);
         let size = match parameter.map(|w| w.seen) {
-            Some(Seen::Relative { of, .. } | Seen::Configuration(of)) => return FieldKind::Configuration(size(of)),
-            Some(Seen::From(factor)) => size(factor),
+            Some(Seen::Relative { of, .. } | Seen::Configuration(of)) => {
+                let factor = self.group.factor(of);
+                let is_place = factor.is_added;
+                return if is_place {
+                    FieldKind::Place(factor.dimension())
+                } else {
+                    FieldKind::Configuration(factor.size)
+                };
+            }
+            Some(Seen::From(factor)) => self.group.factor(factor).size,
             None => self.group.size,
         };
         let field = parameter.and_then(|w| self.fields.get(w.field?));
@@ -206,6 +221,8 @@ pub(crate) enum FieldKind {
     Advected(Variance, usize),
     /// A body as another sees it, or as it is in space; rows.
     Configuration(usize),
+    /// The same of a body that is translated: its coordinates.
+    Place(usize),
     /// A value of the step: as a field it is a scalar, a vector or a matrix.
     Given(Shape),
     /// `NonstandardInertia`, `Inertia`.
@@ -220,7 +237,7 @@ impl FieldKind {
         match self {
             Self::Advected(variance, _) => variance,
             Self::Point(_) => Variance::Vector,
-            Self::Given(_) | Self::Configuration(_) => Variance::Fixed,
+            Self::Given(_) | Self::Configuration(_) | Self::Place(_) => Variance::Fixed,
             _ => Variance::Covector,
         }
     }
@@ -242,9 +259,9 @@ impl FieldKind {
 
     pub(crate) fn shape(self) -> Shape {
         match self {
-            Self::Scalar => Shape::Scalar,
+            Self::Scalar | Self::Place(1) => Shape::Scalar,
             Self::Given(shape) => shape,
-            Self::Vector(rows) | Self::Point(rows) => Shape::Matrix(rows, 1),
+            Self::Vector(rows) | Self::Point(rows) | Self::Place(rows) => Shape::Matrix(rows, 1),
             Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
             Self::Matrix(rows) | Self::Configuration(rows) => Shape::Matrix(rows, rows),
             Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),

@@ -47,9 +47,12 @@ pub(crate) fn readings_without(
     names.insert(Name::Step, step);
     let mut increments = Vec::new();
     for (index, (factor, group)) in declaration.factors.iter().zip(declaration.group.factors()).enumerate() {
-        let structure = if group.orthogonal { Structure::Rotation } else { Structure::General };
-        let structure = weaker(Name::Increment(index), structure);
-        let increment = symbols.add(factor.name.clone(), (group.size, group.size), structure, Stage::Iteration);
+        let structure = if group.orthogonal && !group.is_added {
+            weaker(Name::Increment(index), Structure::Rotation)
+        } else {
+            Structure::General
+        };
+        let increment = symbols.add(factor.name.clone(), group.shape(), structure, Stage::Iteration);
         names.insert(Name::Increment(index), increment);
         increments.push(increment);
     }
@@ -128,7 +131,7 @@ fn parameters(
     for (index, field) in declaration.fields.iter().enumerate() {
         let (shape, structure) = match field.kind {
             FieldKind::Scalar => ((1, 1), Structure::General),
-            FieldKind::Vector(_) | FieldKind::Advected(..) | FieldKind::Given(_) => {
+            FieldKind::Vector(_) | FieldKind::Advected(..) | FieldKind::Given(_) | FieldKind::Place(_) => {
                 (ambient(field.kind.shape()), Structure::General)
             }
             FieldKind::Point(rows) => ((rows, 1), Structure::Point),
@@ -146,7 +149,8 @@ fn parameters(
         let shape = ambient(kind.shape());
         let structure = match kind {
             FieldKind::Point(_) => Structure::Point,
-            FieldKind::Configuration(_) if declaration.group.orthogonal => Structure::Rotation,
+            // Of factors that aren't added those that turn.
+            FieldKind::Configuration(_) => Structure::Rotation,
             _ => Structure::General,
         };
         let structure = weaker(Name::Advected(index), structure);

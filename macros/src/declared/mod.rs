@@ -20,4 +20,4 @@ pub(crate) use declaration::{
     Role, Scalar,
 };
 pub(crate) use spelling::Spelling;
-pub(crate) use tree::{Kind, Name, Shape, Tree};
+pub(crate) use tree::{Frames, Kind, Name, Shape, Tree};

@@ -23,6 +23,10 @@ impl Shape {
         }
     }
 
+    pub(crate) fn is_vector(self) -> bool {
+        matches!(self, Self::Matrix(_, 1))
+    }
+
     /// In a message: `a scalar`, `a vector of 3`, `a 3 × 3 matrix`.
     pub(crate) fn describe(self) -> String {
         match self {
@@ -44,12 +48,23 @@ pub(crate) struct Tree {
     pub(crate) kind: Kind,
     /// How deep the operations are nested, through `let`s too.
     pub(crate) depth: usize,
+    pub(crate) frames: Frames,
 }
+
+/// Among several bodies, from which one a vector is seen, by the place of its factor: first what rows belong to, then
+/// what columns belong to, where that is known. A matrix brings vectors from its columns' frame to its rows'.
+pub(crate) type Frames = [Option<usize>; 2];
 
 impl Tree {
     pub(crate) fn new(span: Span, shape: Shape, kind: Kind) -> Rc<Self> {
         let depth = kind.operands().into_iter().flatten().map(|operand| operand.depth).max().unwrap_or(0) + 1;
-        Rc::new(Self { span, end: span, shape, kind, depth })
+        let frames = if shape == Shape::Scalar { [None; 2] } else { kind.frames() };
+        Rc::new(Self { span, end: span, shape, kind, depth, frames })
+    }
+
+    /// What a name stands for, seen from bodies.
+    pub(crate) fn seen(span: Span, shape: Shape, name: Name, frames: Frames) -> Rc<Self> {
+        Rc::new(Self { span, end: span, shape, kind: Kind::Name(name), depth: 1, frames })
     }
 
     /// A scalar in the place of another one.
@@ -117,6 +132,39 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
+    pub(crate) fn is_identity(&self) -> bool {
+        matches!(self, Self::Identity)
+    }
+
+    /// From where the result is seen, if the operands fit.
+    fn frames(&self) -> Frames {
+        match self {
+            Self::Negate(a) | Self::Bound(_, a) | Self::Divide(a, _) => a.frames,
+            Self::Transpose(a) | Self::Inverse(a) => [a.frames[1], a.frames[0]],
+            Self::Add(a, b) | Self::Subtract(a, b) | Self::Cross(a, b) | Self::ComponentMultiply(a, b) => {
+                [0, 1].map(|side| a.frames[side].or(b.frames[side]))
+            }
+            Self::Multiply(a, b) if a.shape == Shape::Scalar => b.frames,
+            Self::Multiply(a, b) if b.shape == Shape::Scalar => a.frames,
+            Self::Multiply(a, b) => [a.frames[0], b.frames[1]],
+            // Of a matrix from one body to another it is seen from neither.
+            Self::Vee(a) => match a.frames {
+                [Some(row), Some(column)] if row != column => [None; 2],
+                [row, column] => [row.or(column), None],
+            },
+            Self::CrossMatrix(a) | Self::Hat(a, _) => [a.frames[0]; 2],
+            Self::Number(_)
+            | Self::Identity
+            | Self::Name(_)
+            | Self::Trace(_)
+            | Self::Dot(..)
+            | Self::Power(..)
+            | Self::Apply(..)
+            | Self::Components(..)
+            | Self::Entry(..) => [None; 2],
+        }
+    }
+
     pub(crate) fn operands(&self) -> [Option<&Rc<Tree>>; 2] {
         match self {
             Self::Number(_) | Self::Identity | Self::Name(_) => [None, None],

@@ -1,6 +1,6 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
-use crate::declared::Declaration;
+use crate::declared::{Declaration, Factor};
 use crate::judged::{Chosen, Equations, Findings};
 use crate::mathematics::derive::{Declared, Derived, Seen, SelfAdjointness};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
@@ -183,10 +183,7 @@ pub(super) fn costs(kernel: &Kernel) -> String {
 
 /// The group, and how it moves the advected parameters.
 pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
-    let names = declaration.factors.iter().map(|factor| {
-        let segment = factor.path.as_ref().and_then(|path| path.segments.last());
-        segment.map(|segment| segment.ident.to_string()).unwrap_or_default()
-    });
+    let names = declaration.factors.iter().map(Factor::group_name);
     let group = names.collect::<Vec<_>>().join(" × ");
     let is_product = declaration.group.is_product();
     let increment = |factor: usize| declaration.factors.get(factor).map_or("F", |factor| factor.name.as_str());
@@ -194,6 +191,14 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
         let name = w.plain_name();
         let f = match w.seen {
             Seen::From(factor) => increment(factor),
+            Seen::Relative { of, from } if declaration.group.factor(of).is_added => {
+                let (of, from) = (increment(of), increment(from));
+                return format!("    {name}⁺ = {name} + {of} − {from}: the place of {of} as {from} sees it\n");
+            }
+            Seen::Configuration(of) if declaration.group.factor(of).is_added => {
+                let of = increment(of);
+                return format!("    {name}⁺ = {name} + {of}: the place of {of} in space\n");
+            }
             Seen::Relative { of, from } => {
                 let (of, from) = (increment(of), increment(from));
                 return format!("    {name}⁺ = {from}⁻¹ {name} {of}: the body of {of} as that of {from} sees it\n");

@@ -106,9 +106,9 @@ impl Header {
         }
     }
 
-    /// The matrices of one factor.
+    /// The matrices that `I` is one of: of a product those of what turns.
     pub(crate) fn matrix_of_factor(&self) -> TokenStream {
-        self.matrix_of(self.sizes.first().copied().unwrap_or(self.size))
+        self.matrix_of(if self.sizes.len() > 1 { 3 } else { self.size })
     }
 
     fn column(&self, rows: usize) -> TokenStream {
@@ -120,28 +120,31 @@ impl Header {
         let (private, span) = (&self.private, Span::mixed_site());
         let place = Literal::usize_unsuffixed;
         match (seen, kind) {
-            (Seen::Relative { of, from }, FieldKind::Configuration(rows)) => {
+            (Seen::Relative { of, from }, FieldKind::Configuration(_) | FieldKind::Place(_)) => {
+                let rows = self.sizes.get(of).copied().unwrap_or(self.size);
                 let (matrix, of, from) = (self.matrix_of(rows), place(of), place(from));
                 quote_spanned!(span=> #private::Relative<#from, #of, #matrix>)
             }
-            (Seen::Configuration(of), FieldKind::Configuration(rows)) => {
+            (Seen::Configuration(of), FieldKind::Configuration(_) | FieldKind::Place(_)) => {
+                let rows = self.sizes.get(of).copied().unwrap_or(self.size);
                 let (matrix, of) = (self.matrix_of(rows), place(of));
                 quote_spanned!(span=> #private::Configuration<#of, #matrix>)
             }
             (Seen::From(factor), kind) if self.sizes.len() > 1 && !matches!(kind, FieldKind::Given(_)) => {
-                let (own, factor) = (self.own_advected_type(kind), place(factor));
+                let rows = self.sizes.get(factor).copied().unwrap_or(self.size);
+                let (own, factor) = (self.own_advected_type(kind, rows), place(factor));
                 quote_spanned!(span=> #private::SeenFrom<#factor, #own>)
             }
-            _ => self.own_advected_type(kind),
+            _ => self.own_advected_type(kind, self.size),
         }
     }
 
-    fn own_advected_type(&self, kind: FieldKind) -> TokenStream {
+    fn own_advected_type(&self, kind: FieldKind, size: usize) -> TokenStream {
         let (variance, rows) = match kind {
             FieldKind::Advected(variance, rows) => (variance, rows),
             FieldKind::Point(rows) => return self.point(rows - 1),
             FieldKind::Given(shape) => return self.given(shape),
-            _ => return self.column(self.sizes.first().copied().unwrap_or(self.size)),
+            _ => return self.column(size),
         };
         let name = match variance {
             Variance::Vector | Variance::Covector | Variance::Fixed => "ContravariantVector",
@@ -240,9 +243,13 @@ impl Header {
 
     /// The group.
     pub(crate) fn group(&self) -> TokenStream {
+        Self::of_factors(&self.groups().collect::<Vec<_>>())
+    }
+
+    /// The group of each factor.
+    pub(crate) fn groups(&self) -> impl Iterator<Item = TokenStream> {
         let scalar = &self.scalar;
-        let groups = self.group_paths.iter().map(|group| quote_spanned!(Span::mixed_site()=> #group<#scalar>));
-        Self::of_factors(&groups.collect::<Vec<_>>())
+        self.group_paths.iter().map(move |group| quote_spanned!(Span::mixed_site()=> #group<#scalar>))
     }
 
     /// The associated types of an effect.

@@ -15,7 +15,7 @@ impl Code<'_> {
         match found {
             Some(Name::Step) => quote_spanned!(span=> h),
             Some(Name::Velocity) => entry(&quote_spanned!(span=> velocity), input),
-            Some(Name::Increment(factor)) => entry(&self.of_factor(&quote_spanned!(span=> f), factor), input),
+            Some(Name::Increment(factor)) => self.increment_entry(&quote_spanned!(span=> f), factor, input),
             Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),
             // Displacements are replaced by directions before.
@@ -43,7 +43,7 @@ impl Code<'_> {
             } else {
                 continue;
             };
-            return entry(&self.of_factor(&all, factor), input);
+            return self.increment_entry(&all, factor, input);
         }
         if input.symbol == directions.along {
             return entry(&quote_spanned!(span=> velocity), input);
@@ -59,6 +59,13 @@ impl Code<'_> {
         let name = &self.symbols.get(input.symbol).name;
         let message = format!("liestep: no value for `{name}`; please report this declaration");
         quote_spanned!(Span::mixed_site()=> compile_error!(#message))
+    }
+
+    /// An entry of the increment of a factor: of its matrix, of translations of the last column.
+    fn increment_entry(&self, all: &TokenStream, factor: usize, input: Input) -> TokenStream {
+        let own = self.declaration.group.factor(factor);
+        let input = if own.is_added { Input { column: own.dimension(), ..input } } else { input };
+        entry(&self.of_factor(all, factor), input)
     }
 
     /// The matrix of a factor among those of a product.
@@ -86,6 +93,7 @@ impl Code<'_> {
             FieldKind::Advected(..) | FieldKind::Given(_) => entry(&quote_spanned!(span=> #part.0), input),
             // The last coordinate is a constant before.
             FieldKind::Point(_) => entry(&quote_spanned!(span=> #part.coords), input),
+            FieldKind::Place(coordinates) => entry(&part, Input { column: coordinates, ..input }),
             _ => entry(&part, input),
         }
     }
@@ -100,6 +108,7 @@ impl Code<'_> {
             FieldKind::Vector(_)
             | FieldKind::Matrix(_)
             | FieldKind::Configuration(_)
+            | FieldKind::Place(_)
             | FieldKind::Advected(..)
             | FieldKind::Given(_) => place(quote_spanned!(span=> self.#name)),
             FieldKind::Point(_) => place(quote_spanned!(span=> self.#name.coords)),

@@ -94,7 +94,10 @@ fn momenta(declaration: &Declaration) -> String {
     let all = judged::conserved(declaration).into_iter().map(|one| {
         let increments = one.bodies.iter().filter_map(|&body| declaration.factors.get(body));
         let increments: Vec<String> = increments.map(|factor| format!("`{}`", factor.name)).collect();
-        let (sum, of) = if increments.len() > 1 { ("Σ R Π", "the bodies") } else { ("R Π", "the body") };
+        let is_added = one.bodies.iter().any(|&body| declaration.group.factor(body).is_added);
+        let sum = if increments.len() > 1 { "Σ " } else { "" };
+        let sum = format!("{sum}{}", if is_added { "p" } else { "R Π" });
+        let of = if increments.len() > 1 { "the bodies" } else { "the body" };
         let along = one.along.map(|field| name(field) + "·").unwrap_or_default();
         format!("`{along}{sum}` over {of} of {}", increments.join(", "))
     });
@@ -102,7 +105,13 @@ fn momenta(declaration: &Declaration) -> String {
     if all.is_empty() {
         return "Conserved: no momentum, as what is seen asks for every direction.".to_owned();
     }
-    format!("Conserved, however well a step is solved, with attitudes `R` and body momenta `Π`: {}.", all.join("; "))
+    let of_translations = declaration.group.factors().iter().any(|factor| factor.is_added);
+    let names = if of_translations {
+        "attitudes `R`, body momenta `Π` and momenta `p` of what is translated"
+    } else {
+        "attitudes `R` and body momenta `Π`"
+    };
+    format!("Conserved, however well a step is solved, with {names}: {}.", all.join("; "))
 }
 
 /// Which bodies a step solves together.

@@ -7,6 +7,7 @@ use quote::quote_spanned;
 
 use super::code::{Form, needed};
 use super::{Code, Emitter};
+use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Stage, SymbolId};
 use crate::program::{Graph, Kernel, Node, NodeId};
 
@@ -224,10 +225,12 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
 
 /// The compiler's check that the generators that were derived with are those of the group that is run with.
 pub(super) fn same_generators(code: &Code) -> TokenStream {
-    let (span, private, group) = (Span::mixed_site(), &code.header.private, &code.declaration.group);
-    if group.rotates() {
-        return TokenStream::new();
-    }
+    let groups = code.declaration.group.factors().iter().zip(code.header.groups());
+    groups.filter(|(group, _)| !group.is_so3).map(|(group, own)| has_generators(code, group, &own)).collect()
+}
+
+fn has_generators(code: &Code, group: &Group, own: &TokenStream) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &code.header.private);
     let matrices = group.generators.iter().map(|entries| {
         let rows = entries.chunks(group.size).map(|row| {
             let entries = row.iter().map(|entry| {
@@ -242,7 +245,7 @@ pub(super) fn same_generators(code: &Code) -> TokenStream {
     quote_spanned! {span=>
         const {
             #private::core::assert!(
-                <Self::Group>::has_generators(&[#(#matrices),*]),
+                <#own>::has_generators(&[#(#matrices),*]),
                 "the generators of the declaration aren't those of the group"
             )
         };

@@ -30,9 +30,11 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         }
     };
     for (index, factor) in declaration.factors.iter().enumerate() {
+        let group = declaration.group.factor(index);
         let value = if declaration.group.is_product() {
             let index = syn::Index::from(index);
-            quote_spanned!(span=> f.#index)
+            let matrix = quote_spanned!(span=> f.#index);
+            if group.is_added { translation(header, &matrix, group.dimension()) } else { matrix }
         } else {
             quote_spanned!(span=> *f)
         };
@@ -66,15 +68,7 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
             let index = syn::Index::from(index);
             quote_spanned!(span=> w.#index)
         };
-        let kind = declaration.advected_kind(index);
-        let is_seen = declaration.group.is_product() && !matches!(kind, FieldKind::Given(_));
-        let part = if is_seen { quote_spanned!(span=> #part.0) } else { part };
-        let value = match kind {
-            FieldKind::Given(Shape::Scalar) => quote_spanned!(span=> #part.0.x),
-            FieldKind::Advected(..) | FieldKind::Given(_) => quote_spanned!(span=> #part.0),
-            FieldKind::Point(_) => quote_spanned!(span=> #private::Parameter::value(&#part)),
-            _ => part,
-        };
+        let value = advected(declaration, header, index, part);
         bind(&parameter.plain_name(), value);
     }
     for field in &declaration.fields {
@@ -124,6 +118,35 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     }
 }
 
+/// An advected parameter as it is written, of the part of `w` that it is.
+fn advected(declaration: &Declaration, header: &Header, index: usize, part: TokenStream) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
+    let kind = declaration.advected_kind(index);
+    let is_seen = declaration.group.is_product() && !matches!(kind, FieldKind::Given(_));
+    let part = if is_seen { quote_spanned!(span=> #part.0) } else { part };
+    match kind {
+        FieldKind::Given(Shape::Scalar) => quote_spanned!(span=> #part.0.x),
+        FieldKind::Advected(..) | FieldKind::Given(_) => quote_spanned!(span=> #part.0),
+        FieldKind::Point(_) => quote_spanned!(span=> #private::Parameter::value(&#part)),
+        FieldKind::Place(coordinates) => translation(header, &part, coordinates),
+        _ => part,
+    }
+}
+
+/// `x` of the matrix `[I, x; 0, 1]`, on a line a scalar.
+fn translation(header: &Header, matrix: &TokenStream, coordinates: usize) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
+    let entries = (0..coordinates).map(|row| {
+        let [row, column] = [row, coordinates].map(proc_macro2::Literal::usize_unsuffixed);
+        quote_spanned!(span=> #matrix.data.0[#column][#row])
+    });
+    if coordinates == 1 {
+        return entries.collect();
+    }
+    let vector = Ident::new(&format!("Vector{coordinates}"), span);
+    quote_spanned!(span=> #private::nalgebra::#vector::new(#(#entries),*))
+}
+
 /// Resolves the names of the expression at the macro's site, and notes which there are.
 struct Rewrite<'a> {
     header: &'a Header,
@@ -155,6 +178,20 @@ impl VisitMut for Rewrite<'_> {
         if let (syn::Pat::Ident(name), Some(scope)) = (&local.pat, self.scopes.last_mut()) {
             scope.push(Spelling::of(&name.ident));
         }
+    }
+
+    fn visit_expr_closure_mut(&mut self, closure: &mut syn::ExprClosure) {
+        let names = closure.inputs.iter().filter_map(|parameter| match parameter {
+            syn::Pat::Type(typed) => match &*typed.pat {
+                syn::Pat::Ident(name) => Some(Spelling::of(&name.ident)),
+                _ => None,
+            },
+            _ => None,
+        });
+        self.scopes.push(names.collect());
+        // The types are the user's own names.
+        self.visit_expr_mut(&mut closure.body);
+        self.scopes.pop();
     }
 
     fn visit_expr_method_call_mut(&mut self, call: &mut syn::ExprMethodCall) {

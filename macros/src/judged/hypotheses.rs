@@ -31,9 +31,13 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
     };
     let operations = operations(lowered);
     let mut used = Vec::new();
-    if declaration.group.orthogonal {
+    if declaration.group.factors().iter().any(|factor| factor.orthogonal) {
         // The derivation has them as the components of `F`.
-        let each = if declaration.group.is_product() { " of each component" } else { "" };
+        let each = match declaration.group.is_product() {
+            true if declaration.group.orthogonal => " of each component",
+            true => " of each component that turns",
+            false => "",
+        };
         if changes_equations(Name::Increment(0), Structure::General) {
             used.push(format!("FᵀF = I{each}"));
         }
@@ -77,7 +81,8 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
 fn operations(lowered: &Lowered) -> usize {
     let (mut graph, declared) = (Graph::default(), &lowered.declared);
     let mut symbols = declared.symbols.clone();
-    for &increment in &declared.increments {
+    let increments = declared.increments.iter().zip(declared.group.factors());
+    for (&increment, _) in increments.filter(|(_, group)| !group.is_added) {
         let shape = symbols.get(increment).shape;
         let inverse = symbols.add("F⁻¹", shape, Structure::General, Stage::Iteration);
         symbols.set_inverse(increment, inverse);

@@ -15,6 +15,8 @@ pub(crate) struct Group {
     pub(crate) orthogonal: bool,
     /// Whether it is the group of rotations of space, with its own Cayley form and cross products.
     pub(crate) is_so3: bool,
+    /// Whether it is a factor of a product whose increments are vectors that are added, and no matrices.
+    pub(crate) is_added: bool,
     /// Of a product its factors, whose matrices stand on the diagonal one after the other; elsewhere none.
     factors: Vec<Group>,
 }
@@ -39,7 +41,7 @@ impl Group {
             start += factor.size;
         }
         let orthogonal = factors.iter().all(|factor| factor.orthogonal);
-        Self { size, generators, orthogonal, is_so3: false, factors }
+        Self { size, generators, orthogonal, is_so3: false, is_added: false, factors }
     }
 
     /// The factors; a group that isn't a product is its own.
@@ -51,9 +53,24 @@ impl Group {
         !self.factors.is_empty()
     }
 
-    /// Whether all factors are that of the rotations of space.
+    /// Whether all factors are that of the rotations of space, or are added: the Cayley map of these is written down.
     pub(crate) fn rotates(&self) -> bool {
-        self.factors().iter().all(|factor| factor.is_so3)
+        self.factors().iter().all(|factor| factor.is_so3 || factor.is_added)
+    }
+
+    /// The factor of that place; of a group that isn't a product itself.
+    pub(crate) fn factor(&self, factor: usize) -> &Self {
+        self.factors().get(factor).unwrap_or(self)
+    }
+
+    /// The translations of a line, a plane or space as a factor of a product.
+    pub(crate) fn added(self) -> Self {
+        Self { is_added: true, ..self }
+    }
+
+    /// Rows and columns of an increment as it is written: a vector where increments are added, else a matrix.
+    pub(crate) fn shape(&self) -> (usize, usize) {
+        if self.is_added { (self.dimension(), 1) } else { (self.size, self.size) }
     }
 
     /// The first row of a factor.
@@ -89,7 +106,8 @@ impl Group {
     /// Whether its elements are affine maps in homogeneous coordinates: their last row is that of the identity.
     pub(crate) fn is_affine(&self) -> bool {
         let last_row = self.size * self.size.saturating_sub(1);
-        self.generators.iter().all(|generator| generator.iter().skip(last_row).all(|entry| entry.is_zero()))
+        !self.is_product()
+            && self.generators.iter().all(|generator| generator.iter().skip(last_row).all(|entry| entry.is_zero()))
     }
 
     /// A group that a user declares.
@@ -102,7 +120,7 @@ impl Group {
             })
         };
         let orthogonal = generators.iter().all(skew);
-        Self { size, generators, orthogonal, is_so3: false, factors: Vec::new() }
+        Self { size, generators, orthogonal, is_so3: false, is_added: false, factors: Vec::new() }
     }
 
     /// What keeps the generators from being a basis of a Lie algebra, in exact arithmetic; nothing where that doesn't

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::closed::{Given, entries, with_lets, with_tangents};
 use super::count::{Operations, count};
 use super::expand::expanded;
-use super::graph::{Graph, Input, NodeId};
+use super::graph::{Graph, Input, Node, NodeId};
 use super::scalarise::{Entries, Scalariser};
 use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor};
 use crate::mathematics::group::Group;
@@ -146,8 +146,14 @@ pub(crate) fn diamond_matrix(graph: &mut Graph, derived: &Continuous) -> Vec<Nod
     places.map(entry).collect()
 }
 
-/// The block of the constant matrix `E_k` that belongs to a factor; of a group that isn't a product all of it.
+/// The block of the constant matrix `E_k` that belongs to a factor; of a group that isn't a product all of it. Of a factor
+/// whose increments are added it is a column.
 pub(super) fn generator(graph: &mut Graph, group: &Group, factor: usize, k: usize) -> Entries {
+    let own = group.factor(factor);
+    if own.is_added {
+        let (zero, one, first) = (graph.zero(), graph.one(), group.component_of(factor));
+        return Entries::new(own.dimension(), 1, |row, _| if first + row == k { one } else { zero });
+    }
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
     let (start, size) = (group.row_of(factor), group.factors().get(factor).map_or(0, |factor| factor.size));
     Entries::new(size, size, |row, column| {
@@ -282,8 +288,9 @@ pub(super) fn by_increment(
 ) -> Given {
     let mut given = Given::new();
     for (one, group) in derived.directions.factors.iter().zip(derived.group.factors()) {
-        let small = Entries::new(group.size, group.size, |row, column| entry(graph, one, row, column));
-        let f = plus_identity(graph, &small);
+        let (rows, columns) = group.shape();
+        let small = Entries::new(rows, columns, |row, column| entry(graph, one, row, column));
+        let f = if group.is_added { small.clone() } else { plus_identity(graph, &small) };
         given.extend([(one.small, small), (one.increment, f)]);
     }
     given
@@ -291,7 +298,8 @@ pub(super) fn by_increment(
 
 /// With `D⁻` by its entries, and `F⁻¹ = I + D⁻`.
 pub(super) fn with_inverse(graph: &mut Graph, derived: &Derived, mut given: Given) -> Given {
-    for (one, group) in derived.directions.factors.iter().zip(derived.group.factors()) {
+    let factors = derived.directions.factors.iter().zip(derived.group.factors());
+    for (one, group) in factors.filter(|(_, group)| !group.is_added) {
         let small = Entries::new(group.size, group.size, |row, column| {
             graph.input(Input { symbol: one.small_inverse, row, column }, Stage::Iteration)
         });
@@ -388,21 +396,24 @@ fn cleared_system(graph: &mut Graph, derived: &Derived, cleared: &Cleared) -> (V
 fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);
     let (mut given, mut tangents) = (Given::new(), Vec::new());
-    for (one, y) in derived.directions.factors.iter().zip(y.chunks(3)) {
-        let (small, tangent) = rotation(graph, y);
-        let f = plus_identity(graph, &small);
+    for (factor, (one, group)) in derived.directions.factors.iter().zip(derived.group.factors()).enumerate() {
+        let y = &y[component_range(&derived.group, factor)];
+        let (small, tangent) = if group.is_added { translation(graph, y) } else { rotation(graph, y) };
+        let f = if group.is_added { small.clone() } else { plus_identity(graph, &small) };
         given.extend([(one.small, small), (one.increment, f)]);
         tangents.push(tangent);
     }
-    let opaque: BTreeSet<NodeId> = given.values().chain(&tangents).flat_map(|entries| entries.all().to_vec()).collect();
+    let opaque = given.values().chain(&tangents).flat_map(|entries| entries.all().to_vec());
+    let opaque: BTreeSet<NodeId> = opaque.filter(|&id| !matches!(graph.node(id), Node::Constant(_))).collect();
     let given = with_lets(graph, derived, given);
     let moved = derived.moved.as_ref().map(|moved| components(graph, derived, &given, moved)).unwrap_or_default();
     let mut outputs = system(graph, derived, &given);
     let dimension = derived.group.dimension();
     let jacobian = outputs.split_off(dimension);
     for row in jacobian.chunks(dimension) {
-        for (entries, tangent) in row.chunks(3).zip(&tangents) {
-            for column in 0..3 {
+        for (factor, tangent) in tangents.iter().enumerate() {
+            let entries = &row[component_range(&derived.group, factor)];
+            for column in 0..entries.len() {
                 let terms: Vec<NodeId> = entries
                     .iter()
                     .enumerate()
@@ -413,6 +424,19 @@ fn retracted(graph: &mut Graph, derived: &Derived) -> (Vec<NodeId>, Vec<NodeId>,
         }
     }
     (outputs, moved, opaque)
+}
+
+/// The components of a factor.
+fn component_range(group: &Group, factor: usize) -> std::ops::Range<usize> {
+    let first = group.component_of(factor);
+    first..first + group.factor(factor).dimension()
+}
+
+/// `d = 2y` of a translation, and the tangent in `y`.
+fn translation(graph: &mut Graph, y: &[NodeId]) -> (Entries, Entries) {
+    let (zero, two) = (graph.zero(), graph.constant(Rational::integer(2)));
+    let displacement = Entries::new(y.len(), 1, |row, _| graph.multiply(two, y[row]));
+    (displacement, Entries::new(y.len(), y.len(), |row, column| if row == column { two } else { zero }))
 }
 
 /// `D = cay(2y) − I` of a rotation, and the tangent in `y`.

@@ -7,6 +7,8 @@
 //! δF = ε̂ F        δ(F⁻¹) = −F⁻¹ ε̂        δw = −ζ·w
 //! ```
 //!
+//! and a translation by `δd = ε`.
+//!
 //! The chain rule is applied to the code and not to the expressions: closed `let`s need no rule of their own, and what
 //! the momenta have computed their derivatives share.
 
@@ -80,6 +82,10 @@ impl<'a> Linearisation<'a> {
         let mut changes = Changes::new();
         for (factor, one) in self.derived.directions.factors.iter().enumerate() {
             let e = generator(&mut self.graph, &self.derived.group, factor, j);
+            if self.derived.group.factor(factor).is_added {
+                self.collect(one.small, &e, &mut changes);
+                continue;
+            }
             let [f, inverse] = [one.increment, one.inverse].map(|symbol| self.matrix(symbol));
             let minus = negated(&mut self.graph, &e);
             let (small, of_inverse) = (product(&mut self.graph, &e, &f), product(&mut self.graph, &inverse, &minus));

@@ -7,14 +7,14 @@ use checks::solvers::Badly;
 use declarations::DoublePendulum;
 use declarations::motions::{number, read, vector};
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
-use liestep::laws::samples::{Random, derivative};
+use liestep::laws::samples::Random;
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect};
 use liestep::methods::CompositionScheme;
 use liestep::with::{Recorder, Table};
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
 
-use super::{apart, attitudes_of, momentum, part};
+use super::{apart, attitudes_of, check_derived, momentum, order, part};
 
 type Group = (SO3, SO3);
 
@@ -36,53 +36,10 @@ fn element(random: &mut Random, size: f64) -> Group {
     <CayleyRetraction as Retraction<Group>>::retract(&(xi * size))
 }
 
-fn axis(k: usize, s: f64) -> Group {
-    <CayleyRetraction as Retraction<Group>>::retract(&Vector6::from_fn(|i, _| if i == k { s } else { 0.0 }))
-}
-
-/// Momentum maps, diamond and momentum equation are derivatives of the declared expression, and the Jacobian is that of
-/// the momentum equation.
 #[test]
 fn what_is_derived_is_what_is_declared() {
-    let (l, h, mut random) = (pendulum(), 0.05, Random::new(5));
-    for _ in 0..5 {
-        let (f, g) = (element(&mut random, 0.3), element(&mut random, 1.0));
-        let w = l.advected().seen_from(&g);
-        let value = |f: &Group, w: &_| l.l_d(&f.matrix(), w, h);
-        let of = |function: &dyn Fn(&Group) -> f64| Vector6::from_fn(|k, _| derivative(|s| function(&axis(k, s))));
-        // e·w is what an observer turned by e⁻¹ sees.
-        let moved = |e: &Group| w.seen_from(&e.inverse());
-        let right = of(&|e| value(&e.compose(&f), &w));
-        let left = of(&|e| value(&f.compose(e), &w));
-        let diamond = -of(&|e| value(&f, &moved(e)));
-        let momentum = of(&|e| value(&e.compose(&f), &moved(e)));
-        let m = f.matrix();
-        let scale = l.momentum_jacobian(&m, &w, h).norm();
-        for (name, found, expected) in [
-            ("right", l.right_momentum(&m, &w, h), right),
-            ("left", l.left_momentum(&m, &w, h), left),
-            ("diamond", l.diamond(&m, &w, h), diamond),
-            ("(2.7)", l.legendre_minus(&m, &w, h), momentum),
-        ] {
-            assert!((found - expected).norm() < 1e-10 * scale, "{name}: {found} {expected}");
-        }
-        for j in 0..6 {
-            let column =
-                Vector6::from_fn(|k, _| derivative(|t| l.legendre_minus(&axis(j, t).compose(&f).matrix(), &w, h)[k]));
-            assert!((l.momentum_jacobian(&m, &w, h).column(j) - column).norm() < 1e-10 * scale, "column {j}");
-        }
-        let energy = -derivative(|s| l.l_d(&m, &w, h * (1.0 + s))) / h;
-        assert!((l.discrete_energy(&m, &w, h) - energy).abs() < 1e-9 * scale / h);
-        let limit = |xi: &Vector6<f64>| {
-            let at = |h: f64| l.l_d(&<CayleyRetraction as Retraction<Group>>::retract(&(xi * h)).matrix(), &w, h) / h;
-            // Potentials are at the ends of a step.
-            (8.0 * at(2.5e-4) - 6.0 * at(5e-4) + at(1e-3)) / 3.0
-        };
-        let xi: Vector6<f64> = random.sample();
-        let expected = 0.5 * xi.dot(&(l.inertia(&w) * xi)) - l.potential(&w);
-        assert!((limit(&xi) - expected).abs() < 1e-7, "{} {expected}", limit(&xi));
-    }
-    const { assert!(DoublePendulum::SELF_ADJOINT && !DoublePendulum::INERTIA_IS_CONSTANT) };
+    check_derived::<_, 6>(&pendulum(), &mut Random::new(5));
+    const { assert!(!DoublePendulum::INERTIA_IS_CONSTANT) };
 }
 
 /// What a step ends at is the momentum after it, and what it begins with that before.
@@ -147,11 +104,7 @@ fn spherical_pendulum() {
         assert!(momentum[2].abs() < 1e-13 && momentum[5].abs() < 1e-13, "about the axes: {momentum}");
         error(&state.attitude())
     });
-    println!("{errors:?}");
-    for pair in errors.windows(2) {
-        let order = (pair[0] / pair[1]).log2();
-        assert!((order - 2.0).abs() < 0.02, "{order}");
-    }
+    order(&errors);
     let composed = Stepper::composed(pendulum, 0.02, CompositionScheme::KAHAN_LI_8).unwrap();
     let mut state = composed.start(start_at, velocity).unwrap();
     composed.run(&mut state, 100).unwrap();

@@ -1,11 +1,15 @@
 //! Several bodies on a product of groups: by hand a chain of links, all of which feel each other's velocities, and bodies
-//! that feel each other's attitudes alone; a double pendulum, and these bodies, as declared.
+//! that feel each other's attitudes alone; a double pendulum, these bodies, and others that are translated too, as declared.
 
 mod attitudes;
 mod chain;
 mod declared;
+mod translated;
 
 use liestep::SO3;
+use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
+use liestep::laws::samples::{Random, derivative};
+use liestep::mechanics::{DiscreteLagrangian, Effect};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use serde_json::Value;
 
@@ -56,4 +60,78 @@ fn momentum<const D: usize>(values: &Value) -> SVector<f64, D> {
 fn apart(attitudes: &[SO3], expected: &[SO3]) -> f64 {
     let differences = attitudes.iter().zip(expected).map(|(a, b)| (a.as_matrix() - b.as_matrix()).amax());
     differences.fold(0.0, f64::max)
+}
+
+/// Each error is a quarter of the one before.
+fn order(errors: &[f64]) {
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.02, "{order}");
+    }
+}
+
+fn element<G, const D: usize>(xi: &SVector<f64, D>) -> G
+where
+    G: LieGroup<Scalar = f64, Vector = SVector<f64, D>>,
+    CayleyRetraction: Retraction<G>,
+{
+    <CayleyRetraction as Retraction<G>>::retract(xi)
+}
+
+/// Momentum maps, diamond and momentum equation are derivatives of the declared expression, the Jacobian is that of the
+/// momentum equation, and the limit that of small steps.
+fn check_derived<L, const D: usize>(l: &L, random: &mut Random)
+where
+    L: DiscreteLagrangian<
+            Scalar = f64,
+            Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>,
+            Advected: Advected<<L as Effect>::Group>,
+        >,
+    CayleyRetraction: Retraction<<L as Effect>::Group>,
+{
+    let h = 0.05;
+    let axis = |k: usize, s: f64| element::<L::Group, D>(&SVector::from_fn(|i, _| if i == k { s } else { 0.0 }));
+    for _ in 0..5 {
+        let (small, far): (SVector<f64, D>, SVector<f64, D>) = (random.sample(), random.sample());
+        let (f, g) = (element::<L::Group, D>(&(small * 0.3)), element::<L::Group, D>(&far));
+        let w = l.advected().seen_from(&g);
+        let value = |f: &L::Group, w: &L::Advected| l.l_d(&f.matrix(), w, h);
+        let of = |function: &dyn Fn(&L::Group) -> f64| {
+            SVector::<f64, D>::from_fn(|k, _| derivative(|s| function(&axis(k, s))))
+        };
+        // e·w is what an observer turned by e⁻¹ sees.
+        let moved = |e: &L::Group| w.seen_from(&e.inverse());
+        let right = of(&|e| value(&e.compose(&f), &w));
+        let left = of(&|e| value(&f.compose(e), &w));
+        let diamond = -of(&|e| value(&f, &moved(e)));
+        let momentum = of(&|e| value(&e.compose(&f), &moved(e)));
+        let m = f.matrix();
+        let scale = l.momentum_jacobian(&m, &w, h).norm();
+        for (name, found, expected) in [
+            ("right", l.right_momentum(&m, &w, h), right),
+            ("left", l.left_momentum(&m, &w, h), left),
+            ("diamond", l.diamond(&m, &w, h), diamond),
+            ("(2.7)", l.legendre_minus(&m, &w, h), momentum),
+        ] {
+            assert!((found - expected).norm() < 1e-10 * scale, "{name}: {found} {expected}");
+        }
+        for j in 0..D {
+            let column = SVector::<f64, D>::from_fn(|k, _| {
+                derivative(|t| l.legendre_minus(&axis(j, t).compose(&f).matrix(), &w, h)[k])
+            });
+            assert!((l.momentum_jacobian(&m, &w, h).column(j) - column).norm() < 1e-10 * scale, "column {j}");
+        }
+        let energy = -derivative(|s| l.l_d(&m, &w, h * (1.0 + s))) / h;
+        assert!((l.discrete_energy(&m, &w, h) - energy).abs() < 1e-9 * scale / h);
+        let limit = |xi: &SVector<f64, D>| {
+            let at = |h: f64| l.l_d(&element::<L::Group, D>(&(xi * h)).matrix(), &w, h) / h;
+            // Potentials are at the ends of a step.
+            (8.0 * at(2.5e-4) - 6.0 * at(5e-4) + at(1e-3)) / 3.0
+        };
+        let xi: SVector<f64, D> = random.sample();
+        let expected = 0.5 * xi.dot(&(l.inertia(&w) * xi)) - l.potential(&w);
+        assert!((limit(&xi) - expected).abs() < 1e-7, "{} {expected}", limit(&xi));
+    }
+    assert!(L::SELF_ADJOINT);
 }

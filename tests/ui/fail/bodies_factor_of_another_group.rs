@@ -2,7 +2,7 @@ use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
 #[lagrangian(
-    group(F_1 = SO3, F_2 = R3),
+    group(F_1 = SO3, F_2 = SE3),
     advected(w = up.seen_from(F_1)),
     l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
         + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h) - h * w.z,

@@ -5,6 +5,7 @@ use nalgebra::{RealField, SMatrix, SVector};
 use super::{CayleyRetraction, ExponentialRetraction, Retraction};
 use crate::groups::{
     Generators, LieGroup as _, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, logarithm,
+    products_vanish,
 };
 use crate::numbers::{Coordinates as _, Mask, real};
 
@@ -31,6 +32,10 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
     fn increment(xi: &SVector<T, D>) -> SMatrix<T, N, N> {
         let () = Closure::<K, N, D>::CHECKED;
         let hat = MatrixGroup::<K, T, N, D>::hat(xi);
+        // There `I − ξ̂/2` moves nothing that ξ̂ has.
+        if const { products_vanish(&K::GENERATORS) } {
+            return hat;
+        }
         inverse(&factors(&hat).0) * hat
     }
 
@@ -43,6 +48,9 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
 
     /// Columns `((I − ξ̂/2)⁻¹ E_j (I + ξ̂/2)⁻¹)^∨`.
     fn tangent(xi: &SVector<T, D>) -> SMatrix<T, D, D> {
+        if const { products_vanish(&K::GENERATORS) } {
+            return SMatrix::identity();
+        }
         let (minus, plus) = factors(&MatrixGroup::<K, T, N, D>::hat(xi));
         let (minus, plus) = (inverse(&minus), inverse(&plus));
         let mut tangent = SMatrix::<T, D, D>::zeros();

@@ -6,6 +6,7 @@ use syn::spanned::Spanned as _;
 use syn::{Expr, ExprCall};
 
 use super::Checker;
+use super::closures::Callee;
 use super::methods::{SQUARE, VECTOR};
 use crate::declared::{Kind, Name, Shape, Tree};
 use crate::mathematics::group::Group;
@@ -15,6 +16,11 @@ pub(super) const FUNCTIONS: [&str; 5] = ["hat", "vee", "log", "exp", "inverse"];
 
 impl Checker<'_> {
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
+        match self.callee(call) {
+            Callee::Closure(name, closure) => return self.called(&name, &closure, call),
+            Callee::Mistaken => return None,
+            Callee::Other => {}
+        }
         let function = match &*call.func {
             Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
             _ => String::new(),
@@ -37,8 +43,8 @@ impl Checker<'_> {
             return None;
         }
         match (function.as_str(), argument.shape) {
-            ("hat", shape) if shape == Shape::Matrix(self.factor().dimension(), 1) => {
-                let Group { size, generators, is_so3, .. } = self.factor();
+            ("hat", shape) if shape == Shape::Matrix(self.matrices.dimension(), 1) => {
+                let Group { size, generators, is_so3, .. } = &self.matrices;
                 // In cross products the relations of vectors are known.
                 if *is_so3 && self.declaration.continuous.is_some() {
                     return Some(Tree::new(span, SQUARE, Kind::CrossMatrix(argument)));
@@ -47,7 +53,7 @@ impl Checker<'_> {
                 Some(Tree::new(span, Shape::Matrix(*size, *size), Kind::Hat(argument, generators)))
             }
             ("hat", shape) => {
-                let dimension = self.factor().dimension();
+                let dimension = self.matrices.dimension();
                 self.mismatch("hat", &format!("a vector of {dimension}, one for each generator"), shape, at)
             }
             ("vee", SQUARE) => Some(Tree::new(span, VECTOR, Kind::Vee(argument))),
@@ -76,6 +82,11 @@ impl Checker<'_> {
         at: proc_macro2::Span,
     ) -> Option<Rc<Tree>> {
         match (&argument.kind, shape) {
+            (Kind::Name(Name::Increment(factor)), _) if self.declaration.group.factor(*factor).is_added => {
+                let name = &self.declaration.factors[*factor].name;
+                self.errors.push(at, format!("`{name}` is a translation, which is added: its inverse is `-{name}`"));
+                None
+            }
             // The group knows the inverses of its elements.
             (Kind::Name(Name::Increment(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
             (_, Shape::Matrix(rows, columns)) if rows != columns || rows > 3 => {

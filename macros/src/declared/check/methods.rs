@@ -8,6 +8,7 @@ use syn::spanned::Spanned as _;
 use syn::{Expr, ExprMethodCall, Lit, Token, UnOp};
 
 use super::Checker;
+use super::frames::How;
 use crate::declared::{Kind, Shape, Tree};
 use crate::mathematics::symbolic::Function;
 
@@ -62,6 +63,12 @@ impl Checker<'_> {
             ("powi", Some(exponent)) => self.power(receiver, exponent, span, at),
             (_, Some(argument)) => {
                 let (passed, argument) = (argument, self.expression(argument)?);
+                let (whole, ends) = (Expr::MethodCall(call.clone()), (&*call.receiver, passed));
+                if receiver.shape == argument.shape
+                    && !self.are_seen_alike(How::Method(&name), &whole, ends, (&receiver, &argument))
+                {
+                    return None;
+                }
                 let product = self.of_two(&name, receiver, argument, span, at)?;
                 self.is_passed_right(&name, passed, true).then_some(product)
             }

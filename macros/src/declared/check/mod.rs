@@ -1,6 +1,8 @@
 //! From Rust syntax to a tree with shapes. Nothing is derived before all shapes fit.
 
 mod advice;
+mod closures;
+mod frames;
 mod functions;
 mod methods;
 mod operators;
@@ -17,7 +19,9 @@ use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Kind, Name, Role, Shape, Spelling, Tree};
+use crate::mathematics::group::{Group, built_in};
 use crate::mathematics::symbolic::Rational;
+use closures::Closure;
 
 /// Deeper expressions than a person writes would overflow the stack of the compiler.
 const DEEPEST: usize = 250;
@@ -25,6 +29,9 @@ const DEEPEST: usize = 250;
 /// The declared expression as a tree; `None` after a mistake, be it one in the attribute or in the struct.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
     let expression = declaration.expression.as_ref()?;
+    let factors = || declaration.group.factors().iter();
+    let turning = factors().find(|factor| !factor.is_added).cloned().or_else(|| built_in("SO3"));
+    let matrices = turning.unwrap_or_else(|| declaration.group.clone());
     let mut checker = Checker {
         declaration,
         errors,
@@ -33,6 +40,8 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
         unknown: BTreeSet::new(),
         depth: 0,
         is_too_deep: false,
+        matrices,
+        calls: 0,
     };
     let tree = checker.expression(expression);
     let used = checker.used;
@@ -84,8 +93,11 @@ fn end(expression: &Expr) -> Span {
 }
 
 /// A `let`: its tree, or nothing if that had a mistake, and whether it has been used.
+#[derive(Clone)]
 struct Binding {
     tree: Option<Rc<Tree>>,
+    /// Of a function what it is called with; it has no tree.
+    closure: Option<Rc<Closure>>,
     span: Span,
     /// How many `&` its value has, where that is seen.
     references: Option<usize>,
@@ -110,6 +122,10 @@ struct Checker<'a> {
     depth: usize,
     /// Both operands of an operation may be too deep, and one message says it.
     is_too_deep: bool,
+    /// The group that `I` and `hat(v)` belong to: of a product that of what turns.
+    matrices: Group,
+    /// How many closures have been called, each of which may call others.
+    calls: usize,
 }
 
 impl Checker<'_> {
@@ -170,6 +186,12 @@ impl Checker<'_> {
             Expr::Field(field) => self.component(field),
             Expr::Cast(cast) => self.unknown(cast.as_token),
             Expr::Try(question) => self.unknown(question.question_token),
+            Expr::Closure(closure) => {
+                let message =
+                    "a function has a name: write `let U = |x: f64| …;` before the expression, and call `U(…)`";
+                self.errors.push(closure.inputs_begin.span, message);
+                None
+            }
             Expr::Await(wait) => self.unknown(wait.await_token),
             Expr::Range(range) => self.unknown(range.limits),
             Expr::Assign(assignment) => self.unknown(assignment.eq_token),
@@ -284,12 +306,19 @@ impl Checker<'_> {
             self.bind_nothing(pattern);
             return;
         };
+        if let Expr::Closure(closure) = &*init.expr {
+            let closure = self.closure(closure).map(Rc::new);
+            let used = closure.is_none();
+            let binding = Binding { tree: None, closure, span: name.span(), references: Some(0), used };
+            self.scopes.last_mut().map(|scope| scope.insert(Spelling::of(name), binding));
+            return;
+        }
         let tree = self.expression(&init.expr).map(|tree| {
             let (span, end, shape) = (tree.span, tree.end, tree.shape);
             Tree::until(Tree::new(span, shape, Kind::Bound(name.unraw().to_string(), tree)), end)
         });
         let references = self.references(&init.expr);
-        let binding = Binding { tree, span: name.span(), references, used: false };
+        let binding = Binding { tree, closure: None, span: name.span(), references, used: false };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(Spelling::of(name), binding);
         }
@@ -299,7 +328,7 @@ impl Checker<'_> {
     fn bind_nothing(&mut self, pattern: &Pat) {
         match pattern {
             Pat::Ident(name) => {
-                let binding = Binding { tree: None, span: name.span(), references: None, used: true };
+                let binding = Binding { tree: None, closure: None, span: name.span(), references: None, used: true };
                 if let Some(scope) = self.scopes.last_mut() {
                     scope.insert(Spelling::of(&name.ident), binding);
                 }
@@ -341,19 +370,30 @@ impl Checker<'_> {
         for scope in self.scopes.iter_mut().rev() {
             if let Some(binding) = scope.get_mut(&spelling) {
                 binding.used = true;
+                if let Some(closure) = &binding.closure {
+                    let message = format!("`{name}` is a function: call it, `{name}({})`", closure.names());
+                    self.errors.push(span, message);
+                }
                 return binding.tree.clone();
             }
         }
         let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.plain_name() == name);
         let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.plain_name() == name);
-        let size = self.factor().size;
+        let size = self.matrices.size;
         let square = Shape::Matrix(size, size);
         let increment = self.declaration.factors.iter().position(|factor| factor.name == name);
+        let of_increment = |factor: usize| match self.declaration.group.factor(factor).shape() {
+            (1, 1) if self.declaration.group.factor(factor).is_added => Shape::Scalar,
+            (rows, columns) => Shape::Matrix(rows, columns),
+        };
         let (shape, found) = match name.as_str() {
             "I" => return Some(Tree::new(span, square, Kind::Identity)),
             "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
             _ if increment.is_some() && self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
-            _ if increment.is_some() => (square, Name::Increment(increment.unwrap_or(0))),
+            _ if increment.is_some() => {
+                let factor = increment.unwrap_or(0);
+                (of_increment(factor), Name::Increment(factor))
+            }
             "h" => (Shape::Scalar, Name::Step),
             _ if self.declaration.velocity().is_some_and(|velocity| velocity.unraw() == name) => {
                 (self.displacement(), Name::Velocity)
@@ -388,7 +428,7 @@ impl Checker<'_> {
             }
         };
         self.used.push(found);
-        Some(Tree::new(span, shape, Kind::Name(found)))
+        Some(Tree::seen(span, shape, found, frames::of(self.declaration, found)))
     }
 
     /// A continuous Lagrangian knows no step.
@@ -413,11 +453,6 @@ impl Checker<'_> {
 
     fn is_force(&self) -> bool {
         self.declaration.role == Role::Force
-    }
-
-    /// The group that an increment belongs to; those of a product are all of one kind.
-    fn factor(&self) -> &crate::mathematics::group::Group {
-        self.declaration.group.factors().first().unwrap_or(&self.declaration.group)
     }
 
     /// A vector with a component for each generator.

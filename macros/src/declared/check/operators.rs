@@ -8,8 +8,9 @@ use syn::{BinOp, Expr, ExprBinary, ExprField, ExprIndex, Member};
 
 use super::Checker;
 use super::advice::called;
+use super::frames::How;
 use super::methods::{METHODS, integer};
-use crate::declared::{Kind, Shape, Tree};
+use crate::declared::{Kind, Name, Shape, Tree};
 
 impl Checker<'_> {
     pub(super) fn binary(&mut self, binary: &ExprBinary) -> Option<Rc<Tree>> {
@@ -18,6 +19,19 @@ impl Checker<'_> {
         }
         let (left, right) = (self.expression(&binary.left), self.expression(&binary.right));
         let (left, right) = (left?, right?);
+        if self.is_with_identity(binary, &left, &right) {
+            return None;
+        }
+        let (whole, ends) = (Expr::Binary(binary.clone()), (&*binary.left, &*binary.right));
+        let is_seen = match binary.op {
+            BinOp::Add(_) => self.are_seen_alike(How::Sum('+'), &whole, ends, (&left, &right)),
+            BinOp::Sub(_) => self.are_seen_alike(How::Sum('-'), &whole, ends, (&left, &right)),
+            BinOp::Mul(_) => self.meet(&whole, ends, (&left, &right)),
+            _ => true,
+        };
+        if !is_seen {
+            return None;
+        }
         let (span, operator) = (binary.span(), binary.op.span());
         match binary.op {
             BinOp::Add(_) | BinOp::Sub(_) => {
@@ -96,6 +110,26 @@ impl Checker<'_> {
             }
             _ => self.unknown_operator(binary.op),
         }
+    }
+
+    /// A translation isn't a matrix, so that its identity isn't one either.
+    fn is_with_identity(&mut self, binary: &ExprBinary, left: &Tree, right: &Tree) -> bool {
+        let added = |tree: &Tree| match tree.kind {
+            Kind::Name(Name::Increment(factor)) if self.declaration.group.factor(factor).is_added => Some(factor),
+            _ => None,
+        };
+        let factor = match (&left.kind, &right.kind) {
+            (_, Kind::Identity) => added(left),
+            (Kind::Identity, _) => added(right),
+            _ => None,
+        };
+        let Some(factor) = factor.filter(|_| !matches!(binary.op, BinOp::Mul(_))) else { return false };
+        let (name, shape) =
+            (&self.declaration.factors[factor].name, if left.kind.is_identity() { right } else { left });
+        let shape = shape.shape.describe();
+        let message = format!("`{name}` is a translation, {shape}: its identity is zero; write `{name}`");
+        self.errors.push_over(binary, message);
+        true
     }
 
     fn unknown_operator(&mut self, operator: BinOp) -> Option<Rc<Tree>> {

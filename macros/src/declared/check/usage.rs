@@ -2,6 +2,7 @@
 
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Name, Role};
+use crate::mathematics::derive::Seen;
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     if declaration.role == Role::Force {
@@ -56,7 +57,14 @@ fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     for (index, w) in declaration.advected.iter().enumerate() {
         if !used.contains(&Name::Advected(index)) {
             let (name, list) = (w.plain_name(), if w.is_given { "given" } else { "advected" });
-            errors.push(w.name.span(), format!("`{name}` isn't used in {the}: remove it from `{list}(…)`"));
+            let consequence = match w.seen {
+                Seen::Relative { .. } => {
+                    "; without it these bodies don't feel each other, and each may be a declaration of its own"
+                }
+                _ => "",
+            };
+            let message = format!("`{name}` isn't used in {the}: remove it from `{list}(…)`{consequence}");
+            errors.push(w.name.span(), message);
         }
     }
     for (index, field) in declaration.fields.iter().enumerate() {

@@ -53,7 +53,8 @@ fn last_segment(ty: &Type) -> Option<&syn::PathSegment> {
     }
 }
 
-fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
+/// What a type promises, if it has a meaning.
+pub(crate) fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
     let name = last_segment(ty)?.ident.to_string();
     Some(match name.as_str() {
         "f64" | "f32" => FieldKind::Scalar,
@@ -140,6 +141,15 @@ pub(super) fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
     for field in fields {
         let FieldKind::Point(rows) = field.kind else { continue };
         let (name, size) = (field.plain_name(), group.size);
+        if group.is_product() {
+            let rows = rows - 1;
+            errors.push(
+                field.at,
+                format!("among several bodies a point is the vector of its place: use Vector{rows}<f64>"),
+            );
+            field.kind = FieldKind::Vector(rows);
+            continue;
+        }
         let message = if !group.is_affine() {
             format!(
                 "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use Vector{size}<f64>"

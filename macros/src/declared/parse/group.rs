@@ -113,19 +113,27 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
             continue;
         }
         if factors.len() == MOST_FACTORS {
-            let message = format!("at most {MOST_FACTORS} bodies are declared together");
+            let message = format!(
+                "at most {MOST_FACTORS} factors are declared together: declare what couples fewer of them as a term of \
+                 its own"
+            );
             errors.push_decisive(increment.span(), message);
             break;
         }
-        let is_known = named.built_in().is_some_and(|group| group.is_so3);
-        if !is_known {
-            let message = "bodies that are declared together turn by `SO3`: of other products write the \
-                           `DiscreteLagrangian` by hand";
+        let known = match named.built_in() {
+            Some(group) if group.is_so3 => Some(group),
+            Some(group) if ["R1", "R2", "R3"].contains(&named.name().as_str()) => Some(group.added()),
+            _ => None,
+        };
+        if known.is_none() {
+            let message = "what is declared together turns by `SO3` or is translated by `R1`, `R2` or `R3`: of other \
+                           products write the `DiscreteLagrangian` by hand";
             errors.push_over(&named.path, message);
         }
+        let path = known.is_some().then_some(named.path);
         // After a mistake, too, so that the rest can be checked.
-        groups.extend(built_in("SO3"));
-        factors.push(Factor { name, place: increment.span(), path: is_known.then_some(named.path) });
+        groups.extend(known.or_else(|| built_in("SO3")));
+        factors.push(Factor { name, place: increment.span(), path });
     }
     (factors, Group::product(groups))
 }

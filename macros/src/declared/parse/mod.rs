@@ -20,6 +20,7 @@ use crate::mathematics::group::Group;
 use arguments::{Arguments, Source, arguments_from};
 use fields::{points, scalar};
 
+pub(crate) use fields::field_kind;
 pub(crate) use own_group::{Asked, OwnGroup, asked, own_group};
 
 /// The declaration, with its mistakes reported; `None` where nothing of it can be read.
@@ -268,7 +269,8 @@ fn advected(
                 errors.push_decisive(found.at, message);
             }
         } else if let (Some(found), Some((group, _))) = (index.and_then(|index| fields.get(index)), group)
-            && let size = group.factors().first().map_or(group.size, |factor| factor.size)
+            && let Seen::From(factor) = seen
+            && let size = group.factor(factor).size
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
@@ -308,9 +310,13 @@ fn seen<'a>(
     let place = |name: &Ident| factors.iter().position(|factor| *name == factor.name);
     match source {
         Source::Field(field) if factors.len() > 1 && !is_given => {
-            let asked: Vec<String> =
-                factors.iter().map(|factor| format!("`{field}.seen_from({})`", factor.name)).collect();
-            errors.push_decisive(field.span(), format!("who sees `{field}`? write {}", asked.join(" or ")));
+            let turns = |at: &usize| group.is_none_or(|(group, _)| !group.factor(*at).is_added);
+            let seers = (0..factors.len()).filter(turns).map(|at| format!("`{field}.seen_from({})`", factors[at].name));
+            let message = match seers.collect::<Vec<_>>().as_slice() {
+                [] => format!("a translation doesn't move a vector: use the field `{field}` itself"),
+                asked => format!("who sees `{field}`? write {}", asked.join(" or ")),
+            };
+            errors.push_decisive(field.span(), message);
             None
         }
         Source::Field(field) => Some(Moved::Field(field, Seen::From(0))),
@@ -333,8 +339,26 @@ fn seen<'a>(
                     errors.push_decisive(what.span(), message);
                     None
                 }
+                (Some(of), Some(own)) if !are_alike(group, of, own) => {
+                    let moves_by = |factor: usize| group.map(|(_, factors)| factors[factor].group_name());
+                    let [of_name, from_name] = [of, own].map(|factor| moves_by(factor).unwrap_or_default());
+                    let message = format!(
+                        "`{what}` moves by {of_name} and `{from}` by {from_name}: only factors of one group have a \
+                         relative configuration; for that of `{what}` itself write `{what}.seen_from(space)`"
+                    );
+                    errors.push_decisive(from.span(), message);
+                    None
+                }
                 (Some(of), Some(from)) => Some(Moved::Body(Seen::Relative { of, from })),
                 (Some(of), None) => Some(Moved::Body(Seen::Configuration(of))),
+                (None, Some(factor)) if group.is_some_and(|(group, _)| group.factor(factor).is_added) => {
+                    let message = format!(
+                        "a translation doesn't move a vector: use the field `{what}` itself; how far a point is from \
+                         the body is `{what} - x` with `x = {from}.seen_from(space)`"
+                    );
+                    errors.push_decisive(from.span(), message);
+                    None
+                }
                 (None, Some(factor)) => Some(Moved::Field(what, Seen::From(factor))),
                 (None, None) => {
                     let message = format!("seen from space `{what}` doesn't change: use the field itself, `{what}`");
@@ -344,6 +368,11 @@ fn seen<'a>(
             }
         }
     }
+}
+
+/// Whether two factors have one group.
+fn are_alike(group: Option<(&Group, &[Factor])>, a: usize, b: usize) -> bool {
+    group.is_none_or(|(group, _)| group.factor(a).shape() == group.factor(b).shape())
 }
 
 /// A mistake where a parameter has a name that means something else.

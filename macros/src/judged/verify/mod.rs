@@ -241,7 +241,13 @@ impl<'a> Sample<'a> {
             inputs.extend(self.values.get(name).map(|value| (*symbol, value.clone())));
         }
         for (factor, one) in self.derived.directions.factors.iter().enumerate() {
-            let f = block(&self.derived.group, f, factor);
+            let group = &self.derived.group;
+            let f = block(group, f, factor);
+            if group.factor(factor).is_added {
+                let d = translation(&f);
+                inputs.extend([(one.small, d.clone()), (one.increment, d)]);
+                continue;
+            }
             let (inverse, identity) = (f.inverse(), Value::identity(f.rows));
             inputs.insert(one.small, f.zip(&identity, |x, y| x - y));
             inputs.insert(one.increment, f);
@@ -316,8 +322,17 @@ impl<'a, T: Number> Sample<'a, T> {
         values.extend(increments(group, f));
         for (name, variance, seen) in &self.advected {
             let Some(w) = self.values.get(name) else { continue };
+            let added = |moving: &Value<T>, factor| translation(&block(group, moving, factor));
             let factor = match *seen {
                 Seen::From(factor) => factor,
+                Seen::Relative { of, from } if group.factor(of).is_added => {
+                    values.insert(*name, added(g, from).plus(w).plus(&added(inverse, of)));
+                    continue;
+                }
+                Seen::Configuration(of) if group.factor(of).is_added => {
+                    values.insert(*name, w.plus(&added(inverse, of)));
+                    continue;
+                }
                 Seen::Relative { of, from } => {
                     let moved = block(group, g, from).times(w).times(&block(group, inverse, of));
                     values.insert(*name, moved);
@@ -351,7 +366,16 @@ fn block<T: Number>(group: &Group, all: &Value<T>, factor: usize) -> Value<T> {
 
 /// The increments of all factors.
 fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)> {
-    (0..group.factors().len()).map(|factor| (Name::Increment(factor), block(group, all, factor))).collect()
+    let value = |factor: usize| {
+        let own = block(group, all, factor);
+        if group.factor(factor).is_added { translation(&own) } else { own }
+    };
+    (0..group.factors().len()).map(|factor| (Name::Increment(factor), value(factor))).collect()
+}
+
+/// `d` of the matrix `[I, d; 0, 1]`.
+fn translation<T: Number>(matrix: &Value<T>) -> Value<T> {
+    Value::new(matrix.rows - 1, 1, |row, _| matrix.at(row, matrix.rows - 1))
 }
 
 /// The inverse of an element, block by block.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::terms::Terms;
-use super::{Fault, SPACING, Sample, Value, block, compare, evaluated, linear, remembered, turn};
+use super::{Fault, SPACING, Sample, Value, block, compare, evaluated, linear, remembered, translation, turn};
 use crate::mathematics::derive::Derived;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::SymbolId;
@@ -63,8 +63,11 @@ impl Step<'_> {
         let mut inputs = sample.inputs(f);
         if self.derived.group.rotates() {
             let group = &self.derived.group;
-            let parts =
-                (0..group.factors().len()).flat_map(|factor| cayley_coordinates(&block(group, f, factor)).entries);
+            let coordinates = |factor: usize| match block(group, f, factor) {
+                own if group.factor(factor).is_added => translation(&own).map(|d| 0.5 * d),
+                own => cayley_coordinates(&own),
+            };
+            let parts = (0..group.factors().len()).flat_map(|factor| coordinates(factor).entries);
             inputs.insert(self.derived.directions.coordinates, column(&parts.collect::<Vec<_>>()));
         }
         inputs

@@ -17,6 +17,13 @@
 //! b as a sees it        E_a Q − Q E_b           F_a Q⁺ F_b⁻¹
 //! b as it is in space   −R E_b                  R⁺ F_b⁻¹
 //! ```
+//!
+//! Translations `d` are added, with elements `e` of their algebra:
+//!
+//! ```text
+//! b as a sees it        e_a − e_b               r⁺ + d_a − d_b
+//! b as it is in space   −e_b                    x⁺ − d_b
+//! ```
 
 use super::Context;
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Symbols, Variance};
@@ -51,6 +58,8 @@ impl Seen {
 pub(super) fn along(context: &Context, carried: Carried, e: &dyn Fn(usize) -> Expression) -> Expression {
     let (symbols, w) = (context.symbols, context.symbol(carried.symbol));
     match carried.seen {
+        Seen::Relative { of, from } if context.is_added(of) => e(from).minus(e(of)),
+        Seen::Configuration(of) if context.is_added(of) => e(of).scaled(-Rational::ONE),
         Seen::From(factor) => infinitesimal(symbols, carried.variance, &e(factor), &w),
         Seen::Relative { of, from } => context.product(&e(from), &w).minus(context.product(&w, &e(of))),
         Seen::Configuration(of) => context.product(&w, &e(of)).scaled(-Rational::ONE),
@@ -65,6 +74,8 @@ pub(super) fn back(
     next: &Expression,
 ) -> Expression {
     match carried.seen {
+        Seen::Relative { of, from } if context.is_added(of) => next.clone().plus(f(from).0).plus(f(of).1),
+        Seen::Configuration(of) if context.is_added(of) => next.clone().plus(f(of).1),
         Seen::From(factor) => {
             let (f, inverse) = f(factor);
             moved_back(context.symbols, carried.variance, (&f, &inverse), next)

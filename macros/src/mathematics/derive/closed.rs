@@ -91,9 +91,8 @@ pub(super) fn tangents(context: &Context, closed: &mut [Closed]) {
 /// `δF = E_j F` with what follows for the `let`s and the multipliers.
 pub(super) fn forwards(context: &Context, closed: &[Closed]) -> Variations {
     let increments = context.declared.increments.iter().enumerate();
-    let mut variations: Variations = increments
-        .map(|(factor, &increment)| (increment, context.product(&context.second(factor), &context.increment(factor).0)))
-        .collect();
+    let mut variations: Variations =
+        increments.map(|(factor, &increment)| (increment, context.turned(factor, &context.second(factor)))).collect();
     for one in closed {
         let (tangent, multiplier_tangent) = (&one.tangent, &one.multiplier_tangent);
         if !tangent.1.is_zero() {

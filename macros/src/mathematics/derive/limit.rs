@@ -113,9 +113,11 @@ fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {
 }
 
 fn at_identity(context: &Context, expression: &Expression) -> Expression {
-    let identity = |id| Expression::identity(context.symbol(id).shape().0);
-    let factors = context.directions.factors.iter();
-    let map = factors.flat_map(|one| [one.increment, one.inverse].map(|id| (id, identity(id))));
+    let map = context.directions.factors.iter().enumerate().flat_map(|(factor, one)| {
+        let shape = context.symbol(one.increment).shape();
+        let identity = if context.is_added(factor) { Expression::zero(shape) } else { Expression::identity(shape.0) };
+        [one.increment, one.inverse].map(|id| (id, identity.clone()))
+    });
     let map: BTreeMap<SymbolId, Expression> = map.collect();
     context.substituted(expression, &map)
 }

@@ -296,8 +296,26 @@ impl Context<'_> {
         let one = self.directions.factors.get(factor).map(|one| one.increment);
         one.map_or_else(
             || (Expression::zero((1, 1)), Expression::zero((1, 1))),
-            |id| (self.symbol(id), Expression::inverse(id, self.symbols)),
+            |id| {
+                let f = self.symbol(id);
+                let inverse = if self.is_added(factor) {
+                    f.clone().scaled(-Rational::ONE)
+                } else {
+                    Expression::inverse(id, self.symbols)
+                };
+                (f, inverse)
+            },
         )
+    }
+
+    /// Whether the increments of a factor are vectors that are added.
+    fn is_added(&self, factor: usize) -> bool {
+        self.declared.group.factor(factor).is_added
+    }
+
+    /// `E F`, the change of `F ↦ exp(sE) F`; of what is added `E`.
+    fn turned(&self, factor: usize, e: &Expression) -> Expression {
+        if self.is_added(factor) { e.clone() } else { self.product(e, &self.increment(factor).0) }
     }
 
     fn half_step(&self) -> Expression {
@@ -339,7 +357,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
     let matrices = |symbols: &mut Symbols, name: &str, stage, structure: &dyn Fn(&Group) -> Structure| {
         let of_factor = |&(place, group, _): &(usize, &Group, SymbolId)| {
             let name = if is_product { format!("{name}_{}", place + 1) } else { name.to_owned() };
-            symbols.add(name, (group.size, group.size), structure(group), stage)
+            symbols.add(name, group.shape(), structure(group), stage)
         };
         factors.iter().map(of_factor).collect::<Vec<SymbolId>>()
     };
@@ -348,7 +366,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
     let general = |_: &Group| Structure::General;
     let algebra = |group: &Group| if group.orthogonal { Structure::Skew } else { Structure::General };
     let inverse = matrices(symbols, "F⁻¹", Stage::Iteration, &general);
-    for (&(_, _, increment), &inverse) in factors.iter().zip(&inverse) {
+    for (&(_, _, increment), &inverse) in factors.iter().zip(&inverse).filter(|((_, group, _), _)| !group.is_added) {
         symbols.set_inverse(increment, inverse);
     }
     let first = matrices(symbols, "E_k", Stage::Construction, &algebra);
@@ -374,7 +392,7 @@ fn directions(declared: &Declared, symbols: &mut Symbols) -> Directions {
         .zip(structures)
         .map(|(&(place, group, _), structure)| {
             let name = if is_product { format!("F⁺_{}", place + 1) } else { "F⁺".to_owned() };
-            symbols.add(name, (group.size, group.size), structure, Stage::Iteration)
+            symbols.add(name, group.shape(), structure, Stage::Iteration)
         })
         .collect();
     let of_factor = |&(place, _, increment): &(usize, &Group, SymbolId)| OfFactor {

@@ -4,16 +4,21 @@
 //! ⟨(R_F)* δl_d/δF, E⟩ = d/ds l_d(exp(sE) F, w)      δF = E F
 //! ⟨(L_F)* δl_d/δF, E⟩ = d/ds l_d(F exp(sE), w)      δF = F E
 //! ```
+//!
+//! A translation `d` is added to: there both are `δd = E`.
 
 use super::Context;
 use crate::mathematics::symbolic::{Expression, Variations, variation};
 
 pub(super) fn right(context: &Context) -> Expression {
-    along(context, &|factor| context.product(&context.first(factor), &context.increment(factor).0))
+    along(context, &|factor| context.turned(factor, &context.first(factor)))
 }
 
 pub(super) fn left(context: &Context) -> Expression {
-    along(context, &|factor| context.product(&context.increment(factor).0, &context.first(factor)))
+    along(context, &|factor| match context.first(factor) {
+        e if context.is_added(factor) => e,
+        e => context.product(&context.increment(factor).0, &e),
+    })
 }
 
 /// With `δF` of each factor: of several bodies the covector is linear in all `E_k` together.

@@ -87,7 +87,12 @@ pub(super) struct Expansion<'a> {
 impl<'a> Expansion<'a> {
     pub(super) fn new(context: &'a Context, scratch: SymbolId) -> Result<Self, LimitError> {
         let mut expansion = Self { context, scratch, known: BTreeMap::new() };
-        for one in &context.directions.factors {
+        for (factor, one) in context.directions.factors.iter().enumerate() {
+            if context.is_added(factor) {
+                let velocity = Series::constant(context.symbol(one.velocity)).shifted(1);
+                expansion.known.insert(one.increment, velocity);
+                continue;
+            }
             let [increment, inverse] =
                 [Rational::ONE, -Rational::ONE].map(|sign| expansion.exponential(one.velocity, sign));
             expansion.known.insert(one.increment, increment);

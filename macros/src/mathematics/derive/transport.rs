@@ -1,7 +1,7 @@
 //! The step in the transport form `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`, which keeps the Casimirs at any Newton tolerance.
 //!
-//! What doesn't depend on `F` is moved to where it is cheap: with `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with
-//! all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
+//! What doesn't depend on `F`, and isn't of the size of `1/h`, is moved to where it is cheap: with
+//! `diamond = k_0(w) + k_1(F, w)` and `μ = U − k_0` with all of `F` in `U`, one solves `U(F, w) = a` for `a = μ + k_0(w)`, and
 //!
 //! ```text
 //! μ⁺ = Ad*_F a + Ad*_F k_1,      ⟨Ad*_F k_1, E⟩ = ⟨k_1, F E F⁻¹⟩,     w = F·w⁺
@@ -23,11 +23,17 @@ pub(super) struct Parts {
 }
 
 pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expression) -> Parts {
-    let unknown = momentum.filtered(|monomial| stage_of_monomial(monomial, context.symbols) == Stage::Iteration);
+    // What goes like 1/h without `F` cancels what has `F`, where that is `I`: taken over to the other side, it would
+    // leave a rounding of the size of 1/h in the momentum.
+    let unknown = momentum.filtered(|monomial| {
+        stage_of_monomial(monomial, context.symbols) == Stage::Iteration || monomial.exponent(context.declared.step) < 0
+    });
     let kick_before = unknown.clone().minus(momentum.clone());
     let moved = diamond.clone().minus(kick_before.clone());
     let mut map: BTreeMap<SymbolId, Expression> = previous(context).into_iter().collect();
-    for (factor, one) in context.directions.factors.iter().enumerate() {
+    // What is added commutes with all: there `F E F⁻¹` is `E`.
+    let turning = context.directions.factors.iter().enumerate().filter(|(factor, _)| !context.is_added(*factor));
+    for (factor, one) in turning {
         let (f, inverse) = context.increment(factor);
         map.insert(one.first, context.product(&context.product(&f, &context.first(factor)), &inverse));
     }
@@ -46,9 +52,12 @@ pub(super) fn previous(context: &Context) -> Vec<(SymbolId, Expression)> {
 pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expression) -> [Expression; 2] {
     let (symbols, directions) = (context.symbols, context.directions);
     let mut map = BTreeMap::new();
-    for one in &directions.factors {
+    for (factor, one) in directions.factors.iter().enumerate() {
         let next = one.next_increment;
-        map.extend([(one.increment, context.symbol(next)), (one.inverse, Expression::inverse(next, symbols))]);
+        map.insert(one.increment, context.symbol(next));
+        if !context.is_added(factor) {
+            map.insert(one.inverse, Expression::inverse(next, symbols));
+        }
     }
     let carried = context.declared.advected.iter().zip(&directions.next);
     map.extend(carried.map(|(w, &next)| (w.symbol, context.symbol(next))));
@@ -58,9 +67,11 @@ pub(super) fn increments(context: &Context, momentum: &Expression, left: &Expres
 
 /// With `F = I + D` and `F⁻¹ = I + D⁻`; as it is where that would multiply the terms.
 pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Expression {
+    let factors = context.directions.factors.iter().enumerate();
+    let turning: Vec<_> = factors.filter(|(factor, _)| !context.is_added(*factor)).map(|(_, one)| one).collect();
     // Each F becomes two terms.
     let factors = |monomial| {
-        let degrees = context.declared.increments.iter().map(|&increment| degree(monomial, increment));
+        let degrees = turning.iter().map(|one| degree(monomial, one.increment));
         u32::try_from(degrees.sum::<usize>()).unwrap_or(u32::MAX)
     };
     let terms = unknown.terms().map(|(monomial, _)| 2_usize.saturating_pow(factors(monomial)));
@@ -71,8 +82,8 @@ pub(super) fn in_small_increment(context: &Context, unknown: &Expression) -> Exp
         let symbol = context.symbol(small);
         Expression::identity(symbol.shape().0).plus(symbol)
     };
-    let factors = context.directions.factors.iter();
-    let map = factors
+    let map = turning
+        .iter()
         .flat_map(|one| [(one.increment, near_identity(one.small)), (one.inverse, near_identity(one.small_inverse))]);
     let map = map.collect();
     context.substituted(unknown, &map)

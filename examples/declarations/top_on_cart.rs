@@ -1,0 +1,30 @@
+//! A top on a cart.
+
+use liestep::groups::R2;
+use liestep::{NonstandardInertia, SO3, lagrangian};
+use nalgebra::Vector3;
+
+/// A top whose pivot is a cart that slides without friction in the plane: the cart's displacement couples to what the
+/// top's centre of mass moves beyond it.
+#[lagrangian(
+    group(F = SO3, d = R2),
+    advected(R = F.seen_from(space)),
+    l_d = {
+        let lever = R * ((F - I) * s);
+        ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+            + M * d.norm_squared() / (2.0 * h)
+            + (d.x * lever.x + d.y * lever.y) / h
+            - 0.5 * h * g * ((R * s).z + (R * (F * s)).z)
+    },
+)]
+#[derive(Clone, Debug)]
+pub struct TopOnCart {
+    /// Nonstandard inertia of the top about its pivot, kg m².
+    pub J_d: NonstandardInertia,
+    /// First moment of the top about its pivot, its mass times the place of its centre of mass, kg m.
+    pub s: Vector3<f64>,
+    /// Mass of the cart and of the top, kg.
+    pub M: f64,
+    /// Gravitational acceleration, m/s².
+    pub g: f64,
+}

@@ -1,0 +1,158 @@
+//! From which body a vector is seen: the one mistake among several bodies that shapes don't show.
+//!
+//! What is known is an increment, which is seen from its own body, what a body sees, and a relative configuration, which
+//! brings a vector from one body to another. Fields may belong to any, and so may what is seen from space: where the
+//! attitude of one body is given relative to another, that is the other. Only two bodies that are known and differ are a
+//! mistake.
+
+use std::rc::Rc;
+
+use syn::{Expr, ExprReference};
+
+use super::Checker;
+use crate::declared::{AdvectedParameter, Declaration, Frames, Name, Tree};
+use crate::mathematics::derive::Seen;
+
+/// From where what a name stands for is seen.
+pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
+    let turns = |factor: usize| declaration.group.is_product() && !declaration.group.factor(factor).is_added;
+    match name {
+        Name::Increment(factor) if turns(factor) => [Some(factor); 2],
+        Name::Advected(index) => match declaration.advected.get(index).filter(|w| !w.is_given).map(|w| w.seen) {
+            Some(Seen::From(factor)) if turns(factor) => {
+                let is_tensor = declaration.advected_kind(index).variance().is_tensor();
+                [Some(factor), is_tensor.then_some(factor)]
+            }
+            Some(Seen::Relative { of, from }) if turns(of) => [Some(from), Some(of)],
+            Some(Seen::Configuration(of)) if turns(of) => [None, Some(of)],
+            _ => [None; 2],
+        },
+        _ => [None; 2],
+    }
+}
+
+impl Checker<'_> {
+    /// Whether the columns of the left factor of a product are seen from where the rows of the right one are.
+    pub(super) fn meet(&mut self, whole: &Expr, (left, right): (&Expr, &Expr), trees: (&Tree, &Tree)) -> bool {
+        let (Some(from), Some(of)) = (trees.0.frames[1], trees.1.frames[0]) else { return true };
+        if from == of {
+            return true;
+        }
+        for (operand, tree, fits) in [(right, trees.1, 0), (left, trees.0, 1)] {
+            // The other way round it would fit.
+            let turned = [tree.frames[1], tree.frames[0]];
+            if tree.frames[0] != tree.frames[1] && turned[fits] == Some([from, of][fits]) && spelled(operand) != "…" {
+                let name = spelled(operand);
+                let message = match name.strip_suffix(".transpose()") {
+                    Some(plain) => format!("`{name}` brings vectors the other way: write `{plain}`"),
+                    None => format!("`{name}` brings vectors the other way: write `{name}.transpose()`"),
+                };
+                self.errors.push_over(operand, message);
+                return false;
+            }
+        }
+        let (relative, declared) = self.relative(from, of);
+        let advice = if trees.1.shape.is_vector() {
+            format!("{} * ({relative} * {})", spelled(left), spelled(right))
+        } else {
+            let left = if is_increment(left) { format!("{}.transpose()", spelled(left)) } else { spelled(left) };
+            format!("{left} * {relative} * {}", spelled(right))
+        };
+        let message = format!(
+            "{} and {} are seen from different bodies: between them stands a relative configuration, as in \
+             `{advice}`{declared}",
+            self.named(left, from),
+            self.named(right, of)
+        );
+        self.errors.push_over(whole, message);
+        false
+    }
+
+    /// Whether two vectors or matrices that are taken together are seen from one body.
+    pub(super) fn are_seen_alike(
+        &mut self,
+        how: How,
+        whole: &Expr,
+        (left, right): (&Expr, &Expr),
+        (a, b): (&Rc<Tree>, &Rc<Tree>),
+    ) -> bool {
+        for side in [0, 1] {
+            let (Some(first), Some(second)) = (a.frames[side], b.frames[side]) else { continue };
+            if first == second {
+                continue;
+            }
+            let (relative, declared) = self.relative(first, second);
+            let (a, b) = (spelled(left), spelled(without_reference(right)));
+            let brought = match how {
+                How::Sum(operator) if side == 0 => format!("{a} {operator} {relative} * {b}"),
+                How::Sum(operator) => format!("{a} * {relative} {operator} {b}"),
+                How::Method(name) => format!("{a}.{name}(&({relative} * {b}))"),
+            };
+            let body = |factor: usize| self.declaration.factors[factor].name.clone();
+            let message = format!(
+                "`{a}` is seen from `{}`, `{b}` from `{}`: bring one over, `{brought}`{declared}",
+                body(first),
+                body(second)
+            );
+            self.errors.push_over(whole, message);
+            return false;
+        }
+        true
+    }
+
+    /// What brings a vector from the body `of` to the body `from`, and how it is declared if it isn't.
+    fn relative(&self, from: usize, of: usize) -> (String, String) {
+        let declared = |of: usize, from: usize| {
+            let mut advected = self.declaration.advected.iter();
+            advected.find(|w| w.seen == Seen::Relative { of, from }).map(AdvectedParameter::plain_name)
+        };
+        if let Some(name) = declared(of, from) {
+            return (name, String::new());
+        }
+        if let Some(name) = declared(from, of) {
+            return (format!("{name}.transpose()"), String::new());
+        }
+        let body = |factor: usize| &self.declaration.factors[factor].name;
+        ("Q".to_owned(), format!(" (declare `Q = {}.seen_from({})`)", body(of), body(from)))
+    }
+
+    /// A plain name as it is written, else where it is seen from.
+    fn named(&self, expression: &Expr, factor: usize) -> String {
+        let body = &self.declaration.factors[factor].name;
+        match spelled(expression).as_str() {
+            "…" => format!("what is seen from `{body}`"),
+            name => format!("`{name}`"),
+        }
+    }
+}
+
+/// What takes two together.
+#[derive(Clone, Copy)]
+pub(super) enum How<'a> {
+    Sum(char),
+    Method(&'a str),
+}
+
+/// A plain name as it is written, or the transpose of one; else dots.
+fn spelled(expression: &Expr) -> String {
+    match expression {
+        Expr::Path(path) => path.path.get_ident().map_or_else(|| "…".to_owned(), ToString::to_string),
+        Expr::Paren(inner) => spelled(&inner.expr),
+        Expr::Group(inner) => spelled(&inner.expr),
+        Expr::MethodCall(call) if call.method == "transpose" && spelled(&call.receiver) != "…" => {
+            format!("{}.transpose()", spelled(&call.receiver))
+        }
+        _ => "…".to_owned(),
+    }
+}
+
+fn is_increment(expression: &Expr) -> bool {
+    matches!(expression, Expr::Path(_))
+}
+
+fn without_reference(expression: &Expr) -> &Expr {
+    match expression {
+        Expr::Reference(ExprReference { expr, .. }) => without_reference(expr),
+        other => other,
+    }
+}

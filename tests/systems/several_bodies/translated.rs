@@ -1,0 +1,296 @@
+//! Bodies that are translated too: a top on a cart, two bodies that attract each other, a spacecraft with wheels.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use checks::solvers::Badly;
+use declarations::motions::{number, read, vector};
+use declarations::{Gyrostat, TopOnCart, TwoBodies};
+use liestep::groups::{LieGroup as _, R1, R2, R3};
+use liestep::laws::samples::Random;
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia};
+use liestep::methods::CompositionScheme;
+use liestep::{NonstandardInertia, SO3, Stepper};
+use nalgebra::{Matrix3, SVector, Vector1, Vector2, Vector3};
+use serde_json::Value;
+
+use super::{apart, attitudes_of, check_derived, order, part};
+
+fn moments(values: &Value) -> Vector3<f64> {
+    Vector3::from_fn(|k, _| values[k].as_f64().unwrap())
+}
+
+fn attitude(body: &Value) -> SO3 {
+    attitudes_of(&Value::Array(vec![body["R"].clone()]))[0]
+}
+
+/// Of the reference: the body's nonstandard inertia about its pivot is that about its centre of mass, and `m c cᵀ`.
+fn top_on_cart(parameters: &Value) -> TopOnCart {
+    let (top, c) = (&parameters["top"], moments(&parameters["top"]["c"]));
+    let m = top["m"].as_f64().unwrap();
+    let about_centre = NonstandardInertia::from_principal_moments(moments(&top["J_cm"])).unwrap();
+    TopOnCart {
+        J_d: NonstandardInertia::new(about_centre.as_matrix() + c * c.transpose() * m).unwrap(),
+        s: c * m,
+        M: m + parameters["M"].as_f64().unwrap(),
+        g: parameters["g"].as_f64().unwrap(),
+    }
+}
+
+type OnCart = (SO3, R2);
+
+fn on_cart(state: &Value) -> (OnCart, SVector<f64, 5>) {
+    let (cart, top) = (&state["bodies"][0], &state["bodies"][1]);
+    let (place, velocity, turning) = (vector(&cart["x_cm"]), vector(&cart["velocity_cm"]), vector(&top["Omega_body"]));
+    let velocity = SVector::from_iterator(turning.iter().copied().chain([velocity.x, velocity.y]));
+    ((attitude(top), R2::from(Vector2::new(place.x, place.y))), velocity)
+}
+
+#[test]
+fn a_top_on_a_cart() {
+    let data = &read("several bodies")["top_on_cart"];
+    let system = top_on_cart(&data["parameters"]);
+    let (start, velocity) = on_cart(&data["states"][0]);
+    let (end, end_velocity) = on_cart(&data["states"][1]);
+    let error = |state: &liestep::motion::Motion<OnCart, _>| {
+        apart(&[state.attitude().0], &[end.0]).max((state.attitude().1.translation() - end.1.translation()).amax())
+    };
+    let errors = [(0.005, 400_u64), (0.0025, 800), (0.00125, 1600)].map(|(h, steps)| {
+        let stepper = Stepper::new(system.clone(), h).unwrap();
+        let mut state = stepper.start(start, velocity).unwrap();
+        // The reference counts heights from the plane of the pivot.
+        assert!((stepper.energy(&state) - number(&data["states"][0]["energy"])).abs() < 1e-13 * 20.0);
+        stepper.run(&mut state, steps).unwrap();
+        error(&state)
+    });
+    order(&errors);
+    let composed = Stepper::composed(system, 0.01, CompositionScheme::KAHAN_LI_8).unwrap();
+    let mut state = composed.start(start, velocity).unwrap();
+    composed.run(&mut state, 200).unwrap();
+    println!("of order 8: {:.1e}", error(&state));
+    assert!(error(&state) < 1e-8 && (composed.velocity(&state) - end_velocity).amax() < 1e-6);
+}
+
+/// Sideways the momentum is kept by steps that are solved badly; that about the vertical by steps that are solved.
+#[test]
+fn momenta_of_a_top_on_a_cart() {
+    let data = &read("several bodies")["top_on_cart"];
+    let system = top_on_cart(&data["parameters"]);
+    let (start, velocity) = on_cart(&data["states"][0]);
+    let badly = Stepper::new(Badly(system.clone()), 0.01).unwrap();
+    let mut state = badly.start(start, velocity).unwrap();
+    let sideways = |momentum: &SVector<f64, 5>| momentum.fixed_rows::<2>(3).into_owned();
+    let before = sideways(&state.momentum());
+    let mut least = f64::INFINITY;
+    for _ in 0..1000 {
+        let last = state;
+        badly.step(&mut state).unwrap();
+        least = least.min(missed(&system, &last, &state, 0.01));
+    }
+    let moved = (sideways(&state.momentum()) - before).amax();
+    println!("momentum {moved:.1e}, (2.7) missed by {least:.1e} at least");
+    assert!(moved == 0.0 && least > 1e-6);
+
+    let stepper = Stepper::new(system, 0.005).unwrap();
+    let mut state = stepper.start(start, velocity).unwrap();
+    let turning = |state: &liestep::motion::Motion<OnCart, _>| {
+        let (g, momentum) = (state.attitude(), state.momentum());
+        let (place, p) = (g.1.translation(), sideways(&momentum));
+        (g.0.as_matrix() * part(&momentum, 0)).z + place.perp(&p)
+    };
+    let (before, energy) = (turning(&state), stepper.energy(&state));
+    let mut most = 0.0_f64;
+    for _ in 0..40_000 {
+        stepper.step(&mut state).unwrap();
+        most = most.max((stepper.energy(&state) - energy).abs());
+    }
+    println!("about the vertical {:.1e}, energy {most:.1e}", turning(&state) - before);
+    assert!((turning(&state) - before).abs() < 1e-10 && most < 0.1);
+}
+
+/// How far a step is from (2.7), relative to the momentum.
+fn missed<L, const D: usize>(
+    system: &L,
+    before: &liestep::motion::Motion<L::Group, L::Advected>,
+    after: &liestep::motion::Motion<L::Group, L::Advected>,
+    h: f64,
+) -> f64
+where
+    L: DiscreteLagrangian<Scalar = f64, Group: liestep::groups::LieGroup<Scalar = f64, Vector = SVector<f64, D>>>,
+{
+    let f = before.attitude().inverse().compose(&after.attitude()).matrix();
+    (system.legendre_minus(&f, &before.advected(), h) - before.momentum()).norm() / before.momentum().norm()
+}
+
+type Pair = (SO3, R3, SO3, R3);
+
+fn two_bodies(parameters: &Value) -> TwoBodies {
+    let [first, second] = [0, 1].map(|k| moments(&parameters["J"][k]));
+    let [m_1, m_2] = [0, 1].map(|k| parameters["m"][k].as_f64().unwrap());
+    TwoBodies {
+        m_1,
+        m_2,
+        K_1: NonstandardInertia::from_principal_moments(first).unwrap(),
+        K_2: NonstandardInertia::from_principal_moments(second).unwrap(),
+        J_1: Inertia::from_principal_moments(first).unwrap(),
+        J_2: Inertia::from_principal_moments(second).unwrap(),
+        G: parameters["G"].as_f64().unwrap(),
+    }
+}
+
+fn pair(state: &Value) -> (Pair, SVector<f64, 12>) {
+    let [(a, x, first), (b, y, second)] = [0, 1].map(|k| {
+        let body = &state["bodies"][k];
+        let velocity = [vector(&body["Omega_body"]), vector(&body["v"])];
+        (attitude(body), R3::from(vector(&body["x"])), velocity)
+    });
+    let all = [first, second].concat();
+    ((a, x, b, y), SVector::from_fn(|k, _| all[k / 3][k % 3]))
+}
+
+/// The momentum of both, and their whole angular momentum about the origin.
+fn whole<W>(state: &liestep::motion::Motion<Pair, W>) -> (Vector3<f64>, Vector3<f64>)
+where
+    W: liestep::groups::Advected<Pair> + Copy,
+{
+    let (g, momentum) = (state.attitude(), state.momentum());
+    let of = |attitude: &SO3, place: &R3, first: usize| {
+        let (turning, p): (Vector3<f64>, Vector3<f64>) = (part(&momentum, first), part(&momentum, first + 1));
+        (p, attitude.as_matrix() * turning + place.translation().cross(&p))
+    };
+    let [first, second] = [of(&g.0, &g.1, 0), of(&g.2, &g.3, 2)];
+    (first.0 + second.0, first.1 + second.1)
+}
+
+/// Against a reference in inertial coordinates with quaternions, which shares nothing with reduced equations.
+#[test]
+fn two_bodies_that_attract_each_other() {
+    let data = &read("several bodies")["two_bodies"];
+    let system = two_bodies(&data["parameters"]);
+    let (start, velocity) = pair(&data["states"][0]);
+    let (end, end_velocity) = pair(&data["states"][1]);
+    let error = |g: &Pair| {
+        let places =
+            (g.1.translation() - end.1.translation()).amax().max((g.3.translation() - end.3.translation()).amax());
+        apart(&[g.0, g.2], &[end.0, end.2]).max(places)
+    };
+    let errors = [(0.01, 200_u64), (0.005, 400), (0.0025, 800)].map(|(h, steps)| {
+        let stepper = Stepper::new(system.clone(), h).unwrap();
+        let mut state = stepper.start(start, velocity).unwrap();
+        assert!((stepper.energy(&state) - number(&data["states"][0]["energy"])).abs() < 1e-14);
+        stepper.run(&mut state, steps).unwrap();
+        error(&state.attitude())
+    });
+    order(&errors);
+    let composed = Stepper::composed(system, 0.02, CompositionScheme::KAHAN_LI_8).unwrap();
+    let mut state = composed.start(start, velocity).unwrap();
+    composed.run(&mut state, 100).unwrap();
+    println!("of order 8: {:.1e}", error(&state.attitude()));
+    assert!(error(&state.attitude()) < 1e-9 && (composed.velocity(&state) - end_velocity).amax() < 1e-8);
+    // Potentials are at the ends of steps, so that each body, and each translation, is solved by itself.
+    assert_eq!(TwoBodies::APART, <Pair as liestep::groups::LieGroup>::FACTORS);
+}
+
+#[test]
+fn momenta_of_two_bodies() {
+    let data = &read("several bodies")["two_bodies"];
+    let system = two_bodies(&data["parameters"]);
+    let (start, velocity) = pair(&data["states"][0]);
+    let badly = Stepper::new(Badly(system.clone()), 0.01).unwrap();
+    let mut state = badly.start(start, velocity).unwrap();
+    let (before, mut least) = (whole(&state).0, f64::INFINITY);
+    for _ in 0..1000 {
+        let last = state;
+        badly.step(&mut state).unwrap();
+        least = least.min(missed(&system, &last, &state, 0.01));
+    }
+    println!("momentum {:.1e}, (2.7) missed by {least:.1e} at least", (whole(&state).0 - before).amax());
+    assert!((whole(&state).0 - before).amax() < 1e-13 && least > 1e-6);
+
+    let stepper = Stepper::new(system, 0.01).unwrap();
+    let mut state = stepper.start(start, velocity).unwrap();
+    let ((momentum, turning), energy) = (whole(&state), stepper.energy(&state));
+    let mut most = 0.0_f64;
+    for _ in 0..50_000 {
+        stepper.step(&mut state).unwrap();
+        most = most.max((stepper.energy(&state) - energy).abs());
+    }
+    let (momentum, turning) = ((whole(&state).0 - momentum).amax(), (whole(&state).1 - turning).amax());
+    println!("momentum {momentum:.1e}, angular {turning:.1e}, energy {most:.1e}");
+    assert!(momentum < 1e-12 && turning < 1e-10 && most < 1e-2);
+}
+
+type WithWheels = (SO3, R1, R1, R1);
+
+fn at_rest() -> WithWheels {
+    let wheel = R1::from(Vector1::new(0.0));
+    (SO3::identity(), wheel, wheel, wheel)
+}
+
+fn gyrostat() -> Gyrostat {
+    Gyrostat {
+        J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).unwrap(),
+        J_w: 0.2,
+        a_1: Vector3::x(),
+        a_2: Vector3::y(),
+        a_3: Vector3::new(0.0, 0.6, 0.8),
+    }
+}
+
+/// Against Euler's equations with the wheels' momenta as constants, by Runge and Kutta's steps.
+#[test]
+fn a_spacecraft_with_wheels() {
+    let system = gyrostat();
+    let velocity = SVector::<f64, 6>::from([0.3, -0.5, 0.8, 2.0, -3.0, 5.0]);
+    let stepper = Stepper::new(system.clone(), 0.01).unwrap();
+    let momentum = stepper.start(at_rest(), velocity).unwrap().momentum();
+    let axes = Matrix3::from_columns(&[system.a_1, system.a_2, system.a_3]);
+    let of_wheels: Vector3<f64> = part(&momentum, 1);
+    let body = system.J_d.to_inertia().as_matrix().try_inverse().unwrap();
+    let rates = |(attitude, p): &(Matrix3<f64>, Vector3<f64>)| {
+        let omega = body * (p - axes * of_wheels);
+        (attitude * omega.cross_matrix(), p.cross(&omega))
+    };
+    let plus =
+        |(a, p): (Matrix3<f64>, Vector3<f64>), (b, q): &(Matrix3<f64>, Vector3<f64>), h: f64| (a + b * h, p + q * h);
+    let (mut exact, h, steps) = ((Matrix3::identity(), part(&momentum, 0)), 5e-4, 4000);
+    for _ in 0..steps {
+        let first = rates(&exact);
+        let second = rates(&plus(exact, &first, 0.5 * h));
+        let third = rates(&plus(exact, &second, 0.5 * h));
+        let fourth = rates(&plus(exact, &third, h));
+        for (rate, weight) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
+            exact = plus(exact, &rate, weight * h / 6.0);
+        }
+    }
+    let errors = [(0.02, 100_u64), (0.01, 200), (0.005, 400)].map(|(h, steps)| {
+        let stepper = Stepper::new(system.clone(), h).unwrap();
+        let mut state = stepper.start(at_rest(), velocity).unwrap();
+        stepper.run(&mut state, steps).unwrap();
+        (state.attitude().0.as_matrix() - exact.0).amax().max((part::<6>(&state.momentum(), 0) - exact.1).amax())
+    });
+    order(&errors);
+    // Nothing is advected: what is badly solved keeps all momenta.
+    let badly = Stepper::new(Badly(system.clone()), 0.01).unwrap();
+    let mut state = badly.start(at_rest(), velocity).unwrap();
+    let (spatial, mut least) = (state.spatial_momentum(), f64::INFINITY);
+    for _ in 0..1000 {
+        let last = state;
+        badly.step(&mut state).unwrap();
+        least = least.min(missed(&system, &last, &state, 0.01));
+    }
+    let moved = (state.spatial_momentum() - spatial).amax();
+    println!("momenta {moved:.1e}, (2.7) missed by {least:.1e} at least");
+    assert!(moved < 1e-13 && least > 1e-6);
+    assert_eq!(part::<6>(&state.momentum(), 1), of_wheels);
+}
+
+/// What is derived of each is what is declared, at random places.
+#[test]
+fn what_is_derived_of_translated_bodies() {
+    let data = read("several bodies");
+    let random = &mut Random::new(21);
+    check_derived::<_, 5>(&top_on_cart(&data["top_on_cart"]["parameters"]), random);
+    check_derived::<_, 12>(&two_bodies(&data["two_bodies"]["parameters"]), random);
+    check_derived::<_, 6>(&gyrostat(), random);
+}
