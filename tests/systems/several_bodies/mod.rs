@@ -1,9 +1,10 @@
 //! Several bodies on a product of groups: by hand a chain of links, all of which feel each other's velocities, and bodies
-//! that feel each other's attitudes alone; a double pendulum, and these bodies, as declared.
+//! that feel each other's attitudes alone; a double pendulum, and these bodies, as declared; systems of many.
 
 mod attitudes;
 mod chain;
 mod declared;
+mod many;
 
 use liestep::SO3;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
