@@ -1,7 +1,8 @@
 //! Mechanics: what a scene is made of, as the macro declares it or a user writes it by hand.
 //!
 //! An [`Effect`] is one term with all that a step needs of it; a [`DiscreteLagrangian`] is one with `l_d(F, w)`
-//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again. A [`ContinuousLagrangian`] is `l(ξ, w)`
+//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again, and so is what is [`Placed`] on bodies of a
+//! system. A [`ContinuousLagrangian`] is `l(ξ, w)`
 //! with the continuous equations. Nothing here solves an equation but that of the inverse Legendre transform.
 
 mod continuous;

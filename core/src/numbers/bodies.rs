@@ -20,8 +20,8 @@ pub struct BlockDiagonal<S, const N: usize>(pub [S; N]);
 /// and copies what it makes.
 #[inline(always)]
 pub(crate) fn filled<X: Copy, const N: usize>(mut array: [X; N], mut of: impl FnMut(usize) -> X) -> [X; N] {
-    for k in 0..N {
-        array[k] = of(k);
+    for (k, entry) in array.iter_mut().enumerate() {
+        *entry = of(k);
     }
     array
 }

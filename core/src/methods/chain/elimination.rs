@@ -145,7 +145,7 @@ fn eliminate(links: &[Link], work: &mut [Work], residual: impl Fn(&Link, &Work) 
         let (inverse, determinant) = inverted(&b);
         let k = h * inverse;
         let t = rho.cross(&q) + r;
-        mass = mass + k * g;
+        mass += k * g;
         mass.m11 += m;
         mass.m22 += m;
         mass.m33 += m;

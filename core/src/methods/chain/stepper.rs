@@ -65,7 +65,7 @@ pub struct ChainMemory<const N: usize> {
 /// # Source
 ///
 /// The equations are (2.7) and (2.9) of \[RDAE\] for the Lagrangian of [`Chain`], relative attitudes being advected;
-/// the minimal form is that of Lee, Leok and McClamroch, the elimination that of Featherstone.
+/// the minimal form is that of the authors of \[LML05\], the elimination that of Featherstone's articulated bodies.
 #[derive(Clone, Debug)]
 pub struct ChainStepper<const N: usize> {
     chain: Chain<N>,
@@ -110,7 +110,7 @@ impl<const N: usize> ChainStepper<N> {
         if !velocities.0.iter().flatten().all(|entry| entry.is_finite()) {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
-        let mut work = self.work(&attitudes);
+        let mut work = Self::work(&attitudes);
         for (work, velocity) in work.iter_mut().zip(&velocities.0) {
             work.z = *velocity;
         }
@@ -152,7 +152,7 @@ impl<const N: usize> ChainStepper<N> {
     ///
     /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out.
     pub fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
-        let mut work = self.work(&state.motion.attitude);
+        let mut work = Self::work(&state.motion.attitude);
         let (links, h) = (&self.chain.links[..], self.h);
         for (((work, attitude), momentum), weight) in
             work.iter_mut().zip(&state.motion.attitude).zip(&state.motion.momentum.0).zip(&self.weights)
@@ -214,7 +214,7 @@ impl<const N: usize> ChainStepper<N> {
     /// The links' body velocities, rad/s.
     #[must_use]
     pub fn velocity(&self, motion: &Motion<[SO3; N], ()>) -> Bodies<Vector3<f64>, N> {
-        let mut work = self.work(&motion.attitude);
+        let mut work = Self::work(&motion.attitude);
         for (work, momentum) in work.iter_mut().zip(&motion.momentum.0) {
             work.target = *momentum;
         }
@@ -247,7 +247,7 @@ impl<const N: usize> ChainStepper<N> {
         })
     }
 
-    fn work(&self, attitudes: &[SO3; N]) -> [Work; N] {
+    fn work(attitudes: &[SO3; N]) -> [Work; N] {
         let mut work = [Work::new(); N];
         for (k, pair) in attitudes.windows(2).enumerate() {
             work[k].next = pair[0].as_matrix().tr_mul(pair[1].as_matrix());
@@ -274,7 +274,9 @@ impl<const N: usize> ChainStepper<N> {
         if let Some(iterations) = attempt(links, work, MOST_ITERATIONS, f64::INFINITY) {
             return Ok(abandoned + iterations);
         }
-        work.iter_mut().for_each(|work| work.half = Vector3::zeros());
+        for work in work.iter_mut() {
+            work.half = Vector3::zeros();
+        }
         if let Some(iterations) = attempt(links, work, MOST_SHORTENED, LONGEST) {
             return Ok(abandoned + MOST_ITERATIONS + iterations);
         }
