@@ -13,6 +13,15 @@ pub enum SetupError {
         /// What is wrong with it.
         cause: &'static str,
     },
+    /// A parameter of one of several bodies has a value that can't be used.
+    BodyParameter {
+        /// The body, from zero.
+        body: usize,
+        /// The field of it.
+        field: &'static str,
+        /// What is wrong with it.
+        cause: &'static str,
+    },
     /// The step is NaN or infinite, or so small or large that the constants of the step leave the scalar's range.
     InvalidStep {
         /// The step, s.
@@ -72,6 +81,9 @@ impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter { field, cause } => write!(f, "parameter `{field}` {cause}; give it another value"),
+            Self::BodyParameter { body, field, cause } => {
+                write!(f, "parameter `{field}` of the body {body} (from zero) {cause}; give it another value")
+            }
             Self::InvalidStep { step } => {
                 write!(
                     f,
@@ -178,6 +190,16 @@ pub enum StepError {
     },
     /// The Jacobian is singular at an iterate.
     Singular,
+    /// One of several bodies that move each other has no increment that continues the identity at this step.
+    UnsolvedBody {
+        /// The body, from zero: the first that turns too far, or whose part of the Jacobian has the wrong sign.
+        body: usize,
+        /// How far it would turn at the velocity that it has after the first kick, rad.
+        turn: f64,
+        /// The determinant of its part of the Jacobian, once the bodies behind it are eliminated, where the iteration has
+        /// ended; NaN where that is nowhere.
+        determinant: f64,
+    },
 }
 
 impl fmt::Display for StepError {
@@ -208,6 +230,10 @@ impl fmt::Display for StepError {
                 "the solution found doesn't continue the identity (Jacobian determinant {determinant:e}: its sign or that of the trace is wrong); try a smaller step"
             ),
             Self::Singular => write!(f, "the Newton Jacobian is singular; try a smaller step"),
+            Self::UnsolvedBody { body, turn, determinant } => write!(
+                f,
+                "no increment of the body {body} (from zero) that continues the identity: it would turn by {turn:.2e} rad, and its part of the Jacobian has the determinant {determinant:e}; take smaller steps"
+            ),
         }
     }
 }

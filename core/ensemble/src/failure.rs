@@ -89,6 +89,7 @@ impl Failure {
         let mut text = || texts.next().map(interned);
         Some(match name {
             "setup.parameter" => SetupError::Parameter { field: text()?, cause: text()? }.into(),
+            "setup.body" => SetupError::BodyParameter { body: whole(number()?), field: text()?, cause: text()? }.into(),
             "setup.step" => SetupError::InvalidStep { step: number()? }.into(),
             "setup.singular" => SetupError::SingularKinetic { determinant: number()? }.into(),
             "setup.negative" => SetupError::NegativeKinetic { pivot: number()? }.into(),
@@ -113,6 +114,9 @@ impl Failure {
                 StepError::BeyondSolvable { step: number()?, largest: number()?, turn: number()? }.into()
             }
             "step.angle" => StepError::AngleWithoutDigits { turn: number()? }.into(),
+            "step.body" => {
+                StepError::UnsolvedBody { body: whole(number()?), turn: number()?, determinant: number()? }.into()
+            }
             "step.converged" => {
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it was a `u32`
                 let iterations = number()? as u32;
@@ -126,11 +130,23 @@ impl Failure {
     }
 }
 
+/// The number of a body.
+#[allow(clippy::cast_precision_loss)] // far fewer than a float counts
+fn count(body: usize) -> f64 {
+    body as f64
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it was a `usize`
+fn whole(number: f64) -> usize {
+    number as usize
+}
+
 type Parts<'a> = (&'a str, Vec<f64>, Vec<&'a str>);
 
 fn of_setup(error: &SetupError) -> Parts<'_> {
     match error {
         SetupError::Parameter { field, cause } => ("setup.parameter", vec![], vec![field, cause]),
+        SetupError::BodyParameter { body, field, cause } => ("setup.body", vec![count(*body)], vec![field, cause]),
         SetupError::InvalidStep { step } => ("setup.step", vec![*step], vec![]),
         SetupError::SingularKinetic { determinant } => ("setup.singular", vec![*determinant], vec![]),
         SetupError::NegativeKinetic { pivot } => ("setup.negative", vec![*pivot], vec![]),
@@ -170,6 +186,9 @@ fn of_step(error: &StepError) -> Parts<'_> {
         }
         StepError::WrongBranch { determinant } => ("step.branch", vec![*determinant], vec![]),
         StepError::Singular => ("step.singular", vec![], vec![]),
+        StepError::UnsolvedBody { body, turn, determinant } => {
+            ("step.body", vec![count(*body), *turn, *determinant], vec![])
+        }
         _ => ("", vec![], vec![]),
     }
 }
@@ -195,8 +214,9 @@ mod tests {
 
     #[test]
     fn a_failure_is_read_as_it_was_written() {
-        let failures: [Failure; 28] = [
+        let failures: [Failure; 30] = [
             SetupError::Parameter { field: "rho", cause: "is not finite" }.into(),
+            SetupError::BodyParameter { body: 99, field: "m", cause: "is not a mass" }.into(),
             SetupError::InvalidStep { step: f64::INFINITY }.into(),
             SetupError::SingularKinetic { determinant: 1e-300 }.into(),
             SetupError::NegativeKinetic { pivot: -0.1 }.into(),
@@ -222,6 +242,7 @@ mod tests {
             StepError::NotConverged { iterations: 20, residual: 0.5 }.into(),
             StepError::WrongBranch { determinant: -1.0 }.into(),
             StepError::Singular.into(),
+            StepError::UnsolvedBody { body: 3, turn: 2.0, determinant: -1.0 }.into(),
             Failure::Other("no such column".to_owned()),
             Failure::Other(String::new()),
         ];

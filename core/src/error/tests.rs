@@ -27,6 +27,7 @@ fn assert_says(message: &str, parts: &[&str]) {
 fn setup_errors() {
     let errors = [
         SetupError::Parameter { field: "rho", cause: "is not finite" },
+        SetupError::BodyParameter { body: 7, field: "m", cause: "isn't a mass" },
         SetupError::InvalidStep { step: 1e-300 },
         SetupError::SingularKinetic { determinant: 1e-30 },
         SetupError::NegativeKinetic { pivot: -0.5 },
@@ -45,6 +46,7 @@ fn setup_errors() {
     for error in errors {
         let parts: &[&str] = match error {
             SetupError::Parameter { .. } => &["`rho`", "is not finite"],
+            SetupError::BodyParameter { .. } => &["`m`", "the body 7", "isn't a mass"],
             SetupError::InvalidStep { .. } => &["the step", "1e-300 s"],
             SetupError::SingularKinetic { .. } => &["kinetic part", "singular", "1e-30"],
             SetupError::NegativeKinetic { .. } => &["kinetic part", "negative", "-5e-1", "`.transpose()`"],
@@ -74,6 +76,7 @@ fn step_errors() {
         StepError::NotConverged { iterations: 60, residual: 0.5 },
         StepError::WrongBranch { determinant: -0.25 },
         StepError::Singular,
+        StepError::UnsolvedBody { body: 7, turn: 2.5, determinant: -0.25 },
     ];
     for error in errors {
         let parts: &[&str] = match error {
@@ -94,6 +97,7 @@ fn step_errors() {
             StepError::NotConverged { .. } => &["the iteration", "60 iterations", "5e-1"],
             StepError::WrongBranch { .. } => &["continue the identity", "-2.5e-1", "sign"],
             StepError::Singular => &["Jacobian", "singular"],
+            StepError::UnsolvedBody { .. } => &["the body 7", "2.50e0 rad", "-2.5e-1", "smaller steps"],
         };
         assert_says(&error.to_string(), parts);
     }

@@ -23,8 +23,10 @@
 //!
 //! Any other is declared in the same way, outside of this crate too: see [`Generators`]. A product of two to four of them
 //! is the tuple, as `(SO3, SO3)` for two bodies: its components are those of its [factors](Factor), one after the other.
+//! `[SO3; N]` is the product of `N` equal groups, for [systems](crate::mechanics::Placed) of many bodies.
 
 mod advected;
+mod bodies;
 mod exponential;
 mod generators;
 mod heisenberg;
@@ -45,6 +47,7 @@ pub use advected::{
     Advected, Configuration, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, Relative,
     SeenFrom,
 };
+pub use bodies::Pair;
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
 pub(crate) use generators::{inverse, is_closed_under_cayley, products_vanish};
@@ -87,8 +90,11 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// The dimension of the group.
     const DIMENSION: usize;
 
-    /// The components that belong to each factor, where the group is a product.
+    /// The components that belong to each factor, where the group is a product; of an array of bodies, those of one.
     const FACTORS: Blocks = Blocks::WHOLE;
+
+    /// How many equal bodies are in an array; otherwise one.
+    const BODIES: usize = 1;
 
     /// The identity `e`.
     fn identity() -> Self;

@@ -9,7 +9,7 @@ use crate::groups::{Advected, LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Blocks, Coordinates, Real, real, reported};
+use crate::numbers::{Blocks, Coordinates, Pattern, Real, real, reported};
 use nalgebra::SimdBool as _;
 
 /// The scalar of an effect.
@@ -60,6 +60,33 @@ pub struct Residual<V> {
     /// Where one gradient of `l_d` gives both, the part `k` of the diamond that depends on `F`. It stands for
     /// [`kick_after`](Effect::kick_after) then: `Ad*_F k = kick_after(F, w⁺)`.
     pub moving_kick: Option<V>,
+}
+
+/// What one of Newton's iterations finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonUpdate<V, S, T> {
+    /// What is to be subtracted from half the coordinates.
+    pub update: V,
+    /// The Jacobian in factors, by which another update is solved.
+    pub factors: S,
+    /// Its determinant, of several bodies relative to the diagonal.
+    pub det: T,
+}
+
+impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
+    /// Of a residual and its Jacobian.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(residual: &V, jacobian: &V::Square, pattern: Pattern) -> Self {
+        let (factors, det) = V::factorise_with(jacobian, pattern);
+        Self { update: V::solve_again_with(&factors, det, pattern, residual), factors, det }
+    }
+}
+
+/// What is known of the Newton matrix of an effect.
+#[inline(always)]
+pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
+    Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
 }
 
 /// One term of a scene, with all that a stepper needs of it: a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), or a
@@ -207,6 +234,19 @@ pub trait Effect {
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>);
+
+    /// One of Newton's iterations: the update that is to be subtracted, and what it was solved from, as
+    /// [`Coordinates::factorise_with`] gives it. A system of many bodies makes it body by body.
+    #[inline(always)]
+    #[must_use]
+    fn newton_update(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
+        let (residual, jacobian) = Self::newton_system(constants, terms, half);
+        NewtonUpdate::of(&residual, &jacobian, pattern::<Self>())
+    }
 
     /// The residual of [`newton_system`](Self::newton_system) without its Jacobian.
     #[inline(always)]

@@ -1,7 +1,8 @@
 //! Mechanics: what a scene is made of, as the macro declares it or a user writes it by hand.
 //!
 //! An [`Effect`] is one term with all that a step needs of it; a [`DiscreteLagrangian`] is one with `l_d(F, w)`
-//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again. A [`ContinuousLagrangian`] is `l(ξ, w)`
+//! itself, a [`Force`] one with virtual work; a [`Sum`] of two is one again, and so is what is [`Placed`] on bodies of a
+//! system. A [`ContinuousLagrangian`] is `l(ξ, w)`
 //! with the continuous equations. Nothing here solves an equation but that of the inverse Legendre transform.
 
 mod continuous;
@@ -16,12 +17,13 @@ mod operations;
 mod second_derivatives;
 mod sum;
 mod symmetry;
+mod systems;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Matrix, Moves, Parts, Regular, Residual, Scalar, Square, Vector};
+pub use effect::{Effect, Group, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square, Vector};
 pub(crate) use effect::{
-    check_inertia, constant_inertia, energy, energy_of_velocity, momentum_of_velocity, velocity_of_momentum,
+    check_inertia, constant_inertia, energy, energy_of_velocity, momentum_of_velocity, pattern, velocity_of_momentum,
 };
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
@@ -32,3 +34,4 @@ pub use operations::Operations;
 pub use second_derivatives::{SecondDerivatives, StepDerivatives};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
+pub use systems::{Along, At, Between, Each, Neighbours, On, Pairs, Placed, Places, SeenBetween, WhereAllAre};

@@ -7,11 +7,11 @@ use core::ops::Add;
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Matrix, Parts, Residual, Square, Vector};
+use crate::mechanics::effect::{Effect, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
-use crate::numbers::{Blocks, Coordinates as _, InLanes, Lanes, real};
+use crate::numbers::{Blocks, Coordinates as _, InLanes, Lanes};
 
 /// The sum of two effects of one group; what `+` makes of them.
 ///
@@ -220,14 +220,31 @@ where
     ) -> (Vector<Self>, Square<Self>) {
         match (A::PARTS.unknown, B::PARTS.unknown) {
             (true, true) => {
+                let raised = Vector::<Self>::raised;
                 let first = A::newton_system(&constants.0, &terms.0, half);
                 let second = B::newton_system(&constants.1, &terms.1, half);
-                let first = raised::<Self>(first, Self::DENOMINATORS - A::DENOMINATORS, half);
-                let second = raised::<Self>(second, Self::DENOMINATORS - B::DENOMINATORS, half);
+                let first = raised(&first.0, &first.1, Self::DENOMINATORS - A::DENOMINATORS, half);
+                let second = raised(&second.0, &second.1, Self::DENOMINATORS - B::DENOMINATORS, half);
                 (first.0 + second.0, first.1 + second.1)
             }
             (true, false) => A::newton_system(&constants.0, &terms.0, half),
             (false, _) => B::newton_system(&constants.1, &terms.1, half),
+        }
+    }
+
+    #[inline(always)]
+    fn newton_update(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
+        match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) => {
+                let (residual, jacobian) = Self::newton_system(constants, terms, half);
+                NewtonUpdate::of(&residual, &jacobian, pattern::<Self>())
+            }
+            (true, false) => A::newton_update(&constants.0, &terms.0, half),
+            (false, _) => B::newton_update(&constants.1, &terms.1, half),
         }
     }
 
@@ -275,23 +292,6 @@ where
             (false, _) => B::kick_after(&constants.1, increment, &next.1),
         }
     }
-}
-
-/// `Dᵏ r` and its derivative, for `D = 1 + |y|²` and a system `r` with its derivative.
-#[inline(always)]
-fn raised<E: Effect>(
-    (residual, jacobian): (Vector<E>, Square<E>),
-    power: u32,
-    half: &Vector<E>,
-) -> (Vector<E>, Square<E>) {
-    if power == 0 {
-        return (residual, jacobian);
-    }
-    let d = half.dot(half) + real(1.0);
-    // d(Dᵏ r) = Dᵏ dr + k Dᵏ⁻¹ r (2y)ᵀ dy.
-    let below = (1..power).fold(real::<E::Scalar>(1.0), |product, _| product * d);
-    let slope = Vector::<E>::outer(&residual, half) * (below * real(2.0 * f64::from(power)));
-    (residual * (below * d), jacobian * (below * d) + slope)
 }
 
 impl<A, B> DiscreteLagrangian for Sum<A, B>

@@ -8,13 +8,16 @@
 //! | [`Processed`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
 //! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a potential apart, `f64` | the same |
 //! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any group, `f64` | the same |
+//! | [`ChainStepper`], a map of its own | 2 | links on ball joints, `f64` | Poisson structure, momentum about the vertical |
 //! | [`Preprocessed`], by [`Stepper::preprocessed`](crate::Stepper::preprocessed) | 4 to 10 | a free body | energy, momentum maps |
 
+mod chain;
 mod composition;
 mod gauss;
 mod preprocessed;
 mod splitting;
 
+pub use chain::{Chain, ChainMemory, ChainStepper, Link};
 pub use composition::{Composed, CompositionScheme};
 pub use gauss::{Collocated, CotangentGauss, Gauss};
 pub use preprocessed::{Preprocessed, PreprocessedOrder};

@@ -1,6 +1,7 @@
 //! A method whose constants are folded for a scene and a step.
 
 use crate::error::{SetupError, StepError};
+use crate::groups::LieGroup;
 use crate::mechanics::{Effect, Group, Operations, Scalar, SceneVisitor, Vector};
 use crate::motion::kept::Kept;
 use crate::motion::report::StepReport;
@@ -25,8 +26,12 @@ pub trait Plan<S: Effect> {
     type Kept: Kept<Scalar<S>>;
 
     /// Which vector instructions a step takes where the machine is found to have them. A body alone gains nothing by
-    /// them, several in [lanes](crate::numbers::Real#lanes) do.
-    const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 { Vectors::Four } else { Vectors::AsCompiled };
+    /// them, several in [lanes](crate::numbers::Real#lanes) or in an array do.
+    const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 || <Group<S> as LieGroup>::BODIES > 1 {
+        Vectors::Four
+    } else {
+        Vectors::AsCompiled
+    };
 
     /// The step `h`, s.
     fn step_size(&self) -> Scalar<S>;

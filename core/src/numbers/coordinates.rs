@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector, SimdBool as _};
 
 use crate::numbers::blocks::{self, Blocks, Pattern};
 use crate::numbers::entries::Entries;
-use crate::numbers::scalar::{Mask, Real};
+use crate::numbers::scalar::{Mask, Real, real};
 
 /// Components with respect to the declared basis `E_k` of a Lie algebra, or, for a covector, `μ_k = ⟨μ, E_k⟩`.
 pub trait Coordinates<T: Real>:
@@ -75,8 +75,30 @@ pub trait Coordinates<T: Real>:
     /// The solution from what [`factorise_with`](Self::factorise_with) has made.
     fn solve_again_with(factors: &Self::Square, det: T, pattern: Pattern, right_side: &Self) -> Self;
 
+    /// As [`factorise_with`](Self::factorise_with) of a product, where there may be one block: the determinant is relative
+    /// to the product of the diagonal.
+    fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T);
+
+    /// The solution from what [`factorise_apart`](Self::factorise_apart) has made.
+    fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self;
+
     /// The least of the traces of the blocks.
     fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T;
+
+    /// `Dᵏ r` and its derivative, for `D = 1 + |y|²` of half the coordinates `y` and a residual `r` with its derivative;
+    /// of several bodies each with its own `D`.
+    #[must_use]
+    #[inline(always)]
+    fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
+        if power == 0 {
+            return (*residual, *jacobian);
+        }
+        let d = half.dot(half) + real(1.0);
+        // d(Dᵏ r) = Dᵏ dr + k Dᵏ⁻¹ r (2y)ᵀ dy.
+        let below = (1..power).fold(real::<T>(1.0), |product, _| product * d);
+        let slope = residual.outer(half) * (below * real(2.0 * f64::from(power)));
+        (*residual * (below * d), *jacobian * (below * d) + slope)
+    }
 
     /// The trace of a square matrix.
     fn trace(matrix: &Self::Square) -> T;
@@ -151,7 +173,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 
     #[inline(always)]
     fn factorise_with(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
-        if pattern.factors.is_whole() { Self::factorise(matrix) } else { blocks::factorise(matrix, pattern) }
+        if pattern.factors.is_whole() { Self::factorise(matrix) } else { Self::factorise_apart(matrix, pattern) }
     }
 
     #[inline(always)]
@@ -159,8 +181,18 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         if pattern.factors.is_whole() {
             Self::solve_again(factors, det, b)
         } else {
-            blocks::solve_again(factors, pattern, b)
+            Self::solve_apart(factors, pattern, b)
         }
+    }
+
+    #[inline(always)]
+    fn factorise_apart(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
+        blocks::factorise(matrix, pattern)
+    }
+
+    #[inline(always)]
+    fn solve_apart(factors: &SMatrix<T, D, D>, pattern: Pattern, b: &Self) -> Self {
+        blocks::solve_again(factors, pattern, b)
     }
 
     fn least_trace(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {
@@ -233,7 +265,7 @@ pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMat
 
 /// Its rows are cross products of columns.
 #[inline(always)]
-pub(super) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
+pub(crate) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
     let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);
     let c21 = m(2, 3) * m(3, 1) - m(2, 1) * m(3, 3);

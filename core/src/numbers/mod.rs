@@ -3,6 +3,7 @@
 //! Nothing here knows of groups or of mechanics.
 
 mod blocks;
+mod bodies;
 mod coordinates;
 mod entries;
 mod exact;
@@ -11,7 +12,10 @@ mod scalar;
 mod simd;
 
 pub use blocks::{Blocks, Join, Pattern};
+pub use bodies::{BlockDiagonal, Bodies};
+pub(crate) use bodies::{filled, least, most};
 pub use coordinates::Coordinates;
+pub(crate) use coordinates::adjugate_3;
 pub use entries::Entries;
 pub(crate) use entries::{sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};

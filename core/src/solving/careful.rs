@@ -6,11 +6,10 @@
 use core::marker::PhantomData;
 
 use super::iteration::{Lanes, MAX_ITERATIONS, Root, SquareOf, System, is_positive};
-use super::problem::{Problem, newton_system, pattern, step_terms};
-use super::reused_jacobian::Iteration;
+use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
 use crate::groups::{LieGroup, Retraction};
-use crate::mechanics::{Effect, Group, Square, Vector};
+use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, pattern};
 use crate::numbers::{Coordinates as _, Mask, Pattern, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
@@ -132,7 +131,7 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
     }
 
     fn update(&self, half: &G::Vector) -> (G::Vector, G::Scalar) {
-        let Iteration { update, det, .. } = Iteration::from(self.equation, half);
+        let NewtonUpdate { update, det, .. } = self.equation.newton_update(half);
         (update, det)
     }
 

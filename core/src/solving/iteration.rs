@@ -1,6 +1,7 @@
 //! Newton's iteration, of the lanes that haven't settled.
 
 use crate::groups::{LieGroup, Retraction};
+use crate::mechanics::NewtonUpdate;
 use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
@@ -10,6 +11,9 @@ pub(super) const MAX_ITERATIONS: u32 = 20;
 /// Of the group's vectors, the square matrices.
 pub(super) type SquareOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordinates<<G as LieGroup>::Scalar>>::Square;
 
+/// A Newton iteration: its update, and its Jacobian in factors, for another update.
+pub(super) type Iteration<G> = NewtonUpdate<<G as LieGroup>::Vector, SquareOf<G>, <G as LieGroup>::Scalar>;
+
 /// A momentum equation as Newton's iteration sees it.
 pub(super) trait System<G: LieGroup> {
     /// What is known of the Jacobian.
@@ -17,6 +21,19 @@ pub(super) trait System<G: LieGroup> {
 
     /// The residual and the Jacobian at half the coordinates.
     fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
+
+    /// One of Newton's iterations from there.
+    #[inline(always)]
+    fn newton_update(&self, half: &G::Vector) -> Iteration<G> {
+        let (residual, jacobian) = self.newton_system(half);
+        NewtonUpdate::of(&residual, &jacobian, self.pattern())
+    }
+
+    /// The update from another place by the same Jacobian.
+    #[inline(always)]
+    fn simplified(&self, made: &Iteration<G>, half: &G::Vector) -> G::Vector {
+        G::Vector::solve_again_with(&made.factors, made.det, self.pattern(), &self.residual(half))
+    }
 
     /// The residual alone.
     fn residual(&self, half: &G::Vector) -> G::Vector;

@@ -8,9 +8,9 @@
 
 use core::hint::black_box;
 
-use super::iteration::{Lanes, MAX_ITERATIONS, Root, settled};
+use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, settled};
 use super::problem::{Problem, Usual};
-use super::reused_jacobian::{Iteration, has_no_derivatives, has_sufficed, may_suffice};
+use super::reused_jacobian::{has_no_derivatives, has_sufficed, may_suffice};
 use crate::mechanics::{Effect, Group, Scalar, Vector};
 use crate::numbers::Coordinates as _;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _};
@@ -24,7 +24,7 @@ impl<L: Effect> Problem<'_, L> {
         guess: &Vector<L>,
         largest: Scalar<L>,
     ) -> Option<Root<Group<L>>> {
-        let made = Iteration::from(equation, guess);
+        let made = equation.newton_update(guess);
         let half = *guess - made.update;
         let first = made.update.dot(&made.update);
         let settled = settled::<Group<L>>(&made.update, &half);
@@ -35,7 +35,7 @@ impl<L: Effect> Problem<'_, L> {
         if REUSE && has_no_derivatives::<Scalar<L>>() {
             let is_near = may_suffice(first, half.dot(&half)) & made.det.simd_gt(self.safe) & !settled;
             if is_near.all() {
-                let second = made.simplified(equation, &half);
+                let second = equation.simplified(&made, &half);
                 let half = half - second;
                 if has_sufficed(first, second.dot(&second), half.dot(&half)).all() {
                     return self.usual(&half, made.det, 2, largest);

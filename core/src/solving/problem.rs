@@ -18,8 +18,8 @@
 use super::careful::Seldom;
 use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
 use crate::error::StepError;
-use crate::groups::{LieGroup, Retraction};
-use crate::mechanics::{Effect, Group, Scalar, Square, Vector};
+use crate::groups::Retraction;
+use crate::mechanics::{Effect, Group, NewtonUpdate, Scalar, Square, Vector, pattern};
 use crate::numbers::{Coordinates as _, Pattern};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
@@ -51,6 +51,11 @@ impl<L: Effect> System<Group<L>> for Usual<'_, L> {
     #[inline(always)]
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         L::newton_system(self.constants, &self.terms, half)
+    }
+
+    #[inline(always)]
+    fn newton_update(&self, half: &Vector<L>) -> NewtonUpdate<Vector<L>, Square<L>, Scalar<L>> {
+        L::newton_update(self.constants, &self.terms, half)
     }
 
     #[inline(always)]
@@ -137,12 +142,6 @@ impl<L: Effect> Problem<'_, L> {
     pub(crate) fn attempt(&self, guess: &Vector<L>) -> Result<Root<Group<L>>, StepError> {
         Seldom::new(self).careful().attempt(guess)
     }
-}
-
-/// What is known of the Newton matrix of an effect.
-#[inline(always)]
-pub(crate) const fn pattern<L: Effect>() -> Pattern {
-    Pattern { factors: <Group<L> as LieGroup>::FACTORS, apart: L::APART }
 }
 
 /// [`Effect::newton_system`] for what is seldom asked. A scene has it inlined where steps are made and here, and no

@@ -20,7 +20,7 @@
 
 use core::any::TypeId;
 
-use super::iteration::{Lanes, SquareOf, System};
+use super::iteration::{Iteration, Lanes, System};
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
@@ -47,29 +47,6 @@ pub(super) fn has_no_derivatives<T: Real>() -> bool {
     element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
 }
 
-/// A Newton iteration: its update, and its Jacobian in factors, for another update.
-pub(super) struct Iteration<G: LieGroup> {
-    pub(super) update: G::Vector,
-    factors: SquareOf<G>,
-    pub(super) det: G::Scalar,
-}
-
-impl<G: LieGroup> Iteration<G> {
-    /// The iteration from there.
-    #[inline(always)]
-    pub(super) fn from(equation: &(impl System<G> + ?Sized), half: &G::Vector) -> Self {
-        let (residual, jacobian) = equation.newton_system(half);
-        let (factors, det) = G::Vector::factorise_with(&jacobian, equation.pattern());
-        Self { update: G::Vector::solve_again_with(&factors, det, equation.pattern(), &residual), factors, det }
-    }
-
-    /// The update from another place by the same Jacobian.
-    #[inline(always)]
-    pub(super) fn simplified(&self, equation: &(impl System<G> + ?Sized), half: &G::Vector) -> G::Vector {
-        G::Vector::solve_again_with(&self.factors, self.det, equation.pattern(), &equation.residual(half))
-    }
-}
-
 impl<G: LieGroup> Lanes<G> {
     /// An iteration of the lanes that haven't settled. With `REUSE`, the lanes that it has brought near enough make one
     /// more with the same Jacobian. Where steps are so long that they seldom can, asking costs more than it saves.
@@ -80,7 +57,7 @@ impl<G: LieGroup> Lanes<G> {
         equation: &(impl System<G> + ?Sized),
         safe: G::Scalar,
     ) -> bool {
-        let made = Iteration::from(equation, &self.half);
+        let made = equation.newton_update(&self.half);
         self.advance(&made.update, made.det, &made.update);
         self.reuse_jacobian::<REUSE>(equation, &made, safe)
     }
@@ -101,7 +78,7 @@ impl<G: LieGroup> Lanes<G> {
         if !is_near.any() {
             return false;
         }
-        let second = made.simplified(equation, &self.half);
+        let second = equation.simplified(made, &self.half);
         let next = self.half - second;
         self.half = next.select(is_near, self.half);
         let settled = is_near & has_sufficed(before, second.dot(&second), next.dot(&next));
@@ -113,14 +90,14 @@ impl<G: LieGroup> Lanes<G> {
 /// Whether an update will be enough after one with the square `first` that has led to one with the square `size`:
 /// `2C|u₁|³ ≤ REST ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
 #[inline(always)]
-pub(super) fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
+pub(crate) fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST / TYPICAL_CURVATURE);
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
 /// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. All are squares.
 #[inline(always)]
-pub(super) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
+pub(crate) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }

@@ -7,14 +7,14 @@ pub(crate) use diagnosis::beyond_solvable;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
-    Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, velocity_of_momentum,
+    Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, pattern, velocity_of_momentum,
 };
 use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
 use crate::numbers::{Coordinates as _, InLanes, Lanes, Real, is_finite, lanes_of_fields, real, reported};
-use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, pattern, safe, step_terms, trusted_radius};
+use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -81,7 +81,8 @@ impl<S: Effect> Declared<S> {
         // With an extreme `h` the momentum equation and its derivatives leave the range of this scalar.
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
         // One that depends on where the bodies are may be singular here, and not where they start.
-        let is_in_range = if S::INERTIA_IS_CONSTANT && <Group<S> as LieGroup>::FACTORS.is_whole() {
+        let is_product = !<Group<S> as LieGroup>::FACTORS.is_whole() || <Group<S> as LieGroup>::BODIES > 1;
+        let is_in_range = if S::INERTIA_IS_CONSTANT && !is_product {
             is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any()
         } else {
             is_finite(trace / h)

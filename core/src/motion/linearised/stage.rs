@@ -3,10 +3,10 @@
 use alloc::vec::Vec;
 
 use crate::groups::{Advected as _, LieGroup};
+use crate::mechanics::pattern;
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
 use crate::numbers::{Coordinates, Entries, Real, real, zero};
-use crate::solving::pattern;
 
 /// One change of the motion and the effect that made it: what is differentiated, by an own step of the effect or by a
 /// kick of its potential.

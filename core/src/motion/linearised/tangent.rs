@@ -5,11 +5,11 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use crate::groups::LieGroup;
+use crate::mechanics::pattern;
 use crate::mechanics::{Effect, Group, SecondDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
 use crate::motion::linearised::stage::{Map, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
-use crate::solving::pattern;
 use nalgebra::SimdComplexField as _;
 
 /// How a state changes with its start, and with parameters: columns `(ζ, δμ)` that

@@ -1,0 +1,338 @@
+//! Arrays of equal groups: many bodies.
+
+use core::array::from_fn;
+
+use super::{Advected, Factor, LieGroup, Retraction};
+use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, filled, nowhere};
+use nalgebra::SimdBool as _;
+
+/// Increments of nothing.
+#[inline(always)]
+fn zero<G: LieGroup, const N: usize>() -> [G::Matrix; N] {
+    [crate::numbers::zero::<G::Scalar, G::Matrix>(); N]
+}
+
+/// Body by body; the [pattern](LieGroup::FACTORS) is that of one.
+impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
+    type Scalar = G::Scalar;
+    type Vector = Bodies<G::Vector, N>;
+    type Matrix = [G::Matrix; N];
+
+    const DIMENSION: usize = N * G::DIMENSION;
+    const FACTORS: Blocks = G::FACTORS;
+    const BODIES: usize = N * G::BODIES;
+
+    fn identity() -> Self {
+        [G::identity(); N]
+    }
+
+    fn compose(&self, right: &Self) -> Self {
+        filled(*self, |k| self[k].compose(&right[k]))
+    }
+
+    fn inverse(&self) -> Self {
+        filled(*self, |k| self[k].inverse())
+    }
+
+    #[inline(always)]
+    fn matrix(&self) -> Self::Matrix {
+        filled(zero::<G, N>(), |k| self[k].matrix())
+    }
+
+    #[inline(always)]
+    fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
+        filled([G::identity(); N], |k| G::from_matrix_unchecked(matrix[k]))
+    }
+
+    #[inline(always)]
+    fn hat(components: &Self::Vector) -> Self::Matrix {
+        filled(zero::<G, N>(), |k| G::hat(&components.0[k]))
+    }
+
+    #[inline(always)]
+    fn vee(matrix: &Self::Matrix) -> Self::Vector {
+        Bodies(filled([G::Vector::zero(); N], |k| G::vee(&matrix[k])))
+    }
+
+    fn adjoint(&self, velocity: &Self::Vector) -> Self::Vector {
+        Bodies(filled(velocity.0, |k| self[k].adjoint(&velocity.0[k])))
+    }
+
+    #[inline(always)]
+    fn adjoint_transpose(&self, momentum: &Self::Vector) -> Self::Vector {
+        Bodies(filled(momentum.0, |k| self[k].adjoint_transpose(&momentum.0[k])))
+    }
+
+    fn lie_bracket(xi: &Self::Vector, eta: &Self::Vector) -> Self::Vector {
+        Bodies(filled(xi.0, |k| G::lie_bracket(&xi.0[k], &eta.0[k])))
+    }
+
+    fn lie_bracket_transpose(xi: &Self::Vector, momentum: &Self::Vector) -> Self::Vector {
+        Bodies(filled(xi.0, |k| G::lie_bracket_transpose(&xi.0[k], &momentum.0[k])))
+    }
+
+    #[inline(always)]
+    fn from_increment(increment: &Self::Matrix) -> Self {
+        filled([G::identity(); N], |k| G::from_increment(&increment[k]))
+    }
+
+    #[inline(always)]
+    fn increment(&self) -> Self::Matrix {
+        filled(zero::<G, N>(), |k| self[k].increment())
+    }
+
+    #[inline(always)]
+    fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
+        filled(*increment, |k| G::inverse_increment(&increment[k]))
+    }
+
+    #[inline(always)]
+    fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
+        filled(*increment, |k| self[k].change(&increment[k]))
+    }
+
+    #[inline(always)]
+    fn advance(&self, increment: &Self::Matrix) -> Self {
+        filled(*self, |k| self[k].advance(&increment[k]))
+    }
+
+    #[inline(always)]
+    fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector {
+        Bodies(filled(momentum.0, |k| G::adjoint_transpose_increment(&increment[k], &momentum.0[k])))
+    }
+
+    fn named_numbers() -> Vec<(String, &'static str)> {
+        of_bodies::<_, N>(&G::named_numbers())
+    }
+
+    fn write_numbers<'a>(&self, numbers: &'a mut [G::Scalar]) -> &'a mut [G::Scalar] {
+        self.iter().fold(numbers, |numbers, body| body.write_numbers(numbers))
+    }
+
+    fn named_components() -> Vec<(String, [&'static str; 2])> {
+        of_bodies::<_, N>(&G::named_components())
+    }
+
+    /// The sum of those of the bodies.
+    fn defect(&self) -> G::Scalar {
+        self.iter().fold(nalgebra::zero(), |sum, body| sum + body.defect())
+    }
+
+    fn restored(&self) -> Option<(Self, Mask<G::Scalar>)> {
+        let (mut elements, mut far) = (*self, nowhere::<G::Scalar>());
+        for element in &mut elements {
+            if let Some((restored, lanes)) = element.restored() {
+                *element = restored;
+                far = far | lanes;
+            }
+        }
+        far.any().then_some((elements, far))
+    }
+}
+
+/// The names of all bodies, each with the place of its body behind it, from one: `x_1`, `x_2`.
+fn of_bodies<U: Copy, const N: usize>(names: &[(String, U)]) -> Vec<(String, U)> {
+    let of_body = |place: usize| names.iter().map(move |(name, unit)| (format!("{name}_{place}"), *unit));
+    (1..=N).flat_map(of_body).collect()
+}
+
+/// Body by body.
+impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
+    #[inline(always)]
+    fn increment(xi: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
+        filled(zero::<G, N>(), |k| R::increment(&xi.0[k]))
+    }
+
+    #[inline(always)]
+    fn increment_of_half(half: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
+        filled(zero::<G, N>(), |k| R::increment_of_half(&half.0[k]))
+    }
+
+    fn local_coordinates(element: &[G; N]) -> Option<Bodies<G::Vector, N>> {
+        let mut coordinates = Bodies::zero();
+        for (of_body, body) in coordinates.0.iter_mut().zip(element) {
+            *of_body = R::local_coordinates(body)?;
+        }
+        Some(coordinates)
+    }
+
+    fn tangent(xi: &Bodies<G::Vector, N>) -> BlockDiagonal<<G::Vector as Coordinates<G::Scalar>>::Square, N> {
+        BlockDiagonal(from_fn(|k| R::tangent(&xi.0[k])))
+    }
+
+    #[inline(always)]
+    fn is_near_identity(xi: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
+        xi.0.iter().fold(!nowhere::<G::Scalar>(), |near, xi| near & R::is_near_identity(xi))
+    }
+
+    #[inline(always)]
+    fn is_half_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
+        half.0.iter().fold(!nowhere::<G::Scalar>(), |near, half| near & R::is_half_near_identity(half))
+    }
+
+    #[inline(always)]
+    fn is_half_well_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
+        half.0.iter().fold(!nowhere::<G::Scalar>(), |near, half| near & R::is_half_well_near_identity(half))
+    }
+}
+
+/// The body `K`, counted from zero.
+impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {
+    type Of = G;
+
+    #[inline(always)]
+    fn factor(&self) -> G {
+        const { assert!(K < N, "there is no body with this number: they are counted from zero") };
+        self[K]
+    }
+
+    #[inline(always)]
+    fn of_matrix(matrix: &[G::Matrix; N]) -> G::Matrix {
+        const { assert!(K < N, "there is no body with this number: they are counted from zero") };
+        matrix[K]
+    }
+
+    #[inline(always)]
+    fn components(joined: &Bodies<G::Vector, N>) -> G::Vector {
+        const { assert!(K < N, "there is no body with this number: they are counted from zero") };
+        joined.0[K]
+    }
+}
+
+/// What each body sees.
+impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
+    fn seen_from(&self, attitude: &[G; N]) -> Self {
+        filled(*self, |k| self[k].seen_from(&attitude[k]))
+    }
+
+    #[inline(always)]
+    fn change(&self, increment: &[G::Matrix; N]) -> Self {
+        filled(*self, |k| self[k].change(&increment[k]))
+    }
+
+    #[inline(always)]
+    fn advect(&self, increment: &[G::Matrix; N]) -> Self {
+        filled(*self, |k| self[k].advect(&increment[k]))
+    }
+
+    fn rate(&self, velocity: &[G::Matrix; N]) -> Self {
+        filled(*self, |k| self[k].rate(&velocity[k]))
+    }
+
+    fn seen_through(&self, matrix: &[G::Matrix; N], inverse: &[G::Matrix; N]) -> Self {
+        filled(*self, |k| self[k].seen_through(&matrix[k], &inverse[k]))
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.iter().all(W::is_finite)
+    }
+}
+
+/// The product of two equal groups as a declaration on two bodies has it: `(G, G)`, or `(A, B, A, B)` where each body is
+/// the product `(A, B)`.
+pub trait Pair: LieGroup {
+    /// The group of one body.
+    type Body: LieGroup<Scalar = Self::Scalar>;
+
+    /// Two bodies together.
+    fn pair(first: &Self::Body, second: &Self::Body) -> Self;
+
+    /// Their matrices together.
+    fn matrices(first: &<Self::Body as LieGroup>::Matrix, second: &<Self::Body as LieGroup>::Matrix) -> Self::Matrix;
+
+    /// The components of each.
+    fn parts(joined: &Self::Vector) -> [<Self::Body as LieGroup>::Vector; 2];
+
+    /// The components of both.
+    fn joined(first: &<Self::Body as LieGroup>::Vector, second: &<Self::Body as LieGroup>::Vector) -> Self::Vector;
+}
+
+impl<G: LieGroup> Pair for (G, G)
+where
+    (G, G): LieGroup<Scalar = G::Scalar, Matrix = (G::Matrix, G::Matrix), Vector = JoinedVector<G>>,
+    G::Vector: Join<G::Scalar, G::Vector>,
+{
+    type Body = G;
+
+    #[inline(always)]
+    fn pair(first: &G, second: &G) -> Self {
+        (*first, *second)
+    }
+
+    #[inline(always)]
+    fn matrices(first: &G::Matrix, second: &G::Matrix) -> Self::Matrix {
+        (*first, *second)
+    }
+
+    #[inline(always)]
+    fn parts(joined: &Self::Vector) -> [G::Vector; 2] {
+        G::Vector::split(joined).into()
+    }
+
+    #[inline(always)]
+    fn joined(first: &G::Vector, second: &G::Vector) -> Self::Vector {
+        first.join(second)
+    }
+}
+
+/// The components of two.
+type JoinedVector<G> = <<G as LieGroup>::Vector as Join<<G as LieGroup>::Scalar, <G as LieGroup>::Vector>>::Joined;
+
+impl<A, B> Pair for (A, B, A, B)
+where
+    A: LieGroup,
+    B: LieGroup<Scalar = A::Scalar>,
+    (A, B): LieGroup<Scalar = A::Scalar, Matrix = (A::Matrix, B::Matrix)> + Factor<0, Of = A> + Factor<1, Of = B>,
+    A::Vector: Join<A::Scalar, B::Vector, Joined = <(A, B) as LieGroup>::Vector>,
+    <(A, B) as LieGroup>::Vector: Join<A::Scalar, <(A, B) as LieGroup>::Vector>,
+    Self: LieGroup<
+            Scalar = A::Scalar,
+            Matrix = (A::Matrix, B::Matrix, A::Matrix, B::Matrix),
+            Vector = JoinedVector<(A, B)>,
+        >,
+{
+    type Body = (A, B);
+
+    #[inline(always)]
+    fn pair(first: &(A, B), second: &(A, B)) -> Self {
+        (first.0, first.1, second.0, second.1)
+    }
+
+    #[inline(always)]
+    fn matrices(first: &(A::Matrix, B::Matrix), second: &(A::Matrix, B::Matrix)) -> Self::Matrix {
+        (first.0, first.1, second.0, second.1)
+    }
+
+    #[inline(always)]
+    fn parts(joined: &Self::Vector) -> [<(A, B) as LieGroup>::Vector; 2] {
+        <(A, B) as LieGroup>::Vector::split(joined).into()
+    }
+
+    #[inline(always)]
+    fn joined(first: &<(A, B) as LieGroup>::Vector, second: &<(A, B) as LieGroup>::Vector) -> Self::Vector {
+        first.join(second)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pair as _;
+    use crate::groups::{LieGroup, R3, SO3};
+    use nalgebra::{SVector, Vector6};
+
+    type Body = (SO3, R3);
+
+    /// What a declaration on two bodies calls its components is what a system of them has.
+    #[test]
+    fn two_bodies_are_put_together_and_taken_apart() {
+        let joined = SVector::<f64, 12>::from_fn(|k, _| f64::from(u8::try_from(k).unwrap()));
+        let [first, second] = <(SO3, R3, SO3, R3)>::parts(&joined);
+        assert_eq!((first[0], first[5], second[0]), (0.0, 5.0, 6.0));
+        assert_eq!(<(SO3, R3, SO3, R3)>::joined(&first, &second), joined);
+        let element = <Body as LieGroup>::identity();
+        assert_eq!(<(SO3, R3, SO3, R3)>::pair(&element, &element), LieGroup::identity());
+        let halves = <(SO3, SO3)>::parts(&Vector6::new(1.0, 2.0, 3.0, 4.0, 5.0, 6.0));
+        assert_eq!(halves[1].y, 5.0);
+    }
+}

@@ -1,0 +1,162 @@
+//! What the places of a system at two bodies see.
+
+use core::marker::PhantomData;
+
+use crate::groups::{Advected, LieGroup, Pair};
+use crate::numbers::{Entries, Real, filled, zero};
+
+/// What each two neighbours see, as a group `P` of two bodies moves it. Behind it there is one more, which never changes:
+/// stable Rust has no arrays of `N − 1`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbours<P, W, const N: usize>(pub [W; N], pub(super) PhantomData<P>);
+
+/// What the bodies `A` and `B` see, as a group `P` of two bodies moves it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenBetween<P, W, const A: usize, const B: usize>(pub W, pub(super) PhantomData<P>);
+
+/// The configurations of all bodies in space, of which what each pair sees is formed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WhereAllAre<G: LieGroup, const N: usize>(pub [G::Matrix; N]);
+
+impl<G: LieGroup, const N: usize> Default for WhereAllAre<G, N> {
+    fn default() -> Self {
+        Self([G::identity().matrix(); N])
+    }
+}
+
+macro_rules! entries {
+    ([$($parameters:tt)*] $type:ty, $($marker:expr)?) => {
+        impl<S: Real, $($parameters)*> Entries<S> for $type {
+            fn from_entries(next: &mut impl FnMut() -> S) -> Self {
+                Self(Entries::from_entries(next), $($marker)?)
+            }
+
+            #[inline(always)]
+            fn each(&self, visit: &mut impl FnMut(S)) {
+                self.0.each(visit);
+            }
+
+            #[inline(always)]
+            fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
+                Self(self.0.zip(&other.0, combine), $($marker)?)
+            }
+        }
+    };
+}
+
+entries!([P: Copy, W: Entries<S>, const N: usize] Neighbours<P, W, N>, PhantomData);
+entries!([P: Copy, W: Entries<S>, const A: usize, const B: usize] SeenBetween<P, W, A, B>, PhantomData);
+entries!([G: LieGroup<Scalar = S>, const N: usize] WhereAllAre<G, N>,);
+
+impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
+    /// Something of each two neighbours, and of the one behind.
+    #[inline(always)]
+    fn map(&self, each: impl Fn(&W, usize) -> W, behind: impl Fn(&W) -> W) -> Self {
+        let mut mapped = self.0;
+        for k in 1..N {
+            mapped[k - 1] = each(&self.0[k - 1], k - 1);
+        }
+        if let Some(last) = mapped.last_mut() {
+            *last = behind(last);
+        }
+        Self(mapped, PhantomData)
+    }
+}
+
+/// No change of what never changes.
+fn unchanged<T: Real, W: Entries<T>>(_: &W) -> W {
+    zero::<T, W>()
+}
+
+impl<G, P, W, const N: usize> Advected<[G; N]> for Neighbours<P, W, N>
+where
+    G: LieGroup,
+    P: Pair<Body = G, Scalar = G::Scalar>,
+    W: Advected<P>,
+{
+    fn seen_from(&self, attitude: &[G; N]) -> Self {
+        self.map(|w, k| w.seen_from(&P::pair(&attitude[k], &attitude[k + 1])), W::clone)
+    }
+
+    #[inline(always)]
+    fn change(&self, increment: &[G::Matrix; N]) -> Self {
+        self.map(|w, k| w.change(&P::matrices(&increment[k], &increment[k + 1])), unchanged::<G::Scalar, W>)
+    }
+
+    #[inline(always)]
+    fn advect(&self, increment: &[G::Matrix; N]) -> Self {
+        self.map(|w, k| w.advect(&P::matrices(&increment[k], &increment[k + 1])), W::clone)
+    }
+
+    fn rate(&self, velocity: &[G::Matrix; N]) -> Self {
+        self.map(|w, k| w.rate(&P::matrices(&velocity[k], &velocity[k + 1])), unchanged::<G::Scalar, W>)
+    }
+
+    fn seen_through(&self, matrix: &[G::Matrix; N], inverse: &[G::Matrix; N]) -> Self {
+        let pair = |of: &[G::Matrix; N], k: usize| P::matrices(&of[k], &of[k + 1]);
+        self.map(|w, k| w.seen_through(&pair(matrix, k), &pair(inverse, k)), W::clone)
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.0.iter().all(W::is_finite)
+    }
+}
+
+impl<G, P, W, const A: usize, const B: usize, const N: usize> Advected<[G; N]> for SeenBetween<P, W, A, B>
+where
+    G: LieGroup,
+    P: Pair<Body = G, Scalar = G::Scalar>,
+    W: Advected<P>,
+{
+    fn seen_from(&self, attitude: &[G; N]) -> Self {
+        Self(self.0.seen_from(&P::pair(&attitude[A], &attitude[B])), PhantomData)
+    }
+
+    #[inline(always)]
+    fn change(&self, increment: &[G::Matrix; N]) -> Self {
+        Self(self.0.change(&P::matrices(&increment[A], &increment[B])), PhantomData)
+    }
+
+    fn rate(&self, velocity: &[G::Matrix; N]) -> Self {
+        Self(self.0.rate(&P::matrices(&velocity[A], &velocity[B])), PhantomData)
+    }
+
+    fn seen_through(&self, matrix: &[G::Matrix; N], inverse: &[G::Matrix; N]) -> Self {
+        let pair = |of: &[G::Matrix; N]| P::matrices(&of[A], &of[B]);
+        Self(self.0.seen_through(&pair(matrix), &pair(inverse)), PhantomData)
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.0.is_finite()
+    }
+}
+
+impl<G: LieGroup, const N: usize> Advected<[G; N]> for WhereAllAre<G, N> {
+    fn seen_from(&self, attitude: &[G; N]) -> Self {
+        self.seen_through(&attitude.map(|body| body.matrix()), &[G::identity().matrix(); N])
+    }
+
+    /// `R D`.
+    #[inline(always)]
+    fn change(&self, increment: &[G::Matrix; N]) -> Self {
+        Self(filled(self.0, |k| G::from_matrix_unchecked(self.0[k]).change(&increment[k])))
+    }
+
+    /// `R ξ̂`.
+    fn rate(&self, velocity: &[G::Matrix; N]) -> Self {
+        self.change(velocity)
+    }
+
+    fn seen_through(&self, matrix: &[G::Matrix; N], _: &[G::Matrix; N]) -> Self {
+        let moved = |k: usize| G::from_matrix_unchecked(self.0[k]).compose(&G::from_matrix_unchecked(matrix[k]));
+        Self(filled(self.0, |k| moved(k).matrix()))
+    }
+
+    fn is_finite(&self) -> bool {
+        let mut is_finite = true;
+        self.each(&mut |entry| is_finite &= crate::numbers::is_finite::<G::Scalar>(entry));
+        is_finite
+    }
+}

@@ -1,0 +1,396 @@
+//! The stepper of a chain.
+
+use core::array::from_fn;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::elimination::{Updated, Work, momenta, momenta_of_velocities, newton, outwards, simplified, velocities};
+use super::{Chain, Link};
+use crate::error::{SetupError, StepError};
+use crate::groups::{LieGroup, SO3};
+use crate::motion::{Integrator, Motion, State, StepReport, is_due};
+use crate::numbers::Bodies;
+use crate::solving::{has_sufficed, may_suffice};
+
+/// Newton's iteration from the guess takes two or three; more means that it goes nowhere.
+const MOST_ITERATIONS: u32 = 20;
+/// With shortened updates more are needed.
+const MOST_SHORTENED: u32 = 60;
+/// The longest update of a link in half coordinates then, half a radian.
+const LONGEST: f64 = 0.25;
+
+/// The state of a chain: attitudes, body momenta, and the last increments.
+type ChainState<const N: usize> = State<[SO3; N], (), ChainMemory<N>>;
+
+/// What a [`ChainStepper`] keeps from step to step: half the coordinates of the last increments, by which the next are
+/// guessed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChainMemory<const N: usize> {
+    last: [[Vector3<f64>; N]; 3],
+    /// How many there are.
+    known: usize,
+}
+
+/// An integrator of a [`Chain`] with a fixed step, in the minimal form on SO(3)ᴺ: of second order, symmetric and
+/// symplectic. A step takes time proportional to `N`.
+///
+/// # Contract
+///
+/// - Joints don't open: attitudes are all there is.
+/// - The momentum about the vertical is kept to rounding, however well the equations are solved.
+/// - A step satisfies its momentum equations to rounding, or is an error that names a link and leaves the state as it was.
+/// - Nothing is allocated. A chain of `N` links takes about `2 N` kB of stack.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::methods::{Chain, ChainStepper, Link};
+/// use liestep::numbers::Bodies;
+/// use liestep::{NonstandardInertia, SO3};
+/// use nalgebra::{Matrix3, Vector3};
+///
+/// // Rods of one metre, of one kilogram, that hang along their axis.
+/// let J_d = NonstandardInertia::from_diagonal(Vector3::new(1e-3, 1e-3, 1.0 / 3.0))?;
+/// let link = Link { J_d, m: 1.0, c: Vector3::new(0.0, 0.0, -0.5), rho: Vector3::new(0.0, 0.0, -1.0) };
+/// let stepper = ChainStepper::new(Chain { links: [link; 5], g: 9.81, up: Vector3::z() }, 0.01)?;
+/// let tilted = SO3::from_euler_angles(0.0, 1.0, 0.0);
+/// let mut state = stepper.start([tilted; 5], Bodies([Vector3::new(0.0, 0.2, 0.0); 5]))?;
+/// let (energy, vertical) = (stepper.energy(&state), stepper.vertical_momentum(&state));
+/// stepper.run(&mut state, 1000)?;
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
+/// assert!((stepper.vertical_momentum(&state) - vertical).abs() < 1e-11);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Source
+///
+/// The equations are (2.7) and (2.9) of \[RDAE\] for the Lagrangian of [`Chain`], relative attitudes being advected;
+/// the minimal form is that of the authors of \[LML05\], the elimination that of Featherstone's articulated bodies.
+#[derive(Clone, Debug)]
+pub struct ChainStepper<const N: usize> {
+    chain: Chain<N>,
+    h: f64,
+    weights: [Vector3<f64>; N],
+}
+
+impl<const N: usize> ChainStepper<N> {
+    /// Checks the parameters and the step, s. A negative step is the inverse map; `h = 0` is the identity.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::BodyParameter`] names the link whose parameters can't be used; [`SetupError::Parameter`] for those
+    /// of the chain, [`SetupError::InvalidStep`] for a step that isn't finite or whose inverse isn't.
+    pub fn new(chain: Chain<N>, h: f64) -> Result<Self, SetupError> {
+        const { assert!(N > 0, "a chain has a link") };
+        chain.validate()?;
+        if !h.is_finite() || (h != 0.0 && !(1.0 / h).is_finite()) {
+            return Err(SetupError::InvalidStep { step: h });
+        }
+        Ok(Self { chain, h, weights: chain.weights() })
+    }
+
+    /// The chain.
+    #[must_use]
+    pub const fn chain(&self) -> &Chain<N> {
+        &self.chain
+    }
+
+    /// The step, s.
+    #[must_use]
+    pub const fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    /// A motion from the links' attitudes (to space) and body velocities, rad/s.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where an attitude isn't a rotation or something isn't finite.
+    pub fn start(&self, attitudes: [SO3; N], velocities: Bodies<Vector3<f64>, N>) -> Result<ChainState<N>, SetupError> {
+        if !velocities.0.iter().flatten().all(|entry| entry.is_finite()) {
+            return Err(SetupError::NonFinite { what: "velocity" });
+        }
+        let mut work = Self::work(&attitudes);
+        for (work, velocity) in work.iter_mut().zip(&velocities.0) {
+            work.z = *velocity;
+        }
+        momenta_of_velocities(&self.chain.links, &mut work);
+        self.start_with_momentum(attitudes, Bodies(work.map(|work| work.target)))
+    }
+
+    /// A motion from the links' attitudes and the conjugate momenta `μ_a`, kg m²/s in their axes: what each link has to do
+    /// with it that those beyond it move, too.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where an attitude isn't a rotation or something isn't finite.
+    pub fn start_with_momentum(
+        &self,
+        attitudes: [SO3; N],
+        momentum: Bodies<Vector3<f64>, N>,
+    ) -> Result<ChainState<N>, SetupError> {
+        // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
+        let worst = attitudes.iter().map(LieGroup::defect).fold(
+            0.0,
+            |worst: f64, defect| {
+                if defect <= worst { worst } else { defect }
+            },
+        );
+        let is_allowed = worst <= f64::EPSILON * 1e4;
+        if !is_allowed {
+            return Err(SetupError::NotInGroup { defect: worst });
+        }
+        if !momentum.0.iter().flatten().all(|entry| entry.is_finite()) {
+            return Err(SetupError::NonFinite { what: "momentum" });
+        }
+        Ok(self.adopt(&Motion { attitude: attitudes, momentum, advected: (), steps: 0 }))
+    }
+
+    /// One step. On an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out.
+    pub fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
+        let mut work = Self::work(&state.motion.attitude);
+        let (links, h) = (&self.chain.links[..], self.h);
+        for (((work, attitude), momentum), weight) in
+            work.iter_mut().zip(&state.motion.attitude).zip(&state.motion.momentum.0).zip(&self.weights)
+        {
+            let w = attitude.as_matrix().tr_mul(&self.chain.up);
+            // (h/2) w × g s: the kick before the step.
+            work.target = (momentum + w.cross(weight) * (0.5 * h)) * h;
+        }
+        let iterations = if h == 0.0 { 0 } else { self.solve(&mut work, &state.kept)? };
+        outwards(links, &mut work);
+        momenta(links, &mut work);
+        let mut next = *state;
+        let (mut sum, inverse_step) = (0.0, if h == 0.0 { 0.0 } else { 1.0 / h });
+        for (k, (work, link)) in work.iter().zip(links).enumerate() {
+            let d = &work.increment;
+            let w = state.motion.attitude[k].as_matrix().tr_mul(&self.chain.up);
+            let (weight, momentum) = (self.weights[k], state.motion.momentum.0[k]);
+            // The diamond: what moves the links and what weighs on them, turned.
+            let kick = (work.of_c.cross(&work.u) * link.m + work.of_rho.cross(&work.beyond)) * inverse_step
+                + w.cross(&(weight + weight + d * weight)) * (0.5 * h);
+            // μ⁺ = Fᵀ(μ + κ), (2.9).
+            let change = kick + d.tr_mul(&(momentum + kick));
+            next.motion.momentum.0[k] = momentum + change;
+            next.motion.attitude[k] = state.motion.attitude[k].advance(d);
+            sum += next.motion.momentum.0[k].sum();
+        }
+        if !sum.is_finite() {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        next.kept.follow(&work);
+        next.motion.steps += 1;
+        if is_due(next.motion.steps) {
+            next.motion.attitude = next.motion.attitude.map(|attitude| orthogonal(&attitude));
+        }
+        *state = next;
+        Ok(StepReport::of(iterations))
+    }
+
+    /// So many steps; returns all their iterations. On an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// As [`step`](Self::step).
+    pub fn run(&self, state: &mut ChainState<N>, steps: u64) -> Result<u64, StepError> {
+        let (mut next, mut iterations) = (*state, 0);
+        for _ in 0..steps {
+            iterations += u64::from(self.step(&mut next)?.iterations);
+        }
+        *state = next;
+        Ok(iterations)
+    }
+
+    /// The same motion, of which nothing is kept.
+    #[must_use]
+    pub fn adopt(&self, motion: &Motion<[SO3; N], ()>) -> ChainState<N> {
+        State { motion: *motion, kept: ChainMemory { last: [[Vector3::zeros(); N]; 3], known: 0 } }
+    }
+
+    /// The links' body velocities, rad/s.
+    #[must_use]
+    pub fn velocity(&self, motion: &Motion<[SO3; N], ()>) -> Bodies<Vector3<f64>, N> {
+        let mut work = Self::work(&motion.attitude);
+        for (work, momentum) in work.iter_mut().zip(&motion.momentum.0) {
+            work.target = *momentum;
+        }
+        velocities(&self.chain.links, &mut work);
+        Bodies(work.map(|work| work.z))
+    }
+
+    /// The energy, J; the potential is zero at the height of the pivot.
+    #[must_use]
+    pub fn energy(&self, motion: &Motion<[SO3; N], ()>) -> f64 {
+        let velocity = self.velocity(motion);
+        let kinetic: f64 = velocity.0.iter().zip(&motion.momentum.0).map(|(z, momentum)| z.dot(momentum)).sum();
+        let height = |(attitude, weight): (&SO3, &Vector3<f64>)| self.chain.up.dot(&(attitude.as_matrix() * weight));
+        0.5 * kinetic + motion.attitude.iter().zip(&self.weights).map(height).sum::<f64>()
+    }
+
+    /// The momentum of all links about the vertical through the pivot, kg m²/s; it is conserved.
+    #[must_use]
+    pub fn vertical_momentum(&self, motion: &Motion<[SO3; N], ()>) -> f64 {
+        motion.spatial_momentum().0.iter().map(|momentum| momentum.dot(&self.chain.up)).sum()
+    }
+
+    /// Where each link's lower joint is in space, m from the pivot.
+    #[must_use]
+    pub fn joints(&self, motion: &Motion<[SO3; N], ()>) -> [Vector3<f64>; N] {
+        let mut place = Vector3::zeros();
+        from_fn(|k| {
+            place += motion.attitude[k].as_matrix() * self.chain.links[k].rho;
+            place
+        })
+    }
+
+    fn work(attitudes: &[SO3; N]) -> [Work; N] {
+        let mut work = [Work::new(); N];
+        for (k, pair) in attitudes.windows(2).enumerate() {
+            work[k].next = pair[0].as_matrix().tr_mul(pair[1].as_matrix());
+        }
+        work
+    }
+
+    /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
+    fn solve(&self, work: &mut [Work; N], kept: &ChainMemory<N>) -> Result<u32, StepError> {
+        let links = &self.chain.links[..];
+        if kept.known > 0 {
+            kept.guess(work);
+            if let Some(iterations) = attempt(links, work, MOST_ITERATIONS, f64::INFINITY) {
+                return Ok(iterations);
+            }
+        }
+        let abandoned = if kept.known > 0 { MOST_ITERATIONS } else { 0 };
+        let mut slow = *work;
+        velocities(links, &mut slow);
+        for (work, slow) in work.iter_mut().zip(&slow) {
+            // `target` is h times the momentum.
+            work.half = slow.z * 0.5;
+        }
+        if let Some(iterations) = attempt(links, work, MOST_ITERATIONS, f64::INFINITY) {
+            return Ok(abandoned + iterations);
+        }
+        for work in work.iter_mut() {
+            work.half = Vector3::zeros();
+        }
+        if let Some(iterations) = attempt(links, work, MOST_SHORTENED, LONGEST) {
+            return Ok(abandoned + MOST_ITERATIONS + iterations);
+        }
+        Err(reason(work, &slow, abandoned + MOST_ITERATIONS + MOST_SHORTENED))
+    }
+}
+
+/// Newton's iteration: how many were made, if it has settled near the identity with all determinants positive.
+fn attempt(links: &[Link], work: &mut [Work], most: u32, longest: f64) -> Option<u32> {
+    for iteration in 1..=most {
+        let Updated { update, size, largest } = newton(links, work, longest);
+        if !size.is_finite() {
+            return None;
+        }
+        if update <= size * (f64::EPSILON / 64.0) {
+            return work.iter().all(Work::is_wanted).then_some(iteration);
+        }
+        if largest <= longest * longest && may_suffice(update, size) {
+            let second = simplified(links, work);
+            if has_sufficed(update, second.update, second.size) {
+                return work.iter().all(Work::is_wanted).then_some(iteration + 1);
+            }
+        }
+    }
+    None
+}
+
+/// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it has
+/// no values, the one that turns farthest.
+fn reason(work: &[Work], slow: &[Work], iterations: u32) -> StepError {
+    let blamed =
+        |body: usize| StepError::UnsolvedBody { body, turn: slow[body].z.norm(), determinant: work[body].determinant };
+    if !work.iter().all(|work| work.half.norm_squared().is_finite()) {
+        let farthest = (0..slow.len()).max_by(|&a, &b| slow[a].z.norm_squared().total_cmp(&slow[b].z.norm_squared()));
+        return blamed(farthest.unwrap_or(0));
+    }
+    if let Some(body) = work.iter().position(|work| !work.is_wanted()) {
+        return blamed(body);
+    }
+    let sum = |of: fn(&Work) -> &Vector3<f64>| work.iter().map(|work| of(work).norm_squared()).sum::<f64>();
+    let (update, size) = (sum(|work| &work.z), sum(|work| &work.half));
+    StepError::NotConverged { iterations, residual: (update / size).sqrt() }
+}
+
+/// The rotation next to one that roundings have moved a little, `R (3 I − RᵀR)/2`. What links feel of each other cancels
+/// as far as their attitudes are rotations.
+fn orthogonal(attitude: &SO3) -> SO3 {
+    let r = attitude.as_matrix();
+    SO3::from_matrix_unchecked(r + r * (Matrix3::identity() - r.tr_mul(r)) * 0.5)
+}
+
+impl<const N: usize> ChainMemory<N> {
+    /// The parabola through the last three increments, or as many as there are.
+    fn guess(&self, work: &mut [Work; N]) {
+        for (k, work) in work.iter_mut().enumerate() {
+            let [a, b, c] = [self.last[0][k], self.last[1][k], self.last[2][k]];
+            let guess = match self.known {
+                0 | 1 => a,
+                2 => a + (a - b),
+                _ => a + (a - b) + ((a - b) - (b - c)),
+            };
+            // Far from the identity coordinates change too fast to be continued.
+            work.half = if guess.norm_squared() < 4.0 / 9.0 { guess } else { a };
+        }
+    }
+
+    /// Takes notice of an increment.
+    fn follow(&mut self, work: &[Work; N]) {
+        self.last[2] = self.last[1];
+        self.last[1] = self.last[0];
+        for (last, work) in self.last[0].iter_mut().zip(work) {
+            *last = work.half;
+        }
+        self.known = (self.known + 1).min(3);
+    }
+}
+
+impl<const N: usize> Integrator for ChainStepper<N> {
+    type Group = [SO3; N];
+    type Advected = ();
+    type State = ChainState<N>;
+
+    fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
+        Self::step(self, state)
+    }
+
+    fn run(&self, state: &mut ChainState<N>, steps: u64) -> Result<u64, StepError> {
+        Self::run(self, state, steps)
+    }
+
+    fn part(&self, state: &ChainState<N>, fraction: f64) -> Result<Motion<[SO3; N], ()>, StepError> {
+        let part = Self { chain: self.chain, h: self.h * fraction, weights: self.weights };
+        if !part.h.is_finite() || (part.h != 0.0 && !(1.0 / part.h).is_finite()) {
+            return Err(StepError::NonFinite { what: "part of the step" });
+        }
+        let mut next = part.adopt(&state.motion);
+        part.step(&mut next)?;
+        next.motion.steps = state.motion.steps;
+        Ok(next.motion)
+    }
+
+    fn adopt(&self, motion: &Motion<[SO3; N], ()>) -> ChainState<N> {
+        Self::adopt(self, motion)
+    }
+
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn velocity(&self, motion: &Motion<[SO3; N], ()>) -> Bodies<Vector3<f64>, N> {
+        Self::velocity(self, motion)
+    }
+
+    fn energy(&self, motion: &Motion<[SO3; N], ()>) -> f64 {
+        Self::energy(self, motion)
+    }
+}

@@ -1,0 +1,248 @@
+//! Components of many equal bodies, and the matrices that map each body's components by themselves.
+
+use core::array::from_fn;
+use core::ops::{Add, Mul, Neg, Sub};
+
+use super::blocks::{Blocks, Pattern};
+use super::coordinates::Coordinates;
+use super::entries::Entries;
+use super::scalar::{Mask, Real, real};
+
+/// The components of `N` equal bodies, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bodies<V, const N: usize>(pub [V; N]);
+
+/// A linear map of [`Bodies`] that maps each by itself: a matrix that is zero but for the blocks on its diagonal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlockDiagonal<S, const N: usize>(pub [S; N]);
+
+/// Something for each body, in an array that is full of something before. `core::array::from_fn` isn't always inlined,
+/// and copies what it makes.
+#[inline(always)]
+pub(crate) fn filled<X: Copy, const N: usize>(mut array: [X; N], mut of: impl FnMut(usize) -> X) -> [X; N] {
+    for (k, entry) in array.iter_mut().enumerate() {
+        *entry = of(k);
+    }
+    array
+}
+
+impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(filled(self.0, |k| self.0[k] + other.0[k]))
+    }
+}
+
+impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(filled(self.0, |k| self.0[k] - other.0[k]))
+    }
+}
+
+impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(filled(self.0, |k| -self.0[k]))
+    }
+}
+
+impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Self(filled(self.0, |k| self.0[k] * factor))
+    }
+}
+
+impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(filled(self.0, |k| self.0[k] + other.0[k]))
+    }
+}
+
+impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiagonal<S, N> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, factor: T) -> Self {
+        Self(filled(self.0, |k| self.0[k] * factor))
+    }
+}
+
+impl<V: Copy, S: Copy + Mul<V, Output = V>, const N: usize> Mul<Bodies<V, N>> for BlockDiagonal<S, N> {
+    type Output = Bodies<V, N>;
+
+    #[inline(always)]
+    fn mul(self, components: Bodies<V, N>) -> Bodies<V, N> {
+        Bodies(filled(components.0, |k| self.0[k] * components.0[k]))
+    }
+}
+
+impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for [E; N] {
+    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+        from_fn(|_| E::from_entries(next))
+    }
+
+    #[inline(always)]
+    fn each(&self, visit: &mut impl FnMut(T)) {
+        for body in self {
+            body.each(visit);
+        }
+    }
+
+    #[inline(always)]
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+        filled(*self, |k| self[k].zip(&other[k], combine))
+    }
+}
+
+impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
+    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+        Self(Entries::from_entries(next))
+    }
+
+    #[inline(always)]
+    fn each(&self, visit: &mut impl FnMut(T)) {
+        self.0.each(visit);
+    }
+
+    #[inline(always)]
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+        Self(self.0.zip(&other.0, combine))
+    }
+}
+
+/// One block a body.
+const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
+
+/// The lesser of two numbers; what isn't a number stays.
+#[inline(always)]
+pub(crate) fn least<T: Real>(a: T, b: T) -> T {
+    b.select(b.simd_lt(a) | b.simd_ne(b), a)
+}
+
+/// More than anything is.
+#[inline(always)]
+pub(crate) fn most<T: Real>() -> T {
+    real(f64::INFINITY)
+}
+
+/// Everything is done body by body. A determinant is the least of those of the bodies, each relative to the product of
+/// its diagonal: the product of a hundred of them would be out of range, and two negative ones would hide each other.
+///
+/// `a bᵀ` has none of the blocks that would join bodies, so it is that map only where the rest isn't asked for.
+impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N> {
+    type Square = BlockDiagonal<V::Square, N>;
+
+    #[inline(always)]
+    fn zero() -> Self {
+        Self([V::zero(); N])
+    }
+
+    fn axis(k: usize) -> Self {
+        let mut dimension = 0;
+        V::zero().each(&mut |_| dimension += 1);
+        let mut axis = Self::zero();
+        axis.0[k / dimension] = V::axis(k % dimension);
+        axis
+    }
+
+    #[inline(always)]
+    fn dot(&self, other: &Self) -> T {
+        let mut sum = T::zero();
+        for k in 0..N {
+            sum += self.0[k].dot(&other.0[k]);
+        }
+        sum
+    }
+
+    #[inline(always)]
+    fn outer(&self, other: &Self) -> Self::Square {
+        BlockDiagonal(from_fn(|k| self.0[k].outer(&other.0[k])))
+    }
+
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.0.iter().all(V::is_finite)
+    }
+
+    #[inline(always)]
+    fn select(self, mask: Mask<T>, other: Self) -> Self {
+        Self(filled(self.0, |k| self.0[k].select(mask, other.0[k])))
+    }
+
+    #[inline(always)]
+    fn factorise(matrix: &Self::Square) -> (Self::Square, T) {
+        Self::factorise_apart(matrix, WHOLE)
+    }
+
+    #[inline(always)]
+    fn solve_again(factors: &Self::Square, _: T, right_side: &Self) -> Self {
+        Self::solve_apart(factors, WHOLE, right_side)
+    }
+
+    #[inline(always)]
+    fn factorise_with(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
+        Self::factorise_apart(matrix, pattern)
+    }
+
+    #[inline(always)]
+    fn solve_again_with(factors: &Self::Square, _: T, pattern: Pattern, right_side: &Self) -> Self {
+        Self::solve_apart(factors, pattern, right_side)
+    }
+
+    /// The pattern is that of one body.
+    #[inline(always)]
+    fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
+        let (mut factors, mut smallest) = (*matrix, most());
+        for k in 0..N {
+            let (of_body, det) = V::factorise_apart(&matrix.0[k], pattern);
+            factors.0[k] = of_body;
+            smallest = least(smallest, det);
+        }
+        (factors, smallest)
+    }
+
+    #[inline(always)]
+    fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self {
+        Self(filled(right_side.0, |k| V::solve_apart(&factors.0[k], pattern, &right_side.0[k])))
+    }
+
+    fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T {
+        matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_trace(body, blocks)))
+    }
+
+    #[inline(always)]
+    fn trace(matrix: &Self::Square) -> T {
+        matrix.0.iter().fold(T::zero(), |sum, body| sum + V::trace(body))
+    }
+
+    #[inline(always)]
+    fn transpose(matrix: &Self::Square) -> Self::Square {
+        BlockDiagonal(filled(matrix.0, |k| V::transpose(&matrix.0[k])))
+    }
+
+    fn least_pivot(matrix: &Self::Square) -> T {
+        matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_pivot(body)))
+    }
+
+    #[inline(always)]
+    fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
+        let mut raised = (*residual, *jacobian);
+        for k in 0..N {
+            (raised.0.0[k], raised.1.0[k]) = V::raised(&residual.0[k], &jacobian.0[k], power, &half.0[k]);
+        }
+        raised
+    }
+}

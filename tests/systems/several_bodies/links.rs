@@ -1,0 +1,292 @@
+//! Chains of links on ball joints, solved link by link: against steps of 30 digits, against the same chain with a full
+//! Newton matrix, and against derivatives of the action in terms of where all masses are.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use declarations::DoublePendulum;
+use declarations::motions::{matrix, number, read, vector};
+use liestep::groups::{CayleyRetraction, Retraction};
+use liestep::laws::samples::{Random, derivative};
+use liestep::methods::{Chain, ChainStepper, Link};
+use liestep::motion::Integrator as _;
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
+use nalgebra::{Matrix3, Vector3, Vector6};
+
+use super::{all, apart, attitudes_of, part};
+
+fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
+    values.try_into().unwrap_or_else(|_| panic!("another number of links"))
+}
+
+/// A link, with its inertia about its centre of mass.
+fn link(central: &Matrix3<f64>, m: f64, c: Vector3<f64>, rho: Vector3<f64>) -> Link {
+    Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho }
+}
+
+/// Of the reference.
+fn chain3() -> Chain<3> {
+    let data = &read("several bodies")["chain3"]["parameters"];
+    let plain = |value: &serde_json::Value| Vector3::from_fn(|k, _| value[k].as_f64().unwrap());
+    let links = all(&data["bodies"], |body| {
+        let moments = plain(&body["J_cm"]);
+        let central = Matrix3::from_diagonal_element(0.5 * moments.sum()) - Matrix3::from_diagonal(&moments);
+        link(&central, body["m"].as_f64().unwrap(), plain(&body["c"]), plain(&body["rho"]))
+    });
+    Chain { links: array(links), g: data["g"].as_f64().unwrap(), up: Vector3::z() }
+}
+
+/// Where the reference starts.
+fn start3() -> ([SO3; 3], Bodies<Vector3<f64>, 3>) {
+    let start = &read("several bodies")["chain3"]["states"][0]["bodies"];
+    let attitudes = all(start, |body| SO3::try_from(matrix(&body["R"])).unwrap());
+    (array(attitudes), Bodies(array(all(start, |body| vector(&body["Omega_body"])))))
+}
+
+fn farthest<const N: usize>(a: &Bodies<Vector3<f64>, N>, b: &[Vector3<f64>]) -> f64 {
+    a.0.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+/// To rounding.
+#[test]
+fn golden_step() {
+    let golden = &read("several bodies")["golden steps"]["chain3"];
+    let stepper = ChainStepper::new(chain3(), number(&golden["h"])).unwrap();
+    let start = array(attitudes_of(&golden["R0"]));
+    let mut state = stepper.start_with_momentum(start, Bodies(array(all(&golden["mu0"], vector)))).unwrap();
+    stepper.step(&mut state).unwrap();
+    let expected: Vec<Vector3<f64>> = all(&golden["mu1"], vector);
+    let size = expected.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+    let errors =
+        [apart(&state.attitude(), &attitudes_of(&golden["R1"])), farthest(&state.momentum(), &expected) / size];
+    println!("{errors:?}");
+    assert!(errors.iter().all(|&error| error < 1e-14), "{errors:?}");
+}
+
+/// The order, and the errors that a prototype of other equations had; the energy at the start is the reference's.
+#[test]
+fn trajectory() {
+    let states = &read("several bodies")["chain3"]["states"];
+    let (attitudes, velocities) = start3();
+    let errors = [(0.01, 200), (0.005, 400), (0.0025, 800)].map(|(h, steps)| {
+        let stepper = ChainStepper::new(chain3(), h).unwrap();
+        let mut state = stepper.start(attitudes, velocities).unwrap();
+        assert!((stepper.energy(&state) - number(&states[0]["energy"])).abs() < 1e-13);
+        assert!(farthest(&stepper.velocity(&state), &velocities.0) < 1e-14);
+        let before = stepper.vertical_momentum(&state);
+        stepper.run(&mut state, steps).unwrap();
+        assert!((stepper.vertical_momentum(&state) - before).abs() < 1e-12);
+        let end = &states[1]["bodies"];
+        let attitude = (state.attitude()[0].as_matrix() - matrix(&end[0]["R"])).amax();
+        (attitude, (stepper.velocity(&state).0[2] - vector(&end[2]["Omega_body"])).amax())
+    });
+    println!("{errors:?}");
+    for (found, expected) in errors.iter().zip([(1.323e-3, 1.091e-2), (3.315e-4, 2.730e-3)]) {
+        let off = ((found.0 / expected.0 - 1.0).abs(), (found.1 / expected.1 - 1.0).abs());
+        assert!(off.0 < 0.01 && off.1 < 0.01, "{found:?}");
+    }
+    let order = (errors[1].1 / errors[2].1).log2();
+    assert!((order - 2.0).abs() < 0.02, "{order}");
+}
+
+/// Two links are the double pendulum, as it is declared and solved with all of its Newton matrix.
+#[test]
+fn two_links_are_the_declared_double_pendulum() {
+    let central = Matrix3::new(0.3, 0.02, -0.03, 0.02, 0.2, 0.01, -0.03, 0.01, 0.4);
+    let upper = link(&central, 1.2, Vector3::new(0.1, 0.05, -0.5), Vector3::new(0.1, 0.2, -1.0));
+    let lower = link(&(central * 0.3), 0.7, Vector3::new(0.05, -0.1, -0.4), Vector3::zeros());
+    let (rho, up) = (upper.rho, Vector3::new(0.6, 0.0, 0.8));
+    let J_1 = NonstandardInertia::new(upper.J_d.as_matrix() + rho * rho.transpose() * lower.m).unwrap();
+    let (s_1, s_2) = (upper.c * upper.m + rho * lower.m, lower.c * lower.m);
+    let declared = DoublePendulum { J_1, J_2: lower.J_d, rho, s_1, s_2, g: 9.81, up };
+    let declared = Stepper::new(declared, 0.01).unwrap();
+    let stepper = ChainStepper::new(Chain { links: [upper, lower], g: 9.81, up }, 0.01).unwrap();
+    let attitudes = [SO3::from_euler_angles(0.3, 1.0, -0.2), SO3::from_euler_angles(-0.5, 0.4, 0.1)];
+    let velocity = Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5);
+    let mut whole = declared.start((attitudes[0], attitudes[1]), velocity).unwrap();
+    let mut state = stepper.start(attitudes, Bodies([part(&velocity, 0), part(&velocity, 1)])).unwrap();
+    assert!((stepper.energy(&state) - declared.energy(&whole)).abs() < 1e-13);
+    for steps in [1, 99] {
+        declared.run(&mut whole, steps).unwrap();
+        stepper.run(&mut state, steps).unwrap();
+        let expected = [part(&whole.momentum(), 0), part(&whole.momentum(), 1)];
+        let errors = [
+            apart(&state.attitude(), &[whole.attitude().0, whole.attitude().1]),
+            farthest(&state.momentum(), &expected),
+        ];
+        println!("{steps}: {errors:?}");
+        assert!(errors.iter().all(|&error| error < if steps == 1 { 1e-14 } else { 1e-12 }), "{errors:?}");
+    }
+}
+
+/// Links without any symmetry.
+fn irregular<const N: usize>(random: &mut Random) -> Chain<N> {
+    let mut vector = |size: f64| -> Vector3<f64> {
+        let vector: Vector3<f64> = random.sample();
+        vector * size
+    };
+    let links = [(); N].map(|()| {
+        let shape = Matrix3::from_columns(&[vector(0.3), vector(0.3), vector(0.3)]);
+        let central = shape * shape.transpose() + Matrix3::from_diagonal_element(0.01);
+        link(&central, 0.5 + vector(0.4).x.abs(), vector(0.5), vector(1.0))
+    });
+    Chain { links, g: 9.81, up: vector(1.0).normalize() }
+}
+
+/// `L_d` of the attitudes before and after a step, in terms of where all masses are: nothing of it is reduced.
+fn action<const N: usize>(chain: &Chain<N>, h: f64, before: &[SO3; N], after: &[SO3; N]) -> f64 {
+    let (mut action, mut joints) = (0.0, [Vector3::zeros(); 2]);
+    for (k, link) in chain.links.iter().enumerate() {
+        let turns = [before[k].as_matrix(), after[k].as_matrix()];
+        let [first, second] = [0, 1].map(|end| joints[end] + turns[end] * link.c);
+        let central = link.J_d.as_matrix() - link.c * link.c.transpose() * link.m;
+        let turned = turns[1] - turns[0];
+        let way: Vector3<f64> = second - first;
+        action += ((turned * central * turned.transpose()).trace() + link.m * way.norm_squared()) / (2.0 * h)
+            - 0.5 * h * link.m * chain.g * chain.up.dot(&(first + second));
+        joints = [0, 1].map(|end| joints[end] + turns[end] * link.rho);
+    }
+    action
+}
+
+/// What a step begins and ends with are the derivatives of the action with respect to the attitudes before and after.
+#[test]
+fn a_step_is_that_of_the_action() {
+    const N: usize = 5;
+    let mut random = Random::new(11);
+    for h in [0.02, -0.01] {
+        let chain = irregular::<N>(&mut random);
+        let stepper = ChainStepper::new(chain, h).unwrap();
+        let attitudes = [(); N].map(|()| {
+            let xi: Vector3<f64> = random.sample();
+            <CayleyRetraction as Retraction<SO3>>::retract(&xi)
+        });
+        let before = stepper.start(attitudes, Bodies([(); N].map(|()| random.sample()))).unwrap();
+        let mut after = before;
+        stepper.step(&mut after).unwrap();
+        let size = before.momentum().0.iter().map(|momentum: &Vector3<f64>| momentum.norm()).fold(0.0, f64::max);
+        for k in 0..3 * N {
+            let turned = |attitudes: &[SO3; N], s: f64| {
+                let mut turned = *attitudes;
+                let axis = Vector3::from_fn(|i, _| if i == k % 3 { s } else { 0.0 });
+                turned[k / 3] = turned[k / 3].compose(&<CayleyRetraction as Retraction<SO3>>::retract(&axis));
+                turned
+            };
+            let (start, end) = (before.attitude(), after.attitude());
+            let minus = -derivative(|s| action(&chain, h, &turned(&start, s), &end));
+            let plus = derivative(|s| action(&chain, h, &start, &turned(&end, s)));
+            let found = [before.momentum().0[k / 3][k % 3], after.momentum().0[k / 3][k % 3]];
+            let missed = (found[0] - minus).abs().max((found[1] - plus).abs());
+            assert!(missed < 1e-8 * size, "{k}: {found:?} {minus} {plus}");
+        }
+    }
+}
+
+/// Energy within its bounds and momentum to rounding, for three hours. The motion is chaotic, and how large the largest
+/// swing of the energy is in it depends on roundings: between 0.030 and 0.038 in those that were looked at.
+#[test]
+fn energy_and_momentum_of_a_million_steps() {
+    let (attitudes, velocities) = start3();
+    let stepper = ChainStepper::new(chain3(), 0.01).unwrap();
+    let mut state = stepper.start(attitudes, velocities).unwrap();
+    let (energy, vertical) = (stepper.energy(&state), stepper.vertical_momentum(&state));
+    let halves = [(); 2].map(|()| {
+        let (mut sum, mut most) = (0.0, 0.0_f64);
+        for _ in 0..50_000 {
+            stepper.run(&mut state, 10).unwrap();
+            let difference = stepper.energy(&state) - energy;
+            sum += difference;
+            most = most.max(difference.abs());
+        }
+        (sum / 50_000.0, most)
+    });
+    let (most, apart) = (halves[0].1.max(halves[1].1), (halves[0].0 - halves[1].0).abs());
+    let momentum = (stepper.vertical_momentum(&state) - vertical).abs();
+    println!("energy {energy}: within {most:.4}, means apart by {apart:.1e}; momentum {momentum:.1e}");
+    assert!(most < 0.05 && apart < 7e-4, "{halves:?}");
+    assert!(momentum < 1e-12);
+}
+
+/// A step of `−h` undoes one of `h`; parts of a step are steps.
+#[test]
+fn a_step_back_undoes_a_step() {
+    let (attitudes, velocities) = start3();
+    let [there, back] = [0.01, -0.01].map(|h| ChainStepper::new(chain3(), h).unwrap());
+    let mut state = there.start(attitudes, velocities).unwrap();
+    there.run(&mut state, 50).unwrap();
+    let mut returned = back.adopt(&state);
+    back.run(&mut returned, 50).unwrap();
+    assert!(apart(&returned.attitude(), &attitudes) < 1e-13);
+    let start = there.start(attitudes, velocities).unwrap();
+    let at = there.state_at(&start, 0.5).unwrap();
+    assert!(apart(&at.attitude(), &state.attitude()) < 1e-12);
+    let standing = ChainStepper::new(chain3(), 0.0).unwrap();
+    let mut state = start;
+    standing.step(&mut state).unwrap();
+    assert_eq!((state.attitude(), state.momentum()), (start.attitude(), start.momentum()));
+}
+
+/// Rods of one metre that hang along their axes, the last with another mass.
+fn rods<const N: usize>(last: f64) -> Chain<N> {
+    let e = Vector3::z();
+    let rod = |m: f64| link(&(Matrix3::from_diagonal(&Vector3::new(0.005, 0.005, 1.0 / 12.0)) * m), m, -e * 0.5, -e);
+    let mut links = [rod(1.0); N];
+    links[N - 1] = rod(last);
+    Chain { links, g: 9.81, up: e }
+}
+
+/// A hundred links are let go horizontally, and the last has up to ten thousand times the mass of the others: the energy
+/// is what it was, to the error of the method.
+#[test]
+fn a_hundred_links_let_go_horizontally() {
+    for (last, h, steps, allowed) in [(1.0, 0.005, 400, 1e-4), (1e4, 0.002, 500, 1e-5), (1e-4, 0.002, 500, 1e-4)] {
+        let stepper = ChainStepper::new(rods::<100>(last), h).unwrap();
+        let flat = SO3::from_euler_angles(0.3, core::f64::consts::FRAC_PI_2, 0.0);
+        let mut state = stepper.start([flat; 100], Bodies([Vector3::zeros(); 100])).unwrap();
+        let before = stepper.energy(&state);
+        // What falls has the energy of its weight.
+        let scale = 9.81 * 50.0 * (99.0 + 2.0 * last);
+        let mut most = 0.0_f64;
+        for _ in 0..steps / 10 {
+            stepper.run(&mut state, 10).unwrap();
+            most = most.max((stepper.energy(&state) - before).abs());
+        }
+        println!("{last}: {:.1e}", most / scale);
+        assert!(most < allowed * scale, "{last}: {most:e} of {scale:e}");
+        assert!(stepper.joints(&state)[99].z < -1.0);
+    }
+}
+
+/// The link that can't be, and the one that would turn too far, are named; the state is what it was.
+#[test]
+fn errors_name_the_link() {
+    let mut chain = rods::<4>(1.0);
+    chain.links[2].m = -1.0;
+    let refused = |chain: Chain<4>| ChainStepper::new(chain, 0.01).unwrap_err();
+    assert!(matches!(refused(chain), SetupError::BodyParameter { body: 2, field: "m", .. }));
+    chain = rods(1.0);
+    chain.links[1].c = Vector3::new(0.0, 0.0, -5.0);
+    assert!(matches!(refused(chain), SetupError::BodyParameter { body: 1, field: "J_d", .. }));
+    chain = rods(1.0);
+    chain.links[3].rho.x = f64::NAN;
+    assert!(matches!(refused(chain), SetupError::BodyParameter { body: 3, field: "rho", .. }));
+    assert!(matches!(refused(Chain { g: f64::INFINITY, ..rods(1.0) }), SetupError::Parameter { field: "g", .. }));
+    assert!(matches!(ChainStepper::new(rods::<4>(1.0), f64::NAN), Err(SetupError::InvalidStep { .. })));
+
+    let stepper = ChainStepper::new(rods::<4>(1.0), 0.1).unwrap();
+    let mut velocities = [Vector3::zeros(); 4];
+    assert!(matches!(
+        stepper.start([SO3::identity(); 4], Bodies([Vector3::new(f64::NAN, 0.0, 0.0); 4])),
+        Err(SetupError::NonFinite { what: "velocity" })
+    ));
+    let stretched = SO3::from_matrix_unchecked(Matrix3::from_diagonal_element(1.1));
+    let off = stepper.start([stretched; 4], Bodies(velocities));
+    assert!(matches!(off, Err(SetupError::NotInGroup { .. })));
+    velocities[2] = Vector3::new(0.0, 0.0, 50.0);
+    let mut state = stepper.start([SO3::identity(); 4], Bodies(velocities)).unwrap();
+    let before = state;
+    let error = stepper.step(&mut state).unwrap_err();
+    assert!(matches!(error, StepError::UnsolvedBody { body: 2, .. }), "{error}");
+    assert_eq!(state, before);
+}

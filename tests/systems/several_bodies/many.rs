@@ -1,0 +1,238 @@
+//! Systems of many bodies: terms on one body and on two, put at places.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use declarations::motions::{matrix, number, read, vector};
+use liestep::effects::{Gravity, PrincipalBody, Spring};
+use liestep::groups::{Advected as _, CayleyRetraction, Retraction};
+use liestep::laws::samples::{Random, derivative};
+use liestep::mechanics::{
+    Along, Between, DiagonalNonstandardInertia, DiscreteLagrangian, Each, Effect, On, Pairs, Regular,
+};
+use liestep::methods::CompositionScheme;
+use liestep::numbers::Bodies;
+use liestep::{SO3, SetupError, State, Stepper};
+use nalgebra::Vector3;
+
+use super::{End, all, apart, attitudes_of};
+
+/// Two bodies would like to stand alike.
+#[liestep::lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    l_d = 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Alike {
+    kappa: f64,
+}
+
+fn principal(J: [f64; 3]) -> PrincipalBody {
+    PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(J.into()).unwrap() }
+}
+
+/// Four bodies in a row, of the reference.
+fn row() -> impl DiscreteLagrangian<Scalar = f64, Group = [SO3; 4], Advected: 'static> + Regular + Clone {
+    let data = &read("several bodies")["coupled_attitudes4"]["parameters"];
+    let bodies = [0, 1, 2, 3].map(|a| principal([0, 1, 2].map(|k| data["J"][a][k].as_f64().unwrap())));
+    Each::<4>::of(bodies) + Along::<4>::of([Alike { kappa: data["kappa"].as_f64().unwrap() }])
+}
+
+fn array<R, const N: usize>(values: Vec<R>) -> [R; N] {
+    values.try_into().unwrap_or_else(|_| panic!("another number of bodies"))
+}
+
+fn whole<A: liestep::groups::Advected<[SO3; N]>, const N: usize>(state: &State<[SO3; N], A>) -> Vector3<f64> {
+    state.spatial_momentum().0.iter().sum()
+}
+
+/// To rounding, against a step of 30 digits.
+#[test]
+fn golden_step() {
+    let golden = &read("several bodies")["golden steps"]["coupled_attitudes4"];
+    let stepper = Stepper::new(row(), number(&golden["h"])).unwrap();
+    let start: [SO3; 4] = array(attitudes_of(&golden["R0"]));
+    let mut state = stepper.start_with_momentum(start, Bodies(array(all(&golden["mu0"], vector)))).unwrap();
+    stepper.step(&mut state).unwrap();
+    let expected: [Vector3<f64>; 4] = array(all(&golden["mu1"], vector));
+    let size = expected.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+    let missed = state.momentum().0.iter().zip(expected).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    let errors = [apart(&state.attitude(), &attitudes_of(&golden["R1"])), missed / size];
+    println!("{errors:?}");
+    assert!(errors.iter().all(|&error| error < 1e-14), "{errors:?}");
+}
+
+/// The order, and the whole momentum in space; compositions go as with one body.
+#[test]
+fn trajectory() {
+    let states = &read("several bodies")["coupled_attitudes4"]["states"];
+    let start: [SO3; 4] = array(all(&states[0]["bodies"], |body| SO3::try_from(matrix(&body["R"])).unwrap()));
+    let velocity = Bodies(array(all(&states[0]["bodies"], |body| vector(&body["Omega_body"]))));
+    let end: Vec<End> = all(&states[1]["bodies"], |body| (matrix(&body["R"]), vector(&body["Omega_body"])));
+    let error = |attitude: &[SO3; 4], velocity: &Bodies<Vector3<f64>, 4>| {
+        (attitude[3].as_matrix() - end[3].0).norm() + (velocity.0[1] - end[1].1).norm()
+    };
+    let errors = [(0.02, 100), (0.01, 200), (0.005, 400)].map(|(h, steps)| {
+        let stepper = Stepper::new(row(), h).unwrap();
+        let mut state = stepper.start(start, velocity).unwrap();
+        let before = whole(&state);
+        stepper.run(&mut state, steps).unwrap();
+        assert!((whole(&state) - before).norm() < 1e-12);
+        error(&state.attitude(), &stepper.velocity(&state))
+    });
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        assert!((order - 2.0).abs() < 0.02, "{order}");
+    }
+    let composed = Stepper::composed(row(), 0.02, CompositionScheme::KAHAN_LI_8).unwrap();
+    let mut state = composed.start(start, velocity).unwrap();
+    composed.run(&mut state, 100).unwrap();
+    assert!(error(&state.attitude(), &composed.velocity(&state)) < 1e-8);
+}
+
+/// A body that nothing joins to the others moves as it would alone.
+#[test]
+fn bodies_that_are_not_coupled_move_as_alone() {
+    let (m, g, up) = (1.3, 9.81, Vector3::z());
+    let gravity = |k: f64| Gravity { m, g, rho: Vector3::new(0.1 * k, 0.2, 0.3), up };
+    let bodies = [principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0]), principal([5.0, 4.0, 3.0])];
+    let spring = Spring { k: 2.0, length: 0.5, at: Vector3::new(0.1, 0.3, 0.2), anchor: Vector3::new(0.4, 0.1, 1.0) };
+    let system = Each::<3>::of(bodies) + Each::<3>::of([gravity(1.0), gravity(2.0), gravity(3.0)]);
+    let together = Stepper::new(system + On::<1, 3>::of([spring]), 0.01).unwrap();
+    let attitudes = [0.1, 0.2, 0.3].map(|angle| SO3::from_euler_angles(angle, 0.7, -angle));
+    let velocities = [Vector3::new(1.0, 2.0, 3.0), Vector3::new(-0.1, 0.2, 0.3), Vector3::new(0.0, 0.5, 2.0)];
+    let mut state = together.start(attitudes, Bodies(velocities)).unwrap();
+    together.run(&mut state, 200).unwrap();
+    for k in 0..3 {
+        let weight = gravity(f64::from(u8::try_from(k).unwrap()) + 1.0);
+        let (attitude, momentum) = if k == 1 {
+            let alone = Stepper::new(bodies[k] + weight + spring, 0.01).unwrap();
+            let mut state = alone.start(attitudes[k], velocities[k]).unwrap();
+            alone.run(&mut state, 200).unwrap();
+            (state.attitude(), state.momentum())
+        } else {
+            let alone = Stepper::new(bodies[k] + weight, 0.01).unwrap();
+            let mut state = alone.start(attitudes[k], velocities[k]).unwrap();
+            alone.run(&mut state, 200).unwrap();
+            (state.attitude(), state.momentum())
+        };
+        assert!(apart(&[attitude], &state.attitude()[k..=k]) < 1e-13, "{k}");
+        assert!((state.momentum().0[k] - momentum).norm() < 1e-12, "{k}");
+    }
+}
+
+/// Each two of three bodies: along the row and between its ends, or at all pairs.
+#[test]
+fn pairs_are_what_is_between_each_two() {
+    let bodies = Each::<3>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0]), principal([5.0, 4.0, 3.0])]);
+    let alike = [Alike { kappa: 3.0 }];
+    let ring = Stepper::new(bodies + Along::<3>::of(alike) + Between::<0, 2, 3>::of(alike), 0.01).unwrap();
+    let pairs = Stepper::new(bodies + Pairs::<3>::of(alike), 0.01).unwrap();
+    let attitudes = [0.1, 0.5, -0.4].map(|angle| SO3::from_euler_angles(angle, 0.7, -angle));
+    let velocities = Bodies([Vector3::new(1.0, 2.0, 3.0), Vector3::zeros(), Vector3::new(0.0, 0.5, 2.0)]);
+    let (mut first, mut second) =
+        (ring.start(attitudes, velocities).unwrap(), pairs.start(attitudes, velocities).unwrap());
+    let (before, energy) = (whole(&first), ring.energy(&first));
+    assert!((pairs.energy(&second) - energy).abs() < 1e-13 * energy.abs());
+    ring.run(&mut first, 500).unwrap();
+    pairs.run(&mut second, 500).unwrap();
+    assert!(apart(&first.attitude(), &second.attitude()) < 1e-12);
+    assert!((whole(&first) - before).norm() < 1e-12 && (whole(&second) - before).norm() < 1e-12);
+    let alone = Stepper::new(bodies, 0.01).unwrap();
+    let mut free = alone.start(attitudes, velocities).unwrap();
+    alone.run(&mut free, 500).unwrap();
+    assert!(apart(&first.attitude(), &free.attitude()) > 1e-2, "the bodies don't feel each other");
+}
+
+/// Momentum maps, diamond and momentum equation are derivatives of the sum of what was declared.
+#[test]
+fn what_is_put_at_places_is_derived_there() {
+    fn turned(element: [SO3; 3], k: usize, s: f64) -> [SO3; 3] {
+        let mut turned = element;
+        let axis = Vector3::from_fn(|i, _| if i == k % 3 { s } else { 0.0 });
+        turned[k / 3] = <CayleyRetraction as Retraction<SO3>>::retract(&axis);
+        turned
+    }
+    use liestep::groups::LieGroup as _;
+    let bodies = Each::<3>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0]), principal([5.0, 4.0, 3.0])]);
+    let (kappa, other) = ([Alike { kappa: 3.0 }], [Alike { kappa: 1.0 }, Alike { kappa: 2.0 }]);
+    let l = bodies + Along::<3>::of(other) + Between::<2, 0, 3>::of(kappa) + Pairs::<3>::of(kappa);
+    let (h, mut random) = (0.05, Random::new(9));
+    let axis = |k: usize, s: f64| turned(<[SO3; 3]>::identity(), k, s);
+    let mut element = |size: f64| -> [SO3; 3] {
+        let mut xi = || {
+            let xi: Vector3<f64> = random.sample();
+            <CayleyRetraction as Retraction<SO3>>::retract(&(xi * size))
+        };
+        [xi(), xi(), xi()]
+    };
+    let (f, g) = (element(0.3), element(1.0));
+    let w = l.advected().seen_from(&g);
+    let moved = |e: &[SO3; 3]| w.seen_from(&e.inverse());
+    let m = f.matrix();
+    for k in 0..9 {
+        let of = |function: &dyn Fn(&[SO3; 3]) -> f64| derivative(|s| function(&axis(k, s)));
+        let right = of(&|e| l.l_d(&e.compose(&f).matrix(), &w, h));
+        let left = of(&|e| l.l_d(&f.compose(e).matrix(), &w, h));
+        let diamond = -of(&|e| l.l_d(&m, &moved(e), h));
+        let momentum = of(&|e| l.l_d(&e.compose(&f).matrix(), &moved(e), h));
+        for (name, found, expected) in [
+            ("right", l.right_momentum(&m, &w, h), right),
+            ("left", l.left_momentum(&m, &w, h), left),
+            ("diamond", l.diamond(&m, &w, h), diamond),
+            ("(2.7)", l.legendre_minus(&m, &w, h), momentum),
+        ] {
+            assert!((found.0[k / 3][k % 3] - expected).abs() < 1e-8, "{name} {k}: {found:?} {expected}");
+        }
+    }
+}
+
+/// In a million steps the energy stays within its bounds and doesn't drift, and the whole momentum is kept to rounding.
+#[test]
+fn energy_and_momentum_of_a_million_steps() {
+    let states = &read("several bodies")["coupled_attitudes4"]["states"];
+    let start: [SO3; 4] = array(all(&states[0]["bodies"], |body| SO3::try_from(matrix(&body["R"])).unwrap()));
+    let velocity = Bodies(array(all(&states[0]["bodies"], |body| vector(&body["Omega_body"]))));
+    let stepper = Stepper::new(row(), 0.01).unwrap();
+    let mut state = stepper.start(start, velocity).unwrap();
+    let (before, energy) = (whole(&state), stepper.energy(&state));
+    let tenths = [(); 10].map(|()| {
+        let (mut sum, mut most) = (0.0, 0.0_f64);
+        for _ in 0..10_000 {
+            stepper.run(&mut state, 10).unwrap();
+            let difference = stepper.energy(&state) - energy;
+            sum += difference;
+            most = most.max(difference.abs());
+        }
+        (sum / 10_000.0, most)
+    });
+    let most = tenths.iter().map(|tenth| tenth.1).fold(0.0, f64::max);
+    let means = tenths.map(|tenth| tenth.0);
+    let spread = means.iter().fold(0.0_f64, |spread, mean| spread.max((mean - means[0]).abs()));
+    let momentum = (whole(&state) - before).norm() / before.norm();
+    println!("energy {energy}: within {most:.1e}, means apart by {spread:.1e}; momentum {momentum:.1e}");
+    assert!(most < 1e-3 * energy.abs() && spread < 0.1 * most, "{tenths:?}");
+    assert!(momentum < 2e-12);
+}
+
+/// What can't be a start is an error, and so is a step too long; the state stays.
+#[test]
+fn errors() {
+    let bodies = Each::<2>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0])]);
+    let scene = bodies + Along::<2>::of([Alike { kappa: 1.0 }]);
+    assert!(matches!(Stepper::new(scene, f64::NAN), Err(SetupError::InvalidStep { .. })));
+    let broken = bodies + Along::<2>::of([Alike { kappa: f64::NAN }]);
+    assert!(matches!(Stepper::new(broken, 0.01), Err(SetupError::Parameter { field: "kappa", .. })));
+    let stepper = Stepper::new(scene, 0.1).unwrap();
+    let fast = Bodies([Vector3::zeros(), Vector3::new(0.0, 0.0, 100.0)]);
+    let mut state = stepper.start([SO3::identity(); 2], fast).unwrap();
+    let before = state;
+    let error = stepper.step(&mut state).unwrap_err();
+    assert!(matches!(error, liestep::StepError::BeyondSolvable { .. }), "{error:?}");
+    assert_eq!(state, before);
+    // Two bodies whose blocks have negative determinants don't hide each other.
+    let both = Bodies([Vector3::new(0.0, 0.0, 100.0); 2]);
+    assert!(stepper.step(&mut stepper.start([SO3::identity(); 2], both).unwrap()).is_err());
+}
