@@ -61,9 +61,10 @@ impl<M: Integrator> Ensemble<M> {
     /// makes the [fingerprint](Self::fingerprint) sees three members only.
     ///
     /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Of methods,
-    /// [`Stepper::new`](liestep::Stepper::new), [`composed`](liestep::Stepper::composed) and both
-    /// [`compensated`](liestep::Stepper::compensated) have lanes. Members of any other scene or method go
-    /// [`one_by_one`](Self::one_by_one).
+    /// [`Stepper::new`](liestep::Stepper::new), [`composed`](liestep::Stepper::composed), [`split`](liestep::Stepper::split),
+    /// [`processed`](liestep::Stepper::processed), and all of them [`compensated`](liestep::Stepper::compensated), have lanes.
+    /// Members of any other scene or method go [`one_by_one`](Self::one_by_one): Gauss collocation, preprocessed steps and
+    /// remedies.
     pub fn new(
         name: &str,
         members: u64,

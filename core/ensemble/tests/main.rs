@@ -2,6 +2,7 @@
 
 mod common;
 mod sections;
+mod splittings;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
