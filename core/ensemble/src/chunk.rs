@@ -26,12 +26,8 @@ impl<M: Integrator> Ensemble<M> {
 
     pub(crate) fn shard(&self, plan: u64, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         let members = self.range(chunk);
-        let mut made = Made {
-            rows: self.no_rows(),
-            finished: 0,
-            failures: Vec::new(),
-            reduced: self.nothing_reduced(),
-        };
+        let mut made =
+            Made { rows: self.no_rows(), finished: 0, failures: Vec::new(), reduced: self.nothing_reduced() };
         // Those that can't be made are taken out first, so that they leave no lane empty.
         let mut waiting: Vec<(u64, Option<Failed>)> = Vec::new();
         let mut starts: Vec<Start<M>> = Vec::new();

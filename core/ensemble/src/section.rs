@@ -77,10 +77,7 @@ impl<M: Integrator> Section<M> {
     /// # Panics
     ///
     /// Where the event is [terminal](Event::terminal): members of an ensemble make the steps that it says.
-    pub fn new<Y: Into<f64>>(
-        event: Event,
-        function: impl Fn(&Moment<'_, M>) -> Y + Send + Sync + 'static,
-    ) -> Self
+    pub fn new<Y: Into<f64>>(event: Event, function: impl Fn(&Moment<'_, M>) -> Y + Send + Sync + 'static) -> Self
     where
         ScalarIn<M>: Into<f64>,
     {

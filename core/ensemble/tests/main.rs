@@ -1,6 +1,7 @@
 //! What comes out of an ensemble is a function of its plan, and what is wrong with it is named.
 
 mod common;
+mod full_disk;
 mod sections;
 mod splittings;
 

@@ -145,9 +145,12 @@ fn a_zero_at_the_end_of_a_step_is_one_crossing() {
 #[test]
 fn a_function_without_a_value_stops_its_member() {
     let ensemble = tops(12, STEPS).section(
-        Section::new(Event::crossing(), |now: &Moment<'_, Top>| {
-            if now.time() > 1.0 && now.velocity().z < 4.5 { f64::NAN } else { 1.0 }
-        })
+        Section::new(
+            Event::crossing(),
+            |now: &Moment<'_, Top>| {
+                if now.time() > 1.0 && now.velocity().z < 4.5 { f64::NAN } else { 1.0 }
+            },
+        )
         .keep(["t"], |now| [now.time()]),
     );
     let shard = ensemble.chunk(0, &|| false).unwrap();

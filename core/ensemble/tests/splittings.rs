@@ -32,7 +32,8 @@ fn top(member: &Member<'_>, is_symmetric: bool, beside: f64) -> Result<Top, Iner
     }
     let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
     let rho = Vector3::new(beside, -beside, member.uniform("rho", 0.2..0.8));
-    let spin = if member.number() == 6 { 1e18 } else { 0.3 * 1.25_f64.powi(i32::try_from(member.number()).unwrap_or(0)) };
+    let spin =
+        if member.number() == 6 { 1e18 } else { 0.3 * 1.25_f64.powi(i32::try_from(member.number()).unwrap_or(0)) };
     let scene = body + Gravity { m: 1.0, g: 9.81, rho, up: Vector3::z() };
     Ok(Top { scene, inertia: Inertia::from_principal_moments(moments)?, spin })
 }
@@ -60,7 +61,8 @@ fn assert_same<P>(
         Ok((stepper, state))
     };
     let kept = |ensemble: Ensemble<Stepper<Scene, P>>| {
-        let of_attitude = |state: &StateOf<P>| -> [f64; 3] { state.attitude().as_matrix().column(0).into_owned().into() };
+        let of_attitude =
+            |state: &StateOf<P>| -> [f64; 3] { state.attitude().as_matrix().column(0).into_owned().into() };
         let ensemble = ensemble.every(40).keep(["x", "y", "z"], move |run| of_attitude(run.state));
         ensemble.keep(["p", "q", "r"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
     };
@@ -104,7 +106,8 @@ fn other_bodies_in_lanes_move_as_alone() {
 #[test]
 fn unlike_splittings_have_lanes_of_their_own() {
     assert_same("two schemes by turns", true, 0.0, |top| {
-        let scheme = if top.inertia.as_matrix().m33 > 1.8 { SplittingScheme::STRANG } else { SplittingScheme::NYSTROM_6 };
+        let scheme =
+            if top.inertia.as_matrix().m33 > 1.8 { SplittingScheme::STRANG } else { SplittingScheme::NYSTROM_6 };
         Stepper::split(top.scene, 0.05, SymmetricBody::new(&top.inertia)?, scheme)
     });
     assert_same("some spherical", true, 0.2, |mut top| {
