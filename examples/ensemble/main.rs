@@ -23,7 +23,8 @@ use workbench::output::{Output, print};
 use workbench::plot::{Area, BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
 use workbench::progress::Progress;
 
-const HELP: &str = "Runs three ensembles and draws how soon a tumbling satellite is lost, where a top is chaotic, and a section of it
+const HELP: &str =
+    "Runs three ensembles and draws how soon a tumbling satellite is lost, where a top is chaotic, and a section of it
 
 Options:
       --quick        A few hundred members, in the place of some thousands
@@ -166,14 +167,14 @@ fn of_section_points(crossings: &[(f64, Vec<[f64; 2]>)]) -> Drawn<String> {
             "where its second axis rises through the horizontal plane: nutation −π to π rad →, p₂ −12.5 to 12.5 kg m²/s ↑",
         )?;
         let (width, height) = body.dim_in_pixel();
-        let (width, height) = (f64::from(width), f64::from(height));
+        let margin = f64::from(px(16));
         #[allow(clippy::cast_possible_truncation)] // in the picture
-        let place = |part: f64, room: f64| (16.0 + part * (room - 32.0)) as i32;
+        let place = |part: f64, room: u32| (margin + part * (f64::from(room) - 2.0 * margin)) as i32;
         for ((_, points), colour) in crossings.iter().zip(COLOURS.iter().cycle()) {
             for [nutation, across] in points {
                 let right = 0.5 + nutation / (2.0 * core::f64::consts::PI);
                 let down = 0.5 - across / (2.0 * section::LARGEST);
-                body.draw(&Circle::new((place(right, width), place(down, height)), 1, colour.filled()))?;
+                body.draw(&Circle::new((place(right, width), place(down, height)), 2, colour.filled()))?;
             }
         }
         Ok(())
