@@ -81,8 +81,8 @@ fn run(arguments: &Arguments) -> Result<(), Mistake> {
     output.write("map.svg", &of_exponents(grid, &exponents)?)?;
     let crossings = section::crossings(&orbits, &section_in)?;
     output.write("section.svg", &of_section_points(&crossings)?)?;
-    let points: usize = crossings.iter().map(|(_, points)| points.len()).sum();
-    let off = crossings.iter().fold(0.0_f64, |off, (energy, _)| off.max(energy.abs()));
+    let points: usize = crossings.iter().map(|orbit| orbit.points.len()).sum();
+    let off = crossings.iter().fold(0.0_f64, |off, orbit| off.max(orbit.off.abs()));
     let lost = spread.iter().find(|(_, [_, half, _])| *half > 10.0).map_or(f64::NAN, |(time, _)| *time);
     let largest = exponents.iter().flatten().fold(0.0_f64, |largest, exponent| largest.max(*exponent));
     let chaotic = exponents.iter().flatten().filter(|exponent| **exponent > CHAOTIC).count();
@@ -157,7 +157,7 @@ fn of_exponents(grid: Grid, exponents: &[Option<f64>]) -> Drawn<String> {
     })
 }
 
-fn of_section_points(crossings: &[(f64, Vec<[f64; 2]>)]) -> Drawn<String> {
+fn of_section_points(crossings: &[section::Orbit]) -> Drawn<String> {
     const COLOURS: [RGBColor; 3] = [BLUE, ORANGE, GREEN];
     render((820, 620), |area| {
         let (header, body) = area.split_vertically(px(60));
@@ -170,8 +170,8 @@ fn of_section_points(crossings: &[(f64, Vec<[f64; 2]>)]) -> Drawn<String> {
         let margin = f64::from(px(16));
         #[allow(clippy::cast_possible_truncation)] // in the picture
         let place = |part: f64, room: u32| (margin + part * (f64::from(room) - 2.0 * margin)) as i32;
-        for ((_, points), colour) in crossings.iter().zip(COLOURS.iter().cycle()) {
-            for [nutation, across] in points {
+        for (orbit, colour) in crossings.iter().zip(COLOURS.iter().cycle()) {
+            for [nutation, across] in &orbit.points {
                 let right = 0.5 + nutation / (2.0 * core::f64::consts::PI);
                 let down = 0.5 - across / (2.0 * section::LARGEST);
                 body.draw(&Circle::new((place(right, width), place(down, height)), 2, colour.filled()))?;

@@ -73,21 +73,30 @@ fn momentum(nutation: f64, across: f64) -> Option<Vector3<f64>> {
     (square > 0.0).then(|| w * VERTICAL + u * ((square.sqrt() - half) / quadratic) + Vector3::y() * across)
 }
 
-/// Of each member nutation (rad) and `p_2` (kg m²/s) of its crossings, and by how much its energy is off, J.
+/// A motion by its crossings.
+#[derive(Clone, Debug)]
+pub struct Orbit {
+    /// By how much its energy is off at the end, J.
+    pub off: f64,
+    /// Nutation (rad) and `p_2` (kg m²/s) of each crossing.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Of each member what is drawn.
 ///
 /// # Errors
 ///
 /// Where a file can't be read.
-pub fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<(f64, Vec<[f64; 2]>)>, Mistake> {
+pub fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Orbit>, Mistake> {
     let mut found = Vec::new();
     for shard in store.shards(ensemble.fingerprint())? {
         let rows = shard.map_err(|fault| fault.to_string())?.rows;
         let first = found.len();
-        found.extend(rows.columns[0].iter().map(|energy| (energy - ENERGY, Vec::new())));
+        found.extend(rows.columns[0].iter().map(|energy| Orbit { off: energy - ENERGY, points: Vec::new() }));
         // A row for each member.
         for (place, row) in rows.crossings[0].row.iter().enumerate() {
             let [nutation, across] = [1, 2].map(|column| rows.crossings[0].columns[column][place]);
-            found[first + row].1.push([nutation, across]);
+            found[first + row].points.push([nutation, across]);
         }
     }
     Ok(found)

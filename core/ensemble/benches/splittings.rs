@@ -5,11 +5,11 @@ use std::io::Write as _;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use liestep::Stepper;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
 use liestep::methods::{Split, SplittingScheme, SymmetricBody};
 use liestep::motion::{Batch, Integrator};
-use liestep::Stepper;
 use nalgebra::{UnitQuaternion, Vector3};
 use simba::simd::AutoF64x8;
 
