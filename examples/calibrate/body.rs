@@ -146,14 +146,9 @@ fn parameters(linear: &Linearised<'_, Top, Composed<Top>>) -> Result<Vec<usize>,
 /// Readings with noise.
 pub(crate) fn measured(count: usize, seed: u64) -> Result<Vec<Vector3<f64>>, Failure> {
     let mut random = Random::new(seed);
-    let mut normal = || {
-        // Box and Muller.
-        let (a, b) = (0.5 * (1.0 + random.signed()), random.signed());
-        (-2.0 * (1.0 - a).ln()).sqrt() * (core::f64::consts::PI * b).cos()
-    };
     let mut noisy = truth().readings(count, true)?;
     for reading in &mut noisy {
-        *reading += Vector3::from_fn(|_, _| NOISE * normal());
+        *reading += Vector3::from_fn(|_, _| NOISE * random.normal());
     }
     Ok(noisy)
 }

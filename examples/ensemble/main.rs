@@ -1,4 +1,4 @@
-//! Two ensembles: how soon a tumbling satellite is lost, and where a heavy top is chaotic.
+//! Three ensembles: how soon a tumbling satellite is lost, where a heavy top is chaotic, and a Poincaré section of it.
 //!
 //! ```text
 //! cargo run --release --example ensemble
@@ -6,27 +6,28 @@
 //! cargo run --release --example ensemble -- --shard 2/8 --out shared     of a job array: the last to end draws
 //! ```
 //!
-//! Stopped at any moment, the next run goes on where it was. The folders `satellite` and `map` have the files; polars
+//! Stopped at any moment, the next run goes on where it was. The folders `satellite`, `map` and `section` have the files; polars
 //! and pandas read them.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use ensembles::map::Grid;
-use ensembles::{Mistake, satellite};
+use ensembles::{Mistake, satellite, section};
 use liestep::motion::Integrator;
 use liestep_ensemble::{Ensemble, Local, Reduced, Report, Store, share_of};
-use plotters::prelude::{RGBColor, Rectangle};
+use plotters::prelude::{Circle, RGBColor, Rectangle};
 use plotters::style::Color as _;
 use workbench::args::example;
 use workbench::output::{Output, print};
 use workbench::plot::{Area, BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
 use workbench::progress::Progress;
 
-const HELP: &str = "Runs two ensembles and draws how soon a tumbling satellite is lost and where a top is chaotic
+const HELP: &str =
+    "Runs three ensembles and draws how soon a tumbling satellite is lost, where a top is chaotic, and a section of it
 
 Options:
-      --quick        Some hundred members of each, in the place of some thousands
+      --quick        A few hundred members, in the place of some thousands
       --threads <N>  So many threads; 0 for as many as there are cores [default: 0]
       --shard <I/N>  Only this share of the chunks, from 0/N on; the run that makes the last of them draws
       --out <DIR>    The folder for files and figures [default: out/ensemble]
@@ -65,9 +66,11 @@ fn run(arguments: &Arguments) -> Result<(), Mistake> {
     let (members, grid) =
         if arguments.quick { (256, Grid { tilts: 24, spins: 16 }) } else { (4_096, Grid { tilts: 96, spins: 64 }) };
     let (satellites, tops) = (satellite::ensemble(members), grid.ensemble());
+    let orbits = if arguments.quick { section::ensemble(32, 8_000) } else { section::ensemble(64, 40_000) };
     let (satellites_in, report) = made(&satellites, arguments, "satellite")?;
     let (map_in, of_map) = made(&tops, arguments, "map")?;
-    let missing = report.missing + of_map.missing;
+    let (section_in, of_section) = made(&orbits, arguments, "section")?;
+    let missing = report.missing + of_map.missing + of_section.missing;
     if missing > 0 {
         print(&format!("{missing} chunks are left to other shares, of which the last to end draws the figures.\n"))?;
         return Ok(());
@@ -76,6 +79,10 @@ fn run(arguments: &Arguments) -> Result<(), Mistake> {
     let exponents = grid.exponents(&tops, &map_in)?;
     output.write("satellite.svg", &of_spread(&spread)?)?;
     output.write("map.svg", &of_exponents(grid, &exponents)?)?;
+    let crossings = section::crossings(&orbits, &section_in)?;
+    output.write("section.svg", &of_section_points(&crossings)?)?;
+    let points: usize = crossings.iter().map(|orbit| orbit.points.len()).sum();
+    let off = crossings.iter().fold(0.0_f64, |off, orbit| off.max(orbit.off.abs()));
     let lost = spread.iter().find(|(_, [_, half, _])| *half > 10.0).map_or(f64::NAN, |(time, _)| *time);
     let largest = exponents.iter().flatten().fold(0.0_f64, |largest, exponent| largest.max(*exponent));
     let chaotic = exponents.iter().flatten().filter(|exponent| **exponent > CHAOTIC).count();
@@ -84,13 +91,15 @@ fn run(arguments: &Arguments) -> Result<(), Mistake> {
         _ => String::new(),
     };
     print(&format!(
-        "{} satellites, {} tops; {} failed.\n\
+        "{} satellites, {} and {} tops; {} failed.\n\
          Energy of the satellites: {energy}.\n\
          Half of them point more than 10° from the nominal one after {lost} s.\n\
-         {chaotic} of {} points of the map have an exponent over 20 s above {CHAOTIC}/s, the largest is {largest:.2}/s.\n\n{output}",
+         {chaotic} of {} points of the map have an exponent over 20 s above {CHAOTIC}/s, the largest is {largest:.2}/s.\n\
+         The section has {points} points; no energy is off by more than {off:.1e} J at the end.\n\n{output}",
         report.finished,
         of_map.finished,
-        report.failed + of_map.failed,
+        of_section.finished,
+        report.failed + of_map.failed + of_section.failed,
         exponents.len(),
     ))?;
     Ok(())
@@ -145,6 +154,30 @@ fn of_exponents(grid: Grid, exponents: &[Option<f64>]) -> Drawn<String> {
             "exponent over 20 s, from white (none) to blue (the largest); tilt 0.1 to 3 rad →, spin 0 to 8 rad/s ↑",
         )?;
         squares(&body, grid, |number| exponents[number].map(|exponent| (exponent / largest).clamp(0.0, 1.0)))
+    })
+}
+
+fn of_section_points(crossings: &[section::Orbit]) -> Drawn<String> {
+    const COLOURS: [RGBColor; 3] = [BLUE, ORANGE, GREEN];
+    render((820, 620), |area| {
+        let (header, body) = area.split_vertically(px(60));
+        heading(
+            &header,
+            "A Poincaré section of a heavy top",
+            "where its second axis rises through the horizontal plane: nutation −π to π rad →, p₂ −12.5 to 12.5 kg m²/s ↑",
+        )?;
+        let (width, height) = body.dim_in_pixel();
+        let margin = f64::from(px(16));
+        #[allow(clippy::cast_possible_truncation)] // in the picture
+        let place = |part: f64, room: u32| (margin + part * (f64::from(room) - 2.0 * margin)) as i32;
+        for (orbit, colour) in crossings.iter().zip(COLOURS.iter().cycle()) {
+            for [nutation, across] in &orbit.points {
+                let right = 0.5 + nutation / (2.0 * core::f64::consts::PI);
+                let down = 0.5 - across / (2.0 * section::LARGEST);
+                body.draw(&Circle::new((place(right, width), place(down, height)), 2, colour.filled()))?;
+            }
+        }
+        Ok(())
     })
 }
 

@@ -5,7 +5,10 @@
 //! cargo bench -p liestep-ensemble --bench steps -- plain 4096       so many tops and no files: to count instructions
 //! cargo bench -p liestep-ensemble --bench steps -- failing 4096     one of a hundred falls too fast at some time
 //! cargo bench -p liestep-ensemble --bench steps -- many 10000000    so many of ten steps into files, and the memory for it
+//! cargo bench -p liestep-ensemble --bench steps -- splittings       symmetric tops, beside heyoka where Python has it
 //! ```
+
+mod splittings;
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -79,6 +82,9 @@ fn most_memory() -> Option<f64> {
 fn main() -> Result<(), Box<dyn Error>> {
     // Cargo adds `--bench`.
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    if arguments.iter().map(String::as_str).eq(["splittings"]) {
+        return splittings::splittings();
+    }
     if let [what, members] = arguments.as_slice() {
         let members = members.parse()?;
         match what.as_str() {
@@ -91,7 +97,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 std::fs::remove_dir_all(folder)?;
                 println!("{} finished; the most memory was {:?} MB", report.finished, most_memory());
             }
-            _ => return Err("plain, failing or many, and a number of members".into()),
+            _ => return Err("splittings; or plain, failing or many, and a number of members".into()),
         }
         return Ok(());
     }

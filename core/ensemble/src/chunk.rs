@@ -5,10 +5,11 @@ use core::ops::Range;
 use liestep::motion::Integrator;
 
 use crate::ensemble::{Ensemble, Run};
-use crate::failure::Failed;
-use crate::group::Start;
+use crate::failure::{Failed, Failure};
+use crate::group::{Group, Start};
 use crate::reduce::Reduced;
-use crate::shard::{Rows, Shard, Status};
+use crate::section::{Crossing, Watch};
+use crate::shard::{Crossings, Rows, Shard, Status};
 
 impl<M: Integrator> Ensemble<M> {
     /// The members of a chunk.
@@ -25,12 +26,8 @@ impl<M: Integrator> Ensemble<M> {
 
     pub(crate) fn shard(&self, plan: u64, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         let members = self.range(chunk);
-        let mut made = Made {
-            rows: Rows::of_columns(self.names.len()),
-            finished: 0,
-            failures: Vec::new(),
-            reduced: self.reductions.iter().map(|(_, reduction, _)| reduction.begin()).collect(),
-        };
+        let mut made =
+            Made { rows: self.no_rows(), finished: 0, failures: Vec::new(), reduced: self.nothing_reduced() };
         // Those that can't be made are taken out first, so that they leave no lane empty.
         let mut waiting: Vec<(u64, Option<Failed>)> = Vec::new();
         let mut starts: Vec<Start<M>> = Vec::new();
@@ -61,62 +58,26 @@ impl<M: Integrator> Ensemble<M> {
     ) -> Option<()> {
         let possible: Vec<u64> =
             waiting.iter().filter(|(_, failed)| failed.is_none()).map(|(member, _)| *member).collect();
-        let mut kept: Vec<Rows> = possible.iter().map(|_| Rows::of_columns(self.names.len())).collect();
-        let mut ends: Vec<Result<Vec<f64>, Failed>> = Vec::with_capacity(possible.len());
+        let mut courses: Vec<Course<M>> = starts.iter().map(|start| self.course(start)).collect();
         let mut first = 0;
         for (mut group, count) in (self.grouped)(starts) {
             let here = first..first + count;
-            let mut keep = |group: &dyn crate::group::Group<M>, steps: u64| {
-                for place in here.clone().filter(|place| group.error(place - here.start).is_none()) {
-                    let state = group.state(place - here.start);
-                    let run = Run { member: possible[place], stepper: &starts[place].0, state: &state };
-                    self.keep_row(&run, steps, Status::Going, &mut kept[place]);
-                }
-            };
-            let mut steps = 0;
-            if self.every.is_some() {
-                keep(&*group, 0);
-            }
-            while steps < self.steps {
-                let due = self.every.map_or(self.steps, |every| ((steps / every + 1) * every).min(self.steps));
-                while steps < due {
-                    if is_stopped() {
-                        return None;
-                    }
-                    let piece = Self::PIECE.min(due - steps);
-                    group.run(piece);
-                    steps += piece;
-                }
-                if steps < self.steps {
-                    keep(&*group, steps);
-                }
-            }
-            for place in here.clone() {
-                let (member, stepper, state) = (possible[place], &starts[place].0, group.state(place - here.start));
-                let run = Run { member, stepper, state: &state };
-                let made = state.steps() - starts[place].1.steps();
-                match group.error(place - here.start) {
-                    None => {
-                        self.keep_row(&run, made, Status::Finished, &mut kept[place]);
-                        ends.push(Ok(self.reductions.iter().map(|(_, _, value)| value(&run)).collect()));
-                    }
-                    Some(error) => {
-                        self.keep_row(&run, made, Status::Stopped, &mut kept[place]);
-                        ends.push(Err(Failed { member, steps: made, failure: error.into() }));
-                    }
-                }
-            }
+            let (members, courses) = (&possible[here.clone()], &mut courses[here.clone()]);
+            self.run_group(&mut *group, members, &starts[here], courses, is_stopped)?;
             first += count;
         }
-        let mut moved = kept.into_iter().zip(ends);
+        let mut moved = courses.into_iter();
         for (member, impossible) in waiting.drain(..) {
             if let Some(failed) = impossible {
                 made.rows.push(member, 0, Status::Impossible, core::iter::repeat_n(f64::NAN, self.names.len()));
                 made.failures.push(failed);
                 continue;
             }
-            let Some((rows, end)) = moved.next() else { continue };
+            let Some(Course { rows, reduced, end, .. }) = moved.next() else { continue };
             made.rows.append(rows);
+            for (number, value) in reduced {
+                made.reduced[number].add(value);
+            }
             match end {
                 Ok(values) => {
                     made.finished += 1;
@@ -129,11 +90,109 @@ impl<M: Integrator> Ensemble<M> {
         Some(())
     }
 
+    /// Runs members that are stepped side by side to their ends. `None` if it is told to stop.
+    fn run_group(
+        &self,
+        group: &mut dyn Group<M>,
+        members: &[u64],
+        starts: &[Start<M>],
+        courses: &mut [Course<M>],
+        is_stopped: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        // With sections each step is looked at.
+        let longest = if self.sections.is_empty() { Self::PIECE } else { 1 };
+        // Those that are still under way, and where they are.
+        let look = |group: &dyn Group<M>, courses: &mut [Course<M>], then: &dyn Fn(&Run<'_, M>, &mut Course<M>)| {
+            for (place, course) in courses.iter_mut().enumerate() {
+                if group.error(place).is_none() && course.lost.is_none() {
+                    let (member, stepper, state) = (members[place], &starts[place].0, &group.state(place));
+                    then(&Run { member, stepper, state }, course);
+                }
+            }
+        };
+        let mut steps = 0;
+        while steps < self.steps {
+            if self.every.is_some_and(|every| steps.is_multiple_of(every)) {
+                look(group, courses, &|run, course| self.keep_row(run, steps, Status::Going, &mut course.rows));
+            }
+            let due = self.every.map_or(self.steps, |every| ((steps / every + 1) * every).min(self.steps));
+            while steps < due {
+                if is_stopped() {
+                    return None;
+                }
+                let piece = longest.min(due - steps);
+                group.run(piece);
+                steps += piece;
+                if !self.sections.is_empty() {
+                    look(group, courses, &|run, course| self.look_at_sections(run, course, false));
+                }
+            }
+        }
+        for (place, course) in courses.iter_mut().enumerate() {
+            let (member, (stepper, start)) = (members[place], &starts[place]);
+            let (mut state, mut failure) = (group.state(place), group.error(place).map(Failure::from));
+            if course.lost.is_none() {
+                self.look_at_sections(&Run { member, stepper, state: &state }, course, true);
+            }
+            if let Some((lost, why)) = course.lost.take() {
+                (state, failure) = (lost, Some(why));
+            }
+            let run = Run { member, stepper, state: &state };
+            let made = state.steps() - start.steps();
+            let status = if failure.is_some() { Status::Stopped } else { Status::Finished };
+            self.keep_row(&run, made, status, &mut course.rows);
+            course.end = match failure {
+                None => Ok(self.reductions.iter().map(|(_, _, value)| value(&run)).collect()),
+                Some(failure) => Err(Failed { member, steps: made, failure }),
+            };
+        }
+        Some(())
+    }
+
+    fn no_rows(&self) -> Rows {
+        let crossings = self.sections.iter().map(|section| Crossings::of_names(&section.names)).collect();
+        Rows::of_columns(self.names.len(), crossings)
+    }
+
+    /// At its start.
+    fn course(&self, (stepper, start): &Start<M>) -> Course<M> {
+        let watches: Result<_, _> = self.sections.iter().map(|section| section.watch(stepper, start)).collect();
+        let (watches, lost) = match watches {
+            Ok(watches) => (watches, None),
+            Err(failure) => (Vec::new(), Some((start.clone(), failure))),
+        };
+        Course { rows: self.no_rows(), watches, reduced: Vec::new(), lost, end: Ok(Vec::new()) }
+    }
+
+    /// Keeps the crossings up to this state, which belong to the next row.
+    fn look_at_sections(&self, run: &Run<'_, M>, course: &mut Course<M>, is_last: bool) {
+        let mut first = self.reductions.len();
+        let sections = self.sections.iter().zip(&mut course.watches).zip(&mut course.rows.crossings);
+        for ((section, watch), crossings) in sections {
+            match section.look(watch, run.stepper, run.state, is_last) {
+                Ok(found) => {
+                    for Crossing { columns, reduced } in found {
+                        crossings.push(course.rows.member.len(), &columns);
+                        course.reduced.extend((first..).zip(reduced));
+                    }
+                }
+                Err(failure) => {
+                    course.lost = Some((run.state.clone(), failure));
+                    return;
+                }
+            }
+            first += section.reductions.len();
+        }
+    }
+
     /// One row for a member and a step: one that ends where it was last kept has a last row already.
     fn keep_row(&self, run: &Run<'_, M>, steps: u64, status: Status, rows: &mut Rows) {
         if rows.step.last() == Some(&steps) {
             rows.status.pop();
             rows.status.push(status);
+            // Whatever is found here crossed no later than that row.
+            let last = rows.member.len() - 1;
+            rows.crossings.iter_mut().flat_map(|crossings| &mut crossings.row).for_each(|row| *row = last.min(*row));
             return;
         }
         let mut row = Vec::with_capacity(self.names.len());
@@ -148,4 +207,17 @@ struct Made {
     finished: u64,
     failures: Vec<Failed>,
     reduced: Vec<Reduced>,
+}
+
+/// What there is of one member so far.
+struct Course<M: Integrator> {
+    rows: Rows,
+    /// One for each section.
+    watches: Vec<Watch<M::State>>,
+    /// What sections reduce, with the number of the reduction.
+    reduced: Vec<(usize, f64)>,
+    /// Where it could be followed no further, as the function of a section had no value.
+    lost: Option<(M::State, Failure)>,
+    /// What is reduced of its end.
+    end: Result<Vec<f64>, Failed>,
 }

@@ -3,6 +3,7 @@
 use core::f64::consts::TAU;
 use core::ops::Range;
 
+use liestep::laws::samples;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::digest::Digest;
@@ -33,12 +34,10 @@ impl Member<'_> {
         range.start + (range.end - range.start) * self.units(name, 0)[0]
     }
 
-    /// A number of the normal distribution, by the transform of Box and Muller.
+    /// A number of the normal distribution, by [`samples::normal`].
     #[must_use]
     pub fn normal(&self, name: &str, mean: f64, deviation: f64) -> f64 {
-        let [radius, angle] = self.units(name, 0);
-        // The first is below one, and so its rest above zero.
-        mean + deviation * (-2.0 * (1.0 - radius).ln()).sqrt() * (TAU * angle).cos()
+        mean + deviation * samples::normal(self.units(name, 0))
     }
 
     /// A direction, each as likely; of length one.

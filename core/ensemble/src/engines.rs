@@ -25,27 +25,33 @@
 //! #!/bin/bash
 //! #SBATCH --array=0-31
 //! #SBATCH --cpus-per-task=8
-//! srun ./ensemble --shard "$SLURM_ARRAY_TASK_ID/32" --threads 8 --out /shared/out
+//! srun ./ensemble --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --threads 8 --out /shared/out
 //! ```
 //!
-//! an indexed job of Kubernetes,
+//! an indexed job of Kubernetes, `core/ensemble/elsewhere/kubernetes.yaml`, or, on machines without a scheduler,
+//! `seq 0 31 | parallel ./ensemble --shard {}/32 --out /shared/out`.
 //!
-//! ```text
-//! spec:
-//!   completions: 32
-//!   parallelism: 32
-//!   completionMode: Indexed
-//!   template:
-//!     spec:
-//!       restartPolicy: OnFailure
-//!       containers:
-//!         - name: ensemble
-//!           image: ensemble
-//!           command: ["sh", "-c", "./ensemble --shard $JOB_COMPLETION_INDEX/32 --out /shared/out"]
+//! # Dask and Ray
+//!
+//! Their tasks are shares, too: a function that starts the program, given to all numbers of shares.
+//!
+//! ```python
+//! def make(share):
+//!     subprocess.run(["./ensemble", "--shard", f"{share}/32", "--out", "/shared/out"], check=True)
+//!
+//! client.gather(client.map(make, range(32), retries=3))                                   # dask.distributed
+//! ray.get([ray.remote(max_retries=3)(make).remote(share) for share in range(32)])         # ray
 //! ```
 //!
-//! or, on machines without a scheduler, `seq 0 31 | parallel ./ensemble --shard {}/32 --out /shared/out`. These files are
-//! written after the schedulers' documentation; what they call is tested, the schedulers aren't here to be.
+//! A task that is tried again makes what is missing of its share.
+//!
+//! # What was run
+//!
+//! `core/ensemble/elsewhere/run` runs the example `ensemble` by threads; by the job file of Slurm and by the command in that
+//! of Kubernetes, for each of four shares with the environment that the scheduler gives; and by Dask and Ray, with two
+//! workers on one machine, where Python has them (`--install` fetches them). It compares all files, and reads them
+//! with polars and pandas, crossings of sections among them. Of the schedulers themselves none was run: that `sbatch` and
+//! `kubectl` accept the files is not tested.
 //!
 //! # Size of chunks
 //!

@@ -2,13 +2,14 @@
 
 use core::fmt;
 
-use liestep::motion::{Batchable, Integrator};
+use liestep::motion::{Batchable, Integrator, Moment};
 use simba::simd::AutoF64x8;
 
 use crate::digest::Digest;
 use crate::draw::Member;
 use crate::group::{Grouped, LANES, Start, in_lanes, one_by_one};
 use crate::reduce::Reduction;
+use crate::section::Section;
 use crate::{Failure, Table};
 
 /// A member at one time: what is kept is computed from it.
@@ -45,6 +46,7 @@ pub struct Ensemble<M: Integrator> {
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<Box<Values<M>>>,
     pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
+    pub(crate) sections: Vec<Section<M>>,
 }
 
 impl<M: Integrator> Ensemble<M> {
@@ -59,9 +61,10 @@ impl<M: Integrator> Ensemble<M> {
     /// makes the [fingerprint](Self::fingerprint) sees three members only.
     ///
     /// Scenes are generic over their scalar for that, as the library's are: `Top<f64>` here, declared as `Top<T>`. Of methods,
-    /// [`Stepper::new`](liestep::Stepper::new), [`composed`](liestep::Stepper::composed) and both
-    /// [`compensated`](liestep::Stepper::compensated) have lanes. Members of any other scene or method go
-    /// [`one_by_one`](Self::one_by_one).
+    /// [`Stepper::new`](liestep::Stepper::new), [`composed`](liestep::Stepper::composed), [`split`](liestep::Stepper::split),
+    /// [`processed`](liestep::Stepper::processed), and all of them [`compensated`](liestep::Stepper::compensated), have lanes.
+    /// Members of any other scene or method go [`one_by_one`](Self::one_by_one): Gauss collocation, preprocessed steps and
+    /// remedies.
     pub fn new(
         name: &str,
         members: u64,
@@ -101,6 +104,7 @@ impl<M: Integrator> Ensemble<M> {
             names: Vec::new(),
             columns: Vec::new(),
             reductions: Vec::new(),
+            sections: Vec::new(),
         }
     }
 
@@ -158,8 +162,7 @@ impl<M: Integrator> Ensemble<M> {
         values: impl Fn(&Run<'_, M>) -> [f64; N] + Send + Sync + 'static,
     ) -> Self {
         for name in names {
-            let is_new = !["member", "step", "status"].contains(&name) && self.names.iter().all(|own| own != name);
-            assert!(is_new, "there is a column `{name}` already");
+            self.assert_new_column(name);
             self.names.push(name.to_owned());
         }
         self.columns.push(Box::new(move |run, row| row.extend(values(run))));
@@ -178,12 +181,23 @@ impl<M: Integrator> Ensemble<M> {
         reduction: Reduction,
         value: impl Fn(&Run<'_, M>) -> f64 + Send + Sync + 'static,
     ) -> Self {
+        self.assert_new_reduction(name, &reduction);
+        self.reductions.push((name.to_owned(), reduction, Box::new(value)));
+        self
+    }
+
+    pub(crate) fn assert_new_column(&self, name: &str) {
+        let mut known = self.names.iter().chain(self.sections.iter().flat_map(|section| &section.names));
+        let is_new = !["member", "step", "status"].contains(&name) && known.all(|own| own != name);
+        assert!(is_new, "there is a column `{name}` already");
+    }
+
+    pub(crate) fn assert_new_reduction(&self, name: &str, reduction: &Reduction) {
         if let Some(mistake) = reduction.mistake() {
             panic!("`{name}`: {mistake}");
         }
-        assert!(self.reductions.iter().all(|(own, ..)| own != name), "there is a reduction `{name}` already");
-        self.reductions.push((name.to_owned(), reduction, Box::new(value)));
-        self
+        let is_new = self.all_reductions().all(|(own, _)| own != name);
+        assert!(is_new, "there is a reduction `{name}` already");
     }
 
     /// How many chunks there are.
@@ -224,6 +238,7 @@ impl<M: Integrator> Ensemble<M> {
             digest.text(name);
             digest.text(&reduction.begin().to_line());
         }
+        self.sections.iter().for_each(|section| section.describe(&mut digest));
         let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
         looked_at.dedup();
         for member in looked_at {
@@ -244,6 +259,8 @@ impl<M: Integrator> Ensemble<M> {
                     let mut row = Vec::new();
                     self.columns.iter().for_each(|values| values(&run, &mut row));
                     row.extend(self.reductions.iter().map(|(_, _, value)| value(&run)));
+                    let now = Moment::of_step(&stepper, &state);
+                    row.extend(self.sections.iter().flat_map(|section| section.values(&now)));
                     for value in row {
                         digest.number(value.to_bits());
                     }

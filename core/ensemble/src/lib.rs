@@ -47,16 +47,11 @@
 //! | draw members | [`Member`] |
 //! | read members from a table | [`Table`], [`Ensemble::over`] |
 //! | keep columns at the end, or at times | [`Ensemble::keep`], [`Ensemble::every`] |
-//! | moments and histograms of the ends | [`Ensemble::reduce`] |
+//! | keep columns where members cross a surface | [`Ensemble::section`] |
+//! | moments and histograms of the ends, or of crossings | [`Ensemble::reduce`], [`Section::reduce`] |
 //! | find out who failed, when and why | [`Store::shards`], [`Failed`] |
 //! | read the files elsewhere | [`Store`] |
 //! | use several machines | [`engines`] |
-//!
-//! # Not here
-//!
-//! Columns are kept at the ends of steps. Points where a motion crosses a surface lie between them:
-//! [`Run::event`](liestep::with::Run::event) finds them, by [`sections`](liestep::with::sections) for example, in a run of
-//! one motion and not in lanes.
 
 mod chunk;
 mod digest;
@@ -68,6 +63,7 @@ mod failure;
 mod group;
 mod reduce;
 mod report;
+mod section;
 mod shard;
 mod store;
 mod table;
@@ -78,6 +74,7 @@ pub use ensemble::{Ensemble, Run};
 pub use failure::{Failed, Failure};
 pub use reduce::{Histogram, Moments, Reduced, Reduction};
 pub use report::{Progress, Report};
-pub use shard::{Rows, Shard, Status};
+pub use section::Section;
+pub use shard::{Crossings, Rows, Shard, Status};
 pub use store::{Fault, Store, StoreError};
 pub use table::{Table, TableError};

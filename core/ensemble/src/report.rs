@@ -96,7 +96,7 @@ impl<M: Integrator> Ensemble<M> {
             finished: 0,
             failed: 0,
             faults,
-            reductions: self.reductions.iter().map(|(name, reduction, _)| (name.clone(), reduction.begin())).collect(),
+            reductions: self.all_reductions().map(|(name, reduction)| (name.clone(), reduction.begin())).collect(),
         };
         if engine.leads() {
             // In the order of their numbers, as sums are.

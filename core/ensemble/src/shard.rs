@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::sync::Arc;
 
+use arrow_array::builder::{Float64Builder, ListBuilder};
 use arrow_array::cast::AsArray as _;
 use arrow_array::types::{Float64Type, UInt8Type, UInt64Type};
 use arrow_array::{ArrayRef, Float64Array, RecordBatch, UInt8Array, UInt64Array};
@@ -42,11 +43,88 @@ pub struct Rows {
     pub status: Vec<Status>,
     /// What was kept.
     pub columns: Vec<Vec<f64>>,
+    /// What was kept at crossings, one of these for each section of the plan.
+    pub crossings: Vec<Crossings>,
 }
 
+/// What was kept where members crossed one surface; in a file a list for each row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Crossings {
+    /// The names of the columns.
+    pub names: Vec<String>,
+    /// For each crossing the number of the first row after it, which tells the member; none without columns.
+    pub row: Vec<usize>,
+    /// What was kept, by member and then by time.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Crossings {
+    pub(crate) fn of_names(names: &[String]) -> Self {
+        Self { names: names.to_vec(), row: vec![], columns: vec![vec![]; names.len()] }
+    }
+
+    /// One that belongs to this row.
+    pub(crate) fn push(&mut self, row: usize, values: &[f64]) {
+        if !self.columns.is_empty() {
+            self.row.push(row);
+        }
+        self.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
+    }
+
+    /// For each of so many rows how many there are.
+    fn counts(&self, rows: usize) -> Vec<usize> {
+        let mut counts = vec![0; rows];
+        for row in &self.row {
+            if let Some(count) = counts.get_mut(*row) {
+                *count += 1;
+            }
+        }
+        counts
+    }
+
+    /// A column as lists, one for each of so many rows.
+    fn lists(&self, column: &[f64], rows: usize) -> ArrayRef {
+        let item = Field::new(ITEM, DataType::Float64, false);
+        let mut lists = ListBuilder::new(Float64Builder::with_capacity(column.len())).with_field(item);
+        let mut left = column;
+        for count in self.counts(rows) {
+            let (own, others) = left.split_at(count.min(left.len()));
+            lists.values().append_slice(own);
+            lists.append(true);
+            left = others;
+        }
+        Arc::new(lists.finish())
+    }
+
+    /// Takes lists in again; the first column says whose they are.
+    fn read(&mut self, place: usize, array: &ArrayRef, first_row: usize) -> Option<()> {
+        let lists = array.as_list_opt::<i32>()?;
+        if place == 0 {
+            let lengths = lists.value_offsets().windows(2).map(|ends| usize::try_from(ends[1] - ends[0]));
+            for (row, length) in lengths.enumerate() {
+                self.row.extend(core::iter::repeat_n(first_row + row, length.ok()?));
+            }
+        }
+        // Of what is before the first list and behind the last nothing is part of one.
+        let (first, last) = (lists.value_offsets().first()?, lists.value_offsets().last()?);
+        let range = usize::try_from(*first).ok()?..usize::try_from(*last).ok()?;
+        let values = lists.values().as_primitive_opt::<Float64Type>()?.values().get(range)?;
+        self.columns.get_mut(place)?.extend(values);
+        Some(())
+    }
+
+    fn append(&mut self, mut other: Self, first_row: usize) {
+        self.row.extend(other.row.iter().map(|row| first_row + row));
+        self.columns.iter_mut().zip(&mut other.columns).for_each(|(column, other)| column.append(other));
+    }
+}
+
+/// What Arrow calls the field within a list.
+const ITEM: &str = "item";
+
 impl Rows {
-    pub(crate) fn of_columns(count: usize) -> Self {
-        Self { member: vec![], step: vec![], status: vec![], columns: vec![vec![]; count] }
+    pub(crate) fn of_columns(count: usize, crossings: Vec<Crossings>) -> Self {
+        Self { member: vec![], step: vec![], status: vec![], columns: vec![vec![]; count], crossings }
     }
 
     pub(crate) fn push(&mut self, member: u64, step: u64, status: Status, row: impl Iterator<Item = f64>) {
@@ -57,6 +135,9 @@ impl Rows {
     }
 
     pub(crate) fn append(&mut self, mut other: Self) {
+        let first_row = self.member.len();
+        let crossings = self.crossings.iter_mut().zip(other.crossings);
+        crossings.for_each(|(own, other)| own.append(other, first_row));
         self.member.append(&mut other.member);
         self.step.append(&mut other.step);
         self.status.append(&mut other.status);
@@ -97,15 +178,24 @@ impl Shard {
             Field::new("status", DataType::UInt8, false),
         ];
         fields.extend(self.names.iter().map(|name| Field::new(name, DataType::Float64, false)));
+        for (section, crossings) in self.rows.crossings.iter().enumerate() {
+            let list = DataType::new_list(DataType::Float64, false);
+            let metadata = HashMap::from([(KEY.to_owned(), section.to_string())]);
+            let field = |name: &String| Field::new(name, list.clone(), false).with_metadata(metadata.clone());
+            fields.extend(crossings.names.iter().map(field));
+        }
         let metadata = HashMap::from([(KEY.to_owned(), self.summary())]);
         let schema = Arc::new(Schema::new_with_metadata(fields, metadata));
-        let Rows { member, step, status, columns } = &self.rows;
+        let Rows { member, step, status, columns, crossings } = &self.rows;
         let mut arrays: Vec<ArrayRef> = vec![
             Arc::new(UInt64Array::from(member.clone())),
             Arc::new(UInt64Array::from(step.clone())),
             Arc::new(status.iter().map(|status| Some(*status as u8)).collect::<UInt8Array>()),
         ];
         arrays.extend(columns.iter().map(|column| Arc::new(Float64Array::from(column.clone())) as ArrayRef));
+        for crossings in crossings {
+            arrays.extend(crossings.columns.iter().map(|column| crossings.lists(column, member.len())));
+        }
         let mut bytes = Vec::new();
         let mut writer = FileWriter::try_new(&mut bytes, &schema)?;
         writer.write(&RecordBatch::try_new(schema, arrays)?)?;
@@ -123,8 +213,19 @@ impl Shard {
         if summary.lines().next() != Some(FORMAT) {
             return Ok(None);
         }
-        let names: Vec<String> = schema.fields().iter().skip(3).map(|field| field.name().clone()).collect();
-        let mut shard = Self::of_summary(summary, names).ok_or("its summary can't be read")?;
+        let mut shard = Self::of_summary(summary).ok_or("its summary can't be read")?;
+        for field in schema.fields().iter().skip(3) {
+            let name = field.name().clone();
+            let Some(section) = field.metadata().get(KEY) else {
+                shard.names.push(name);
+                shard.rows.columns.push(vec![]);
+                continue;
+            };
+            let crossings = section.parse().ok().and_then(|section: usize| shard.rows.crossings.get_mut(section));
+            let crossings = crossings.ok_or_else(|| format!("the column `{name}` is of no section"))?;
+            crossings.names.push(name);
+            crossings.columns.push(vec![]);
+        }
         for batch in reader {
             shard.append(&batch.map_err(|error| error.to_string())?).ok_or("its columns are of other types")?;
         }
@@ -133,13 +234,21 @@ impl Shard {
 
     fn append(&mut self, batch: &RecordBatch) -> Option<()> {
         let [member, step, status, columns @ ..] = batch.columns() else { return None };
+        let first_row = self.rows.member.len();
         self.rows.member.extend(member.as_primitive_opt::<UInt64Type>()?.values());
         self.rows.step.extend(step.as_primitive_opt::<UInt64Type>()?.values());
         for status in status.as_primitive_opt::<UInt8Type>()?.values() {
             self.rows.status.push(*Status::ALL.get(usize::from(*status))?);
         }
+        let (columns, lists) = columns.split_at_checked(self.rows.columns.len())?;
         for (column, more) in self.rows.columns.iter_mut().zip(columns) {
             column.extend(more.as_primitive_opt::<Float64Type>()?.values());
+        }
+        let mut lists = lists.iter();
+        for crossings in &mut self.rows.crossings {
+            for place in 0..crossings.columns.len() {
+                crossings.read(place, lists.next()?, first_row)?;
+            }
         }
         Some(())
     }
@@ -150,6 +259,7 @@ impl Shard {
             FORMAT.to_owned(),
             format!("plan {:016x}", self.plan),
             format!("chunk {}", self.chunk),
+            format!("sections {}", self.rows.crossings.len()),
             format!("finished {}", self.finished),
         ];
         lines.extend(self.reduced.iter().map(|reduced| format!("reduced {}", reduced.to_line())));
@@ -161,15 +271,17 @@ impl Shard {
         lines.join("\n")
     }
 
-    fn of_summary(summary: &str, names: Vec<String>) -> Option<Self> {
+    /// Without columns.
+    fn of_summary(summary: &str) -> Option<Self> {
         let mut lines = summary.lines().skip(1);
         let mut value = |key: &str| lines.next()?.strip_prefix(key)?.strip_prefix(' ').map(str::to_owned);
         let mut shard = Self {
             plan: u64::from_str_radix(&value("plan")?, 16).ok()?,
             chunk: value("chunk")?.parse().ok()?,
+            // A plan has no more sections than would fill a screen; a file may say anything.
+            rows: Rows::of_columns(0, vec![Crossings::default(); usize::from(value("sections")?.parse::<u8>().ok()?)]),
             finished: value("finished")?.parse().ok()?,
-            rows: Rows::of_columns(names.len()),
-            names,
+            names: Vec::new(),
             failures: Vec::new(),
             reduced: Vec::new(),
         };
@@ -200,7 +312,7 @@ mod tests {
             plan: 1,
             chunk: 2,
             names: vec!["x".to_owned()],
-            rows: Rows::of_columns(1),
+            rows: Rows::of_columns(1, vec![]),
             finished: 0,
             failures: vec![],
             reduced: vec![],

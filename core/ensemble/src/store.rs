@@ -18,7 +18,8 @@ use crate::shard::Shard;
 /// removed.
 ///
 /// Every file is Arrow IPC and can be read without this library: `polars.read_ipc("out/*/*.arrow")`. Its columns are
-/// `member`, `step`, `status` (a [`Status`](crate::Status)) and those that are [kept](crate::Ensemble::keep).
+/// `member`, `step`, `status` (a [`Status`](crate::Status)), those that are [kept](crate::Ensemble::keep), and lists of what
+/// is kept at [sections](crate::Ensemble::section), which polars and pandas `explode` into rows.
 #[derive(Clone, Debug)]
 pub struct Store {
     folder: PathBuf,

@@ -1,6 +1,9 @@
 //! What comes out of an ensemble is a function of its plan, and what is wrong with it is named.
 
 mod common;
+mod full_disk;
+mod sections;
+mod splittings;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

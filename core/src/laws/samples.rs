@@ -41,6 +41,12 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
+    /// Of the normal distribution with the mean 0 and the deviation 1.
+    pub fn normal(&mut self) -> f64 {
+        let radius = 0.5 * (1.0 + self.signed());
+        normal([radius, 0.5 * self.signed()])
+    }
+
     /// Entries uniform in `[−1, 1)`.
     pub fn sample<A: Entries<f64>>(&mut self) -> A {
         A::from_entries(&mut || self.signed())
@@ -70,6 +76,14 @@ impl Random {
         }
         elements
     }
+}
+
+/// A number of the normal distribution with the mean 0 and the deviation 1, of two of the uniform one on `[0, 1)`, by the
+/// transform of Box and Muller.
+#[must_use]
+pub fn normal([radius, angle]: [f64; 2]) -> f64 {
+    // The first is below one, and so its rest above zero.
+    (-2.0 * (1.0 - radius).ln()).sqrt() * (core::f64::consts::TAU * angle).cos()
 }
 
 /// `exp(t ξ̂)`, by the group's basis and nothing else of it.

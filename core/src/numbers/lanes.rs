@@ -66,13 +66,13 @@ pub trait Lanes: Sized {
 /// What can be put into lanes of the scalar `W`, and what it is there.
 ///
 /// Scenes that are generic over their scalar can, and the methods [`Stepper::new`](crate::Stepper::new),
-/// [`composed`](crate::Stepper::composed), and both [`compensated`](crate::Stepper::compensated). Bodies that are stepped by
-/// another method take their turns.
+/// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
+/// all of them [`compensated`](crate::Stepper::compensated). Bodies that are stepped by another method take their turns.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",
     note = "a declaration generic over its scalar can be: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here",
-    note = "of methods the declared step can, compositions of it, and both with compensated sums; others go one by one"
+    note = "of methods the declared step can, compositions of it and splittings, all with compensated sums too; others go one by one"
 )]
 pub trait InLanes<W>: Sized {
     /// Several of them.
@@ -143,6 +143,27 @@ impl<V: Lanes> Lanes for Vec<V> {
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
         self.len() == lane.len() && self.iter_mut().zip(lane).all(|(entry, lane)| entry.set_lane(k, lane))
+    }
+}
+
+/// In all lanes or in none.
+impl<V: Lanes> Lanes for Option<V> {
+    type Lane = Option<V::Lane>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        lane.as_ref().map(V::splat)
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        self.as_ref().map(|value| value.lane(k))
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        match (self, lane) {
+            (Some(own), Some(lane)) => own.set_lane(k, lane),
+            (None, None) => true,
+            _ => false,
+        }
     }
 }
 

@@ -3,6 +3,8 @@
 //! ```text
 //! mpirun -n 4 tops shared/out          all chunks that are missing
 //! tops shared/out --shard 2/8          a share of them, by threads: for arrays of jobs, in the same folder
+//!
+//! Options: --threads N of a share, as many as there are cores without it; --members N
 //! ```
 
 use std::error::Error;
@@ -14,8 +16,8 @@ use liestep_ensemble::{Ensemble, Local, Reduction, Store, share_of};
 use liestep_ensemble_mpi::Mpi;
 use nalgebra::Vector3;
 
-fn tops() -> Ensemble<Stepper<Sum<PrincipalBody, Gravity>>> {
-    Ensemble::new("tops", 6_000, 2_000, |member| {
+fn tops(members: u64) -> Ensemble<Stepper<Sum<PrincipalBody, Gravity>>> {
+    Ensemble::new("tops", members, 2_000, |member| {
         let moments = Vector3::new(3.0, 3.1, member.normal("J_3", 4.0, 0.1));
         let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
         // One of a hundred falls too fast for the step.
@@ -31,10 +33,21 @@ fn tops() -> Ensemble<Stepper<Sum<PrincipalBody, Gravity>>> {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let (ensemble, usage) = (tops(), "tops FOLDER [--shard I/N]");
-    let report = match arguments.as_slice() {
-        [folder] => {
+    let mut words = std::env::args().skip(1);
+    let folder = words.next().ok_or("tops FOLDER [--shard I/N] [--threads N] [--members N]")?;
+    let (mut members, mut threads, mut share) = (6_000, 0, None);
+    while let Some(option) = words.next() {
+        let value = words.next().ok_or_else(|| format!("`{option}` has no value"))?;
+        match option.as_str() {
+            "--shard" => share = Some(share_of(&value)?),
+            "--threads" => threads = value.parse()?,
+            "--members" => members = value.parse()?,
+            _ => return Err(format!("there is no option `{option}`").into()),
+        }
+    }
+    let ensemble = tops(members);
+    let report = match share {
+        None => {
             let engine = Mpi::world().ok_or("MPI has been initialised already")?;
             let report = ensemble.run(&engine, &Store::folder(folder)?)?;
             if !engine.is_first() {
@@ -42,11 +55,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             report
         }
-        [folder, option, share] if option == "--shard" => {
-            let (share, shares) = share_of(share)?;
-            ensemble.run(&Local::threads(0).share(share, shares), &Store::folder(folder)?)?
+        Some((share, shares)) => {
+            ensemble.run(&Local::threads(threads).share(share, shares), &Store::folder(folder)?)?
         }
-        _ => return Err(usage.into()),
     };
     println!(
         "{} of {} chunks are missing; {} tops finished, {} failed; energy {:?}",

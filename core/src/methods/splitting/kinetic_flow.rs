@@ -7,7 +7,7 @@ use crate::groups::SO3;
 use crate::groups::rotation_coefficients;
 use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular, SceneVisitor};
 use crate::motion::{DiscreteLiePoisson, Stepped};
-use crate::numbers::{Coordinates as _, Real, real, reported};
+use crate::numbers::{Coordinates as _, Lanes, Real, lanes_of_fields, real, reported};
 
 /// A flow, or a structure-preserving approximation of it, of the free body's motion.
 ///
@@ -108,6 +108,31 @@ impl<T: Real> SymmetricBody<T> {
 pub struct SymmetricDrift<T> {
     about_momentum: T,
     about_axis: T,
+}
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] SymmetricBody<T> => SymmetricBody<T::Element>, as SymmetricBody
+    { lanes: [], scalars: [transverse, axial], shared: [] }
+);
+
+/// A turn about the axis in all lanes or in none, as what is done without one differs in signs of zeros.
+impl<T: Real<Element: Real>> Lanes for SymmetricDrift<T> {
+    type Lane = SymmetricDrift<T::Element>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        Self { about_momentum: T::splat(lane.about_momentum), about_axis: T::splat(lane.about_axis) }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        SymmetricDrift { about_momentum: self.about_momentum.extract(k), about_axis: self.about_axis.extract(k) }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        let is_without = self.about_axis.simd_eq(T::zero());
+        self.about_momentum.replace(k, lane.about_momentum);
+        self.about_axis.replace(k, lane.about_axis);
+        if lane.about_axis == real(0.0) { is_without.all() } else { is_without.none() }
+    }
 }
 
 impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
@@ -242,3 +267,14 @@ pub struct DeclaredDrift<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, T: R
     flow: DiscreteLiePoisson<L>,
     inverse: Matrix3<T>,
 }
+
+lanes_of_fields!(
+    impl[L, T] DeclaredDrift<L, T> => DeclaredDrift<L::Lane, T::Element>, as DeclaredDrift
+    where [
+        T: Real<Element: Real>,
+        L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>
+            + Lanes<Lane: DiscreteLagrangian<Group = SO3<T::Element>, Scalar = T::Element>>,
+        DiscreteLiePoisson<L>: Lanes<Lane = DiscreteLiePoisson<L::Lane>>
+    ]
+    { lanes: [flow, inverse], scalars: [], shared: [] }
+);

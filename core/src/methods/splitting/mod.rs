@@ -5,6 +5,7 @@ mod bias;
 mod exact_body;
 mod kick;
 mod kinetic_flow;
+mod lanes;
 mod linearised;
 mod preprocessed_flow;
 mod processed;
@@ -103,7 +104,13 @@ pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
     /// The last share of a step and the first of the next.
     joint: Share<K::Drift, Scalar<S>>,
     /// What all the drifts of a step turn about the third body axis, in units of `p_3`, where that can be done at once.
-    spin: Option<Scalar<S>>,
+    spin: Option<Spin<Scalar<S>>>,
+}
+
+/// An angle in units of `p_3`.
+#[derive(Clone, Copy, Debug)]
+struct Spin<T> {
+    angle: T,
 }
 
 /// A share of the step, its constants folded.
@@ -194,15 +201,15 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     /// a symmetric body does; `p_3` is constant.
     fn take_spin(&mut self) {
         let (mut outer, mut joint, mut inner) = (self.outer.clone(), self.joint.clone(), self.inner.clone());
-        let mut spin = real(0.0);
+        let mut angle = real(0.0);
         let shares = inner.iter_mut().map(|share| (share, 1.0));
         for (share, times) in shares.chain([(&mut outer, 2.0), (&mut joint, 0.0)]) {
             if let Share::Drift(drift) = share {
                 let Some(taken) = K::take_spin(drift) else { return };
-                spin += taken * real(times);
+                angle += taken * real(times);
             }
         }
-        (self.outer, self.joint, self.inner, self.spin) = (outer, joint, inner, Some(spin));
+        (self.outer, self.joint, self.inner, self.spin) = (outer, joint, inner, Some(Spin { angle }));
     }
 
     /// Why a step that began with this momentum didn't end with one.
@@ -343,10 +350,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
             }
             let last = if remaining == 0 { &self.outer } else { &self.joint };
             self.make(last, &mut next, &mut iterations)?;
-            if let Some(spin) = self.spin {
-                spin::turn(spin * next.now().momentum.z, &mut next);
+            if let Some(Spin { angle }) = self.spin {
+                spin::turn(angle * next.now().momentum.z, &mut next);
                 if is_due(next.now().steps + 1) {
-                    spin::make_good(spin * next.now().momentum.z, STEPS_BETWEEN_CHECKS, &mut next);
+                    spin::make_good(angle * next.now().momentum.z, STEPS_BETWEEN_CHECKS, &mut next);
                 }
             }
             next.finish(|| scene.advected());

@@ -6,7 +6,7 @@ use crate::mechanics::{Effect, Group, Matrix, Regular, Scalar, Vector};
 use crate::motion::declared::Declared;
 use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::Plan as _;
-use crate::numbers::real;
+use crate::numbers::{Lanes, lanes_of_fields, real};
 use crate::solving::Solvability;
 
 /// The discrete advected Lie–Poisson flow `(μ_i, w_i) ↦ (μ_{i+1}, w_{i+1})`, \[RDAE, (2.8), (2.9)\].
@@ -18,6 +18,12 @@ pub struct DiscreteLiePoisson<L: Effect> {
     scene: L,
     declared: Declared<L>,
 }
+
+lanes_of_fields!(
+    impl[L: Effect + Lanes<Lane: Effect>] DiscreteLiePoisson<L> => DiscreteLiePoisson<L::Lane>, as DiscreteLiePoisson
+    where [Declared<L>: Lanes<Lane = Declared<L::Lane>>]
+    { lanes: [scene, declared], scalars: [], shared: [] }
+);
 
 impl<L: Effect> DiscreteLiePoisson<L> {
     /// Checks the parameters and folds the constants for the step `h`, in seconds.

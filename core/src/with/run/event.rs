@@ -63,6 +63,18 @@ impl Event {
     pub const fn curvature(self, bound: f64) -> Self {
         Self { curvature: Some(bound), ..self }
     }
+
+    /// Whether the run ends with it.
+    #[must_use]
+    pub const fn is_terminal(&self) -> bool {
+        self.terminal
+    }
+
+    /// The bound of the second derivative, if one is known.
+    #[must_use]
+    pub const fn bound(&self) -> Option<f64> {
+        self.curvature
+    }
 }
 
 type Function<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> f64 + 'a>;

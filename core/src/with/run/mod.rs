@@ -30,7 +30,7 @@ type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>
 type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Verdict + 'a>;
 type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 
-/// A run that is to be observed, by [`Stepper::observed`].
+/// A run that is to be observed, by [`Stepper::observed`]; generic code makes it by [`Run::new`].
 ///
 /// Observers are closures that are shown a [`Moment`]. They return nothing, a [`ControlFlow`] that may stop the run, or a
 /// `Result` whose error ends it:
@@ -120,7 +120,8 @@ where
 }
 
 impl<'a, I: Integrator> Run<'a, I> {
-    fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
+    /// Of anything that steps, where its type isn't known; else by its `observed`.
+    pub fn new(integrator: &'a I, state: &'a mut I::State) -> Self {
         Self {
             integrator,
             state,

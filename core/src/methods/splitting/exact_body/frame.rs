@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use super::super::axes::Axes;
 use super::super::quaternion::Quaternion;
-use crate::numbers::Real;
+use crate::numbers::{Lanes, Real};
 
 /// How the principal axes lie in the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +55,33 @@ impl<T: Real> Frame<T> {
                 let along = |i: usize| axes[(i, 0)] * a + axes[(i, 1)] * b + axes[(i, 2)] * c;
                 [w, along(0), along(1), along(2)]
             }
+        }
+    }
+}
+
+/// Of one kind in all lanes.
+impl<T: Real<Element: Real>> Lanes for Frame<T> {
+    type Lane = Frame<T::Element>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        match lane {
+            Frame::Along(axes) => Self::Along(*axes),
+            Frame::Turned(axes) => Self::Turned(Lanes::splat(axes)),
+        }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        match self {
+            Self::Along(axes) => Frame::Along(*axes),
+            Self::Turned(axes) => Frame::Turned(Lanes::lane(axes, k)),
+        }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        match (self, lane) {
+            (Self::Along(own), Frame::Along(axes)) => own == axes,
+            (Self::Turned(own), Frame::Turned(axes)) => own.set_lane(k, axes),
+            _ => false,
         }
     }
 }

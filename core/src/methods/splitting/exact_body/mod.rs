@@ -42,7 +42,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
-use crate::numbers::{Mask, Real, is_finite, real, reported};
+use crate::numbers::{Mask, Real, is_finite, lanes_of_fields, real, reported};
 
 /// The free motion of a body with any three moments, exactly: to rounding, over any time.
 ///
@@ -119,6 +119,16 @@ pub struct ExactDrift<T> {
     a_squared: T,
     b_squared: T,
 }
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] ExactBody<T> => ExactBody<T::Element>, as ExactBody
+    { lanes: [inertia, moments, frame], scalars: [], shared: [] }
+);
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] ExactDrift<T> => ExactDrift<T::Element>, as ExactDrift
+    { lanes: [frame], scalars: [scale, a, b, b_less_a, c_squared, a_squared, b_squared], shared: [] }
+);
 
 impl<T: Real> KineticFlow<T> for ExactBody<T> {
     type Drift = ExactDrift<T>;

@@ -12,7 +12,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
-use crate::numbers::{Mask, Real, is_finite, real, reported};
+use crate::numbers::{Lanes, Mask, Real, is_finite, lanes_of_fields, real, reported};
 
 /// The free motion of a body with three different moments, split into rotations about body axes; of order 4.
 ///
@@ -117,6 +117,34 @@ pub struct SplitDrift<T> {
     reach: T,
     /// From the first to the middle one; of seven rotations that is the fourth.
     rotors: [Rotor<T>; 5],
+}
+
+lanes_of_fields!(
+    impl[const ROTATIONS: usize, T: Real<Element: Real>] SplitBody<ROTATIONS, T> => SplitBody<ROTATIONS, T::Element>,
+    as SplitBody { lanes: [moments], scalars: [], shared: [axes] }
+);
+
+impl<T: Real<Element: Real>> Lanes for SplitDrift<T> {
+    type Lane = SplitDrift<T::Element>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        let SplitDrift { axes, scale, reach, rotors } = lane;
+        let rotors = rotors.each_ref().map(Rotor::splat);
+        Self { axes: *axes, scale: T::splat(*scale), reach: T::splat(*reach), rotors }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        let Self { axes, scale, reach, rotors } = self;
+        let rotors = rotors.each_ref().map(|rotor| rotor.lane(k));
+        SplitDrift { axes: *axes, scale: scale.extract(k), reach: reach.extract(k), rotors }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.scale.replace(k, lane.scale);
+        self.reach.replace(k, lane.reach);
+        let mut rotors = self.rotors.iter_mut().zip(&lane.rotors);
+        self.axes == lane.axes && rotors.all(|(own, rotor)| own.set_lane(k, rotor))
+    }
 }
 
 impl<const ROTATIONS: usize, T: Real> KineticFlow<T> for SplitBody<ROTATIONS, T> {

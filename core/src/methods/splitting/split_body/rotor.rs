@@ -1,7 +1,7 @@
 //! One rotation about a body axis by an angle in proportion to the momentum about it, and how many there are.
 
 use crate::groups::rotation_coefficients;
-use crate::numbers::{Real, real};
+use crate::numbers::{Real, lanes_of_fields, real};
 
 /// Shares of the first and the second axis by turns, from the first to the middle one. \[FR90\]
 pub(super) const SEVEN: [f64; 5] =
@@ -33,6 +33,11 @@ pub(super) struct Rotor<T> {
     sine: [T; 6],
     cosine: [T; 6],
 }
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] Rotor<T> => Rotor<T::Element>, as Rotor
+    { lanes: [sine, cosine], scalars: [rate], shared: [] }
+);
 
 impl<T: Real> Rotor<T> {
     pub(super) fn new(rate: T) -> Self {

@@ -1,0 +1,179 @@
+//! What ten seconds of a symmetric top take by splittings in lanes on one core, beside a Taylor integrator's batches.
+
+use std::error::Error;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use liestep::Stepper;
+use liestep::effects::{Gravity, PrincipalBody};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
+use liestep::methods::{Split, SplittingScheme, SymmetricBody};
+use liestep::motion::{Batch, Integrator};
+use nalgebra::{UnitQuaternion, Vector3};
+use simba::simd::AutoF64x8;
+
+type Failure = Box<dyn Error>;
+type Top = Stepper<Sum<PrincipalBody, Gravity>, Split<Sum<PrincipalBody, Gravity>, SymmetricBody>>;
+type State = <Top as Integrator>::State;
+
+const TOPS: u32 = 64;
+const LANES: usize = 8;
+const TIME: f64 = 10.0; // s
+const ERRORS: [f64; 2] = [1e-6, 1e-8];
+/// Of all that is measured the fastest counts.
+const TURNS: usize = 2;
+const REPEATED: usize = 30;
+const STEPS: [u32; 16] = [16, 20, 25, 32, 40, 50, 64, 80, 100, 128, 160, 200, 256, 320, 400, 512];
+const SCHEMES: [SplittingScheme; 6] = [
+    SplittingScheme::FORCE_GRADIENT_2,
+    SplittingScheme::FORCE_GRADIENT_4,
+    SplittingScheme::FORCE_GRADIENT_5,
+    SplittingScheme::NYSTROM_6,
+    SplittingScheme::NYSTROM_11,
+    SplittingScheme::NYSTROM_14,
+];
+
+/// Moments, centre of mass, attitude and velocity of a top; the numbers are spread evenly.
+struct Body {
+    moments: Vector3<f64>,
+    rho: f64,
+    attitude: UnitQuaternion<f64>,
+    velocity: Vector3<f64>,
+}
+
+fn body(number: u32) -> Body {
+    // By the golden ratio and its powers.
+    let part = |k: i32| (f64::from(number + 1) * 0.618_033_988_749_894_9_f64.powi(k)).fract();
+    let transverse = 2.5 + part(1);
+    Body {
+        moments: Vector3::new(transverse, transverse, 3.5 + part(2)),
+        rho: 0.8 + 0.4 * part(3),
+        attitude: UnitQuaternion::from_scaled_axis(Vector3::new(0.2 + 0.8 * part(4), 0.1, 0.0)),
+        velocity: Vector3::new(0.5, 0.2, 5.0 + 5.0 * part(5)),
+    }
+}
+
+fn tops(scheme: SplittingScheme, steps: u32) -> Result<Vec<(Top, State)>, Failure> {
+    let top = |number| -> Result<_, Failure> {
+        let Body { moments, rho, attitude, velocity } = body(number);
+        let scene = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
+        let scene = scene + Gravity { m: 1.0, g: 9.81, rho: Vector3::z() * rho, up: Vector3::z() };
+        let flow = SymmetricBody::new(&Inertia::from_principal_moments(moments)?)?;
+        let stepper = Stepper::split(scene, TIME / f64::from(steps), flow, scheme)?;
+        let state = stepper.start(attitude, velocity)?;
+        Ok((stepper, state))
+    };
+    (0..TOPS).map(top).collect()
+}
+
+/// The vertical and the velocity that a body sees.
+type End = [Vector3<f64>; 2];
+
+/// In lanes: all ends, and the time for a top, s.
+fn ends(tops: &[(Top, State)], steps: u32, repeated: usize) -> Result<(Vec<End>, f64), Failure> {
+    let (mut ends, mut time) = (Vec::new(), 0.0);
+    for eight in tops.chunks(LANES) {
+        let mut fastest = f64::INFINITY;
+        for turn in 0..repeated {
+            let mut batch = Batch::<AutoF64x8, _>::new(eight)?;
+            let start = Instant::now();
+            batch.run(u64::from(steps));
+            fastest = fastest.min(start.elapsed().as_secs_f64());
+            if turn == 0 {
+                for (number, (stepper, _)) in eight.iter().enumerate() {
+                    let state = batch.state(number);
+                    ends.push([state.advected().1, stepper.velocity(&state)]);
+                }
+            }
+        }
+        time += fastest;
+    }
+    Ok((ends, time / f64::from(TOPS)))
+}
+
+fn error(ends: &[End], exact: &[End]) -> f64 {
+    let squares = ends.iter().zip(exact).map(|([w, velocity], [exact_w, exact_velocity])| {
+        (w - exact_w).norm_squared() + (velocity - exact_velocity).norm_squared() / exact_velocity.norm_squared()
+    });
+    (squares.sum::<f64>() / f64::from(TOPS)).sqrt()
+}
+
+/// The least time to an error, on straight lines between the runs, both axes logarithmic.
+fn cost(runs: &[(f64, f64)], wanted: f64) -> f64 {
+    let exact = runs.iter().filter(|(error, _)| *error <= wanted).map(|(_, time)| *time);
+    let between = runs.windows(2).filter(|pair| pair[0].0 > wanted && wanted >= pair[1].0).map(|pair| {
+        let [(coarse, cheap), (fine, dear)] = [pair[0], pair[1]];
+        cheap * (dear / cheap).powf((coarse / wanted).ln() / (coarse / fine).ln())
+    });
+    exact.chain(between).fold(f64::INFINITY, f64::min)
+}
+
+/// µs a top to each error, the best scheme for each.
+fn ours(exact: &[End]) -> Result<[(f64, &'static str); 2], Failure> {
+    let mut best = [(f64::INFINITY, ""); 2];
+    for scheme in SCHEMES {
+        let run = |steps| -> Result<_, Failure> {
+            let (ends, time) = ends(&tops(scheme, steps)?, steps, REPEATED)?;
+            Ok((error(&ends, exact), time * 1e6))
+        };
+        let runs = STEPS.into_iter().map(run).collect::<Result<Vec<_>, _>>()?;
+        for (best, wanted) in best.iter_mut().zip(ERRORS) {
+            let cost = cost(&runs, wanted);
+            if cost < best.0 {
+                *best = (cost, scheme.name());
+            }
+        }
+    }
+    Ok(best)
+}
+
+/// The same by `with_heyoka.py`, where Python has it.
+fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
+    let mut python = Command::new("python3");
+    python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/with_heyoka.py"));
+    let mut child = python.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+    let mut lines = String::new();
+    for (number, [w, velocity]) in (0..TOPS).zip(exact) {
+        let Body { moments, rho, attitude, velocity: start } = body(number);
+        let q = attitude.quaternion();
+        let momentum = moments.component_mul(&start);
+        let numbers =
+            [[q.w, q.i, q.j, q.k].as_slice(), momentum.as_slice(), w.as_slice(), velocity.as_slice()].concat();
+        let numbers = [moments.x, moments.z, 9.81 * rho].into_iter().chain(numbers);
+        lines += &numbers.map(|number| format!("{number:e}")).collect::<Vec<_>>().join(" ");
+        lines += "\n";
+    }
+    // A program that ends early says why on its own.
+    let _ = child.stdin.take().ok_or("no pipe")?.write_all(lines.as_bytes());
+    let answer = String::from_utf8(child.wait_with_output()?.stdout)?;
+    let costs: Vec<f64> = answer.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    Ok(costs.try_into().ok())
+}
+
+pub(crate) fn splittings() -> Result<(), Failure> {
+    const FINE: u32 = 2_000;
+    let (exact, _) = ends(&tops(SplittingScheme::NYSTROM_14, FINE)?, FINE, 1)?;
+    let (finer, _) = ends(&tops(SplittingScheme::NYSTROM_14, 2 * FINE)?, 2 * FINE, 1)?;
+    println!(
+        "{TOPS} symmetric tops, {TIME} s, one core; what they are compared with is off by {:.0e}",
+        error(&exact, &finer)
+    );
+    let (mut own, mut others) = ([(f64::INFINITY, ""); 2], [f64::INFINITY; 2]);
+    for _ in 0..TURNS {
+        for (own, found) in own.iter_mut().zip(ours(&exact)?) {
+            *own = if found.0 < own.0 { found } else { *own };
+        }
+        match theirs(&exact)? {
+            Some(found) => others.iter_mut().zip(found).for_each(|(other, found)| *other = other.min(found)),
+            None => println!("heyoka is left out"),
+        }
+    }
+    for ((wanted, (time, scheme)), other) in ERRORS.into_iter().zip(own).zip(others) {
+        println!(
+            "to {wanted:e}: {time:.2} µs a top in lanes ({scheme}), {other:.2} µs by heyoka in batches of four, {:.2} of it",
+            time / other
+        );
+    }
+    Ok(())
+}

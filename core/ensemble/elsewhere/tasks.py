@@ -1,0 +1,33 @@
+"""The shares of an ensemble as tasks of Dask or of Ray: python tasks.py dask|ray SHARES FOLDER.
+
+ENSEMBLE is the program, and the folder one that all workers see. A task that dies is tried again by the engine, and
+makes what is missing of its share.
+"""
+
+import os
+import subprocess
+import sys
+
+engine, shares, out = sys.argv[1], int(sys.argv[2]), sys.argv[3]
+program = os.environ["ENSEMBLE"]
+
+
+def make(share):
+    command = [program, "--quick", "--threads", "1", "--out", out, "--shard", f"{share}/{shares}"]
+    return subprocess.run(command, check=True, stdout=subprocess.DEVNULL).returncode
+
+
+if __name__ == "__main__":
+    if engine == "dask":
+        from dask.distributed import Client
+
+        with Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
+            codes = client.gather(client.map(make, range(shares), retries=3))
+    else:
+        import ray
+
+        ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+        task = ray.remote(max_retries=3)(make)
+        codes = ray.get([task.remote(share) for share in range(shares)])
+        ray.shutdown()
+    print(f"{engine}: {len(codes)} shares")

@@ -1,0 +1,246 @@
+//! Columns at the crossings of a surface: Poincaré sections.
+
+use core::fmt;
+
+use liestep::motion::{Integrator, Moment, ScalarIn};
+use liestep::with::{Event, Run, RunError};
+
+use crate::Failure;
+use crate::digest::Digest;
+use crate::ensemble::Ensemble;
+use crate::reduce::{Reduced, Reduction};
+
+type Value<M> = dyn Fn(&Moment<'_, M>) -> f64 + Send + Sync;
+type Values<M> = dyn Fn(&Moment<'_, M>, &mut Vec<f64>) + Send + Sync;
+type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec<Crossing>, RunError>;
+
+/// A surface, and what is kept where members cross it: [`Ensemble::section`] takes it.
+///
+/// The surface is where a function of the motion is zero; [`sections`](liestep::with::sections) has some. Crossings lie
+/// between the ends of steps and are found as [`Run::event`] finds them, to the bit, with its contract of what isn't
+/// missed.
+///
+/// # Examples
+///
+/// ```
+/// use liestep::effects::RigidBody;
+/// use liestep::with::{Event, sections};
+/// use liestep::{NonstandardInertia, SO3, Stepper};
+/// use liestep_ensemble::{Ensemble, Section};
+/// use nalgebra::Vector3;
+///
+/// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
+/// let ensemble = Ensemble::new("bodies", 8, 1_000, move |member| {
+///     let stepper = Stepper::new(RigidBody { J_d }, 0.01)?;
+///     let state = stepper.start(SO3::identity(), member.direction("Omega"))?;
+///     Ok((stepper, state))
+/// });
+/// // The first axis rises through the horizontal plane.
+/// let horizon = Section::new(Event::rising(), sections::plane(Vector3::x(), Vector3::z()));
+/// let ensemble = ensemble.section(horizon.keep(["t", "turning"], |now| [now.time(), now.velocity().x]));
+/// let shard = ensemble.chunk(0, &|| false).ok_or("it was stopped")?;
+/// let crossings = &shard.rows.crossings[0];
+/// for (time, row) in crossings.columns[0].iter().zip(&crossings.row) {
+///     assert!(*time < 10.0 && shard.rows.member[*row] < 8);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[allow(clippy::type_complexity)] // names of its parts
+pub struct Section<M: Integrator> {
+    event: Event,
+    function: Box<Value<M>>,
+    find: Find<M>,
+    pub(crate) names: Vec<String>,
+    columns: Vec<Box<Values<M>>>,
+    pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
+}
+
+/// What is kept of one crossing: for the columns, and for the reductions.
+pub(crate) struct Crossing {
+    pub(crate) columns: Vec<f64>,
+    pub(crate) reduced: Vec<f64>,
+}
+
+/// How far one member has been looked at.
+pub(crate) struct Watch<S> {
+    /// At the last step, or at the last but those at whose ends the function was zero.
+    before: S,
+    /// Whether it was above zero then; nothing where it was zero.
+    above: Option<bool>,
+}
+
+impl<M: Integrator> Section<M> {
+    /// Where this function crosses zero so.
+    ///
+    /// With a [bound](Event::curvature) every step is looked at closely and made twice, without only those that cross.
+    ///
+    /// # Panics
+    ///
+    /// Where the event is [terminal](Event::terminal): members of an ensemble make the steps that it says.
+    pub fn new<Y: Into<f64>>(event: Event, function: impl Fn(&Moment<'_, M>) -> Y + Send + Sync + 'static) -> Self
+    where
+        ScalarIn<M>: Into<f64>,
+    {
+        assert!(!event.is_terminal(), "a section doesn't end its members: leave `terminal` out");
+        Self {
+            event,
+            function: Box::new(move |now| function(now).into()),
+            find: find::<M>,
+            names: Vec::new(),
+            columns: Vec::new(),
+            reductions: Vec::new(),
+        }
+    }
+
+    /// Keeps columns of these names, a list of numbers for each row of a member: those of the crossings since its row
+    /// before, in their order.
+    #[must_use]
+    pub fn keep<const N: usize>(
+        mut self,
+        names: [&str; N],
+        values: impl Fn(&Moment<'_, M>) -> [f64; N] + Send + Sync + 'static,
+    ) -> Self {
+        self.names.extend(names.map(str::to_owned));
+        self.columns.push(Box::new(move |now, row| row.extend(values(now))));
+        self
+    }
+
+    /// Reduces a value of every crossing, also of a member that doesn't come to its end.
+    #[must_use]
+    pub fn reduce(
+        mut self,
+        name: &str,
+        reduction: Reduction,
+        value: impl Fn(&Moment<'_, M>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.reductions.push((name.to_owned(), reduction, Box::new(value)));
+        self
+    }
+
+    fn at(&self, now: &Moment<'_, M>) -> Crossing {
+        let mut columns = Vec::with_capacity(self.names.len());
+        self.columns.iter().for_each(|values| values(now, &mut columns));
+        Crossing { columns, reduced: self.reductions.iter().map(|(_, _, value)| value(now)).collect() }
+    }
+
+    /// From here on.
+    pub(crate) fn watch(&self, stepper: &M, start: &M::State) -> Result<Watch<M::State>, Failure> {
+        // It has no value, or it has.
+        (self.find)(self, stepper, start, 0).map_err(failure)?;
+        Ok(Watch { before: start.clone(), above: side((self.function)(&Moment::of_step(stepper, start))) })
+    }
+
+    /// The crossings up to here that haven't been found yet; `is_last` where there is no further look.
+    ///
+    /// The steps that cross are made again, by the member's own stepper.
+    pub(crate) fn look(
+        &self,
+        watch: &mut Watch<M::State>,
+        stepper: &M,
+        now: &M::State,
+        is_last: bool,
+    ) -> Result<Vec<Crossing>, Failure> {
+        let value = (self.function)(&Moment::of_step(stepper, now));
+        let above = side(value);
+        // Whether it crosses here the next sign tells.
+        if above.is_none() && !is_last {
+            return Ok(Vec::new());
+        }
+        let crosses = above.is_some() && watch.above.is_some() && above != watch.above;
+        let found = if crosses || value.is_nan() || self.event.bound().is_some() {
+            (self.find)(self, stepper, &watch.before, now.steps() - watch.before.steps()).map_err(failure)?
+        } else {
+            Vec::new()
+        };
+        *watch = Watch { before: now.clone(), above };
+        Ok(found)
+    }
+
+    /// What tells it from another, but for its functions.
+    pub(crate) fn describe(&self, digest: &mut Digest) {
+        digest.text(&format!("{:?}", self.event));
+        self.names.iter().for_each(|name| digest.text(name));
+        for (name, reduction, _) in &self.reductions {
+            digest.text(name);
+            digest.text(&reduction.begin().to_line());
+        }
+    }
+
+    /// Its functions' values somewhere.
+    pub(crate) fn values(&self, now: &Moment<'_, M>) -> Vec<f64> {
+        let Crossing { columns, reduced } = self.at(now);
+        [vec![(self.function)(now)], columns, reduced].concat()
+    }
+}
+
+/// Above zero or below; nothing where it is zero, or no number.
+fn side(value: f64) -> Option<bool> {
+    (value != 0.0 && !value.is_nan()).then_some(value > 0.0)
+}
+
+fn find<M: Integrator>(
+    section: &Section<M>,
+    stepper: &M,
+    before: &M::State,
+    steps: u64,
+) -> Result<Vec<Crossing>, RunError>
+where
+    ScalarIn<M>: Into<f64>,
+{
+    let (mut state, mut found) = (before.clone(), Vec::new());
+    let run = Run::new(stepper, &mut state);
+    run.event(section.event, &section.function, |now| found.push(section.at(now))).steps(steps)?;
+    Ok(found)
+}
+
+fn failure(error: RunError) -> Failure {
+    match error {
+        RunError::Step { cause, .. } => Failure::Step(cause),
+        other => Failure::Other(format!("at a section: {other}")),
+    }
+}
+
+impl<M: Integrator> Ensemble<M> {
+    /// Keeps columns where members cross a surface.
+    ///
+    /// Members stay in lanes; each of their steps is looked at, and those that cross are made again alone. As in every run
+    /// with [events](Run::event) a member makes each step by itself. Rows are kept as without, and in each are the
+    /// crossings since the one before: how many these are nothing bounds but the motion, and a chunk is made in memory.
+    ///
+    /// # Panics
+    ///
+    /// As [`keep`](Self::keep) and [`reduce`](Self::reduce), for its columns and reductions, and for the 256th section.
+    #[must_use]
+    pub fn section(mut self, section: Section<M>) -> Self {
+        for (place, name) in section.names.iter().enumerate() {
+            self.assert_new_column(name);
+            assert!(!section.names[..place].contains(name), "there is a column `{name}` already");
+        }
+        for (place, (name, reduction, _)) in section.reductions.iter().enumerate() {
+            self.assert_new_reduction(name, reduction);
+            let is_new = section.reductions[..place].iter().all(|(own, ..)| own != name);
+            assert!(is_new, "there is a reduction `{name}` already");
+        }
+        self.sections.push(section);
+        assert!(self.sections.len() < 256, "an ensemble has less than 256 sections");
+        self
+    }
+
+    /// All reductions and their names: of ends, then of sections.
+    pub(crate) fn all_reductions(&self) -> impl Iterator<Item = (&String, &Reduction)> {
+        let of_ends = self.reductions.iter().map(|(name, reduction, _)| (name, reduction));
+        let of_sections = self.sections.iter().flat_map(|section| &section.reductions);
+        of_ends.chain(of_sections.map(|(name, reduction, _)| (name, reduction)))
+    }
+
+    pub(crate) fn nothing_reduced(&self) -> Vec<Reduced> {
+        self.all_reductions().map(|(_, reduction)| reduction.begin()).collect()
+    }
+}
+
+impl<M: Integrator> fmt::Debug for Section<M> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { event, names, .. } = self;
+        f.debug_struct("Section").field("event", event).field("columns", names).finish_non_exhaustive()
+    }
+}

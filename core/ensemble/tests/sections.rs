@@ -1,0 +1,206 @@
+//! What is kept at sections is what a run of each member alone finds, to the bit.
+
+#![allow(clippy::cast_precision_loss)] // hundreds of steps and crossings
+
+use std::sync::{Arc, Mutex};
+
+use liestep::motion::Moment;
+use liestep::with::{Event, sections};
+use liestep_ensemble::{Ensemble, Failure, Local, Reduced, Reduction, Section, Shard, Status, Store, Table};
+use nalgebra::Vector3;
+
+use crate::common::{Folder, Top, contents, top, tops, with_columns};
+
+const MEMBERS: u64 = 50;
+const STEPS: u64 = 150;
+
+/// The first axis rises through the horizontal plane; the third passes one that stands, looked at closely.
+fn with_sections(ensemble: Ensemble<Top>) -> Ensemble<Top> {
+    let horizon = Section::new(Event::rising(), sections::plane(Vector3::x(), Vector3::z()));
+    let upright = Section::new(Event::crossing().curvature(300.0), sections::plane(Vector3::z(), Vector3::y()));
+    ensemble
+        .section(horizon.keep(["t", "spin"], kept).reduce("spins", Reduction::Moments, |now| now.velocity().z))
+        .section(upright.keep(["t2", "spin2"], kept))
+}
+
+fn kept(now: &Moment<'_, Top>) -> [f64; 2] {
+    [now.time(), now.velocity().z]
+}
+
+/// By section: member and bits of what is kept.
+type Found = [Vec<(u64, [u64; 2])>; 2];
+
+fn found(shards: &[Shard]) -> Found {
+    [0, 1].map(|section| {
+        let of_shard = |shard: &Shard| {
+            let crossings = &shard.rows.crossings[section];
+            let [times, spins] = crossings.columns.as_slice() else { panic!("{:?}", crossings.names) };
+            let values = times.iter().zip(spins).map(|(time, spin)| [time.to_bits(), spin.to_bits()]);
+            crossings.row.iter().map(|row| shard.rows.member[*row]).zip(values).collect::<Vec<_>>()
+        };
+        shards.iter().flat_map(of_shard).collect()
+    })
+}
+
+fn chunks(ensemble: &Ensemble<Top>) -> Vec<Shard> {
+    (0..ensemble.chunks()).map(|chunk| ensemble.chunk(chunk, &|| false).unwrap()).collect()
+}
+
+#[test]
+fn crossings_are_those_of_each_member_alone() {
+    let starts = Arc::new(Mutex::new(Vec::new()));
+    let kept_starts = Arc::clone(&starts);
+    let probe = Ensemble::new("tops", MEMBERS, 0, move |member| {
+        let made = top(member);
+        kept_starts.lock().unwrap().push((member.number(), made.clone()));
+        made
+    });
+    let _ = probe.seed(7).chunks_of(MEMBERS).chunk(0, &|| false);
+    let mut expected: Found = [vec![], vec![]];
+    // Three are asked for once more, by the fingerprint.
+    for (member, made) in starts.lock().unwrap().drain(..).skip(3) {
+        let Ok((stepper, mut state)) = made else { continue };
+        let [mut first, mut second] = [vec![], vec![]];
+        let bits = |now: &Moment<'_, Top>| (member, kept(now).map(f64::to_bits));
+        let run = stepper
+            .observed(&mut state)
+            .event(Event::rising(), sections::plane(Vector3::x(), Vector3::z()), |now| first.push(bits(now)))
+            .event(Event::crossing().curvature(300.0), sections::plane(Vector3::z(), Vector3::y()), |now| {
+                second.push(bits(now));
+            });
+        let _ = run.steps(STEPS);
+        expected[0].append(&mut first);
+        expected[1].append(&mut second);
+    }
+    assert!(expected.iter().all(|crossings| crossings.len() > 20), "{}, {}", expected[0].len(), expected[1].len());
+    assert_eq!(found(&chunks(&with_sections(tops(MEMBERS, STEPS)))), expected);
+    // More rows change nothing but where a crossing is written.
+    let shards = chunks(&with_sections(tops(MEMBERS, STEPS)).every(40));
+    assert_eq!(found(&shards), expected);
+    for Shard { rows, .. } in &shards {
+        for crossings in &rows.crossings {
+            for (row, time) in crossings.row.iter().zip(&crossings.columns[0]) {
+                let step = |row: usize| rows.step[row] as f64 * 0.02;
+                let is_first = *row == 0 || rows.member[row - 1] != rows.member[*row];
+                assert!(*time <= step(*row) && (is_first || *time > step(row - 1)), "{time} in row {row}");
+            }
+        }
+    }
+}
+
+#[test]
+fn files_with_sections_are_the_same_for_threads_shares_and_one_by_one() {
+    let ensemble = with_sections(tops(MEMBERS, STEPS));
+    let folder = Folder::new("sections");
+    let store = Store::folder(&folder.0).unwrap();
+    let report = ensemble.run(&Local::threads(1), &store).unwrap();
+    let expected = contents(&folder.0);
+    for threads in [2, 7] {
+        let folder = Folder::new(&format!("sections-{threads}"));
+        let again = ensemble.run(&Local::threads(threads), &Store::folder(&folder.0).unwrap()).unwrap();
+        assert_eq!((&again, contents(&folder.0) == expected), (&report, true), "{threads} threads");
+    }
+    let folder = Folder::new("sections-shares");
+    for share in [1, 0] {
+        let engine = Local::threads(2).share(share, 2);
+        ensemble.run(&engine, &Store::folder(&folder.0).unwrap()).unwrap();
+    }
+    assert!(contents(&folder.0) == expected, "shares");
+    let folder = Folder::new("sections-alone");
+    let alone = with_sections(with_columns(Ensemble::one_by_one("tops", MEMBERS, STEPS, top)));
+    assert_eq!(alone.run(&Local::threads(2), &Store::folder(&folder.0).unwrap()).unwrap(), report);
+    assert!(contents(&folder.0) == expected, "one by one");
+    // What is read is what was written, and a reader of numbers leaves lists out.
+    let shards: Vec<Shard> = store.shards(ensemble.fingerprint()).unwrap().map(Result::unwrap).collect();
+    // As text, in which NaN is NaN.
+    assert!(format!("{shards:?}") == format!("{:?}", chunks(&ensemble)));
+    let table = Table::read(&store.files().unwrap()[0].1).unwrap();
+    assert!(table.column("spin").is_none() && table.column("energy").is_some());
+    // The sums are those of the crossings in the files.
+    let spins: Vec<f64> = shards.iter().flat_map(|shard| shard.rows.crossings[0].columns[1].clone()).collect();
+    let Some(Reduced::Moments(moments)) = report.reduced("spins") else { panic!("{report:?}") };
+    let mean = spins.iter().sum::<f64>() / spins.len() as f64;
+    assert_eq!(moments.count, spins.len() as u64);
+    assert!((moments.mean - mean).abs() < 1e-13, "{moments:?}, {mean}");
+}
+
+/// Once, where the function is zero at the end of a step, to the bit; not at the start, nor where no sign follows.
+#[test]
+fn a_zero_at_the_end_of_a_step_is_one_crossing() {
+    let times = |zero: f64, event: Event| {
+        let section = Section::new(event, move |now: &Moment<'_, Top>| now.time() - zero);
+        let shard = tops(1, STEPS).every(10).section(section.keep(["t"], |now| [now.time()])).chunk(0, &|| false);
+        let crossings = &shard.unwrap().rows.crossings[0];
+        (crossings.row.clone(), crossings.columns[0].clone())
+    };
+    assert_eq!(times(0.0, Event::crossing()), (vec![], vec![]));
+    assert_eq!(times(0.02 * STEPS as f64, Event::crossing()), (vec![], vec![]));
+    assert_eq!(times(0.2, Event::falling()), (vec![], vec![]));
+    for event in [Event::rising(), Event::rising().curvature(1e-3)] {
+        let (row, found) = times(0.2, event);
+        // The row of step 10 has been written when the sign is known.
+        assert_eq!((row, found.len()), (vec![2], 1), "{event:?}");
+        assert!((found[0] - 0.2).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn a_function_without_a_value_stops_its_member() {
+    let ensemble = tops(12, STEPS).section(
+        Section::new(
+            Event::crossing(),
+            |now: &Moment<'_, Top>| {
+                if now.time() > 1.0 && now.velocity().z < 4.5 { f64::NAN } else { 1.0 }
+            },
+        )
+        .keep(["t"], |now| [now.time()]),
+    );
+    let shard = ensemble.chunk(0, &|| false).unwrap();
+    let undisturbed = tops(12, STEPS).chunk(0, &|| false).unwrap();
+    let lost: Vec<_> = shard.failures.iter().filter(|failed| matches!(failed.failure, Failure::Other(_))).collect();
+    assert!((1..10).contains(&lost.len()) && shard.finished + lost.len() as u64 == undisturbed.finished, "{lost:?}");
+    for failed in lost {
+        assert!(failed.failure.to_string().contains("no value at t = "), "{failed:?}");
+        assert!(failed.steps > 50);
+        let row = shard.rows.member.iter().position(|member| *member == failed.member).unwrap();
+        assert_eq!((shard.rows.status[row], shard.rows.step[row]), (Status::Stopped, failed.steps));
+    }
+    // From the start on.
+    let never = Section::new(Event::crossing(), |_: &Moment<'_, Top>| f64::NAN);
+    let shard = tops(2, STEPS).section(never).chunk(0, &|| false).unwrap();
+    assert_eq!((shard.finished, shard.failures.len(), shard.failures[0].steps), (0, 2, 0));
+}
+
+#[test]
+fn another_section_is_another_plan() {
+    let section = |event, zero: f64| Section::new(event, move |now: &Moment<'_, Top>| now.momentum().z - zero);
+    let plans = [
+        tops(20, 100),
+        tops(20, 100).section(section(Event::rising(), 0.0)),
+        tops(20, 100).section(section(Event::falling(), 0.0)),
+        tops(20, 100).section(section(Event::rising(), 1.0)),
+        tops(20, 100).section(section(Event::rising(), 0.0).keep(["t"], |now| [now.time()])),
+        tops(20, 100).section(section(Event::rising(), 0.0).reduce("t", Reduction::Moments, |now| 2.0 * now.time())),
+    ];
+    let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
+    fingerprints.sort_unstable();
+    fingerprints.dedup();
+    assert_eq!(fingerprints.len(), plans.len());
+}
+
+fn is_refused(section: impl FnOnce() -> Section<Top> + std::panic::UnwindSafe) -> String {
+    let payload = std::panic::catch_unwind(|| drop(tops(1, 1).section(section()))).unwrap_err();
+    let text = payload.downcast_ref::<String>().cloned();
+    text.unwrap_or_else(|| (*payload.downcast_ref::<&str>().unwrap()).to_owned())
+}
+
+#[test]
+fn sections_have_names_of_their_own_and_end_nothing() {
+    let section = || Section::<Top>::new(Event::rising(), |now: &Moment<'_, Top>| now.momentum().z);
+    for name in ["member", "x"] {
+        assert!(is_refused(move || section().keep([name], |_| [0.0])).contains(&format!("`{name}`")));
+    }
+    assert!(is_refused(move || section().keep(["t", "t"], |_| [0.0; 2])).contains("`t`"));
+    assert!(is_refused(move || section().reduce("z", Reduction::Moments, |_| 0.0)).contains("`z`"));
+    assert!(is_refused(|| Section::new(Event::rising().terminal(), |_: &Moment<'_, Top>| 0.0)).contains("terminal"));
+}

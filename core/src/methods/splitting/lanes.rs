@@ -1,0 +1,79 @@
+//! Splittings in lanes: shares are gathered as they were folded for each body alone.
+
+use super::{KineticFlow, Share, Spin, Split};
+use crate::mechanics::{Effect, Scalar};
+use crate::numbers::{InLanes, Lanes, Real, lanes_of_fields};
+use nalgebra::SimdValue;
+
+type Element<S> = <Scalar<S> as SimdValue>::Element;
+
+lanes_of_fields!(
+    impl[S, K] Split<S, K> => Split<S::Lane, K::Lane>, as Split
+    where [
+        S: Effect<Scalar: Real<Element: Real>, Constants: Lanes<Lane = <S::Lane as Effect>::Constants>>
+            + Lanes<Lane: Effect<Scalar = Element<S>>>,
+        K: KineticFlow<Scalar<S>, Drift: Lanes<Lane = <K::Lane as KineticFlow<Element<S>>>::Drift>>
+            + Lanes<Lane: KineticFlow<Element<S>>>
+    ]
+    { lanes: [torque, inverse_inertia, kinetic, outer, inner, joint, spin], scalars: [h], shared: [scheme] }
+);
+
+impl<W, S, K> InLanes<W> for Split<S, K>
+where
+    S: Effect + InLanes<W, Together: Effect>,
+    K: KineticFlow<Scalar<S>> + InLanes<W, Together: KineticFlow<Scalar<S::Together>>>,
+    Split<S::Together, K::Together>: Lanes<Lane = Self>,
+{
+    type Together = Split<S::Together, K::Together>;
+}
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] Spin<T> => Spin<T::Element>, as Spin { lanes: [], scalars: [angle], shared: [] }
+);
+
+/// Of one kind in all lanes.
+impl<D: Lanes, T: Real<Element: Real>> Lanes for Share<D, T> {
+    type Lane = Share<D::Lane, T::Element>;
+
+    fn splat(lane: &Self::Lane) -> Self {
+        match lane {
+            Share::Drift(drift) => Self::Drift(D::splat(drift)),
+            Share::Kick(time) => Self::Kick(T::splat(*time)),
+            Share::GradientKick(time, mobility) => Self::GradientKick(T::splat(*time), Lanes::splat(mobility)),
+        }
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        match self {
+            Self::Drift(drift) => Share::Drift(drift.lane(k)),
+            Self::Kick(time) => Share::Kick(time.extract(k)),
+            Self::GradientKick(time, mobility) => Share::GradientKick(time.extract(k), Lanes::lane(mobility, k)),
+        }
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        match (self, lane) {
+            (Self::Drift(own), Share::Drift(drift)) => own.set_lane(k, drift),
+            (Self::Kick(own), Share::Kick(time)) => {
+                own.replace(k, *time);
+                true
+            }
+            (Self::GradientKick(own, matrix), Share::GradientKick(time, mobility)) => {
+                own.replace(k, *time);
+                matrix.set_lane(k, mobility)
+            }
+            _ => false,
+        }
+    }
+}
+
+/// A flow of the free body that is a type of its scalar.
+macro_rules! flow_in_lanes {
+    ($([$($generics:tt)*] $flow:ident<$($before:ident,)* _>),+ $(,)?) => {$(
+        impl<$($generics)* W: Real<Element: Real>> InLanes<W> for super::$flow<$($before,)* W::Element> {
+            type Together = super::$flow<$($before,)* W>;
+        }
+    )+};
+}
+
+flow_in_lanes!([] SymmetricBody<_>, [] ExactBody<_>, [const ROTATIONS: usize,] SplitBody<ROTATIONS, _>);

@@ -1,0 +1,103 @@
+//! A Poincaré section of an asymmetric heavy top, of motions with one energy and one momentum about the vertical.
+//!
+//! By that momentum the top is a system of two degrees of freedom, and its energy leaves a surface of three dimensions.
+//! Where the second body axis rises through the horizontal plane, the nutation, the angle of the vertical from the
+//! third axis towards the first, and the momentum `p_2` along with it are two coordinates on it: regular motions draw
+//! curves there, chaotic ones fill areas.
+
+use liestep::effects::{Gravity, PrincipalBody};
+use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
+use liestep::motion::Moment;
+use liestep::with::{Event, sections};
+use liestep::{SO3, Stepper};
+use liestep_ensemble::{Ensemble, Failure, Member, Section, Store};
+use nalgebra::Vector3;
+
+use crate::Mistake;
+
+const STEP: f64 = 0.01; // s
+const MOMENTS: Vector3<f64> = Vector3::new(2.0, 3.0, 4.0); // kg m²
+const WEIGHT: f64 = 9.81; // N, at:
+const CENTRE: Vector3<f64> = Vector3::new(0.2, 0.0, 0.9); // m
+const ENERGY: f64 = 13.0; // J
+const VERTICAL: f64 = 3.0; // kg m²/s
+/// Of `p_2`, kg m²/s: there is no more at this energy.
+pub const LARGEST: f64 = 12.5;
+
+type Top = Stepper<Sum<PrincipalBody, Gravity>>;
+
+/// So many motions of so many steps.
+#[must_use]
+pub fn ensemble(members: u64, steps: u64) -> Ensemble<Top> {
+    let section = Section::new(Event::rising(), sections::plane(Vector3::y(), Vector3::z())).keep(
+        ["t", "nutation", "p2"],
+        |now: &Moment<'_, Top>| {
+            let w = now.advected().1;
+            [now.time(), w.x.atan2(w.z), now.momentum().y]
+        },
+    );
+    Ensemble::new("a section of a top", members, steps, top)
+        .chunks_of(8)
+        .keep(["energy"], |run| [run.stepper.energy(run.state)])
+        .section(section)
+}
+
+/// On the section, somewhere.
+#[allow(non_snake_case)] // the letters of the field
+fn top(member: &Member<'_>) -> Result<(Top, <Top as liestep::motion::Integrator>::State), Failure> {
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(MOMENTS)?;
+    let gravity = Gravity { m: 1.0, g: WEIGHT, rho: CENTRE, up: Vector3::z() };
+    let stepper = Stepper::new(PrincipalBody { J_d } + gravity, STEP)?;
+    for attempt in 0..1_000 {
+        let nutation = member.uniform(&format!("nutation {attempt}"), -3.1..3.1);
+        let across = member.uniform(&format!("p_2 {attempt}"), -LARGEST..LARGEST);
+        if let Some(momentum) = momentum(nutation, across) {
+            let attitude = SO3::exp(-Vector3::y() * nutation);
+            let state = stepper.start_with_momentum(attitude, momentum)?;
+            return Ok((stepper, state));
+        }
+    }
+    Err(Failure::Other("no motion of this energy was drawn".to_owned()))
+}
+
+/// The momentum with which a motion of the energy rises through the section here, if there is one.
+fn momentum(nutation: f64, across: f64) -> Option<Vector3<f64>> {
+    let (sine, cosine) = nutation.sin_cos();
+    let (w, u) = (Vector3::new(sine, 0.0, cosine), Vector3::new(cosine, 0.0, -sine));
+    let mobility = MOMENTS.map(f64::recip);
+    let kinetic = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(&b.component_mul(&mobility));
+    let left = ENERGY - WEIGHT * CENTRE.dot(&w) - 0.5 * across * across / MOMENTS.y;
+    // p = c w + a u + p_2 E_2, of which ½ p·J⁻¹p is known: A a² + 2B a + C = 0. The section is passed with A a + B.
+    let (quadratic, half) = (kinetic(&u, &u), VERTICAL * kinetic(&u, &w));
+    let square = half * half - quadratic * (VERTICAL * VERTICAL * kinetic(&w, &w) - 2.0 * left);
+    (square > 0.0).then(|| w * VERTICAL + u * ((square.sqrt() - half) / quadratic) + Vector3::y() * across)
+}
+
+/// A motion by its crossings.
+#[derive(Clone, Debug)]
+pub struct Orbit {
+    /// By how much its energy is off at the end, J.
+    pub off: f64,
+    /// Nutation (rad) and `p_2` (kg m²/s) of each crossing.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Of each member what is drawn.
+///
+/// # Errors
+///
+/// Where a file can't be read.
+pub fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Orbit>, Mistake> {
+    let mut found = Vec::new();
+    for shard in store.shards(ensemble.fingerprint())? {
+        let rows = shard.map_err(|fault| fault.to_string())?.rows;
+        let first = found.len();
+        found.extend(rows.columns[0].iter().map(|energy| Orbit { off: energy - ENERGY, points: Vec::new() }));
+        // A row for each member.
+        for (place, row) in rows.crossings[0].row.iter().enumerate() {
+            let [nutation, across] = [1, 2].map(|column| rows.crossings[0].columns[column][place]);
+            found[first + row].points.push([nutation, across]);
+        }
+    }
+    Ok(found)
+}
