@@ -58,7 +58,7 @@ mod program;
 /// What they conserve together, and whether a step solves them together, is in the documentation of the struct.
 /// `examples/declarations/double_pendulum.rs` is one.
 ///
-/// Two to four bodies are declared together, each of which turns by `SO3`. They have no `ContinuousLagrangian`; no
+/// Two to four bodies are declared together, each of which turns by `SO3`. They have no `ContinuousLagrangian`, and so no `l = …`; no
 /// `#[force]` acts on them, and no effect of the library, as those are of one body; and no splitting has their kinetic
 /// flow. Compositions, substeps and the derivatives of a step are there for them.
 ///
@@ -76,8 +76,9 @@ mod program;
 /// | `midpoint(exp)` | `h l(ξ, exp(−hξ/2)·w)` | `hξ = log F` |
 /// | `chord`, `chord(Cayley)`, `chord(exp)` | `h l(ξ, (w + F⁻¹·w)/2)` | as for the trapezoid |
 ///
-/// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. A step needs one inertia for
-/// all velocities, so a `discretise`d `l` is quadratic in the velocity. For the matrix `(F − I)/h` the velocity stands as
+/// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. Where `l` isn't quadratic in
+/// the velocity, a stepper finds the velocity of a momentum by Newton's iteration, and what has the motion of one free body
+/// in it, like a splitting, is refused when it is set up. For the matrix `(F − I)/h` the velocity stands as
 /// `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A logarithm is known on SO(3) and where
 /// all generators are strictly triangular. A declared `l_d` has the continuous equations of its limit.
 ///

@@ -1,6 +1,6 @@
 //! An effect that a scene has or hasn't: asked in each step, so that all scenes are of few types.
 
-use liestep::mechanics::{DiscreteLagrangian, Effect, Matrix, Operations, Parts, SceneVisitor};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Matrix, Operations, Parts, SceneVisitor, Term};
 use liestep::numbers::Entries as _;
 use liestep::{SO3, SetupError};
 use nalgebra::{Matrix3, Vector3};
@@ -12,12 +12,24 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Copy, Debug)]
 pub struct Switched<E>(pub Option<E>);
 
-impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
+impl<E: Effect<Scalar = f64, Group = SO3>> Term for Switched<E> {
     type Scalar = f64;
     type Group = SO3;
+    type Advected = E::Advected;
+
+    fn validate(&self) -> Result<(), SetupError> {
+        self.0.as_ref().map_or(Ok(()), E::validate)
+    }
+
+    /// Zeros, which are carried along, where there is nothing.
+    fn advected(&self) -> E::Advected {
+        self.0.as_ref().map_or_else(|| E::Advected::from_entries(&mut || 0.0), E::advected)
+    }
+}
+
+impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
     type Retraction = E::Retraction;
     type Kinetic = E::Kinetic;
-    type Advected = E::Advected;
     type Constants = Option<E::Constants>;
     type StepTerms = Option<E::StepTerms>;
 
@@ -27,19 +39,10 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
     const OPERATIONS: Operations = E::OPERATIONS;
     const DERIVATION: &'static str = E::DERIVATION;
 
-    fn validate(&self) -> Result<(), SetupError> {
-        self.0.as_ref().map_or(Ok(()), E::validate)
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         if let Some(effect) = &self.0 {
             effect.describe(visitor);
         }
-    }
-
-    /// Zeros, which are carried along, where there is nothing.
-    fn advected(&self) -> E::Advected {
-        self.0.as_ref().map_or_else(|| E::Advected::from_entries(&mut || 0.0), E::advected)
     }
 
     fn momentum_jacobian(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Matrix3<f64> {

@@ -16,12 +16,14 @@ mod operations;
 mod second_derivatives;
 mod sum;
 mod symmetry;
+mod term;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Matrix, Moves, Parts, Regular, Residual, Scalar, Square, Vector};
+pub use effect::{Effect, Group, Limit, Matrix, Moves, Parts, Regular, Residual, Scalar, Square, Vector};
 pub(crate) use effect::{
-    check_inertia, constant_inertia, energy, energy_of_velocity, momentum_of_velocity, velocity_of_momentum,
+    check_inertia, constant_inertia, energy, energy_of_velocity, estimated_velocity, momentum_of_velocity,
+    velocity_of_momentum,
 };
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
@@ -32,3 +34,4 @@ pub use operations::Operations;
 pub use second_derivatives::{SecondDerivatives, StepDerivatives};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
+pub use term::Term;

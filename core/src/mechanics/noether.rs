@@ -2,9 +2,10 @@
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::continuous::ContinuousLagrangian;
+use crate::mechanics::term::Term;
 use crate::numbers::{Coordinates, Entries, real, reported};
 
-type Vector<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
+type Vector<L> = <<L as Term>::Group as LieGroup>::Vector;
 
 /// What rounding leaves of a row that is a combination of others, relative to what the rows are made of.
 const ROUNDING: f64 = 1e-10;
@@ -12,7 +13,7 @@ const ROUNDING: f64 = 1e-10;
 /// The directions in space along which a scene is the same: a basis of `η` with `η·a_0 = 0`. Along them the spatial
 /// momentum, `⟨Ad*_{g⁻¹} μ, η⟩`, is conserved.
 pub(crate) fn left_symmetries<L: ContinuousLagrangian>(lagrangian: &L) -> Vec<Vector<L>> {
-    let spatial = lagrangian.spatial_parameters();
+    let spatial = lagrangian.advected();
     let columns = (0..L::Group::DIMENSION).map(|k| {
         let mut entries = Vec::new();
         spatial.rate(&L::Group::hat(&Vector::<L>::axis(k))).each(&mut |entry| entries.push(reported(entry)));

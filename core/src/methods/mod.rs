@@ -16,7 +16,7 @@ mod preprocessed;
 mod splitting;
 
 pub use composition::{Composed, CompositionScheme};
-pub use gauss::{Collocated, CotangentGauss, Gauss};
+pub use gauss::{Collocated, CotangentCarry, CotangentGauss, Gauss};
 pub use preprocessed::{Preprocessed, PreprocessedOrder};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{
