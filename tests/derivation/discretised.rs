@@ -54,7 +54,7 @@ macro_rules! quartic {
         impl $name {
             fn new() -> Self {
                 let mut random = Random::new(11);
-                Self { J: tensor(&mut random), k: 0.1, r: column(&mut random), covector: column(&mut random) }
+                Self { J: tensor(&mut random), k: 0.02, r: column(&mut random), covector: column(&mut random) }
             }
         }
     };
@@ -87,8 +87,8 @@ struct Ambient {
 
 impl Ambient {
     fn new() -> Self {
-        let J = Inertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap();
-        Self { J, k: 0.1, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) }
+        let J = Inertia::from_principal_moments(Vector3::new(0.4, 0.6, 0.9)).unwrap();
+        Self { J, k: 0.001, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) }
     }
 }
 
@@ -147,14 +147,30 @@ where
 }
 
 #[test]
-fn of_a_quartic_kinetic_energy() {
+fn on_so3() {
     assert_discretised(&OnSo3::new(), "SO(3), trapezoid(Cayley)");
     assert_discretised(&OnSo3Halfway::new(), "SO(3), midpoint(exp)");
+}
+
+#[test]
+fn on_so3_in_the_ambient_matrix() {
     assert_discretised(&Ambient::new(), "SO(3), trapezoid");
     let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() };
     assert_discretised(&(Ambient::new() + gravity), "SO(3), a sum");
+}
+
+#[test]
+fn on_sl2() {
     assert_discretised(&OnSl2::new(), "SL(2), trapezoid(Cayley)");
+}
+
+#[test]
+fn on_se3() {
     assert_discretised(&OnSe3::new(), "SE(3), chord(Cayley)");
+}
+
+#[test]
+fn on_affine_maps() {
     assert_discretised(&OnAffine::new(), "affine maps, trapezoid(Cayley)");
 }
 
