@@ -267,18 +267,19 @@ macro_rules! assert_collocation {
             let h = long(time) / long(steps.into());
             system.end(&Tableau::new(stages), &spatial, &long_momentum, h, steps)
         };
-        let exact = after(10, 20);
+        let exact = after(10, 28);
         for stages in 5..=8 {
             let error = |steps: u32| {
                 let end = after(stages, steps);
                 (end.0 - &exact.0).map(DoubleDouble::rounded).norm()
                     + (end.1 - &exact.1).map(DoubleDouble::rounded).norm()
             };
-            let errors = [6, 8].map(error);
-            let order = (errors[0] / errors[1]).ln() / (8.0_f64 / 6.0).ln();
+            let errors = [10, 14].map(error);
+            let order = (errors[0] / errors[1]).ln() / 1.4_f64.ln();
             println!("{name}, {stages} stages: order {order:.2}, errors {errors:?}");
             let expected = 2.0 * f64::from(u32::try_from(stages).unwrap());
-            assert!(order > expected - 0.4, "{name}, {stages} stages: order {order}, errors {errors:?}");
+            // The order of a symmetric method is even, so that one above 2s − 1 is 2s.
+            assert!(order > expected - 1.0, "{name}, {stages} stages: order {order}, errors {errors:?}");
         }
 
         let z = Long::from_iterator($d + $n, 1, long_momentum.iter().chain(spatial.iter()).copied());
@@ -303,15 +304,15 @@ macro_rules! assert_collocation {
 
 #[test]
 fn cotangent_collocation_on_sl2() {
-    assert_collocation!(OnSl2: SL2, 2, 3, 1.2);
+    assert_collocation!(OnSl2: SL2, 2, 3, 2.0);
 }
 
 #[test]
 fn cotangent_collocation_on_se3() {
-    assert_collocation!(OnSe3: SE3, 4, 6, 2.6);
+    assert_collocation!(OnSe3: SE3, 4, 6, 4.0);
 }
 
 #[test]
 fn cotangent_collocation_on_a_group_of_ones_own() {
-    assert_collocation!(OnAffine: Affine, 2, 2, 4.0);
+    assert_collocation!(OnAffine: Affine, 2, 2, 6.0);
 }
