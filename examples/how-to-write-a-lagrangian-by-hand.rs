@@ -10,7 +10,7 @@ use std::error::Error;
 
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Parts, SceneVisitor, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Parts, SceneVisitor, Term, WithKinetic};
 use liestep::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 
@@ -55,13 +55,22 @@ impl DiscreteLagrangian for Body {
     }
 }
 
-/// The stages of a step; the documentation of the trait has the formulas that they are parts of.
-impl Effect for Body {
+impl Term for Body {
     type Scalar = f64;
     type Group = SO3;
+    type Advected = ();
+
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
+
+    fn advected(&self) {}
+}
+
+/// The stages of a step; the documentation of the trait has the formulas that they are parts of.
+impl Effect for Body {
     type Retraction = CayleyRetraction;
     type Kinetic = WithKinetic;
-    type Advected = ();
     /// `J` and `h/2`.
     type Constants = (Matrix3<f64>, f64);
     /// `(h/2) a`.
@@ -72,16 +81,10 @@ impl Effect for Body {
     const INERTIA_IS_CONSTANT: bool = true;
     const DERIVATION: &'static str = "the free rigid body (3.13), by hand";
 
-    fn validate(&self) -> Result<(), SetupError> {
-        Ok(())
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term(Self::DERIVATION);
         self.inertia.as_matrix().iter().for_each(|&entry| visitor.parameter("inertia", entry));
     }
-
-    fn advected(&self) {}
 
     fn momentum_jacobian(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Matrix3<f64> {
         let p = f * self.inertia.as_matrix() / h;

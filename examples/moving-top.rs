@@ -11,7 +11,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::fs;
 
-use liestep::mechanics::Effect;
+use liestep::mechanics::{Effect, Term};
 use liestep::prelude::*;
 use workbench::heavy_top::declaration::HeavyTop;
 use workbench::heavy_top::euler_angles::EulerAngles;
@@ -32,7 +32,7 @@ const POINTS: u32 = 4;
 /// What a README has room for.
 const MOST_BYTES: usize = 100_000;
 
-type StateOfTop = State<SO3, <HeavyTop as Effect>::Advected>;
+type StateOfTop = State<SO3, <HeavyTop as Term>::Advected>;
 
 /// The top let go at the top of a nod, until the next.
 struct Nod {

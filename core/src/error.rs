@@ -59,7 +59,8 @@ pub enum SetupError {
         /// The largest difference of two entries, kg m².
         difference: f64,
     },
-    /// The method has the motion of one free body in it, and the inertia depends on what is advected or given.
+    /// The method has the motion of one free body in it, and the inertia depends on what is advected or given, or on the
+    /// velocity.
     VaryingInertia,
     /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
     BiasMismatch,
@@ -119,7 +120,7 @@ impl fmt::Display for SetupError {
             ),
             Self::VaryingInertia => write!(
                 f,
-                "the inertia depends on what is advected or given, and this method needs one that is the same everywhere; compose the scene's own step instead"
+                "the inertia depends on what is advected or given, or on the velocity, and this method needs one that is the same everywhere; compose the scene's own step instead"
             ),
             Self::BiasMismatch => write!(
                 f,

@@ -13,8 +13,8 @@ pub use crate::groups::{CayleyRetraction, Configuration, Relative, Retraction, S
 pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor};
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
-    ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Operations, Parts, Residual,
-    SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, WithKinetic, WithoutKinetic,
+    ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
+    Residual, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, Term, WithKinetic, WithoutKinetic,
 };
 pub use crate::numbers::{Blocks, InLanes, Lanes, Real, real};
 

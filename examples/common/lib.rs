@@ -16,6 +16,7 @@ pub mod newton_tolerance;
 pub mod output;
 pub mod progress;
 pub mod run;
+pub mod runge_kutta;
 pub mod table;
 mod tenths;
 pub mod top_equations;

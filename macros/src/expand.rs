@@ -49,13 +49,16 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
         (None, _) => tree.clone(),
     };
     judged::terms(&declaration, &discrete, errors)?;
-    let readings = lower::readings(&declaration, &discrete, errors)?;
+    let mut readings = lower::readings(&declaration, &discrete, errors)?;
+    if let Some(equations) = &declared {
+        readings = readings.into_iter().map(|reading| equations.behind(reading)).collect();
+    }
     // Handed over, as a long reading is derived only if no short one can be.
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, errors)?;
     let findings = judged::findings(&declaration, &discrete, &chosen, errors)?;
     let equations = match role {
         Role::Lagrangian if !declaration.group.is_product() => {
-            Some(judged::continuous(declared, &declaration, &tree, &chosen, errors)?)
+            Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?)
         }
         Role::Lagrangian | Role::Force => None,
     };

@@ -64,7 +64,7 @@ mod program;
 /// What turns does so by `SO3`. What is translated by `R1`, `R2` or `R3` has a scalar or a vector for its increment, in the
 /// axes of space, which is added. A wheel's turn about its axis is one of `R1`, as in `examples/declarations/gyrostat.rs`.
 ///
-/// Two to four factors are declared together. They have no `ContinuousLagrangian`; no
+/// Two to four factors are declared together. They have no `ContinuousLagrangian`, and so no `l = …`; no
 /// `#[force]` acts on them, and no effect of the library, as those are of one body; and no splitting has their kinetic
 /// flow. Compositions, substeps and the derivatives of a step are there for them.
 ///
@@ -82,8 +82,9 @@ mod program;
 /// | `midpoint(exp)` | `h l(ξ, exp(−hξ/2)·w)` | `hξ = log F` |
 /// | `chord`, `chord(Cayley)`, `chord(exp)` | `h l(ξ, (w + F⁻¹·w)/2)` | as for the trapezoid |
 ///
-/// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. A step needs one inertia for
-/// all velocities, so a `discretise`d `l` is quadratic in the velocity. For the matrix `(F − I)/h` the velocity stands as
+/// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. Where `l` isn't quadratic in
+/// the velocity, a stepper finds the velocity of a momentum by Newton's iteration, and what has the motion of one free body
+/// in it, like a splitting, is refused when it is set up. For the matrix `(F − I)/h` the velocity stands as
 /// `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A logarithm is known on SO(3) and where
 /// all generators are strictly triangular. A declared `l_d` has the continuous equations of its limit.
 ///

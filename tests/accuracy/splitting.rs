@@ -3,7 +3,7 @@
 use checks::random::Random;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::effects::{GravityGradient, Rotor, Spring};
-use liestep::mechanics::Effect;
+use liestep::mechanics::{Effect, Term as _};
 use liestep::methods::{
     CompositionScheme, Flow, KineticFlow, PreprocessedFlow, PreprocessedOrder, SplittingScheme, SymmetricBody,
 };

@@ -5,7 +5,7 @@ use core::fmt::Debug;
 
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Vector, WithKinetic,
+    DiscreteLagrangian, Effect, Group, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Term, Vector, WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
@@ -38,29 +38,35 @@ macro_rules! declared_as {
     };
 }
 
-/// What doesn't depend on how the equation is solved.
-macro_rules! staged_as {
+/// Its own parameters.
+macro_rules! term_as {
     ($inner:ty) => {
         type Scalar = Scalar<$inner>;
         type Group = Group<$inner>;
-        type Retraction = <$inner as Effect>::Retraction;
-        type Kinetic = WithKinetic;
-        type Advected = <$inner as Effect>::Advected;
-
-        const PARTS: Parts = <$inner>::PARTS;
-        const INERTIA_IS_CONSTANT: bool = <$inner>::INERTIA_IS_CONSTANT;
-        const DERIVATION: &'static str = <$inner>::DERIVATION;
+        type Advected = <$inner as Term>::Advected;
 
         fn validate(&self) -> Result<(), SetupError> {
             self.0.validate()
         }
 
-        fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
-            self.0.describe(visitor);
-        }
-
         fn advected(&self) -> Self::Advected {
             self.0.advected()
+        }
+    };
+}
+
+/// What doesn't depend on how the equation is solved.
+macro_rules! staged_as {
+    ($inner:ty) => {
+        type Retraction = <$inner as Effect>::Retraction;
+        type Kinetic = WithKinetic;
+
+        const PARTS: Parts = <$inner>::PARTS;
+        const INERTIA_IS_CONSTANT: bool = <$inner>::INERTIA_IS_CONSTANT;
+        const DERIVATION: &'static str = <$inner>::DERIVATION;
+
+        fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
+            self.0.describe(visitor);
         }
 
         fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
@@ -111,6 +117,10 @@ pub struct WithJacobian<L>(pub L);
 
 impl<L: DiscreteLagrangian> DiscreteLagrangian for WithJacobian<L> {
     declared_as!(L);
+}
+
+impl<L: Term> Term for WithJacobian<L> {
+    term_as!(L);
 }
 
 impl<L: Effect> Effect for WithJacobian<L> {
@@ -171,6 +181,14 @@ where
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy + Debug + PartialEq,
 {
     declared_as!(L);
+}
+
+impl<T, L> Term for WithoutJacobian<L, T>
+where
+    T: Real,
+    L: Term<Scalar = T, Group = SO3<T>>,
+{
+    term_as!(L);
 }
 
 impl<T, L> Effect for WithoutJacobian<L, T>
@@ -237,6 +255,10 @@ pub struct Badly<L>(pub L);
 
 impl<L: DiscreteLagrangian> DiscreteLagrangian for Badly<L> {
     declared_as!(L);
+}
+
+impl<L: Term> Term for Badly<L> {
+    term_as!(L);
 }
 
 impl<L: Effect> Effect for Badly<L> {

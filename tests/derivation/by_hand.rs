@@ -2,7 +2,7 @@
 
 use liestep::accuracy::{Accuracy, Candidates};
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, SceneVisitor, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, SceneVisitor, Term, WithKinetic};
 use liestep::methods::{SplittingScheme, SymmetricBody};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
@@ -57,12 +57,23 @@ impl DiscreteLagrangian for HandWrittenTop {
     }
 }
 
-impl Effect for HandWrittenTop {
+impl Term for HandWrittenTop {
     type Scalar = f64;
     type Group = SO3;
+    type Advected = Vector3<f64>;
+
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
+
+    fn advected(&self) -> Vector3<f64> {
+        Vector3::z()
+    }
+}
+
+impl Effect for HandWrittenTop {
     type Retraction = CayleyRetraction;
     type Kinetic = WithKinetic;
-    type Advected = Vector3<f64>;
     /// `J`, `(h/2) m g ρ`, `h/2`.
     type Constants = (Matrix3<f64>, Vector3<f64>, f64);
     /// `(h/2) a`.
@@ -72,19 +83,11 @@ impl Effect for HandWrittenTop {
     const INERTIA_IS_CONSTANT: bool = true;
     const DERIVATION: &'static str = "the heavy top (3.13), by hand";
 
-    fn validate(&self) -> Result<(), SetupError> {
-        Ok(())
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term(Self::DERIVATION);
         self.inertia.as_matrix().iter().for_each(|&entry| visitor.parameter("inertia", entry));
         visitor.parameter("weight", self.weight);
         self.rho.iter().for_each(|&entry| visitor.parameter("rho", entry));
-    }
-
-    fn advected(&self) -> Vector3<f64> {
-        Vector3::z()
     }
 
     fn momentum_jacobian(&self, f: &Matrix3<f64>, _: &Vector3<f64>, h: f64) -> Matrix3<f64> {

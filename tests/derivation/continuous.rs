@@ -6,10 +6,11 @@ use liestep::effects::{Gravity, RigidBody, Rotor};
 use liestep::groups::R3;
 use liestep::mechanics::{ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia};
 use liestep::methods::CotangentGauss;
-use liestep::motion::RightHandSide;
+use liestep::motion::{Integrator, RightHandSide};
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3, Vector4, convert};
 use num_dual::Dual64;
+use workbench::runge_kutta;
 
 fn moments() -> DiagonalNonstandardInertia {
     DiagonalNonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap()
@@ -151,24 +152,6 @@ fn every_discretisation_is_what_it_says() {
     assert_discretised("chord exp", &ChordExp::new(), &ChordExp::new());
 }
 
-/// A classical Runge–Kutta step of the numbers of a right-hand side.
-fn rk4(rate: impl Fn(&[f64], &mut [f64]), state: &mut [f64], h: f64) {
-    let n = state.len();
-    let at = |k: &[f64], h: f64| -> Vec<f64> { state.iter().zip(k).map(|(y, k)| y + h * k).collect() };
-    let of = |y: &[f64]| {
-        let mut k = vec![0.0; n];
-        rate(y, &mut k);
-        k
-    };
-    let k1 = of(state);
-    let k2 = of(&at(&k1, 0.5 * h));
-    let k3 = of(&at(&k2, 0.5 * h));
-    let k4 = of(&at(&k3, h));
-    for i in 0..n {
-        state[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-    }
-}
-
 /// Steps of each discretisation converge, at order two, to what a solver makes of the continuous equations.
 #[test]
 fn discretisations_converge_to_the_continuous_motion() {
@@ -184,7 +167,7 @@ fn discretisations_converge_to_the_continuous_motion() {
         let momentum = Vector3::new(1.5, 4.0, 7.0);
         let mut state = continuous.state(&SO3::from(attitude), &momentum);
         for _ in 0..400 {
-            rk4(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, 0.5 / 400.0);
+            runge_kutta::step(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, 0.5 / 400.0);
         }
         let error = |steps: u32| {
             let stepper = Stepper::new(make(), 0.5 / f64::from(steps)).unwrap();
@@ -201,7 +184,9 @@ fn discretisations_converge_to_the_continuous_motion() {
     check(TrapezoidCayley::<f64>::new, "trapezoid(Cayley)");
     check(TrapezoidExp::<f64>::new, "trapezoid(exp)");
     check(MidpointExp::<f64>::new, "midpoint(exp)");
+    check(Chord::<f64>::new, "chord");
     check(ChordCayley::<f64>::new, "chord(Cayley)");
+    check(ChordExp::<f64>::new, "chord(exp)");
 }
 
 /// A sum has the sum of the terms, and the bias of a rotor: by hand, `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
@@ -224,6 +209,91 @@ fn sums_have_continuous_equations() {
     assert!((scene.hamiltonian(&momentum, &parameters).unwrap() - energy).abs() < 1e-12);
 }
 
+/// Without steps: a body, and a pull on it.
+#[lagrangian(group = SO3, velocity = Omega, l = 0.5 * Omega.dot(&(J * Omega)))]
+#[derive(Clone, Copy)]
+struct Turning {
+    J: Inertia,
+}
+
+#[lagrangian(group = SO3, velocity = Omega, advected(w = up), l = -k * w.dot(&rho).powi(2) + Omega.dot(&w))]
+#[derive(Clone, Copy)]
+struct Pull {
+    k: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// Terms with steps and without add in any order, and are what both of them are.
+#[test]
+fn terms_with_steps_and_without_add() {
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
+    let turning = Turning { J: J_d.to_inertia() };
+    let pull = Pull { k: 0.7, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() };
+    let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.3, 0.1, 0.5), up: Vector3::z() };
+    fn torque<L>(scene: &L, velocity: &Vector3<f64>, w: &L::Advected) -> Vector3<f64>
+    where
+        L: ContinuousLagrangian<Scalar = f64, Group = SO3>,
+    {
+        scene.validate().unwrap();
+        scene.lie_poisson(&scene.momentum(velocity, w), w).unwrap().0
+    }
+    let (velocity, w) = (Vector3::new(0.5, 2.0, -1.0), Vector3::new(0.1, 0.6, 0.7));
+    let momentum = turning.J.as_matrix() * velocity + w;
+    // By hand: μ × Ω and w × (−∂l/∂w).
+    let slope = pull.rho * (-2.0 * pull.k * w.dot(&pull.rho)) + velocity - gravity.rho * (gravity.m * gravity.g);
+    let expected = momentum.cross(&velocity) - w.cross(&slope);
+    let all = [
+        torque(&(turning + pull + gravity), &velocity, &(((), w), w)),
+        torque(&(turning + gravity + pull), &velocity, &(((), w), w)),
+        torque(&(gravity + turning + pull), &velocity, &((w, ()), w)),
+        torque(&(pull + (RigidBody { J_d } + gravity)), &velocity, &(w, ((), w))),
+        torque(&(RigidBody { J_d } + pull + gravity), &velocity, &(((), w), w)),
+    ];
+    for found in all {
+        assert!((found - expected).norm() < 1e-12, "{found} and {expected}");
+    }
+    let gauss = CotangentGauss::<_, 3, 3>::new(turning + pull + gravity, 0.05).unwrap();
+    let (mut attitude, mut momentum) = (SO3::from(UnitQuaternion::identity()), Vector3::new(1.0, 4.0, 7.0));
+    let energy = gauss.energy(&attitude, &momentum).unwrap();
+    for _ in 0..20 {
+        (attitude, momentum) = gauss.step(&attitude, &momentum).unwrap();
+    }
+    assert!((gauss.energy(&attitude, &momentum).unwrap() - energy).abs() < 1e-9 * energy.abs());
+}
+
+/// What a run of collocation loses to rounding is carried: on the group, and in the momentum along the vertical, it keeps
+/// many times more than the same steps without.
+#[test]
+fn sums_of_cotangent_collocation_are_compensated() {
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
+    let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() };
+    let gauss = CotangentGauss::<_, 1, 3>::new(RigidBody { J_d } + gravity, 1e-4).unwrap();
+    let velocity = Vector3::new(0.5, 1.2, 2.0);
+    let mut state = gauss.start(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, 0.0)), velocity).unwrap();
+    let (mut attitude, mut momentum) = (state.attitude(), state.momentum());
+    let vertical = |attitude: &SO3, momentum: &Vector3<f64>| (attitude.as_matrix() * momentum).z;
+    let start = vertical(&attitude, &momentum);
+    let missed = |attitude: &SO3, momentum: &Vector3<f64>| {
+        let r = attitude.as_matrix();
+        let defect = (r.transpose() * r - Matrix3::identity()).norm();
+        [defect, (vertical(attitude, momentum) - start).abs() / start.abs()]
+    };
+    let mut worst = [[0.0_f64; 2]; 2];
+    for _ in 0..50_000 {
+        Integrator::step(&gauss, &mut state).unwrap();
+        (attitude, momentum) = gauss.step(&attitude, &momentum).unwrap();
+        for (worst, now) in
+            worst.iter_mut().zip([missed(&state.attitude(), &state.momentum()), missed(&attitude, &momentum)])
+        {
+            *worst = [worst[0].max(now[0]), worst[1].max(now[1])];
+        }
+    }
+    println!("off the group and the momentum: compensated {:?}, plain {:?}", worst[0], worst[1]);
+    assert!(worst[0].iter().all(|&missed| missed < 2e-15), "{worst:?}");
+    assert!(worst[0].iter().zip(worst[1]).all(|(with, without)| 5.0 * with < without), "{worst:?}");
+}
+
 /// A pull by a uniform field: the momentum grows evenly, and the velocity stays below that of light.
 #[test]
 fn a_fast_particle() {
@@ -232,7 +302,7 @@ fn a_fast_particle() {
     let system = RightHandSide::new(particle.clone()).unwrap();
     let mut state = system.state(&R3::default_place(), &Vector3::zeros());
     for _ in 0..2000 {
-        rk4(|y, rate| system.rate(y, rate).unwrap(), &mut state, 0.02);
+        runge_kutta::step(|y, rate| system.rate(y, rate).unwrap(), &mut state, 0.02);
     }
     let (place, momentum) = system.parts(&state);
     let pull = Vector3::new(0.4, -1.0, 0.2) * q;
@@ -331,7 +401,7 @@ fn conserved_momenta() {
     let before = kept(&state);
     assert_eq!(before.len(), 3);
     for _ in 0..1000 {
-        rk4(|y, rate| symmetric.rate(y, rate).unwrap(), &mut state, 1e-3);
+        runge_kutta::step(|y, rate| symmetric.rate(y, rate).unwrap(), &mut state, 1e-3);
     }
     for (before, after) in before.iter().zip(kept(&state)) {
         assert!((before - after).abs() < 1e-8 * (1.0 + before.abs()), "{before} and {after}");

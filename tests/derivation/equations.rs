@@ -39,6 +39,10 @@ fn every_numbered_equation_has_a_row() {
     let expected: BTreeSet<_> =
         NUMBERED.iter().flat_map(|&(chapter, last)| (1..=last).map(move |equation| (chapter, equation))).collect();
     assert_eq!(found, expected);
+    // One click from the number to where it is.
+    let linked = |row: &[&str]| row[2].contains('[') && row[2].contains(']');
+    let unlinked: Vec<_> = rows().filter(|row| row.len() == 4 && !numbers(row[0]).is_empty() && !linked(row)).collect();
+    assert!(unlinked.is_empty(), "{unlinked:?}");
     for figure in 1..=10 {
         let name = format!("3.{figure}");
         assert!(rows().any(|row| row.len() == 3 && row[0].split(", ").any(|part| part == name)), "figure {name}");

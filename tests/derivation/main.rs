@@ -5,6 +5,7 @@
 
 mod by_hand;
 mod continuous;
+mod discretised;
 mod equations;
 mod exact_lagrangian;
 mod golden_steps;

@@ -167,12 +167,12 @@ fn kinds() -> Kinds {
 }
 
 /// A symmetric positive definite matrix.
-fn tensor<const N: usize>(r: &mut Random) -> SMatrix<f64, N, N> {
+pub(crate) fn tensor<const N: usize>(r: &mut Random) -> SMatrix<f64, N, N> {
     let root = SMatrix::<f64, N, N>::from_fn(|_, _| r.signed());
     root * root.transpose() + SMatrix::identity()
 }
 
-fn column<const N: usize>(r: &mut Random) -> SVector<f64, N> {
+pub(crate) fn column<const N: usize>(r: &mut Random) -> SVector<f64, N> {
     SVector::from_fn(|_, _| r.signed())
 }
 

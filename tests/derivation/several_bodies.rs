@@ -3,7 +3,7 @@
 
 use checks::random::Random;
 use liestep::groups::{Configuration, LieGroup as _, Relative, SeenFrom};
-use liestep::mechanics::{DiscreteLagrangian, Effect};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix3, RealField, Vector3, convert};
@@ -70,7 +70,7 @@ fn lifted<T: RealField + Copy>(f: &Matrices<f64>) -> Matrices<T> {
 }
 
 /// `e·w`: what is seen by bodies that are turned by `e⁻¹`, which for these `e` is the transpose.
-fn acted<T: Real + RealField + Copy>(e: &Matrices<T>, w: &Values) -> <Pair<T> as Effect>::Advected {
+fn acted<T: Real + RealField + Copy>(e: &Matrices<T>, w: &Values) -> <Pair<T> as Term>::Advected {
     (
         SeenFrom(e.0 * w.0.map(convert::<f64, T>)),
         SeenFrom(e.1 * w.1.map(convert::<f64, T>)),

@@ -1,7 +1,7 @@
 //! Forces fit into scenes as effects that aren't Lagrangians: viscous drag, written by hand.
 
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{Effect, Parts, SceneVisitor, Sum, WithoutKinetic};
+use liestep::mechanics::{Effect, Parts, SceneVisitor, Sum, Term, WithoutKinetic};
 use liestep::prelude::*;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -26,12 +26,21 @@ fn skew(f: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(f.m32 - f.m23, f.m13 - f.m31, f.m21 - f.m12) * 0.5
 }
 
-impl Effect for Drag {
+impl Term for Drag {
     type Scalar = f64;
     type Group = SO3;
+    type Advected = ();
+
+    fn validate(&self) -> Result<(), SetupError> {
+        if self.c.is_finite() { Ok(()) } else { Err(SetupError::Parameter { field: "c", cause: "is not finite" }) }
+    }
+
+    fn advected(&self) {}
+}
+
+impl Effect for Drag {
     type Retraction = CayleyRetraction;
     type Kinetic = WithoutKinetic;
-    type Advected = ();
     type Constants = Coefficients;
     type StepTerms = (f64, Vector3<f64>);
 
@@ -40,17 +49,11 @@ impl Effect for Drag {
     const INERTIA_IS_CONSTANT: bool = true;
     const DERIVATION: &'static str = "viscous drag, by hand";
 
-    fn validate(&self) -> Result<(), SetupError> {
-        if self.c.is_finite() { Ok(()) } else { Err(SetupError::Parameter { field: "c", cause: "is not finite" }) }
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term(Self::DERIVATION);
         visitor.parameter("c", self.c);
         self.moments.iter().for_each(|&moment| visitor.parameter("moments", moment));
     }
-
-    fn advected(&self) {}
 
     /// `∂/∂E_j` of `(c − e) s`.
     fn momentum_jacobian(&self, f: &Matrix3<f64>, (): &(), h: f64) -> Matrix3<f64> {

@@ -5,7 +5,7 @@ use declarations::{FreeBody, FullTop, HeavyTop};
 use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::groups::{Advected, LieGroup as _, Retraction as _};
 use liestep::laws::samples::derivative;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Inertia, Regular, Term as _};
 use liestep::{NonstandardInertia, SO3, State, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;

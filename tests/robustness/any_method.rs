@@ -5,7 +5,7 @@
 use checks::random::Random;
 use declarations::{CayleyTop, HeavyTop, Motion, Top as _};
 use liestep::groups::Advected;
-use liestep::mechanics::{DiscreteLagrangian, Effect};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
 use liestep::methods::{
     CompositionScheme, ExactBody, PreprocessedOrder, ProcessedScheme, SplitBody, SplittingScheme, SymmetricBody,
 };
@@ -16,7 +16,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
 
 /// The state of a stepper.
-type State<S, P> = liestep::State<SO3, <S as Effect>::Advected, <P as Plan<S>>::Kept>;
+type State<S, P> = liestep::State<SO3, <S as Term>::Advected, <P as Plan<S>>::Kept>;
 
 fn attitude() -> SO3 {
     UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, -0.3)).into()

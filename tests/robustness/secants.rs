@@ -7,7 +7,9 @@ use checks::solvers::{WithJacobian, WithoutJacobian, needs_jacobian};
 use declarations::{self, FourthOrderTop, SixthOrderTop};
 use liestep::groups::{CayleyRetraction, LieGroup as _};
 use liestep::laws::samples::derivative;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia, Regular, Residual};
+use liestep::mechanics::{
+    DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia, Regular, Residual, Term as _,
+};
 use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Lanes;
 use liestep::{SO3, StepError, Stepper, lagrangian};

@@ -1,6 +1,6 @@
 //! An effect that a scene has or hasn't: asked in each step, so that all scenes are of few types.
 
-use liestep::mechanics::{DiscreteLagrangian, Effect, Matrix, Operations, Parts, SceneVisitor};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Limit, Matrix, Operations, Parts, SceneVisitor, Term};
 use liestep::numbers::Entries as _;
 use liestep::{SO3, SetupError};
 use nalgebra::{Matrix3, Vector3};
@@ -12,34 +12,38 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Copy, Debug)]
 pub struct Switched<E>(pub Option<E>);
 
-impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
+impl<E: Effect<Scalar = f64, Group = SO3>> Term for Switched<E> {
     type Scalar = f64;
     type Group = SO3;
-    type Retraction = E::Retraction;
-    type Kinetic = E::Kinetic;
     type Advected = E::Advected;
-    type Constants = Option<E::Constants>;
-    type StepTerms = Option<E::StepTerms>;
-
-    const PARTS: Parts = E::PARTS;
-    const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
-    const DENOMINATORS: u32 = E::DENOMINATORS;
-    const OPERATIONS: Operations = E::OPERATIONS;
-    const DERIVATION: &'static str = E::DERIVATION;
 
     fn validate(&self) -> Result<(), SetupError> {
         self.0.as_ref().map_or(Ok(()), E::validate)
     }
 
+    /// Zeros, which are carried along, where there is nothing.
+    fn advected(&self) -> E::Advected {
+        self.0.as_ref().map_or_else(|| E::Advected::from_entries(&mut || 0.0), E::advected)
+    }
+}
+
+impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
+    type Retraction = E::Retraction;
+    type Kinetic = E::Kinetic;
+    type Constants = Option<E::Constants>;
+    type StepTerms = Option<E::StepTerms>;
+
+    const PARTS: Parts = E::PARTS;
+    const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
+    const IS_QUADRATIC: bool = E::IS_QUADRATIC;
+    const DENOMINATORS: u32 = E::DENOMINATORS;
+    const OPERATIONS: Operations = E::OPERATIONS;
+    const DERIVATION: &'static str = E::DERIVATION;
+
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         if let Some(effect) = &self.0 {
             effect.describe(visitor);
         }
-    }
-
-    /// Zeros, which are carried along, where there is nothing.
-    fn advected(&self) -> E::Advected {
-        self.0.as_ref().map_or_else(|| E::Advected::from_entries(&mut || 0.0), E::advected)
     }
 
     fn momentum_jacobian(&self, f: &Matrix<E>, w: &E::Advected, h: f64) -> Matrix3<f64> {
@@ -48,6 +52,15 @@ impl<E: Effect<Scalar = f64, Group = SO3>> Effect for Switched<E> {
 
     fn inertia(&self, w: &E::Advected) -> Matrix3<f64> {
         self.0.as_ref().map_or_else(Matrix3::zeros, |effect| effect.inertia(w))
+    }
+
+    fn limit(&self, velocity: &Vector3<f64>, w: &E::Advected) -> Limit<Self> {
+        let zero = (0.0, Vector3::zeros(), Matrix3::zeros());
+        let (l, momentum, hessian) = self.0.as_ref().map_or(zero, |effect| {
+            let Limit { l, momentum, hessian } = effect.limit(velocity, w);
+            (l, momentum, hessian)
+        });
+        Limit { l, momentum, hessian }
     }
 
     fn momentum_bias(&self, w: &E::Advected) -> Vector3<f64> {

@@ -120,7 +120,7 @@
 //! | `F_{l_d}`, `F_{h_d}` (flows) | [`DiscreteEulerPoincare`], [`DiscreteLiePoisson`] |
 //! | `g_{i+1} = g_i f_i` | [`reconstruct`](crate::motion::reconstruct) |
 //! | `w_{i+1} = f_i⁻¹ w_i` | [`advect`](crate::groups::Advected::advect) |
-//! | `a_0`; the thesis' `w_0` of chapter 2 | [`advected`](crate::mechanics::Effect::advected) |
+//! | `a_0`; the thesis' `w_0` of chapter 2 | [`advected`](crate::mechanics::Term::advected) |
 //! | `J_d`, `J` | [`NonstandardInertia`], [`Inertia`](crate::mechanics::Inertia) |
 //! | `μ_i`, `Π_i` | [`momentum`](crate::motion::Motion::momentum) |
 //! | `R Π`, `e₃·R Π` | [`spatial_momentum`](crate::motion::Motion::spatial_momentum), [`momentum_along`](crate::motion::Motion::momentum_along) |

@@ -1,5 +1,8 @@
 //! Arrays of equal groups: many bodies.
 
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
 use core::array::from_fn;
 
 use super::{Advected, Factor, LieGroup, Retraction};

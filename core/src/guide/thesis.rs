@@ -69,7 +69,9 @@
 //! {f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩
 //! ```
 //!
-//! which is [`lie_poisson_bracket`]. With it a reduced Hamiltonian moves the momentum by (1.12), `μ̇ = ad*_{δh/δμ} μ`.
+//! which is [`lie_poisson_bracket`]: what the canonical bracket of `T*G` and Hamilton's equations there, (1.7) to (1.9),
+//! become on functions of the momentum alone, (1.10). Before reduction the transform is `𝔽L`, (1.13), with
+//! `H = ⟨𝔽L, ġ⟩ − L`, (1.15); the tests compute these to compare, and a program needs none of them. With the bracket a reduced Hamiltonian moves the momentum by (1.12), `μ̇ = ad*_{δh/δμ} μ`.
 //! The reduced Legendre transform (1.14) goes from one side to the other, and (1.16) is its Hamiltonian:
 //!
 //! <math display="block">
@@ -220,6 +222,9 @@
 //! ```
 //!
 //! # Chapter 3: the heavy top
+//!
+//! The equations of motion in Euler angles, (3.5) to (3.12), have poles where the axis is vertical. Here they are a rival
+//! and a reference of the tests; a step has no angles in it.
 //!
 //! The trapezoidal rule with `Ω̂ ≈ (F − I)/h` makes (3.13) of (2.3):
 //!

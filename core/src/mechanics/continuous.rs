@@ -1,15 +1,16 @@
 //! The trait of reduced continuous Lagrangians: what the thesis' first two chapters make of `l(ξ, w)`.
 
-use crate::error::{SetupError, StepError};
-use crate::groups::{Advected, LieGroup};
+use crate::error::StepError;
+use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::sum::Sum;
+use crate::mechanics::term::Term;
 use crate::numbers::{Coordinates, Mask, Real, real, sum};
-use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
+use nalgebra::SimdBool as _;
 
-type Velocity<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
+type Velocity<L> = <<L as Term>::Group as LieGroup>::Vector;
 type Covector<L> = Velocity<L>;
-type Matrix<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Matrix;
-type Hessian<L> = <Velocity<L> as Coordinates<<L as ContinuousLagrangian>::Scalar>>::Square;
+type Matrix<L> = <<L as Term>::Group as LieGroup>::Matrix;
+type Hessian<L> = <Velocity<L> as Coordinates<<L as Term>::Scalar>>::Square;
 
 /// What is known of the Legendre transform `ξ ↦ μ = ∂l/∂ξ`, and with it of its inverse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +42,8 @@ impl Legendre {
 /// angular momenta in kg m²/s.
 ///
 /// [`lagrangian`](crate::lagrangian) implements it: of a declared `l` with its terms derived, and of a declared `l_d`
-/// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. Two of them add by `+`; a third, where none of them is
-/// discretised, by [`Sum::new`]. What an ODE solver integrates is made of it by
+/// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. They add by `+`, with each other and with effects. What an
+/// ODE solver integrates is made of it by
 /// [`RightHandSide`](crate::motion::RightHandSide).
 ///
 /// # Source
@@ -84,31 +85,14 @@ impl Legendre {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` isn't a Lagrangian with a continuous limit",
     label = "no `l(ξ, w)` is known of it",
-    note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none"
+    note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none, nor have several bodies, which are declared by `l_d`"
 )]
-pub trait ContinuousLagrangian {
-    /// The scalar.
-    type Scalar: Real;
-    /// The group.
-    type Group: LieGroup<Scalar = Self::Scalar>;
-    /// The advected parameters: `()`, a vector, or a tuple.
-    type Advected: Advected<Self::Group>;
-
+pub trait ContinuousLagrangian: Term {
     /// What is known of the inverse Legendre transform.
     const LEGENDRE: Legendre;
 
     /// What was declared, and the continuous equations that are derived from it, as text.
     const CONTINUOUS_DERIVATION: &'static str;
-
-    /// Checks the parameters.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError::Parameter`] naming the first field whose value can't be used.
-    fn check_parameters(&self) -> Result<(), SetupError>;
-
-    /// The spatial values `a_0` of the advected parameters.
-    fn spatial_parameters(&self) -> Self::Advected;
 
     /// `l(ξ, w)`, in J; of a declared `l` the expression as it stands.
     fn l(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Scalar;
@@ -153,7 +137,10 @@ pub trait ContinuousLagrangian {
         let velocity = Velocity::<Self>::solve(&self.velocity_hessian(&rest, w), &defect).0;
         match Self::LEGENDRE {
             Legendre::Constant | Legendre::Varying => finite(velocity),
-            Legendre::Nonlinear => velocity_by_newton(self, momentum, w, velocity),
+            Legendre::Nonlinear => {
+                let (of, hessian) = (|xi: &_| self.momentum(xi, w), |xi: &_| self.velocity_hessian(xi, w));
+                velocity_by_newton::<Self::Scalar, _>(momentum, velocity, of, hessian)
+            }
         }
     }
 
@@ -213,15 +200,16 @@ const MOST_HALVINGS: u32 = 20;
 /// What rounding leaves of the equation, in units of the scalar's epsilon and of the size of its terms.
 const ROUNDINGS: f64 = 1e4;
 
-/// Newton's iteration for `∂l/∂ξ = μ`, with steps that are halved until they help; it ends where none does.
-fn velocity_by_newton<L: ContinuousLagrangian + ?Sized>(
-    lagrangian: &L,
-    momentum: &Covector<L>,
-    w: &L::Advected,
-    mut velocity: Velocity<L>,
-) -> Result<Velocity<L>, StepError> {
-    let defect_at = |velocity: &Velocity<L>| *momentum - lagrangian.momentum(velocity, w);
-    let (rest, first) = (Velocity::<L>::zero(), defect_at(&Velocity::<L>::zero()));
+/// Newton's iteration for `∂l/∂ξ = μ`, with steps that are halved until they help; it ends where none does. `momentum_of`
+/// is `∂l/∂ξ`, and `hessian_of` its derivative.
+pub(super) fn velocity_by_newton<T: Real, V: Coordinates<T>>(
+    momentum: &V,
+    mut velocity: V,
+    momentum_of: impl Fn(&V) -> V,
+    hessian_of: impl Fn(&V) -> V::Square,
+) -> Result<V, StepError> {
+    let defect_at = |velocity: &V| *momentum - momentum_of(velocity);
+    let (rest, first) = (V::zero(), defect_at(&V::zero()));
     // Where the first step leaves the domain of `l`, the iteration begins at rest.
     let mut defect = defect_at(&velocity);
     let starts = defect.dot(&defect).simd_le(first.dot(&first));
@@ -230,17 +218,17 @@ fn velocity_by_newton<L: ContinuousLagrangian + ?Sized>(
     // The terms that cancel: the momentum, and what there is of it at rest and at the first velocity.
     let bias = *momentum - first;
     let terms = momentum.dot(momentum) + bias.dot(&bias) + (*momentum - defect).dot(&(*momentum - defect));
-    let allowed = L::Scalar::simd_default_epsilon() * real(ROUNDINGS);
+    let allowed = T::simd_default_epsilon() * real(ROUNDINGS);
     let bound = terms * allowed * allowed;
-    let half = real::<L::Scalar>(0.5);
+    let half = real::<T>(0.5);
     let mut iterations = 0;
     while iterations < MOST_ITERATIONS {
         let size = defect.dot(&defect);
         // Near rounding a step that doesn't help ends it; farther away it is too long.
         let halvings = if size.simd_le(bound).all() { 1 } else { MOST_HALVINGS };
-        let step = Velocity::<L>::solve(&lagrangian.velocity_hessian(&velocity, w), &defect).0;
-        let (mut fraction, mut next, mut next_defect) = (real::<L::Scalar>(1.0), velocity, defect);
-        let mut helped: Mask<L::Scalar> = size.simd_lt(size);
+        let step = V::solve(&hessian_of(&velocity), &defect).0;
+        let (mut fraction, mut next, mut next_defect) = (real::<T>(1.0), velocity, defect);
+        let mut helped: Mask<T> = size.simd_lt(size);
         for _ in 0..halvings {
             let candidate = velocity + step * fraction;
             let candidate_defect = defect_at(&candidate);
@@ -265,7 +253,7 @@ fn velocity_by_newton<L: ContinuousLagrangian + ?Sized>(
         return Err(StepError::NotConverged { iterations, residual: crate::numbers::reported(relative) });
     }
     // Of two velocities with one momentum the one is meant on whose side of the singularity rest is.
-    let sign = |velocity: &Velocity<L>| Velocity::<L>::least_pivot(&lagrangian.velocity_hessian(velocity, w));
+    let sign = |velocity: &V| V::least_pivot(&hessian_of(velocity));
     let lost = sign(&rest).simd_gt(real(0.0)) & sign(&velocity).simd_le(real(0.0));
     if lost.any() { Err(StepError::Singular) } else { finite(velocity) }
 }
@@ -275,22 +263,9 @@ where
     A: ContinuousLagrangian,
     B: ContinuousLagrangian<Scalar = A::Scalar, Group = A::Group>,
 {
-    type Scalar = A::Scalar;
-    type Group = A::Group;
-    type Advected = (A::Advected, B::Advected);
-
     const LEGENDRE: Legendre = A::LEGENDRE.or(B::LEGENDRE);
     const CONTINUOUS_DERIVATION: &'static str =
         "the sum of two Lagrangians: l, its momenta and diamonds, each added; see CONTINUOUS_DERIVATION of either\n";
-
-    fn check_parameters(&self) -> Result<(), SetupError> {
-        self.first.check_parameters()?;
-        self.second.check_parameters()
-    }
-
-    fn spatial_parameters(&self) -> Self::Advected {
-        (self.first.spatial_parameters(), self.second.spatial_parameters())
-    }
 
     fn l(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Self::Scalar {
         self.first.l(velocity, &w.0) + self.second.l(velocity, &w.1)

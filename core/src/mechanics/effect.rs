@@ -5,17 +5,19 @@ use alloc::string::String;
 use core::fmt::Debug;
 
 use crate::error::SetupError;
-use crate::groups::{Advected, LieGroup, Retraction};
+use crate::groups::{LieGroup, Retraction};
+use crate::mechanics::continuous::velocity_by_newton;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
+use crate::mechanics::term::Term;
 use crate::numbers::{Blocks, Coordinates, Pattern, Real, real, reported};
 use nalgebra::SimdBool as _;
 
 /// The scalar of an effect.
-pub type Scalar<E> = <E as Effect>::Scalar;
+pub type Scalar<E> = <E as Term>::Scalar;
 /// The group of an effect.
-pub type Group<E> = <E as Effect>::Group;
+pub type Group<E> = <E as Term>::Group;
 /// The matrices of its group.
 pub type Matrix<E> = <Group<E> as LieGroup>::Matrix;
 /// Components of covectors and algebra elements.
@@ -89,6 +91,17 @@ pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
     Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
 }
 
+/// The continuous Lagrangian `l(ξ, w)` that an effect discretises, with its derivatives at a velocity.
+#[derive(Clone, Copy, Debug)]
+pub struct Limit<E: Effect + ?Sized> {
+    /// `l`, in J.
+    pub l: Scalar<E>,
+    /// `∂l/∂ξ`.
+    pub momentum: Vector<E>,
+    /// `∂²l/∂ξ²`.
+    pub hessian: Square<E>,
+}
+
 /// One term of a scene, with all that a stepper needs of it: a [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), or a
 /// sum.
 ///
@@ -117,18 +130,12 @@ pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
     note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
     note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps"
 )]
-pub trait Effect {
-    /// The scalar.
-    type Scalar: Real;
-    /// The group that `F` belongs to.
-    type Group: LieGroup<Scalar = Self::Scalar>;
+pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
     type Retraction: Retraction<Self::Group>;
     /// Whether there is a kinetic part: [`WithKinetic`](crate::mechanics::WithKinetic) or
     /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic).
     type Kinetic: KineticPart;
-    /// The advected parameters: `()`, a vector, or a tuple.
-    type Advected: Advected<Self::Group>;
     /// What the parameters and `h` determine.
     type Constants: Copy + Debug + PartialEq;
     /// What `a` and `w` determine.
@@ -151,6 +158,10 @@ pub trait Effect {
     /// methods that have the motion of one free body in them may be used.
     const INERTIA_IS_CONSTANT: bool;
 
+    /// Whether the continuous limit is quadratic in the velocity. Where it isn't, [`inertia`](Self::inertia) and
+    /// [`momentum_bias`](Self::momentum_bias) are those at rest, and [`limit`](Self::limit) says what is elsewhere.
+    const IS_QUADRATIC: bool = true;
+
     /// Unknowns between which the Jacobian of [`newton_system`](Self::newton_system) is zero for all values: where nothing
     /// but potentials of the ends of a step couples bodies, each is solved for itself. The blocks end where factors of the
     /// group end; one block is always right.
@@ -169,20 +180,10 @@ pub trait Effect {
         Self::DERIVATION.to_owned()
     }
 
-    /// Checks the parameters.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError::Parameter`] naming the first field whose value can't be used.
-    fn validate(&self) -> Result<(), SetupError>;
-
     /// Shows the derivations and, field by field in the order of the declaration, every scalar of the parameters.
     ///
     /// Two scenes that show the same make the same steps.
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>);
-
-    /// The spatial values `a_0` of the advected parameters.
-    fn advected(&self) -> Self::Advected;
 
     /// The exact right-trivialised Newton Jacobian: entry `(k, j)` is the derivative of component `k` of the momentum
     /// equation (2.7), [`legendre_minus`](crate::mechanics::DiscreteLagrangian::legendre_minus), along `F ↦ exp(t E_j) F`.
@@ -197,6 +198,15 @@ pub trait Effect {
 
     /// The potential `V(w)` of the continuous limit, in J.
     fn potential(&self, w: &Self::Advected) -> Self::Scalar;
+
+    /// The continuous limit at a velocity.
+    #[must_use]
+    fn limit(&self, velocity: &Vector<Self>, w: &Self::Advected) -> Limit<Self> {
+        let (hessian, bias) = (self.inertia(w), self.momentum_bias(w));
+        let image = hessian * *velocity;
+        let l = velocity.dot(&image) * real(0.5) + bias.dot(velocity) - self.potential(w);
+        Limit { l, momentum: image + bias, hessian }
+    }
 
     /// Folds the parameters and the step into the constants of the stages below.
     fn constants(&self, h: Self::Scalar) -> Self::Constants;
@@ -290,30 +300,60 @@ pub trait Moves<E: ?Sized> {}
 
 impl<E: ?Sized> Moves<E> for WithKinetic {}
 
-/// `μ = Jξ + s(w)`: the momentum of the body velocity `ξ`.
+/// `μ = ∂l/∂ξ`, `Jξ + s(w)` where `l` is quadratic: the momentum of the body velocity `ξ`.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    effect.inertia(w) * *velocity + effect.momentum_bias(w)
+    if E::IS_QUADRATIC {
+        effect.inertia(w) * *velocity + effect.momentum_bias(w)
+    } else {
+        effect.limit(velocity, w).momentum
+    }
 }
 
-/// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`.
+/// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`. Where `l` isn't quadratic, it is solved for; NaN where no
+/// velocity has this momentum.
 pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
+    let near_rest = velocity_near_rest(effect, momentum, w);
+    if E::IS_QUADRATIC {
+        return near_rest;
+    }
+    let (of, hessian) = (|xi: &Vector<E>| effect.limit(xi, w).momentum, |xi: &Vector<E>| effect.limit(xi, w).hessian);
+    velocity_by_newton::<Scalar<E>, _>(momentum, near_rest, of, hessian)
+        .unwrap_or_else(|_| Vector::<E>::zero() * real(f64::NAN))
+}
+
+/// The same by the inertia at rest: right where `l` is quadratic, elsewhere an estimate.
+fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     Vector::<E>::solve(&effect.inertia(w), &(*momentum - effect.momentum_bias(w))).0
 }
 
-/// `½ ξ·Jξ + V(w)`, the energy of the continuous limit.
+/// The body velocity of the momentum `μ`, or what is near it: a guess.
+pub(crate) fn estimated_velocity<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
+    let velocity = velocity_of_momentum(effect, momentum, w);
+    if E::IS_QUADRATIC || velocity.is_finite() { velocity } else { velocity_near_rest(effect, momentum, w) }
+}
+
+/// `ξ·∂l/∂ξ − l`, the energy of the continuous limit: `½ ξ·Jξ + V(w)` where it is quadratic.
 pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Scalar<E> {
     energy_of_velocity(effect, &velocity_of_momentum(effect, momentum, w), w)
 }
 
 /// The same, of a velocity that is known.
 pub(crate) fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
+    if !E::IS_QUADRATIC {
+        let Limit { l, momentum, .. } = effect.limit(velocity, w);
+        return velocity.dot(&momentum) - l;
+    }
     let kinetic = velocity.dot(&(effect.inertia(w) * *velocity)) * crate::numbers::real(0.5);
     kinetic + effect.potential(w)
 }
 
 /// The inertia, if it is the same wherever the body is.
 pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
-    if E::INERTIA_IS_CONSTANT { Ok(effect.inertia(&effect.advected())) } else { Err(SetupError::VaryingInertia) }
+    if E::INERTIA_IS_CONSTANT && E::IS_QUADRATIC {
+        Ok(effect.inertia(&effect.advected()))
+    } else {
+        Err(SetupError::VaryingInertia)
+    }
 }
 
 /// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.

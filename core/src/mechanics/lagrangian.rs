@@ -3,6 +3,7 @@
 use crate::groups::SO3;
 use crate::mechanics::effect::Regular;
 use crate::mechanics::effect::{Effect, Matrix, Vector};
+use crate::mechanics::term::Term;
 
 /// A reduced discrete Lagrangian `l_d(F, w)` with all that an integrator needs of it.
 ///
@@ -58,9 +59,9 @@ pub trait DiscreteLagrangian: Effect {
 }
 
 /// A scene on SO(3) that can be stepped: a body with a fixed point, or one whose motion about its centre is looked at.
-pub trait RigidScene: DiscreteLagrangian + Regular + Effect<Group = SO3<<Self as Effect>::Scalar>> {}
+pub trait RigidScene: DiscreteLagrangian + Regular + Effect<Group = SO3<<Self as Term>::Scalar>> {}
 
-impl<S> RigidScene for S where S: DiscreteLagrangian + Regular + Effect<Group = SO3<<S as Effect>::Scalar>> {}
+impl<S> RigidScene for S where S: DiscreteLagrangian + Regular + Effect<Group = SO3<<S as Term>::Scalar>> {}
 
 /// A scene that can be stepped, and that a chooser among methods may keep and copy.
 pub trait Scene: DiscreteLagrangian<Advected: 'static> + Regular + Clone + 'static {}

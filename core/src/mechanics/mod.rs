@@ -18,12 +18,14 @@ mod second_derivatives;
 mod sum;
 mod symmetry;
 mod systems;
+mod term;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square, Vector};
+pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square, Vector};
 pub(crate) use effect::{
-    check_inertia, constant_inertia, energy, energy_of_velocity, momentum_of_velocity, pattern, velocity_of_momentum,
+    check_inertia, constant_inertia, energy, energy_of_velocity, estimated_velocity, momentum_of_velocity, pattern,
+    velocity_of_momentum,
 };
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
@@ -35,3 +37,4 @@ pub use second_derivatives::{SecondDerivatives, StepDerivatives};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
 pub use systems::{Along, At, Between, Each, Neighbours, On, Pairs, Placed, Places, SeenBetween, WhereAllAre};
+pub use term::Term;

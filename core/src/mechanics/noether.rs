@@ -5,13 +5,14 @@ use alloc::vec::Vec;
 
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::continuous::ContinuousLagrangian;
+use crate::mechanics::term::Term;
 use crate::numbers::{Coordinates, Entries, real, reported};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-type Vector<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
+type Vector<L> = <<L as Term>::Group as LieGroup>::Vector;
 
 /// What rounding leaves of a row that is a combination of others, relative to what the rows are made of.
 const ROUNDING: f64 = 1e-10;
@@ -19,7 +20,7 @@ const ROUNDING: f64 = 1e-10;
 /// The directions in space along which a scene is the same: a basis of `η` with `η·a_0 = 0`. Along them the spatial
 /// momentum, `⟨Ad*_{g⁻¹} μ, η⟩`, is conserved.
 pub(crate) fn left_symmetries<L: ContinuousLagrangian>(lagrangian: &L) -> Vec<Vector<L>> {
-    let spatial = lagrangian.spatial_parameters();
+    let spatial = lagrangian.advected();
     let columns = (0..L::Group::DIMENSION).map(|k| {
         let mut entries = Vec::new();
         spatial.rate(&L::Group::hat(&Vector::<L>::axis(k))).each(&mut |entry| entries.push(reported(entry)));

@@ -64,7 +64,7 @@ pub trait SecondDerivatives: Effect {
         visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>),
     );
 
-    /// Visits each scalar of [`advected`](Effect::advected) that is a parameter: its number there, and that among the
+    /// Visits each scalar of [`advected`](crate::mechanics::Term::advected) that is a parameter: its number there, and that among the
     /// parameters. A field that is advected under two names is visited for each.
     fn carried_parameters(w: &Self::Advected, visit: &mut dyn FnMut(usize, usize));
 }

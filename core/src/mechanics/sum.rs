@@ -7,13 +7,14 @@ use core::ops::Add;
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
+use crate::mechanics::effect::{Effect, Limit, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
+use crate::mechanics::term::Term;
 use crate::numbers::{Blocks, Coordinates as _, InLanes, Lanes};
 
-/// The sum of two effects of one group; what `+` makes of them.
+/// The sum of two terms of one group, effects or continuous Lagrangians; what `+` makes of them.
 ///
 /// Lagrangians add, and with them momentum maps, diamonds, momentum equations, Jacobians and energies. A part that a
 /// term doesn't have costs nothing: no memory, no branch, no addition of zero. With one term that has an
@@ -84,8 +85,8 @@ impl<G: LieGroup, A, B> SharedBy<G, A, B> for G {}
 
 impl<A, B, C> Add<C> for Sum<A, B>
 where
-    A: Effect,
-    C: Effect,
+    A: Term,
+    C: Term,
     C::Group: SharedBy<A::Group, Self, C>,
 {
     type Output = Sum<Self, C>;
@@ -95,16 +96,32 @@ where
     }
 }
 
+impl<A, B> Term for Sum<A, B>
+where
+    A: Term,
+    B: Term<Scalar = A::Scalar, Group = A::Group>,
+{
+    type Scalar = A::Scalar;
+    type Group = A::Group;
+    type Advected = (A::Advected, B::Advected);
+
+    fn validate(&self) -> Result<(), SetupError> {
+        self.first.validate()?;
+        self.second.validate()
+    }
+
+    fn advected(&self) -> Self::Advected {
+        (self.first.advected(), self.second.advected())
+    }
+}
+
 impl<A, B> Effect for Sum<A, B>
 where
     A: Effect,
     B: Effect<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
 {
-    type Scalar = A::Scalar;
-    type Group = A::Group;
     type Retraction = A::Retraction;
     type Kinetic = <A::Kinetic as KineticPart>::Or<B::Kinetic>;
-    type Advected = (A::Advected, B::Advected);
     type Constants = (A::Constants, B::Constants);
     type StepTerms = (A::StepTerms, B::StepTerms);
 
@@ -126,6 +143,7 @@ where
         (false, _) => B::JACOBIAN_IS_EXPENSIVE,
     };
     const INERTIA_IS_CONSTANT: bool = A::INERTIA_IS_CONSTANT && B::INERTIA_IS_CONSTANT;
+    const IS_QUADRATIC: bool = A::IS_QUADRATIC && B::IS_QUADRATIC;
     const OPERATIONS: Operations = Operations {
         step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),
         iteration: match (A::PARTS.unknown, B::PARTS.unknown) {
@@ -142,18 +160,9 @@ where
         format!("{}\n{}", A::derivation(), B::derivation())
     }
 
-    fn validate(&self) -> Result<(), SetupError> {
-        self.first.validate()?;
-        self.second.validate()
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
         self.first.describe(visitor);
         self.second.describe(visitor);
-    }
-
-    fn advected(&self) -> Self::Advected {
-        (self.first.advected(), self.second.advected())
     }
 
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self> {
@@ -170,6 +179,15 @@ where
 
     fn potential(&self, w: &Self::Advected) -> Self::Scalar {
         self.first.potential(&w.0) + self.second.potential(&w.1)
+    }
+
+    fn limit(&self, velocity: &Vector<Self>, w: &Self::Advected) -> Limit<Self> {
+        let (first, second) = (self.first.limit(velocity, &w.0), self.second.limit(velocity, &w.1));
+        Limit {
+            l: first.l + second.l,
+            momentum: first.momentum + second.momentum,
+            hessian: first.hessian + second.hessian,
+        }
     }
 
     fn constants(&self, h: Self::Scalar) -> Self::Constants {

@@ -19,7 +19,7 @@ mod splitting;
 
 pub use chain::{Chain, ChainMemory, ChainStepper, Link};
 pub use composition::{Composed, CompositionScheme};
-pub use gauss::{Collocated, CotangentGauss, Gauss};
+pub use gauss::{Collocated, CotangentCarry, CotangentGauss, Gauss};
 pub use preprocessed::{Preprocessed, PreprocessedOrder};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{

@@ -4,12 +4,12 @@ use alloc::vec::Vec;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{ContinuousLagrangian, Legendre, check_inertia, left_symmetries, right_symmetries};
+use crate::mechanics::{ContinuousLagrangian, Legendre, Term, check_inertia, left_symmetries, right_symmetries};
 use crate::numbers::{Coordinates, Entries as _, real};
 
-type Velocity<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Vector;
-type Matrix<L> = <<L as ContinuousLagrangian>::Group as LieGroup>::Matrix;
-type Square<L> = <Velocity<L> as Coordinates<<L as ContinuousLagrangian>::Scalar>>::Square;
+type Velocity<L> = <<L as Term>::Group as LieGroup>::Vector;
+type Matrix<L> = <<L as Term>::Group as LieGroup>::Matrix;
+type Square<L> = <Velocity<L> as Coordinates<<L as Term>::Scalar>>::Square;
 
 /// The right-hand side of `ġ = g ξ̂`, `μ̇ = ad*_ξ μ + ∂l/∂w ⋄ w` with `w = g⁻¹·a_0`, \[RDAE, (1.5), (1.12) and (2.2)\],
 /// its parameters checked and its inertia factorised once.
@@ -52,8 +52,8 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
     /// [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] where a momentum doesn't determine a velocity
     /// at rest.
     pub fn new(lagrangian: L) -> Result<Self, SetupError> {
-        lagrangian.check_parameters()?;
-        let spatial = lagrangian.spatial_parameters();
+        lagrangian.validate()?;
+        let spatial = lagrangian.advected();
         if !spatial.is_finite() {
             return Err(SetupError::NonFinite { what: "advected parameter" });
         }

@@ -3,8 +3,8 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup as _, SO3};
 use crate::mechanics::{
-    AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Vector, check_inertia, energy,
-    momentum_of_velocity, velocity_of_momentum,
+    AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Term, Vector, check_inertia,
+    energy, momentum_of_velocity, velocity_of_momentum,
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
@@ -17,7 +17,7 @@ use crate::solving::Solvability;
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The state of a scene `S` that is stepped by the plan `P`.
-pub(crate) type StateOf<S, P> = State<Group<S>, <S as Effect>::Advected, <P as Plan<S>>::Kept>;
+pub(crate) type StateOf<S, P> = State<Group<S>, <S as Term>::Advected, <P as Plan<S>>::Kept>;
 
 /// An integrator with a fixed step: a scene, and a method whose constants are folded for it.
 ///
@@ -137,6 +137,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         if !S::INERTIA_IS_CONSTANT {
             let w = self.scene.advected().seen_from(&attitude);
             check_inertia::<Scalar<S>, Vector<S>>(&self.scene.inertia(&w))?;
+        }
+        if !S::IS_QUADRATIC {
+            let w = self.scene.advected().seen_from(&attitude);
+            if !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
+                return Err(SetupError::NonFinite { what: "velocity with this momentum" });
+            }
         }
         Ok(self.begin(attitude, momentum))
     }
@@ -422,13 +428,14 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         self.step_size() * real(motion.steps as f64)
     }
 
-    /// The body velocity, on SO(3) in rad/s.
+    /// The body velocity, on SO(3) in rad/s. NaN where the continuous limit isn't quadratic in the velocity, and no velocity
+    /// has this momentum.
     #[must_use]
     pub fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
         velocity_of_momentum(&self.scene, &motion.momentum, &motion.advected)
     }
 
-    /// The energy `½ Ω·JΩ + V(w)` of the continuous system, J. Where the scene is a [`DiscreteLagrangian`] it
+    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J. Where the scene is a [`DiscreteLagrangian`] it
     /// oscillates about its initial value, at the order of the scheme, and doesn't drift.
     #[must_use]
     pub fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {

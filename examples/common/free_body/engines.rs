@@ -4,7 +4,7 @@
 //! normalised, so that what differs between them is the gyroscopic term alone.
 
 use liestep::effects::PrincipalBody;
-use liestep::mechanics::Effect as _;
+use liestep::mechanics::{Effect as _, Term as _};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use crate::run::{Method, Sample, Stopped};

@@ -4,7 +4,7 @@ use liestep::mechanics::ContinuousLagrangian as _;
 use nalgebra::{SVector, Vector3};
 
 use super::declaration::HeavyTop;
-use super::rk4::change;
+use crate::runge_kutta::change;
 
 /// Body momentum and `w`, one below the other.
 pub type Phase = SVector<f64, 6>;

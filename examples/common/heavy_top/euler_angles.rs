@@ -1,11 +1,11 @@
 //! The symmetric top in Euler angles, \[RDAE, section 3.1\]: the rival that fails where the axis passes the vertical.
 
-use liestep::mechanics::Effect as _;
+use liestep::mechanics::{Effect as _, Term as _};
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector6};
 
 use super::declaration::HeavyTop;
-use super::rk4::change;
 use crate::run::{Method, Sample, Stopped};
+use crate::runge_kutta::change;
 
 /// Angles and their rates: precession `φ`, nutation `θ`, spin `ψ`, applied about `z`, `x'` and `z''`.
 #[derive(Clone, Copy, Debug)]

@@ -3,15 +3,14 @@
 //! Both integrate `Π' = Π × Ω + m g w × ρ` with `w = Rᵀ e₃`; they differ in how the attitude is kept, and in who wrote
 //! the equations: those in quaternions are by hand.
 
-use std::ops::{Add, Mul};
-
 use liestep::SO3;
-use liestep::mechanics::Effect as _;
+use liestep::mechanics::{Effect as _, Term as _};
 use liestep::motion::RightHandSide;
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 
 use super::declaration::HeavyTop;
 use crate::run::{Method, Sample, Stopped};
+use crate::runge_kutta::change;
 use crate::top_equations::{Equations, State};
 
 /// The body, in the form that the right-hand sides use.
@@ -29,16 +28,6 @@ impl Body {
         let inverse_moments = top.inertia(&top.advected()).diagonal().map(f64::recip);
         Self { inverse_moments, lever: top.rho * (top.m * top.g) }
     }
-}
-
-/// What a step of `h` from `y` adds to it.
-#[inline]
-pub(crate) fn change<V: Copy + Add<Output = V> + Mul<f64, Output = V>>(y: V, h: f64, f: impl Fn(V) -> V) -> V {
-    let k1 = f(y);
-    let k2 = f(y + k1 * (0.5 * h));
-    let k3 = f(y + k2 * (0.5 * h));
-    let k4 = f(y + k3 * h);
-    (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0)
 }
 
 /// In a unit quaternion, brought back to unit length after every step: how a careful user would do it.

@@ -74,8 +74,19 @@ pub(crate) fn readings_without(
         let (group, increments) = (declaration.group.clone(), increments.clone());
         let (advected, names) = (advected.clone(), names.clone());
         let has_derivatives = declaration.gradients.is_some();
-        let declared =
-            Declared { group, symbols, lets, expression, increments, step, advected, displacements, has_derivatives };
+        let discretised = None;
+        let declared = Declared {
+            group,
+            symbols,
+            lets,
+            expression,
+            increments,
+            step,
+            advected,
+            displacements,
+            has_derivatives,
+            discretised,
+        };
         Lowered { declared, names }
     };
     let multiplied_out = attempt(None);

@@ -2,7 +2,7 @@
 
 use crate::declared::{Declaration, Factor};
 use crate::judged::{Chosen, Equations, Findings};
-use crate::mathematics::derive::{Declared, Derived, Seen, SelfAdjointness};
+use crate::mathematics::derive::{Declared, Derived, Inverse, Seen, SelfAdjointness};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
@@ -59,8 +59,8 @@ pub(super) fn equations(derived: &Derived, declared: &Declared, continuous: Opti
         equation("momentum_jacobian", "∂μ_k along exp(tE_j)F", scalar(&derived.jacobian), "exact, right-trivialised"),
         equation("discrete_energy", "−∂l_d/∂h", scalar(&derived.energy), ""),
         inertia(derived, continuous),
-        equation("momentum_bias", "s", covector(&derived.limit.bias), "continuous limit"),
-        equation("potential", "V", scalar(&derived.limit.potential), "continuous limit"),
+        equation("momentum_bias", "s", covector(&derived.limit.bias), of_limit(continuous)),
+        equation("potential", "V", scalar(&derived.limit.potential), of_limit(continuous)),
         equation("kick_before", "k₀", covector(&derived.kick_before), "a = μ + k₀"),
         equation("kick_after", "k₁⁺", covector(&derived.kick_after), "μ⁺ = Ad*_F a + k₁⁺"),
     ];
@@ -92,9 +92,18 @@ fn covectors(derived: &Derived, expression: &crate::mathematics::symbolic::Expre
 /// A longer flow on increments is the equation of two terms that are in print.
 const LONGEST: usize = 1_500;
 
+/// Where `J`, `s` and `V` are from.
+fn of_limit(continuous: Option<&Equations>) -> &'static str {
+    match continuous.map(|equations| equations.derived.inverse) {
+        Some(Inverse::Nonlinear) => "continuous limit at rest",
+        _ => "continuous limit",
+    }
+}
+
 /// `J` as a matrix, where it can be written as one.
 fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
-    let as_matrix = continuous.and_then(|equations| {
+    let quadratic = continuous.filter(|equations| equations.derived.inverse != Inverse::Nonlinear);
+    let as_matrix = quadratic.and_then(|equations| {
         let derived = &equations.derived;
         matrix_text(&derived.hessian, derived.directions, &derived.symbols)
     });
@@ -102,7 +111,7 @@ fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
         Some(text) if text.len() <= LONGEST => Equation::new("inertia", "J", text, "continuous limit"),
         _ => {
             let text = text(&derived.limit.inertia, &derived.symbols);
-            Equation::new("inertia", "η·Jξ for η̂ = E_k, ξ̂ = E_j", text, "continuous limit")
+            Equation::new("inertia", "η·Jξ for η̂ = E_k, ξ̂ = E_j", text, of_limit(continuous))
         }
     }
 }

@@ -30,7 +30,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let types = header.types(true, &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let effect = header.implementation("Effect");
-    let addition = header.addition("Effect");
+    let addition = header.addition();
     let lanes = super::lanes::lanes(&header, None);
     let core = quote_spanned!(span=> #private::core);
     let of_increment = [
@@ -49,7 +49,6 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
             let (lagrangian, invariance) =
                 (header.implementation("DiscreteLagrangian"), header.implementation("LeftInvariant"));
             let continuous = header.implementation("ContinuousLagrangian");
-            let (group, advected) = (header.group(), header.advected_types());
             quote_spanned! {span=>
                 #lagrangian {
                     const SELF_ADJOINT: #core::primitive::bool = false;
@@ -62,13 +61,8 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
                 #[automatically_derived]
                 #[allow(clippy::all, clippy::pedantic)]
                 #continuous {
-                    type Scalar = #scalar;
-                    type Group = #group;
-                    type Advected = #advected;
                     const LEGENDRE: #private::Legendre = #private::Legendre::Constant;
                     const CONTINUOUS_DERIVATION: &'static #core::primitive::str = "";
-                    fn check_parameters(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
-                    fn spatial_parameters(&self) -> Self::Advected { loop {} }
                     fn l(&self, _: &#vector, _: &Self::Advected) -> #scalar { loop {} }
                     fn momentum(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
                     fn velocity_hessian(&self, _: &#vector, _: &Self::Advected) -> #square { loop {} }
@@ -92,7 +86,13 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         }
     };
     let gradients = declaration.gradients.map(|_| gradients(&header));
+    let term = header.term(&quote_spanned! {span=>
+        fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
+        fn advected(&self) -> Self::Advected { loop {} }
+    });
     let implementations = quote_spanned! {span=>
+        #term
+
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic)]
         #of_role
@@ -103,9 +103,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
             #types
             const INERTIA_IS_CONSTANT: #core::primitive::bool = true;
             const DERIVATION: &'static #core::primitive::str = "";
-            fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
             fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
-            fn advected(&self) -> Self::Advected { loop {} }
             fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }
             fn inertia(&self, _: &Self::Advected) -> #square { loop {} }
             fn momentum_bias(&self, _: &Self::Advected) -> #vector { loop {} }

@@ -183,17 +183,16 @@ impl Header {
         self.implementation_of(None, &quote_spanned!(Span::mixed_site()=> #private::#implemented))
     }
 
-    /// `impl … Add<Other> for …`: the sum with any effect of the same group, or with any continuous Lagrangian.
-    pub(crate) fn addition(&self, of: &str) -> TokenStream {
+    /// `impl … Add<Other> for …`: the sum with any term of the same group.
+    pub(crate) fn addition(&self) -> TokenStream {
         let (span, private, group) = (Span::mixed_site(), &self.private, self.group());
         let core = quote_spanned!(span=> #private::core);
         // A name that no type of the user's has.
-        let other = Ident::new("LiestepOtherEffect", span);
-        let of = Ident::new(of, span);
+        let other = Ident::new("LiestepOtherTerm", span);
         let bounds = [
-            syn::parse_quote_spanned!(span=> #other: #private::#of),
+            syn::parse_quote_spanned!(span=> #other: #private::Term),
             syn::parse_quote_spanned! {span=>
-                <#other as #private::#of>::Group: #private::SharedBy<#group, Self, #other>
+                <#other as #private::Term>::Group: #private::SharedBy<#group, Self, #other>
             },
         ];
         let added = quote_spanned!(span=> #core::ops::Add<#other>);
@@ -252,17 +251,30 @@ impl Header {
         self.group_paths.iter().map(move |group| quote_spanned!(Span::mixed_site()=> #group<#scalar>))
     }
 
+    /// The implementation of `Term`, with these two methods.
+    pub(crate) fn term(&self, methods: &TokenStream) -> TokenStream {
+        let (scalar, group, advected) = (&self.scalar, self.group(), self.advected_types());
+        let implementation = self.implementation("Term");
+        quote_spanned! {Span::mixed_site()=>
+            #[automatically_derived]
+            #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
+            #implementation {
+                type Scalar = #scalar;
+                type Group = #group;
+                type Advected = #advected;
+
+                #methods
+            }
+        }
+    }
+
     /// The associated types of an effect.
     pub(crate) fn types(&self, has_kinetic: bool, constants: &TokenStream, step_terms: &TokenStream) -> TokenStream {
         let kinetic = Ident::new(if has_kinetic { "WithKinetic" } else { "WithoutKinetic" }, Span::mixed_site());
-        let (private, group, scalar) = (&self.private, self.group(), &self.scalar);
-        let advected = self.advected_types();
+        let private = &self.private;
         quote_spanned! {Span::mixed_site()=>
-            type Scalar = #scalar;
-            type Group = #group;
             type Retraction = #private::CayleyRetraction;
             type Kinetic = #private::#kinetic;
-            type Advected = #advected;
             type Constants = #constants;
             type StepTerms = #step_terms;
         }

@@ -54,13 +54,12 @@ pub(crate) fn implementation(
         None => verbatim::declared(declaration, &header),
     };
     let continuous = equations.map(|equations| continuous::implementation(declaration, &header, equations, true));
+    let at_velocity = equations.and_then(|equations| continuous::at_velocity(&header, equations));
     let section = equations.map(|equations| continuous::text::section(declaration, equations));
     let derivation = docs::derivation(declaration, chosen, &texts, section, findings);
     let documentation = format!("```text\n{derivation}```");
     let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
-    let validate = emitter.validate();
     let describe = emitter.describe();
-    let advected = emitter.advected();
     let private = &header.private;
     let span = Span::mixed_site();
     let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
@@ -69,9 +68,10 @@ pub(crate) fn implementation(
         Role::Lagrangian => ("DiscreteLagrangian", mathematics),
         Role::Force => ("Force", TokenStream::new()),
     };
-    let (of_role, term) = (header.implementation(name), header.implementation("Effect"));
+    let (of_role, effect_of) = (header.implementation(name), header.implementation("Effect"));
+    let term = emitter.term(&TokenStream::new());
     let invariance = invariance(declaration, &header);
-    let addition = header.addition("Effect");
+    let addition = header.addition();
     let lanes = lanes::lanes(&header, Some(&declaration.fields));
     let gradients = gradients::implementation(&emitter);
     let body = &stages.methods;
@@ -80,6 +80,8 @@ pub(crate) fn implementation(
         quote_spanned!(span=> const SELF_ADJOINT: #private::core::primitive::bool = #is_self_adjoint;)
     });
     let implementations = quote_spanned! {span=>
+        #term
+
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #of_role {
@@ -90,7 +92,7 @@ pub(crate) fn implementation(
 
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
-        #term {
+        #effect_of {
             #types
             #parts
 
@@ -101,10 +103,9 @@ pub(crate) fn implementation(
                 TEXT
             };
 
-            #validate
             #describe
-            #advected
             #effect
+            #at_velocity
             #body
         }
 
@@ -212,13 +213,14 @@ impl Emitter<'_> {
             Form::Square | Form::Matrix => (square(&mut graph, d, &none, expression), self.header.square()),
         };
         let documentation = docs::of(equations, name, &graph, &outputs);
-        let inverse = d.directions.factors.iter().any(|one| stages::uses(&graph, &outputs, one.inverse)).then(
-            || quote_spanned!(span=> let inverse = #private::inverse_of::<<Self as #private::Effect>::Group>(*f);),
-        );
+        let inverse =
+            d.directions.factors.iter().any(|one| stages::uses(&graph, &outputs, one.inverse)).then(
+                || quote_spanned!(span=> let inverse = #private::inverse_of::<<Self as #private::Term>::Group>(*f);),
+            );
         let body = self.body(form, &graph, &outputs, &|input| self.input_token(input));
         let name = syn::Ident::new(name, span);
         let (matrix, scalar) = (self.header.matrix(), &self.header.scalar);
-        let w = quote_spanned!(span=> w: &<Self as #private::Effect>::Advected);
+        let w = quote_spanned!(span=> w: &<Self as #private::Term>::Advected);
         let arguments = match takes {
             Takes::Advected => w,
             Takes::Increment => quote_spanned!(span=> f: &#matrix, #w, h: #scalar),
@@ -248,14 +250,18 @@ impl Code<'_> {
         checks.collect()
     }
 
-    fn validate(&self) -> TokenStream {
-        let (span, private, checks) = (Span::mixed_site(), &self.header.private, self.checks());
-        quote_spanned! {span=>
+    /// The implementation of `Term`; `before` stands before the checks.
+    fn term(&self, before: &TokenStream) -> TokenStream {
+        let (private, checks, values) = (&self.header.private, self.checks(), self.advected_value());
+        self.header.term(&quote_spanned! {Span::mixed_site()=>
             fn validate(&self) -> #private::core::result::Result<(), #private::SetupError> {
+                #before
                 #checks
                 #private::core::result::Result::Ok(())
             }
-        }
+
+            fn advected(&self) -> Self::Advected { #values }
+        })
     }
 
     fn describe(&self) -> TokenStream {
@@ -302,13 +308,6 @@ impl Code<'_> {
         match values.as_slice() {
             [single] => single.clone(),
             values => quote_spanned!(span=> (#(#values),*)),
-        }
-    }
-
-    fn advected(&self) -> TokenStream {
-        let value = self.advected_value();
-        quote_spanned! {Span::mixed_site()=>
-            fn advected(&self) -> Self::Advected { #value }
         }
     }
 }

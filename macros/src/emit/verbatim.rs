@@ -229,7 +229,7 @@ impl VisitMut for Rewrite<'_> {
         if matches!(&*call.func, Expr::Path(path) if path.path.is_ident("inverse")) {
             let private = &self.header.private;
             *call.func = if call.args.first().is_some_and(is_increment) {
-                syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse_of::<<Self as #private::Effect>::Group>)
+                syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse_of::<<Self as #private::Term>::Group>)
             } else {
                 syn::parse_quote_spanned!(Span::mixed_site()=> #private::inverse)
             };

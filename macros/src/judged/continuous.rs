@@ -6,8 +6,9 @@ use std::rc::Rc;
 use super::choose::Chosen;
 use super::{explain, verify};
 use crate::declared::errors::Errors;
+use crate::declared::lower::Lowered;
 use crate::declared::{Declaration, Name, Tree, lower};
-use crate::mathematics::derive::{self, Continuous, Inverse};
+use crate::mathematics::derive::{self, Continuous, Discretised, Inverse};
 use crate::mathematics::symbolic::{Rational, SymbolId};
 
 /// The continuous equations of a declaration.
@@ -16,6 +17,18 @@ pub(crate) struct Equations {
     pub(crate) derived: Continuous,
     /// A basis of the directions along which the body momentum is conserved for all values of the parameters.
     pub(crate) right_symmetries: Vec<Vec<Rational>>,
+}
+
+impl Equations {
+    /// With what was discretised, where it isn't quadratic in the velocity.
+    pub(crate) fn behind(&self, reading: Lowered) -> Lowered {
+        if self.derived.inverse != Inverse::Nonlinear {
+            return reading;
+        }
+        let symbols = self.names.iter().filter_map(|(name, &from)| Some((from, *reading.names.get(name)?))).collect();
+        let discretised = Some(Discretised { continuous: self.derived.clone(), symbols });
+        Lowered { declared: derive::Declared { discretised, ..reading.declared }, ..reading }
+    }
 }
 
 /// Those of a declared `l`; `None` where something is wrong with it, which has been reported.
@@ -27,10 +40,6 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
         let found = verify::kinetic_hessian(declaration, &lowered.names, &derived);
         explain::continuous_kinetic_part(&found, declaration, errors)?;
     }
-    if let Some(discretisation) = declaration.discretisation().filter(|_| derived.inverse == Inverse::Nonlinear) {
-        explain::not_discretised(discretisation, errors);
-        return None;
-    }
     checked(declaration, Some(tree), lowered.names, derived, errors)
 }
 
@@ -38,12 +47,18 @@ pub(crate) fn of_declared(declaration: &Declaration, tree: &Rc<Tree>, errors: &m
 pub(crate) fn continuous(
     declared: Option<Equations>,
     declaration: &Declaration,
-    tree: &Rc<Tree>,
+    [tree, discrete]: [&Rc<Tree>; 2],
     chosen: &Chosen,
     errors: &mut Errors,
 ) -> Option<Equations> {
     let Some(equations) = declared else { return of_limit(declaration, chosen, errors) };
-    if verify::limit_disagrees(declaration, tree, &chosen.lowered.names, &chosen.derived) {
+    let disagrees = match equations.derived.inverse {
+        Inverse::Nonlinear => verify::series_disagrees(declaration, tree, discrete),
+        Inverse::Constant | Inverse::Varying => {
+            verify::limit_disagrees(declaration, tree, &chosen.lowered.names, &chosen.derived)
+        }
+    };
+    if disagrees {
         explain::unconfirmed_term("limit of the discretisation", declaration, errors);
         return None;
     }

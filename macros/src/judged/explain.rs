@@ -154,8 +154,11 @@ pub(super) fn continuous_kinetic_part(
     let message = match found {
         KineticPart::Regular | KineticPart::NotStationary(_) => return Some(()),
         KineticPart::NotSmooth => {
-            "the kinetic part has no second derivative at rest: write it as a square of the velocity, without a root"
-                .to_owned()
+            let velocity = declaration.velocity().map_or_else(|| "Omega".to_owned(), ToString::to_string);
+            format!(
+                "the kinetic part has no second derivative at rest: write it as a square of the velocity, such as \
+                 `{velocity}.norm_squared()`, without a root"
+            )
         }
         KineticPart::Negative => "the kinetic part is negative: check its sign".to_owned(),
         KineticPart::Singular(idle) => {
@@ -172,13 +175,6 @@ pub(super) fn continuous_kinetic_part(
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
-}
-
-/// Reports a Lagrangian that a step has no inertia for.
-pub(super) fn not_discretised(discretisation: Discretisation, errors: &mut Errors) {
-    let message = "`l` isn't quadratic in the velocity, and a step needs one inertia for all velocities: leave \
-                   `discretise` out, and integrate the continuous equations";
-    errors.push_between(discretisation.place, message);
 }
 
 /// Reports a discretisation that doesn't fit the group or the Lagrangian.

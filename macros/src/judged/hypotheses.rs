@@ -22,7 +22,11 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, lowered: &L
         };
         let weaker = |other: Name, structure: Structure| if is_meant(other) { weaker } else { structure };
         let candidates = readings_without(declaration, tree, &weaker, &mut Errors::default())?;
-        candidates.into_iter().find(|other| other.declared.lets.is_empty() == lowered.declared.lets.is_empty())
+        let mut found =
+            candidates.into_iter().find(|other| other.declared.lets.is_empty() == lowered.declared.lets.is_empty())?;
+        // The same names are the same symbols.
+        found.declared.discretised.clone_from(&lowered.declared.discretised);
+        Some(found)
     };
     let equations = principal_equations(&lowered.declared);
     let changes_equations = |name: Name, weaker: Structure| {

@@ -12,8 +12,8 @@ use super::{DoubleDouble, Matrix, Vector, long};
 
 /// Nodes, weights and `a_ij = ∫₀^{c_i} ℓ_j` on the unit interval.
 pub(crate) struct Tableau {
-    weights: Vec<DoubleDouble>,
-    a: Vec<Vec<DoubleDouble>>,
+    pub(super) weights: Vec<DoubleDouble>,
+    pub(super) a: Vec<Vec<DoubleDouble>>,
 }
 
 fn index(n: usize) -> DoubleDouble {

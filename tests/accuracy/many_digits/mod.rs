@@ -10,6 +10,7 @@
 
 pub(crate) mod coefficients;
 pub(crate) mod collocation;
+mod cotangent;
 pub(crate) mod free_body;
 pub(crate) mod heavy_top;
 pub(crate) mod motion;

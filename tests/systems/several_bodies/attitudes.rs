@@ -5,7 +5,7 @@
 
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::{CayleyRetraction, LieGroup, Relative};
-use liestep::mechanics::{Effect, Parts, SceneVisitor, WithKinetic};
+use liestep::mechanics::{Effect, Parts, SceneVisitor, Term, WithKinetic};
 use liestep::numbers::Blocks;
 use liestep::{SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -46,12 +46,23 @@ impl Row {
     }
 }
 
-impl Effect for Row {
+impl Term for Row {
     type Scalar = f64;
     type Group = Group;
+    type Advected = Seen;
+
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
+
+    fn advected(&self) -> Seen {
+        Seen::default()
+    }
+}
+
+impl Effect for Row {
     type Retraction = CayleyRetraction;
     type Kinetic = WithKinetic;
-    type Advected = Seen;
     type Constants = (Self, f64);
     type StepTerms = Components;
 
@@ -60,17 +71,9 @@ impl Effect for Row {
     const APART: Blocks = <Group as LieGroup>::FACTORS;
     const DERIVATION: &'static str = "four coupled attitudes, by hand";
 
-    fn validate(&self) -> Result<(), SetupError> {
-        Ok(())
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term(Self::DERIVATION);
         visitor.parameter("kappa", self.kappa);
-    }
-
-    fn advected(&self) -> Seen {
-        Seen::default()
     }
 
     fn momentum_jacobian(&self, f: &Matrices, _: &Seen, h: f64) -> Square {

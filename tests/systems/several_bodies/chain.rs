@@ -10,7 +10,7 @@
 
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::{CayleyRetraction, LieGroup as _, Relative, Retraction, SeenFrom};
-use liestep::mechanics::{DiscreteLagrangian, Effect, SceneVisitor, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, SceneVisitor, Term, WithKinetic};
 use liestep::methods::CompositionScheme;
 use liestep::{SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -145,12 +145,24 @@ impl DiscreteLagrangian for Chain {
     }
 }
 
-impl Effect for Chain {
+impl Term for Chain {
     type Scalar = f64;
     type Group = Group;
+    type Advected = Seen;
+
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
+
+    fn advected(&self) -> Seen {
+        let up = Vector3::z();
+        (SeenFrom(up), SeenFrom(up), SeenFrom(up), Relative::default(), Relative::default(), Relative::default())
+    }
+}
+
+impl Effect for Chain {
     type Retraction = CayleyRetraction;
     type Kinetic = WithKinetic;
-    type Advected = Seen;
     type Constants = (Self, f64);
     /// `(h/2) a`, and what is seen.
     type StepTerms = (Components, Seen);
@@ -158,18 +170,9 @@ impl Effect for Chain {
     const INERTIA_IS_CONSTANT: bool = false;
     const DERIVATION: &'static str = "a chain of three links, by hand";
 
-    fn validate(&self) -> Result<(), SetupError> {
-        Ok(())
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term(Self::DERIVATION);
         visitor.parameter("g", self.g);
-    }
-
-    fn advected(&self) -> Seen {
-        let up = Vector3::z();
-        (SeenFrom(up), SeenFrom(up), SeenFrom(up), Relative::default(), Relative::default(), Relative::default())
     }
 
     fn momentum_jacobian(&self, f: &Matrices, w: &Seen, h: f64) -> Square {

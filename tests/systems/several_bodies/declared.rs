@@ -8,7 +8,7 @@ use declarations::DoublePendulum;
 use declarations::motions::{number, read, vector};
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect};
+use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Term};
 use liestep::methods::CompositionScheme;
 use liestep::with::{Recorder, Table};
 use liestep::{NonstandardInertia, SO3, Stepper};
@@ -113,7 +113,7 @@ fn spherical_pendulum() {
 }
 
 /// Along the vertical the momentum of both.
-fn vertical(motion: &liestep::motion::Motion<Group, <DoublePendulum as Effect>::Advected>) -> f64 {
+fn vertical(motion: &liestep::motion::Motion<Group, <DoublePendulum as Term>::Advected>) -> f64 {
     let spatial = motion.spatial_momentum();
     part(&spatial, 0).z + part(&spatial, 1).z
 }

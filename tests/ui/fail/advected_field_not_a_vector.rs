@@ -1,5 +1,5 @@
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use liestep::mechanics::Effect;
+use liestep::mechanics::{Effect, Term as _};
 
 #[lagrangian(
     group = SO3,

@@ -1,5 +1,5 @@
 use liestep::{NonstandardInertia, Stepper, lagrangian};
-use liestep::mechanics::Effect;
+use liestep::mechanics::{Effect, Term as _};
 
 #[lagrangian(group = SO4, l_d = (F * J_d).trace() / h)]
 struct Top {

@@ -1,6 +1,6 @@
 //! Declarations inside `macro_rules!`, with parts from either side.
 
-use liestep::mechanics::{DiscreteLagrangian as _, Effect as _};
+use liestep::mechanics::{DiscreteLagrangian as _, Effect as _, Term as _};
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 

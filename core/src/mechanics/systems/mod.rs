@@ -18,6 +18,7 @@
 mod places;
 mod seen;
 
+use alloc::string::String;
 use core::fmt::Debug;
 use core::ops::Add;
 
@@ -27,10 +28,11 @@ pub use seen::{Neighbours, SeenBetween, WhereAllAre};
 use crate::error::SetupError;
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
+use crate::mechanics::effect::{Effect, Limit, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::mechanics::sum::{SharedBy, Sum};
+use crate::mechanics::term::Term;
 use crate::numbers::{Blocks, Coordinates as _, real};
 
 /// A term at the places `P` of a system; made by [`of`](Each::of). With `M = 1` it is the same at all of them, otherwise
@@ -144,7 +146,7 @@ const fn term_at<const M: usize>(place: usize) -> usize {
 }
 
 /// Constants of a term, and its spatial values.
-type Folded<E, const M: usize> = [(<E as Effect>::Constants, <E as Effect>::Advected); M];
+type Folded<E, const M: usize> = [(<E as Effect>::Constants, <E as Term>::Advected); M];
 
 impl<P, E, const M: usize> Placed<P, E, M>
 where
@@ -169,7 +171,7 @@ where
     }
 }
 
-impl<P, E, const M: usize> Effect for Placed<P, E, M>
+impl<P, E, const M: usize> Term for Placed<P, E, M>
 where
     P: Places<E> + Copy + Debug + PartialEq,
     E: Effect,
@@ -177,9 +179,27 @@ where
 {
     type Scalar = E::Scalar;
     type Group = P::Group;
+    type Advected = P::Advected;
+
+    fn validate(&self) -> Result<(), SetupError> {
+        // A term that isn't possible here is refused when the crate is built.
+        let _ = <Self as Effect>::PARTS;
+        self.terms.iter().try_for_each(E::validate)
+    }
+
+    fn advected(&self) -> P::Advected {
+        P::spatial(|place| self.terms[term_at::<M>(place)].advected())
+    }
+}
+
+impl<P, E, const M: usize> Effect for Placed<P, E, M>
+where
+    P: Places<E> + Copy + Debug + PartialEq,
+    E: Effect,
+    E::Retraction: Retraction<P::Group>,
+{
     type Retraction = E::Retraction;
     type Kinetic = E::Kinetic;
-    type Advected = P::Advected;
     type Constants = Folded<E, M>;
     type StepTerms = P::Of<E::StepTerms>;
 
@@ -194,6 +214,7 @@ where
     };
     const DENOMINATORS: u32 = E::DENOMINATORS;
     const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
+    const IS_QUADRATIC: bool = E::IS_QUADRATIC;
     const APART: Blocks = E::APART;
     const OPERATIONS: Operations = Operations {
         step: E::OPERATIONS.step.saturating_mul(places_of::<P, E>()),
@@ -205,21 +226,11 @@ where
         E::derivation()
     }
 
-    fn validate(&self) -> Result<(), SetupError> {
-        // A term that isn't possible here is refused when the crate is built.
-        let _ = Self::PARTS;
-        self.terms.iter().try_for_each(E::validate)
-    }
-
     #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
         visitor.term(P::NAME.0);
         P::NAME.1.iter().for_each(|&body| visitor.parameter("body", real(body as f64)));
         self.terms.iter().for_each(|term| term.describe(visitor));
-    }
-
-    fn advected(&self) -> P::Advected {
-        P::spatial(|place| self.terms[term_at::<M>(place)].advected())
     }
 
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Square<Self> {
@@ -239,6 +250,20 @@ where
 
     fn potential(&self, w: &P::Advected) -> Self::Scalar {
         self.total(w, |term, w, _| term.potential(w))
+    }
+
+    fn limit(&self, velocity: &Vector<Self>, w: &P::Advected) -> Limit<Self> {
+        let at_its_place = |at: At| {
+            let term = self.term(at);
+            term.limit(&P::components(velocity, at), &P::seen(w, &term.advected(), at))
+        };
+        let mut l = real(0.0);
+        P::visit(|at| l += at_its_place(at).l);
+        Limit {
+            l,
+            momentum: P::sum(|at| at_its_place(at).momentum),
+            hessian: P::squares(|at| at_its_place(at).hessian),
+        }
     }
 
     fn constants(&self, h: Self::Scalar) -> Self::Constants {

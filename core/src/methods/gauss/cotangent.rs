@@ -7,7 +7,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, check_inertia};
 use crate::motion::{Integrator, Motion, State, StepReport};
-use crate::numbers::Coordinates;
+use crate::numbers::{Coordinates, carried_sum};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
@@ -30,7 +30,7 @@ use nalgebra::ComplexField as _;
 /// commute, so the step, which is symplectic and maps the group to itself, maps the leaves of what differs in the
 /// momentum off the group to such leaves: what it makes of `(g, μ)` doesn't depend on them, and is symplectic on `T*G`.
 /// As it commutes with multiplications from the left, it is a Poisson map of `(μ, w)`. Momentum maps are quadratic, hence
-/// kept to rounding; a step of `−h` undoes one of `h`. The energy's error is of the order of the method, and doesn't drift.
+/// kept to rounding, which a run adds up with compensation; a step of `−h` undoes one of `h`. The energy's error is of the order of the method, and doesn't drift.
 ///
 /// # What it costs
 ///
@@ -69,6 +69,47 @@ pub struct CotangentGauss<L: ContinuousLagrangian, const PAIRS: usize, const N: 
     coefficients: Coefficients<PAIRS>,
 }
 
+/// What rounding has left behind of the sums of attitude and momentum, which the next step adds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CotangentCarry<const N: usize, const D: usize> {
+    attitude: SMatrix<f64, N, N>,
+    momentum: SVector<f64, D>,
+}
+
+impl<const N: usize, const D: usize> CotangentCarry<N, D> {
+    fn nothing() -> Self {
+        Self { attitude: SMatrix::zeros(), momentum: SVector::zeros() }
+    }
+}
+
+/// What a step adds to attitude and momentum.
+struct Change<const N: usize, const D: usize> {
+    attitude: SMatrix<f64, N, N>,
+    momentum: SVector<f64, D>,
+    iterations: u32,
+}
+
+impl<const N: usize, const D: usize> Change<N, D> {
+    /// The sums, and what rounding leaves behind of them.
+    fn added<G>(
+        &self,
+        attitude: &G,
+        momentum: &SVector<f64, D>,
+        carry: &CotangentCarry<N, D>,
+    ) -> Result<((G, SVector<f64, D>), CotangentCarry<N, D>), StepError>
+    where
+        G: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
+    {
+        let (attitude, of_attitude) = carried_sum(&attitude.matrix(), &self.attitude, &carry.attitude);
+        let (momentum, of_momentum) = carried_sum(momentum, &self.momentum, &carry.momentum);
+        if !Coordinates::is_finite(&momentum) {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        let carry = CotangentCarry { attitude: of_attitude, momentum: of_momentum };
+        Ok(((G::from_matrix_unchecked(attitude), momentum), carry))
+    }
+}
+
 /// A place `(g, p)`, or its change.
 type Phase<const N: usize> = [SMatrix<f64, N, N>; 2];
 
@@ -101,8 +142,8 @@ where
                 "collocation needs a pair of stages, and doubles have no use for more than 8"
             );
         }
-        lagrangian.check_parameters()?;
-        let spatial = lagrangian.spatial_parameters();
+        lagrangian.validate()?;
+        let spatial = lagrangian.advected();
         if !spatial.is_finite() {
             return Err(SetupError::NonFinite { what: "advected parameter" });
         }
@@ -137,7 +178,8 @@ where
         self.lagrangian.hamiltonian(momentum, &self.advected(attitude))
     }
 
-    /// Attitude and body momentum after a step.
+    /// Attitude and body momentum after a step. Over many steps a [motion](Self::start) has less rounding: what a sum
+    /// loses is added to the next.
     ///
     /// # Errors
     ///
@@ -148,7 +190,8 @@ where
         attitude: &L::Group,
         momentum: &SVector<f64, D>,
     ) -> Result<(L::Group, SVector<f64, D>), StepError> {
-        self.step_of(self.h, attitude, momentum).map(|(attitude, momentum, _)| (attitude, momentum))
+        let change = self.change(self.h, attitude, momentum)?;
+        Ok(change.added(attitude, momentum, &CotangentCarry::nothing())?.0)
     }
 
     /// A motion from an attitude (body to space) and a body velocity, to be [observed](CotangentGauss::observed).
@@ -160,7 +203,7 @@ where
         &self,
         attitude: impl Into<L::Group>,
         velocity: SVector<f64, D>,
-    ) -> Result<State<L::Group, L::Advected, ()>, SetupError> {
+    ) -> Result<State<L::Group, L::Advected, CotangentCarry<N, D>>, SetupError> {
         let attitude = attitude.into();
         let defect = attitude.defect();
         // As `Stepper::start_with_momentum`.
@@ -173,16 +216,11 @@ where
         if !Coordinates::is_finite(&momentum) {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
-        Ok(State { motion: Motion { attitude, momentum, advected, steps: 0 }, kept: () })
+        Ok(State { motion: Motion { attitude, momentum, advected, steps: 0 }, kept: CotangentCarry::nothing() })
     }
 
-    /// A step of any length, and its iterations.
-    fn step_of(
-        &self,
-        h: f64,
-        attitude: &L::Group,
-        momentum: &SVector<f64, D>,
-    ) -> Result<(L::Group, SVector<f64, D>, u32), StepError> {
+    /// What a step of any length changes.
+    fn change(&self, h: f64, attitude: &L::Group, momentum: &SVector<f64, D>) -> Result<Change<N, D>, StepError> {
         let start = [attitude.matrix(), lifted::<L::Group, N, D>(attitude, momentum)];
         let rate = self.rate(&start)?;
         let weights = self.coefficients.weights.map(|weight| h * weight);
@@ -204,12 +242,13 @@ where
             settled = change <= ROUNDING * ROUNDING && change >= before || change == 0.0;
             before = change;
         }
-        let end = combined(&start, stages.as_flattened().iter().map(|stage| (1.0, stage)));
-        let momentum = momentum_of::<L::Group, N, D>(&end);
-        if !Coordinates::is_finite(&momentum) {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
-        }
-        Ok((L::Group::from_matrix_unchecked(end[0]), momentum, iterations))
+        let zero = [SMatrix::zeros(); 2];
+        let [attitude, conjugate] = combined(&zero, stages.as_flattened().iter().map(|stage| (1.0, stage)));
+        // Of the differences, so that what is small stays small: (g + Δg)ᵀ(p + Δp) − gᵀp.
+        let [g, p] = start;
+        let momentum =
+            momentum_of::<L::Group, N, D>(&[g + attitude, conjugate]) + momentum_of::<L::Group, N, D>(&[attitude, p]);
+        Ok(Change { attitude, momentum, iterations })
     }
 
     /// The next iterate of the stages.
@@ -250,7 +289,7 @@ where
     }
 }
 
-/// The attitudes of a run are the products of its steps as they are rounded.
+/// The sums of a run are compensated.
 impl<L, const PAIRS: usize, const N: usize, const D: usize> Integrator for CotangentGauss<L, PAIRS, N>
 where
     L: ContinuousLagrangian<Scalar = f64>,
@@ -258,12 +297,14 @@ where
 {
     type Group = L::Group;
     type Advected = L::Advected;
-    type State = State<L::Group, L::Advected, ()>;
+    type State = State<L::Group, L::Advected, CotangentCarry<N, D>>;
 
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        let (attitude, momentum, iterations) = self.step_of(self.h, &state.attitude, &state.momentum)?;
-        state.motion = Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps + 1 };
-        Ok(StepReport::of(iterations))
+        let change = self.change(self.h, &state.attitude, &state.momentum)?;
+        let ((attitude, momentum), kept) = change.added(&state.attitude, &state.momentum, &state.kept)?;
+        let motion = Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps + 1 };
+        *state = State { motion, kept };
+        Ok(StepReport::of(change.iterations))
     }
 
     fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
@@ -276,12 +317,16 @@ where
     }
 
     fn part(&self, state: &Self::State, fraction: f64) -> Result<Motion<L::Group, L::Advected>, StepError> {
-        let (attitude, momentum, _) = self.step_of(self.h * fraction, &state.attitude, &state.momentum)?;
+        let change = self.change(self.h * fraction, &state.attitude, &state.momentum)?;
+        let (attitude, momentum) = change.added(&state.attitude, &state.momentum, &state.kept)?.0;
         Ok(Motion { attitude, momentum, advected: self.advected(&attitude), steps: state.steps })
     }
 
     fn adopt(&self, motion: &Motion<L::Group, L::Advected>) -> Self::State {
-        State { motion: Motion { advected: self.advected(&motion.attitude), steps: 0, ..*motion }, kept: () }
+        State {
+            motion: Motion { advected: self.advected(&motion.attitude), steps: 0, ..*motion },
+            kept: CotangentCarry::nothing(),
+        }
     }
 
     fn step_size(&self) -> f64 {

@@ -9,7 +9,7 @@ mod lift;
 mod stages;
 mod state;
 
-pub use cotangent::CotangentGauss;
+pub use cotangent::{CotangentCarry, CotangentGauss};
 pub use state::Collocated;
 
 use coefficients::Coefficients;

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction as _, SO3};
-use crate::mechanics::{DiscreteLagrangian, Effect};
+use crate::mechanics::{DiscreteLagrangian, Term};
 use crate::numbers::{Coordinates, Real, real, reported};
 
 /// The constants with which [`DiscreteLagrangian::kick_before`] is the torque `τ(w)` itself: those of a step of two
@@ -67,7 +67,7 @@ pub(super) fn force_gradient<L>(
     w: &L::Advected,
 ) -> Option<Vector3<L::Scalar>>
 where
-    L: DiscreteLagrangian<Group = SO3<<L as Effect>::Scalar>>,
+    L: DiscreteLagrangian<Group = SO3<<L as Term>::Scalar>>,
 {
     let tau: Vector3<L::Scalar> = L::kick_before(torque, w);
     let velocity = inverse_inertia * tau;

@@ -29,7 +29,7 @@ use alloc::vec::Vec;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{
-    DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, constant_inertia,
+    DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
     Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
@@ -139,7 +139,7 @@ impl<S: Effect> Stepper<S> {
         scheme: SplittingScheme,
     ) -> Result<Stepper<S, Split<S, K>>, SetupError>
     where
-        S: DiscreteLagrangian<Group = SO3<<S as Effect>::Scalar>> + Regular,
+        S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
         // For its checks of the scene and the step.

@@ -4,7 +4,7 @@ use super::{Declared, kicked};
 use crate::error::StepError;
 use crate::groups::Advected as _;
 use crate::groups::Retraction as _;
-use crate::mechanics::{Effect, Group, Scalar, Vector, velocity_of_momentum};
+use crate::mechanics::{Effect, Group, Scalar, Vector, estimated_velocity};
 use crate::numbers::{Coordinates as _, largest_lane, real, reported};
 use crate::solving::{
     Problem, Root, Solvability, TurningLimits, largest_fraction, newton_system, six_digits, step_terms, turning_limits,
@@ -122,7 +122,7 @@ pub(crate) fn beyond_solvable<S: Effect>(
 ) -> StepError {
     // With the kick at the beginning of the step.
     let kicked = kicked::<S>(&scene.constants(h), momentum, advected);
-    let turn = velocity_of_momentum(scene, &kicked, advected) * h;
+    let turn = estimated_velocity(scene, &kicked, advected) * h;
     StepError::BeyondSolvable {
         step: reported(h),
         largest: six_digits(reported(largest)),

@@ -7,7 +7,7 @@ pub(crate) use diagnosis::beyond_solvable;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
-    Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, pattern, velocity_of_momentum,
+    Effect, Group, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
 };
 use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::{Cost, Plan, Steerable};
@@ -363,7 +363,7 @@ pub(crate) fn half_coordinates<S: Effect>(
     motion: &Motion<Group<S>, S::Advected>,
     h: Scalar<S>,
 ) -> Vector<S> {
-    velocity_of_momentum(scene, &motion.momentum, &motion.advected) * (h * real(0.5))
+    estimated_velocity(scene, &motion.momentum, &motion.advected) * (h * real(0.5))
 }
 
 /// `a = μ + kick_before(w)`.

@@ -6,7 +6,7 @@ use core::cell::RefCell;
 
 use crate::groups::LieGroup;
 use crate::mechanics::pattern;
-use crate::mechanics::{Effect, Group, SecondDerivatives, Vector};
+use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
 use crate::motion::linearised::recorded::Change;
 use crate::motion::linearised::stage::{Map, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
@@ -176,4 +176,4 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
 }
 
 /// The type of a scene's tangents.
-pub type TangentOf<S> = Tangent<Group<S>, <S as Effect>::Advected>;
+pub type TangentOf<S> = Tangent<Group<S>, <S as Term>::Advected>;

@@ -148,6 +148,11 @@ impl Checker<'_> {
             return self.mismatch("powi", "a scalar", base.shape, at);
         }
         if let Some(exponent) = integer(exponent).filter(|n| (-16..=16).contains(n)) {
+            // An even power of a norm is smooth where the norm itself isn't.
+            if let Some(squared) = norm_squared(&base).filter(|_| exponent % 2 == 0) {
+                let kind = Kind::Power(squared.clone(), exponent / 2);
+                return Some(if exponent == 2 { squared } else { Tree::new(span, Shape::Scalar, kind) });
+            }
             Some(Tree::new(span, Shape::Scalar, Kind::Power(base, exponent)))
         } else {
             self.errors.push(exponent.span(), "write the exponent as a whole number from −16 to 16");
@@ -168,6 +173,25 @@ impl Checker<'_> {
                 self.expression(argument);
             }
         }
+    }
+}
+
+/// What a norm is the root of.
+fn norm_squared(norm: &Rc<Tree>) -> Option<Rc<Tree>> {
+    match &norm.kind {
+        Kind::Bound(_, inner) => norm_squared(inner),
+        Kind::Apply(Function::Sqrt, squared) => match &squared.kind {
+            Kind::Dot(a, b) if Rc::ptr_eq(a, b) => Some(squared.clone()),
+            Kind::Trace(product) => match &product.kind {
+                Kind::Multiply(a, b) => match &b.kind {
+                    Kind::Transpose(b) if Rc::ptr_eq(a, b) => Some(squared.clone()),
+                    _ => None,
+                },
+                _ => None,
+            },
+            _ => None,
+        },
+        _ => None,
     }
 }
 

@@ -18,9 +18,17 @@ use crate::program::{Graph, along_directions, diamond_matrix};
 pub(crate) fn alone(item: &TokenStream, declaration: &Declaration, equations: &Equations) -> TokenStream {
     let header = Header::new(declaration);
     let implementation = implementation(declaration, &header, equations, false);
-    let addition = header.addition("ContinuousLagrangian");
+    let code = Code {
+        declaration,
+        header: &header,
+        names: &equations.names,
+        symbols: &equations.derived.symbols,
+        directions: None,
+    };
+    let term = code.term(&stages::same_generators(&code));
+    let addition = header.addition();
     let item = page::documented(item, &text::page(declaration, equations));
-    let implementations = header.enclosing(quote_spanned!(Span::mixed_site()=> #implementation #addition));
+    let implementations = header.enclosing(quote_spanned!(Span::mixed_site()=> #term #implementation #addition));
     quote_spanned!(Span::mixed_site()=> #item #implementations)
 }
 
@@ -43,7 +51,11 @@ pub(super) fn implementation(
     };
     let methods: TokenStream = [
         method("momentum", 1, Form::Vector, &derived.momentum),
-        if has_step { of_effect(header) } else { method("velocity_hessian", 2, Form::Square, &derived.hessian) },
+        if has_step && derived.inverse != Inverse::Nonlinear {
+            of_effect(header)
+        } else {
+            method("velocity_hessian", 2, Form::Square, &derived.hessian)
+        },
         method("diamond_rate", 1, Form::Vector, &derived.diamond),
         method("momentum_advection", 1, Form::Vector, &derived.advection),
         code.diamond_matrix(equations),
@@ -56,20 +68,13 @@ pub(super) fn implementation(
         Inverse::Nonlinear => "Nonlinear",
     };
     let legendre = Ident::new(legendre, span);
-    let (scalar, group, advected) = (&header.scalar, header.group(), header.advected_types());
     let derivation = text::derivation(declaration, equations);
     let documentation = format!("```text\n{derivation}```");
     let implementation = header.implementation("ContinuousLagrangian");
-    let (checks, values) = (code.checks(), code.advected_value());
-    let generators = stages::same_generators(&code);
     quote_spanned! {span=>
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #implementation {
-            type Scalar = #scalar;
-            type Group = #group;
-            type Advected = #advected;
-
             const LEGENDRE: #private::Legendre = #private::Legendre::#legendre;
 
             #[doc = #documentation]
@@ -78,14 +83,6 @@ pub(super) fn implementation(
                 const TEXT: &#private::core::primitive::str = #derivation;
                 TEXT
             };
-
-            fn check_parameters(&self) -> #private::core::result::Result<(), #private::SetupError> {
-                #generators
-                #checks
-                #private::core::result::Result::Ok(())
-            }
-
-            fn spatial_parameters(&self) -> Self::Advected { #values }
 
             #l
             #methods
@@ -103,6 +100,25 @@ fn of_effect(header: &Header) -> TokenStream {
     }
 }
 
+/// What a stepper has to know of an `l` that isn't quadratic in the velocity.
+pub(super) fn at_velocity(header: &Header, equations: &Equations) -> Option<TokenStream> {
+    let (private, vector) = (&header.private, header.vector());
+    let bool = quote_spanned!(Span::mixed_site()=> #private::core::primitive::bool);
+    (equations.derived.inverse == Inverse::Nonlinear).then(|| {
+        quote_spanned! {Span::mixed_site()=>
+            const IS_QUADRATIC: #bool = false;
+
+            fn limit(&self, velocity: &#vector, w: &Self::Advected) -> #private::Limit<Self> {
+                #private::Limit {
+                    l: #private::ContinuousLagrangian::l(self, velocity, w),
+                    momentum: #private::ContinuousLagrangian::momentum(self, velocity, w),
+                    hessian: #private::ContinuousLagrangian::velocity_hessian(self, velocity, w),
+                }
+            }
+        }
+    })
+}
+
 /// `l_d` as it is made of `l`.
 pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> TokenStream {
     let (span, header) = (Span::mixed_site(), emitter.header);
@@ -118,7 +134,7 @@ pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> 
         let name = Ident::new(name, span);
         return quote_spanned! {span=>
             /// The Lagrangian as it is made of the declared `l`.
-            fn l_d(&self, f: &#square, w: &<Self as #private::Effect>::Advected, h: #scalar) -> #scalar {
+            fn l_d(&self, f: &#square, w: &<Self as #private::Term>::Advected, h: #scalar) -> #scalar {
                 #private::#name::<Self, #private::CayleyRetraction>(self, f, w, h)
             }
         };

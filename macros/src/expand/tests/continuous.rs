@@ -357,6 +357,41 @@ fn what_isnt_self_adjoint_is_refused() {
     assert!(!body("trapezoid(Cayley)").contains("compile_error"));
 }
 
+/// An even power of a norm is smooth, and is what it is of `norm_squared`.
+#[test]
+fn powers_of_norms() {
+    let of = |l: &str| equations(&format!("group = SO3, velocity = Omega, l = {l}"), "struct Body { m: f64 }").derived;
+    let squared = of("0.5 * m * Omega.norm_squared()");
+    assert_eq!(of("0.5 * m * Omega.norm().powi(2)").lagrangian, squared.lagrangian);
+    assert_eq!(of("{ let speed = Omega.norm(); 0.5 * m * speed.powi(2) }").hessian, squared.hessian);
+    let fourth = of("m * Omega.norm_squared() + m * Omega.norm_squared().powi(2)");
+    assert_eq!(of("m * Omega.norm().powi(2) + m * Omega.norm().powi(4)").lagrangian, fourth.lagrangian);
+    let matrices = "group = SE2, velocity = xi, l = m * hat(xi).norm().powi(2) + m * xi.norm().powi(2)";
+    assert!(!super::is_refused(&expanded(matrices, "struct Body { m: f64 }")));
+    assert_eq!(of("0.5 * m * Omega.norm() * Omega.norm()").momentum, squared.momentum);
+}
+
+/// The limit of what is made of an `l` that isn't quadratic is `l`, by the series in `h`; that of another isn't.
+#[test]
+fn the_limit_of_what_isnt_quadratic() {
+    let kinetic = "0.5 * Omega.dot(&(J_d * Omega)) * (1.0 + w.dot(&rho)) + m * Omega.norm_squared().powi(2)";
+    let l = |kinetic: &str, sign: char| {
+        format!("group = SO3, velocity = Omega, advected(w = up), l = {kinetic} {sign} m * (2.0 + w.dot(&rho)).sqrt()")
+    };
+    let fields = "struct Top { J_d: Inertia, m: f64, rho: Vector3<f64>, up: Vector3<f64> }";
+    for rule in ["trapezoid", "trapezoid(Cayley)", "trapezoid(exp)", "midpoint(exp)", "chord", "chord(exp)"] {
+        let (declaration, tree) = read(&format!("{}, discretise = {rule}", l(kinetic, '-')), fields);
+        let mut errors = Errors::default();
+        let asked = declaration.discretisation().expect("a rule");
+        let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
+        assert!(!verify::series_disagrees(&declaration, &tree, &discrete), "{rule}");
+        let (_, other) = read(&l(kinetic, '+'), fields);
+        assert!(verify::series_disagrees(&declaration, &other, &discrete), "{rule}: the potential's sign");
+        let (_, other) = read(&l(&kinetic.replace("+ m", "- m"), '-'), fields);
+        assert!(verify::series_disagrees(&declaration, &other, &discrete), "{rule}: the quartic term's sign");
+    }
+}
+
 /// As the normal form shows.
 #[test]
 fn the_second_derivative_is_symmetric() {

@@ -119,7 +119,7 @@ impl<'a, T: Number> Point<'a, T> {
 
     /// As dual numbers, whose advected parameters change by `ξ·w`.
     fn carried_by(&self, xi: &[T]) -> Values<Dual<T>> {
-        self.carried_by_matrix(&hat(self.group(), xi))
+        self.carried_by_matrix(&element(self.group(), xi))
     }
 
     /// The same for any matrix.
@@ -150,12 +150,8 @@ impl<'a, T: Number> Point<'a, T> {
     }
 }
 
-/// `Σ v_k E_k`.
-fn hat<T: Number>(group: &Group, v: &[T]) -> Value<T> {
-    let zero = Value::diagonal(group.size, |_| T::ZERO);
-    group.generators.iter().zip(v).fold(zero, |sum, (entries, &component)| {
-        sum.plus(&Value::square(group.size, entries).map(|entry: T| entry * component))
-    })
+fn element<T: Number>(group: &Group, xi: &[T]) -> Value<T> {
+    Value::combination(group.size, &group.generators, xi)
 }
 
 /// `E·w`.
@@ -172,7 +168,7 @@ fn carried<T: Number>(variance: Variance, e: &Value<T>, w: &Value<T>) -> Value<T
 
 /// `⟨ad*_ξ μ, E_k⟩ = ⟨μ, [ξ, E_k]⟩` for all `k`.
 fn coadjoint<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
-    let (dual, xi) = (group.dual(), hat(group, xi));
+    let (dual, xi) = (group.dual(), element(group, xi));
     let of_generator = |entries: &Vec<Rational>| {
         let generator = Value::square(group.size, entries);
         let bracket = xi.times(&generator).zip(&generator.times(&xi), |x, y| x - y);

@@ -71,18 +71,7 @@ impl<'a, T: Number> Evaluation<'a, T> {
                     half * (a.at(i, j) - a.at(j, i))
                 })
             }
-            Kind::Hat(a, generators) => {
-                let (components, size) = (self.of(a), tree.shape.rows());
-                let entry = |row, column| {
-                    let of =
-                        |generator: &Vec<Rational>| generator.get(row * size + column).map_or(T::ZERO, |x| T::of(*x));
-                    generators
-                        .iter()
-                        .enumerate()
-                        .fold(T::ZERO, |sum, (k, generator)| sum + components.at(k, 0) * of(generator))
-                };
-                Value::new(size, size, entry)
-            }
+            Kind::Hat(a, generators) => Value::combination(tree.shape.rows(), generators, &self.of(a).entries),
             Kind::Components(a, forms) => {
                 let element = self.of(a);
                 Value::new(tree.shape.rows(), 1, |row, _| {

@@ -41,6 +41,7 @@ use evaluation::Evaluation;
 pub(super) use force::force;
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
+pub(crate) use orders::series_disagrees;
 pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes};
 use step::Step;
 use terms::Terms;

@@ -73,6 +73,15 @@ pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>)
     singular(tree, &Points::new(declaration).at_rest)
 }
 
+/// Whether the discrete Lagrangian isn't `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, to rounding. Where one of them has no
+/// value, nothing is told.
+pub(crate) fn series_disagrees(declaration: &Declaration, l: &Rc<Tree>, discrete: &Rc<Tree>) -> bool {
+    let points = Points::new(declaration);
+    let along = Evaluation::new(&points.moving).of(discrete).first();
+    let rest = along - Series::STEP * Evaluation::new(&points.moving).of(l).first();
+    rest.is_defined() && rest.order().is_some_and(|order| order < 2)
+}
+
 type Values = BTreeMap<Name, Value<Series>>;
 
 /// Numbers for all names, with `h` as it is.
@@ -100,11 +109,9 @@ impl Points {
         for (index, field) in declaration.fields.iter().enumerate() {
             at_rest.insert(Name::Field(index), parameter(field.kind, &mut number));
         }
-        let mut velocity = Value::diagonal(group.size, |_| Series::ZERO);
-        for entries in &group.generators {
-            let speed = number() + Series::constant(0.5);
-            velocity = Value::square(group.size, entries).map(|entry: Series| entry * speed).plus(&velocity);
-        }
+        let speeds: Vec<Series> = group.generators.iter().map(|_| number() + Series::constant(0.5)).collect();
+        let velocity = Value::combination(group.size, &group.generators, &speeds);
+        at_rest.insert(Name::Velocity, Value { rows: speeds.len(), columns: 1, entries: speeds });
         for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
             at_rest.insert(name, parameter(FieldKind::Vector(group.dimension()), &mut number));
         }

@@ -26,6 +26,14 @@ impl<T: Number> Value<T> {
         Self { rows: size, columns: size, entries: entries.iter().map(|&entry| T::of(entry)).collect() }
     }
 
+    /// `Σ v_k E_k`, with the entries of each `E_k` row by row.
+    pub(super) fn combination(size: usize, generators: &[Vec<Rational>], v: &[T]) -> Self {
+        let zero = Self::new(size, size, |_, _| T::ZERO);
+        generators.iter().zip(v).fold(zero, |sum, (entries, &component)| {
+            sum.plus(&Self::square(size, entries).map(|entry| entry * component))
+        })
+    }
+
     pub(super) fn at(&self, row: usize, column: usize) -> T {
         self.entries.get(row * self.columns + column).copied().unwrap_or(T::UNDEFINED)
     }

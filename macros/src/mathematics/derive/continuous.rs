@@ -86,7 +86,7 @@ impl Continuous {
         self.at_rest(&self.lagrangian).scaled(-Rational::ONE)
     }
 
-    fn at_rest(&self, expression: &Expression) -> Expression {
+    pub(super) fn at_rest(&self, expression: &Expression) -> Expression {
         let rest = Expression::zero((self.group.dimension(), 1));
         let mut map = BTreeMap::from([(self.velocity, rest)]);
         let size = self.group.size;

@@ -7,8 +7,18 @@
 use std::collections::BTreeMap;
 
 use super::series::Expansion;
-use super::{Context, momentum_equation};
-use crate::mathematics::symbolic::{Expression, Monomial, Rational, SymbolId, Variations, degree, variation};
+use super::{Context, Continuous, momentum_equation};
+use crate::mathematics::symbolic::{
+    Expression, Monomial, Rational, SymbolId, Variations, degree, substitute, variation,
+};
+
+/// A continuous Lagrangian that isn't quadratic in the velocity, and which of its symbols stand for which of the
+/// discrete one that is made of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Discretised {
+    pub(crate) continuous: Continuous,
+    pub(crate) symbols: Vec<(SymbolId, SymbolId)>,
+}
 
 /// `J` (linear in `E_k` and `E_j`), `s` (linear in `E_k`) and `V`.
 #[derive(Clone, Debug)]
@@ -37,6 +47,9 @@ pub(crate) enum LimitError {
 }
 
 pub(super) fn limit(context: &Context, momentum: &Expression) -> Result<Limit, LimitError> {
+    if let Some(discretised) = &context.declared.discretised {
+        return Ok(at_rest(context, discretised));
+    }
     if !context.declared.lets.is_empty() {
         return through_lets(context);
     }
@@ -106,6 +119,27 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
     let inertia = along(&along(&kinetic, first), second);
     let (slope, bias) = (along(&slope, first), along(&linear, first));
     Ok(Limit { has_kinetic: !kinetic.is_zero(), slope, inertia, bias, potential: rest.scaled(-Rational::ONE) })
+}
+
+/// What is left of `l` near rest: its Taylor polynomial of degree two in the velocity.
+fn at_rest(context: &Context, Discretised { continuous, symbols }: &Discretised) -> Limit {
+    let mut map: BTreeMap<SymbolId, Expression> =
+        symbols.iter().map(|&(from, to)| (from, context.symbol(to))).collect();
+    let matrices = continuous.direction_matrices.map(|matrices| matrices.map(Some)).unwrap_or_default();
+    for ((components, matrix), image) in
+        continuous.directions.into_iter().zip(matrices).zip([context.first(0), context.second(0)])
+    {
+        map.insert(components, context.components(&image));
+        map.extend(matrix.map(|matrix| (matrix, image)));
+    }
+    let here = |expression: &Expression| substitute(&continuous.at_rest(expression), &map, context.symbols);
+    Limit {
+        has_kinetic: continuous.has_kinetic(),
+        slope: Expression::zero((1, 1)),
+        inertia: here(&continuous.hessian),
+        bias: here(&continuous.momentum),
+        potential: here(&continuous.lagrangian).scaled(-Rational::ONE),
+    }
 }
 
 fn of_order(expression: &Expression, h: SymbolId, order: i32) -> Expression {

@@ -27,7 +27,7 @@ pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
 pub(crate) use continuous::{Continuous, DeclaredContinuous, Inverse, continuous, matrix_symbol, of_limit};
 pub(crate) use force::{Displacements, ForceError};
-pub(crate) use limit::{Limit, LimitError};
+pub(crate) use limit::{Discretised, Limit, LimitError};
 pub(crate) use self_adjoint::SelfAdjointness;
 
 /// A declared Lagrangian with the symbols that it is written in.
@@ -49,6 +49,8 @@ pub(crate) struct Declared {
     pub(crate) displacements: Option<Displacements>,
     /// Whether the derivatives of a step are asked for.
     pub(crate) has_derivatives: bool,
+    /// The continuous Lagrangian that was discretised, where powers of the velocity don't show it again.
+    pub(crate) discretised: Option<Discretised>,
 }
 
 /// Why nothing can be derived.

@@ -14,7 +14,7 @@ use super::scheme::Flow;
 use super::{KineticFlow, Share, Split, has_force_gradient, share_of};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
-use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor};
+use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
 use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation};
 use crate::numbers::{Coordinates, InLanes, Lanes, lanes_of_fields, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
@@ -110,7 +110,7 @@ impl<S: Effect> Stepper<S> {
         scheme: ProcessedScheme,
     ) -> Result<Stepper<S, Processed<S, K>>, SetupError>
     where
-        S: DiscreteLagrangian<Group = SO3<<S as Effect>::Scalar>> + Regular,
+        S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
         // For its checks of the scene and the step.

@@ -1,0 +1,225 @@
+//! What `discretise` makes of an `l` that isn't quadratic in the velocity, on groups with and without a bi-invariant
+//! metric: the derived terms against differences of the made `l_d`, order two against collocation, the coadjoint orbit,
+//! and a step back.
+
+use checks::random::Random;
+use checks::structure::{System, momenta, poisson, stages, symmetry};
+use liestep::effects::Gravity;
+use liestep::groups::{Generators, LieGroup, MatrixGroup, R3, SE3, SL2, SO3};
+use liestep::mechanics::{ContinuousLagrangian, Inertia};
+use liestep::methods::{CotangentGauss, ExactBody, SplittingScheme};
+use liestep::motion::DiscreteLiePoisson;
+use liestep::numbers::Coordinates;
+use liestep::{SetupError, Stepper, lagrangian};
+use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
+
+use crate::other_groups::{column, tensor};
+
+/// The affine maps `x ↦ a x + b` of the line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AffineGenerators;
+
+impl Generators<2, 2> for AffineGenerators {
+    const GENERATORS: [[[f64; 2]; 2]; 2] = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
+
+    fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
+        m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
+    }
+}
+
+type Affine<T = f64> = MatrixGroup<AffineGenerators, T, 2, 2>;
+
+macro_rules! quartic {
+    ($name:ident: $group:ident, $vector:ident, $matrix:ident, $rule:ident$(($retraction:ident))? $(, $($own:tt)*)?) => {
+        #[lagrangian(
+            group = $group,
+            $($($own)*)?
+            velocity = xi,
+            advected(w = covector),
+            l = {
+                let x = hat(xi);
+                let quadratic = (x * J * x.transpose()).trace();
+                0.5 * quadratic + k * quadratic.powi(2) + w.dot(&(x * r)) - w.dot(&r).powi(2)
+            },
+            discretise = $rule$(($retraction))?,
+        )]
+        #[derive(Clone, Debug)]
+        struct $name {
+            J: $matrix<f64>,
+            k: f64,
+            r: $vector<f64>,
+            covector: $vector<f64>,
+        }
+
+        impl $name {
+            fn new() -> Self {
+                let mut random = Random::new(11);
+                Self { J: tensor(&mut random), k: 0.02, r: column(&mut random), covector: column(&mut random) }
+            }
+        }
+    };
+}
+
+quartic!(OnSo3: SO3, Vector3, Matrix3, trapezoid(Cayley));
+quartic!(OnSo3Halfway: SO3, Vector3, Matrix3, midpoint(exp));
+quartic!(OnSl2: SL2, Vector2, Matrix2, trapezoid(Cayley));
+quartic!(OnSe3: SE3, Vector4, Matrix4, chord(Cayley));
+quartic!(
+    OnAffine: Affine, Vector2, Matrix2, trapezoid(Cayley),
+    generators = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]],
+);
+
+/// In the ambient matrix, and with a term of the library beside it.
+#[lagrangian(
+    group = SO3,
+    velocity = Omega,
+    advected(w = covector),
+    l = 0.5 * Omega.dot(&(J * Omega)) + k * Omega.dot(&(J * Omega)).powi(2) - w.dot(&r).powi(2),
+    discretise = trapezoid,
+)]
+#[derive(Clone, Debug)]
+struct Ambient {
+    J: Inertia,
+    k: f64,
+    r: Vector3<f64>,
+    covector: Vector3<f64>,
+}
+
+impl Ambient {
+    fn new() -> Self {
+        let J = Inertia::from_principal_moments(Vector3::new(0.4, 0.6, 0.9)).unwrap();
+        Self { J, k: 0.001, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) }
+    }
+}
+
+/// All claims about a discretisation.
+fn assert_discretised<L, const N: usize, const D: usize>(system: &L, name: &str)
+where
+    L: System<N, D> + ContinuousLagrangian + Clone,
+    SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
+{
+    const { assert!(L::SELF_ADJOINT && !L::IS_QUADRATIC) };
+    momenta::assert_momenta(system, 5);
+    stages::assert_stages(system, 6);
+    let (_, defect) = poisson::worst(system, &[0.02, 0.1], 7);
+    assert!(defect < 1e-11, "{name}: Poisson {defect:e}");
+    let mut random = Random::new(8);
+    let (attitude, velocity): (_, SVector<f64, D>) = (L::Group::identity(), column(&mut random));
+    let flow = DiscreteLiePoisson::new(system.clone(), 0.02).unwrap();
+    let (momentum, parameters) = symmetry::drift(&flow, (attitude, velocity), 500);
+    assert!(momentum < 1e-12 && parameters < 1e-12, "{name}: drift {momentum:e}, {parameters:e}");
+
+    // The continuous momentum, velocity and energy are those of the declared `l`.
+    let stepper = Stepper::new(system.clone(), 0.02).unwrap();
+    let mut state = stepper.start(attitude, velocity).unwrap();
+    let w = state.advected();
+    let expected = system.momentum(&velocity, &w);
+    assert!((state.momentum() - expected).norm() <= 1e-14 * expected.norm(), "{name}: the momentum of a velocity");
+    assert!((stepper.velocity(&state) - velocity).norm() <= 1e-12 * velocity.norm(), "{name}: and back");
+    let energy = system.hamiltonian(&expected, &w).unwrap();
+    assert!((stepper.energy(&state) - energy).abs() <= 1e-12 * (1.0 + energy.abs()), "{name}: the energy");
+    for _ in 0..100 {
+        stepper.step(&mut state).unwrap();
+        assert!((stepper.energy(&state) - energy).abs() < 1e-2 * (1.0 + energy.abs()), "{name}: the energy");
+    }
+
+    let time = 0.5;
+    let gauss = CotangentGauss::<L, 3, N>::new(system.clone(), time / 20.0).unwrap();
+    let mut exact = (attitude, expected);
+    for _ in 0..20 {
+        exact = gauss.step(&exact.0, &exact.1).unwrap();
+    }
+    let error = |steps: u32| {
+        let stepper = Stepper::new(system.clone(), time / f64::from(steps)).unwrap();
+        let mut state = stepper.start(attitude, velocity).unwrap();
+        stepper.run(&mut state, steps.into()).unwrap();
+        (state.attitude().matrix() - exact.0.matrix()).norm() + (state.momentum() - exact.1).norm()
+    };
+    let order = (error(50) / error(100)).log2();
+    println!("{name}: order {order}, Poisson {defect:.1e}");
+    assert!((order - 2.0).abs() < 0.05, "{name}: order {order}");
+
+    let back = stepper.inverse().unwrap();
+    let mut there = stepper.start(attitude, velocity).unwrap();
+    stepper.run(&mut there, 50).unwrap();
+    back.run(&mut there, 50).unwrap();
+    assert!((there.momentum() - expected).norm() < 1e-11 * expected.norm(), "{name}: back");
+}
+
+#[test]
+fn on_so3() {
+    assert_discretised(&OnSo3::new(), "SO(3), trapezoid(Cayley)");
+    assert_discretised(&OnSo3Halfway::new(), "SO(3), midpoint(exp)");
+}
+
+#[test]
+fn on_so3_in_the_ambient_matrix() {
+    assert_discretised(&Ambient::new(), "SO(3), trapezoid");
+    let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() };
+    assert_discretised(&(Ambient::new() + gravity), "SO(3), a sum");
+}
+
+#[test]
+fn on_sl2() {
+    assert_discretised(&OnSl2::new(), "SL(2), trapezoid(Cayley)");
+}
+
+#[test]
+fn on_se3() {
+    assert_discretised(&OnSe3::new(), "SE(3), chord(Cayley)");
+}
+
+#[test]
+fn on_affine_maps() {
+    assert_discretised(&OnAffine::new(), "affine maps, trapezoid(Cayley)");
+}
+
+/// What has the motion of one free body in it needs one inertia for all velocities.
+#[test]
+fn methods_for_a_quadratic_kinetic_energy_refuse_another() {
+    let body = ExactBody::new(&Ambient::new().J);
+    let split = Stepper::split(Ambient::new(), 0.1, body, SplittingScheme::STRANG);
+    assert!(matches!(split, Err(SetupError::VaryingInertia)));
+    assert!(matches!(Stepper::collocated::<2>(Ambient::new(), 0.1), Err(SetupError::VaryingInertia)));
+}
+
+/// A relativistic particle, whose momenta are those of velocities below that of light.
+#[lagrangian(
+    group = R3,
+    velocity = v,
+    advected(w = field),
+    l = -(m * c * c) * (1.0 - v.norm_squared() / (c * c)).sqrt() + q * w.dot(&origin),
+    discretise = trapezoid(exp),
+)]
+#[derive(Clone, Debug)]
+struct Fast {
+    m: f64,
+    c: f64,
+    q: f64,
+    origin: Vector4<f64>,
+    field: Vector4<f64>,
+}
+
+/// A uniform pull: the discrete momentum is exact, and each step goes as far as its middle momentum says.
+#[test]
+fn a_fast_particle() {
+    let (m, c, q, h) = (2.0, 3.0, 0.5, 0.1);
+    let field = Vector4::new(0.4, -1.0, 0.2, 0.0);
+    let stepper = Stepper::new(Fast { m, c, q, origin: Vector4::w(), field }, h).unwrap();
+    let mut state = stepper.start(R3::identity(), Vector3::new(0.3, 0.1, -2.8)).unwrap();
+    let (mut momentum, mut place) = (state.momentum(), Vector3::zeros());
+    assert!(momentum.norm() > 2.0 * m * 2.8, "{momentum}");
+    for _ in 0..1000 {
+        stepper.step(&mut state).unwrap();
+        let pull = field.xyz() * (q * h);
+        let middle: Vector3<f64> = momentum + pull * 0.5;
+        place += middle * (c * h / (m * m * c * c + middle.norm_squared()).sqrt());
+        momentum += pull;
+    }
+    assert!((state.momentum() - momentum).norm() < 1e-11 * momentum.norm());
+    let reached = state.attitude().matrix().fixed_view::<3, 1>(0, 3).into_owned();
+    assert!((reached - place).norm() < 1e-11 * place.norm(), "{reached} and {place}");
+    assert!(stepper.velocity(&state).norm() < c);
+    let error = stepper.start(R3::identity(), Vector3::new(0.0, 0.0, 3.1)).unwrap_err();
+    assert!(matches!(error, SetupError::NonFinite { .. }), "{error}");
+}
