@@ -11,7 +11,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::fs;
 
-use liestep::mechanics::{Effect, Term};
+use liestep::mechanics::Term;
 use liestep::prelude::*;
 use workbench::heavy_top::declaration::HeavyTop;
 use workbench::heavy_top::euler_angles::EulerAngles;

@@ -3,7 +3,7 @@
 
 use checks::random::Random;
 use liestep::groups::{Configuration, R1, R3, Relative, SeenFrom};
-use liestep::mechanics::{DiscreteLagrangian, Effect};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, Vector3, Vector4, convert};
@@ -87,7 +87,7 @@ fn shift<T: RealField + Copy>(x: &Vector3<T>) -> Matrix4<T> {
 }
 
 /// `e·w`, for `e` one of [`turned`]: what is added has its sign turned, what turns is transposed.
-fn acted<T: Real + RealField + Copy>(e: &Matrices<T>, w: &Values) -> <Carried<T> as Effect>::Advected {
+fn acted<T: Real + RealField + Copy>(e: &Matrices<T>, w: &Values) -> <Carried<T> as Term>::Advected {
     let place = |matrix: &Matrix4<T>| Vector3::new(matrix[(0, 3)], matrix[(1, 3)], matrix[(2, 3)]);
     let (first, angle, second) = (place(&e.1), e.2[(0, 1)], place(&e.3));
     let (r, x) = (w.2.map(convert::<f64, T>), w.3.map(convert::<f64, T>));

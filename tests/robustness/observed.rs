@@ -9,7 +9,7 @@ use declarations::HeavyTop;
 use liestep::effects::{Drag, RigidBody};
 use liestep::mechanics::Sum;
 use liestep::methods::CotangentGauss;
-use liestep::motion::AnyStepper;
+use liestep::motion::{AnyStepper, Moment};
 use liestep::prelude::*;
 use liestep::with::{
     Background, Column, Csv, Ended, Event, Reason, RecordError, Recorder, RunError, Sink, SinkError, Table, sections,

@@ -3,7 +3,7 @@
 #![allow(non_snake_case)] // the letters of the field
 
 use liestep::effects::{Gravity, PrincipalBody};
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, InertiaError, Sum};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, Sum, Term};
 use liestep::methods::{ExactBody, ProcessedScheme, SplitBody, SplittingScheme, SymmetricBody};
 use liestep::motion::{Batchable, Integrator, Plan};
 use liestep::{SO3, SetupError, State, StepError, Stepper};
@@ -15,7 +15,7 @@ const MEMBERS: u64 = 21;
 const STEPS: u64 = 150;
 
 type Scene = Sum<PrincipalBody, Gravity>;
-type StateOf<P> = State<SO3, <Scene as Effect>::Advected, <P as Plan<Scene>>::Kept>;
+type StateOf<P> = State<SO3, <Scene as Term>::Advected, <P as Plan<Scene>>::Kept>;
 
 /// A body, in one order of its moments, and what is heavy in it, on the third axis or beside. The spin of member 6 has
 /// no digit left within a step; the others turn from slowly to several radians a step.

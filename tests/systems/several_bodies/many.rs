@@ -8,7 +8,7 @@ use liestep::effects::{Gravity, PrincipalBody, Spring};
 use liestep::groups::{Advected as _, CayleyRetraction, Retraction};
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{
-    Along, Between, DiagonalNonstandardInertia, DiscreteLagrangian, Each, Effect, On, Pairs, Regular,
+    Along, Between, DiagonalNonstandardInertia, DiscreteLagrangian, Each, On, Pairs, Regular, Term as _,
 };
 use liestep::methods::CompositionScheme;
 use liestep::numbers::Bodies;

@@ -12,7 +12,7 @@ mod translated;
 use liestep::SO3;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::laws::samples::{Random, derivative};
-use liestep::mechanics::{DiscreteLagrangian, Effect};
+use liestep::mechanics::{DiscreteLagrangian, Term};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use serde_json::Value;
 
@@ -89,9 +89,9 @@ where
     L: DiscreteLagrangian<
             Scalar = f64,
             Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>,
-            Advected: Advected<<L as Effect>::Group>,
+            Advected: Advected<<L as Term>::Group>,
         >,
-    CayleyRetraction: Retraction<<L as Effect>::Group>,
+    CayleyRetraction: Retraction<<L as Term>::Group>,
 {
     let h = 0.05;
     let axis = |k: usize, s: f64| element::<L::Group, D>(&SVector::from_fn(|i, _| if i == k { s } else { 0.0 }));

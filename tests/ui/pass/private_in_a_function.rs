@@ -1,6 +1,6 @@
 //! A private struct in a module, and one inside a function, with private fields and without advected parameters.
 
-use liestep::mechanics::{Effect as _, Term as _};
+use liestep::mechanics::Term as _;
 use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 

@@ -1,6 +1,6 @@
 //! Keywords as names of fields, of the advected parameter and of a `let`.
 
-use liestep::mechanics::{Effect as _, Term as _};
+use liestep::mechanics::Term as _;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 

@@ -1,6 +1,6 @@
 //! Gravity and a magnetic field.
 
-use liestep::mechanics::{Effect as _, Term as _};
+use liestep::mechanics::Term as _;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::Vector3;
 

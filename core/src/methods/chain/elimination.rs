@@ -24,6 +24,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 use super::{Link, inertia};
 
 /// What is known of a link while a step is solved.

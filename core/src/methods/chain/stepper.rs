@@ -4,6 +4,10 @@ use core::array::from_fn;
 
 use nalgebra::{Matrix3, Vector3};
 
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 use super::elimination::{Updated, Work, momenta, momenta_of_velocities, newton, outwards, simplified, velocities};
 use super::{Chain, Link};
 use crate::error::{SetupError, StepError};
