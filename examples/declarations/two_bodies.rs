@@ -6,7 +6,7 @@ use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix3, Vector3};
 
 /// Two rigid bodies that attract each other, as two asteroids do: the full two-body problem. Their potential is that of
-/// two points, and MacCullagh's correction to it for their shapes.
+/// two points, and its correction of second order for their shapes.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),

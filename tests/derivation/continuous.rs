@@ -224,6 +224,15 @@ struct Pull {
     up: Vector3<f64>,
 }
 
+/// What the scene turns by.
+fn torque<L>(scene: &L, velocity: &Vector3<f64>, w: &L::Advected) -> Vector3<f64>
+where
+    L: ContinuousLagrangian<Scalar = f64, Group = SO3>,
+{
+    scene.validate().unwrap();
+    scene.lie_poisson(&scene.momentum(velocity, w), w).unwrap().0
+}
+
 /// Terms with steps and without add in any order, and are what both of them are.
 #[test]
 fn terms_with_steps_and_without_add() {
@@ -231,13 +240,6 @@ fn terms_with_steps_and_without_add() {
     let turning = Turning { J: J_d.to_inertia() };
     let pull = Pull { k: 0.7, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() };
     let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.3, 0.1, 0.5), up: Vector3::z() };
-    fn torque<L>(scene: &L, velocity: &Vector3<f64>, w: &L::Advected) -> Vector3<f64>
-    where
-        L: ContinuousLagrangian<Scalar = f64, Group = SO3>,
-    {
-        scene.validate().unwrap();
-        scene.lie_poisson(&scene.momentum(velocity, w), w).unwrap().0
-    }
     let (velocity, w) = (Vector3::new(0.5, 2.0, -1.0), Vector3::new(0.1, 0.6, 0.7));
     let momentum = turning.J.as_matrix() * velocity + w;
     // By hand: μ × Ω and w × (−∂l/∂w).

@@ -9,6 +9,9 @@ use nalgebra::{DMatrix, DVector, SVector};
 use super::numbers::Numbers;
 use super::{System, axis, random_advected, step};
 
+/// What takes the derivative at zero of a curve.
+type Derivative<'a> = &'a dyn Fn(&dyn Fn(f64) -> DVector<f64>) -> DVector<f64>;
+
 /// `B(z)`, from the brackets of the group and the action on the parameters:
 ///
 /// ```text
@@ -96,7 +99,7 @@ pub fn defect_by<G: MatrixLieGroup<N, D>, A: Advected<G> + Numbers, const N: usi
     map: impl Fn(&SVector<f64, D>, &A) -> (SVector<f64, D>, A),
     momentum: &SVector<f64, D>,
     w: &A,
-    derivative: &dyn Fn(&dyn Fn(f64) -> DVector<f64>) -> DVector<f64>,
+    derivative: Derivative<'_>,
 ) -> (f64, f64) {
     let z = joined(momentum, w);
     let mut tangent = DMatrix::zeros(z.len(), z.len());
