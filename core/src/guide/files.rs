@@ -7,7 +7,7 @@
 //! | file | written by | format |
 //! |---|---|---|
 //! | `top.csv` | [`Csv`](crate::with::Csv); `liestep run --csv` | comma-separated values, RFC 4180 with line feeds |
-//! | `top.arrows` | `liestep_arrow::ArrowStream` in `core/arrow` | Arrow IPC stream |
+//! | `top.arrows` | `liestep_arrow::ArrowStream` in `core/arrow`; `liestep run --arrow` | Arrow IPC stream |
 //! | `00000000-….arrow` in a folder | `liestep-ensemble` | Arrow IPC file ("Feather"), one for each chunk of members |
 //! | tables of errors and costs | [`Refinement::to_csv`](crate::accuracy::Refinement::to_csv), [`to_json`](crate::accuracy::Refinement::to_json) | CSV, JSON |
 //! | checkpoints | `Stepper::checkpoint` (feature `serde`) | whatever format of serde is chosen; to go on from, not to be read |
