@@ -149,10 +149,8 @@ fn every_chapter_is_listed_and_leads_on() {
         assert!(left.remove(now), "{now} is led to twice, or isn't there");
         let (_, text) = chapters.iter().find(|(name, _)| name == now).unwrap();
         let before = now;
-        match next(text) {
-            Some(next) => now = next,
-            None => break,
-        }
+        let Some(following) = next(text) else { break };
+        now = following;
         let (_, text) =
             chapters.iter().find(|(name, _)| name == now).unwrap_or_else(|| panic!("{before} leads to {now}"));
         assert_eq!(leads(text, "Before: ["), Some(before), "{now} doesn't lead back");

@@ -199,7 +199,7 @@ fn the_time_to_an_error_is_read_off_straight_lines() {
     assert_eq!(table.seconds_to(1e-5), None);
     assert_eq!(table.longest_step_to(2.6e-4), Some(0.5));
     // Backwards the longest step is the one furthest from zero.
-    let back: Refinement = [-1.0, -0.5, -0.25].map(|h| row(h)).into_iter().collect();
+    let back: Refinement = [-1.0, -0.5, -0.25].map(row).into_iter().collect();
     assert_eq!(back.longest_step_to(2.6e-4), Some(-0.5));
     assert_eq!(Refinement::of([(0.1, 1e-9)]).seconds_to(1e-3), None);
 }
@@ -215,7 +215,7 @@ fn the_order_is_read_off_finite_errors_above_zero() {
         let with = |first| Refinement::of([first].into_iter().chain(halvings.map(|h| (h, h * h))));
         assert_eq!(with((0.8, odd)).order_above(-1.0), squares.order_above(0.0));
         assert_eq!(with((odd, 0.7)).order_above(-1.0), squares.order_above(0.0));
-        let instead = halvings.map(|h| (h, if h == 0.1 { odd } else { h * h }));
+        let instead = halvings.iter().enumerate().map(|(place, h)| (*h, if place == 2 { odd } else { h * h }));
         assert_eq!(Refinement::of(instead).order_above(-1.0), None);
     }
     assert_eq!(Refinement::of([1e-1, 1e-2, 1e-3, 1e-4].map(|error| (0.1, error))).order_above(0.0), None);

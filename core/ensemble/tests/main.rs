@@ -569,11 +569,11 @@ fn other_scenes_and_methods() {
             Ok((stepper, state))
         };
         let made = if alone {
-            Ensemble::one_by_one("composed", 20, 50, make).chunks_of(20)
+            Ensemble::one_by_one("composed", 20, 50, make)
         } else {
             Ensemble::new("composed", 20, 50, make)
         };
-        made.keep(["x", "y", "z"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
+        made.chunks_of(20).keep(["x", "y", "z"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
     };
     assert_eq!(composed(false), composed(true));
 }

@@ -337,7 +337,7 @@ fn collect(table: &DeTable<'_>, way: &[Spanned<String>], axes: &mut Vec<Axis>) -
         let name = keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".");
         let (components, is_list) = match value.get_ref() {
             DeValue::Table(inner) if DISTRIBUTIONS.as_flattened().iter().any(|end| inner.contains_key(*end)) => {
-                (vec![Component::Draw(drawn(inner, value.span(), name)?)], false)
+                (vec![Component::Draw(drawn(inner, &value.span(), name)?)], false)
             }
             DeValue::Table(inner) if inner.is_empty() => return Err((value.span(), DRAW.to_owned())),
             DeValue::Table(inner) => {
@@ -347,7 +347,7 @@ fn collect(table: &DeTable<'_>, way: &[Spanned<String>], axes: &mut Vec<Axis>) -
             DeValue::Array(values) => {
                 let component = |(place, part): (usize, &Spanned<DeValue<'_>>)| match part.get_ref() {
                     DeValue::Table(inner) => {
-                        drawn(inner, part.span(), format!("{name}.{}", place + 1)).map(Component::Draw)
+                        drawn(inner, &part.span(), format!("{name}.{}", place + 1)).map(Component::Draw)
                     }
                     _ => Ok(Component::Fixed(part.span())),
                 };
@@ -367,7 +367,7 @@ fn collect(table: &DeTable<'_>, way: &[Spanned<String>], axes: &mut Vec<Axis>) -
 /// The two numbers of each distribution.
 const DISTRIBUTIONS: [[&str; 2]; 2] = [["from", "to"], ["mean", "deviation"]];
 
-fn drawn(table: &DeTable<'_>, span: Range<usize>, name: String) -> Result<Draw, Wrong> {
+fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw, Wrong> {
     let wrong = |span: Range<usize>| (span, DRAW.to_owned());
     let mut entries: Vec<_> = table.iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);

@@ -99,7 +99,7 @@ impl Refinement {
     ///
     /// None where fewer than four are, so that a slope isn't read off the edge of a plateau, and where all have one step.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // a handful of runs
+    #[allow(clippy::cast_precision_loss, clippy::float_cmp)] // a handful of runs, and steps that are one to the last bit
     pub fn order_above(&self, plateau: f64) -> Option<f64> {
         let above = self.rows.iter().filter(|row| row.error > plateau);
         let logarithms = above.map(|row| (row.step.abs().ln(), row.error.ln()));
