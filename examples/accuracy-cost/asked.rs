@@ -144,7 +144,7 @@ fn add(rows: &mut Vec<Vec<String>>, question: &Question, scene: &Scene, t: f64, 
                     .filter_map(|(method, runs)| Some((method.name.as_str(), runs.seconds_to(tolerance)?)))
                     .min_by(|a, b| a.1.total_cmp(&b.1));
                 let repeated = effort.0.repeated.max(Duration::from_millis(5));
-                let (Some(end), cost) = (Effort { repeated, ..effort.0 }).time(&answer.run) else {
+                let Ok((end, cost)) = (Effort { repeated, ..effort.0 }).time(|| (answer.run)().ok_or(())) else {
                     rows.push(row.into_iter().chain([answer.name, "a step failed".to_owned()]).collect());
                     continue;
                 };

@@ -3,7 +3,9 @@
 use std::time::Duration;
 
 use declarations::{HeavyTop, Motion};
-use liestep::accuracy::{Effort, End, Reference, Refinement, RefinementError, convergence, work_precision};
+use liestep::accuracy::{
+    Effort, End, Measurement, Reference, Refinement, RefinementError, convergence, work_precision,
+};
 use liestep::prelude::*;
 use liestep::{SetupError, StepError};
 use workbench::measure::relative;
@@ -130,31 +132,93 @@ fn shorter_steps_end_where_errors_stop_falling() {
     assert_eq!(half.rows().len(), 4);
 }
 
+/// A first run that ends in NaN is no best one: the curve behind it isn't cut.
+#[test]
+fn runs_that_end_in_nan_are_no_plateau() {
+    let errors = [f64::NAN, 4e-11, 3e-11, 2e-11, 1e-11, 9e-12];
+    let mut errors_in_turn = errors.into_iter();
+    let table = Refinement::timed(
+        (0..6).map(|k| 0.5_f64.powi(k)),
+        BRIEF,
+        |_| errors_in_turn.next().map(|error| move || Some(error)),
+        |error: &f64| *error,
+    );
+    assert_eq!(table.rows().iter().map(|row| row.error).collect::<Vec<_>>(), errors[1..]);
+}
+
+/// However long repetitions are asked for, there is an end, and after a failure at once.
+#[test]
+fn repetitions_are_bounded_and_end_with_a_failure() {
+    let endless = Effort { repeated: Duration::MAX, ..BRIEF };
+    let mut runs = 0;
+    let fine = endless.time(|| {
+        runs += 1;
+        Ok::<_, ()>(runs)
+    });
+    assert!(fine.is_ok_and(|(last, _)| last == 1000), "{fine:?}");
+    let mut runs = 0;
+    let failed = endless.time(|| {
+        runs += 1;
+        if runs < 3 { Ok(()) } else { Err(runs) }
+    });
+    assert_eq!(failed.unwrap_err(), 3);
+}
+
+/// A coarse run that can't be built or ends in NaN leaves the others in the table; if none is left the error says why.
+#[test]
+fn work_leaves_out_steps_that_are_refused_and_ends_that_are_not_finite() {
+    let refuses = |h: f64| {
+        if h > 0.015 { Stepper::new(Motion::looping().top, f64::NAN).and_then(|_| looping()(h)) } else { looping()(h) }
+    };
+    let table = work_precision(refuses, 1.0, [50, 100, 200], known(1.0), BRIEF).unwrap();
+    assert_eq!(table.rows().iter().map(|row| row.step).collect::<Vec<_>>(), [0.01, 0.005]);
+    let refused = work_precision(refuses, 1.0, [25, 50], known(1.0), BRIEF).unwrap_err();
+    assert!(matches!(refused, RefinementError::Setup { step: 0.02, .. }), "{refused}");
+    let nowhere = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(f64::NAN, 0.0, 0.0) });
+    let refused = work_precision(looping(), 1.0, [100, 200], nowhere, BRIEF).unwrap_err();
+    assert_eq!(refused, RefinementError::NonFinite { step: 0.005 });
+    // Another motion.
+    let spun = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(1e3, 0.0, 0.0) });
+    let refused = work_precision(looping(), 1.0, [100, 200], spun, BRIEF).unwrap_err();
+    assert!(matches!(refused, RefinementError::OtherMotion { least } if least >= 0.5), "{refused}");
+    // A closure that doesn't listen is no coarse step.
+    let refused = work_precision(|_| looping()(0.01), 1.0, [100, 200], known(1.0), BRIEF).unwrap_err();
+    assert_eq!(refused, RefinementError::OtherStep { asked: 0.005, found: 0.01 });
+}
+
 /// On a power law the time to any error is known.
 #[test]
 fn the_time_to_an_error_is_read_off_straight_lines() {
-    let sleep = |h: f64| Duration::from_secs_f64(2e-3 / h);
-    let table = Refinement::timed(
-        [1.0, 0.5, 0.25],
-        BRIEF,
-        |h| {
-            Some(move || {
-                std::thread::sleep(sleep(h));
-                Some(1e-3 * h * h)
-            })
-        },
-        |error: &f64| *error,
-    );
-    let seconds: Vec<_> = table.rows().iter().map(|row| row.seconds.unwrap()).collect();
-    assert!(seconds.iter().zip([1.0, 0.5, 0.25]).all(|(took, h)| *took >= sleep(h).as_secs_f64()), "{seconds:?}");
+    let row = |h: f64| Measurement { step: h, error: 1e-3 * h * h, iterations: None, seconds: Some(2e-3 / h) };
+    let table: Refinement = [1.0, 0.5, 0.25].map(row).into_iter().collect();
     // At the runs, half way between two of them in both logarithms, and where nothing is known.
-    assert_eq!(table.seconds_to(1e-3), Some(seconds[0]));
-    assert_eq!(table.seconds_to(1.0), Some(seconds[0]));
+    assert_eq!(table.seconds_to(1e-3), Some(2e-3));
+    assert_eq!(table.seconds_to(1.0), Some(2e-3));
     let between = table.seconds_to(1e-3 / 2.0).unwrap();
-    assert!((between / (seconds[0] * seconds[1]).sqrt() - 1.0).abs() < 1e-12, "{between} of {seconds:?}");
+    assert!((between / (2e-3 * 2_f64.sqrt()) - 1.0).abs() < 1e-12, "{between}");
     assert_eq!(table.seconds_to(1e-5), None);
     assert_eq!(table.longest_step_to(2.6e-4), Some(0.5));
+    // Backwards the longest step is the one furthest from zero.
+    let back: Refinement = [-1.0, -0.5, -0.25].map(row).into_iter().collect();
+    assert_eq!(back.longest_step_to(2.6e-4), Some(-0.5));
     assert_eq!(Refinement::of([(0.1, 1e-9)]).seconds_to(1e-3), None);
+}
+
+/// A slope is a finite number or there is none.
+#[test]
+fn the_order_is_read_off_finite_errors_above_zero() {
+    let halvings = [0.4, 0.2, 0.1, 0.05];
+    let squares = Refinement::of(halvings.map(|h| (h, h * h)));
+    assert!((squares.order_above(0.0).unwrap() - 2.0).abs() < 1e-12);
+    for odd in [f64::INFINITY, f64::NAN, 0.0] {
+        // Beside four others it doesn't count, instead of one of them it leaves too few.
+        let with = |first| Refinement::of([first].into_iter().chain(halvings.map(|h| (h, h * h))));
+        assert_eq!(with((0.8, odd)).order_above(-1.0), squares.order_above(0.0));
+        assert_eq!(with((odd, 0.7)).order_above(-1.0), squares.order_above(0.0));
+        let instead = halvings.iter().enumerate().map(|(place, h)| (*h, if place == 2 { odd } else { h * h }));
+        assert_eq!(Refinement::of(instead).order_above(-1.0), None);
+    }
+    assert_eq!(Refinement::of([1e-1, 1e-2, 1e-3, 1e-4].map(|error| (0.1, error))).order_above(0.0), None);
 }
 
 #[test]
@@ -200,6 +264,9 @@ fn a_table_shows_the_columns_that_there_are() {
         "  5.000e-2   1.00e-2      4.00      2.00",
     ];
     assert_eq!(plain.lines().collect::<Vec<_>>(), expected);
+    // Columns stay apart where numbers fill them.
+    let full = Refinement::of([(1e-100, 1e100), (1e-101, 1e-100)]).to_string();
+    assert_eq!(full.lines().nth(2).unwrap().split_whitespace().count(), 4, "{full}");
     assert_eq!(Refinement::default().to_string(), "      h, s     error");
     assert_eq!(Refinement::default().to_json(), "[]");
 }

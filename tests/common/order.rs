@@ -10,7 +10,7 @@ use workbench::measure::steps_in;
 const PLATEAU: f64 = 2e-14;
 
 /// The errors at the time `t` with a coarsest step and four halvings of it.
-pub fn errors<L: Regular<Scalar = f64, Group = SO3>>(
+fn errors<L: Regular<Scalar = f64, Group = SO3>>(
     motion: &Motion,
     (t, coarsest): (f64, f64),
     lagrangian: impl Fn() -> L,

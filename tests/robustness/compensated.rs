@@ -68,13 +68,14 @@ fn growth_over(decades: [u64; 5], h: f64, motions: u64, compensated: bool) -> Ve
     found.iter().map(|defects| sizes(defects)).collect()
 }
 
-/// The exponent of the growth of each size.
+/// The exponent of the growth of each size; NaN, which no bound holds for, unless each decade has a size above zero.
 #[allow(clippy::cast_precision_loss)] // a million
 fn exponents(growth: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
         // Four decades, whichever they are.
         let points: Vec<_> = DECADES.iter().zip(growth).map(|(n, sizes)| (*n as f64, sizes[k])).collect();
-        order(&points, 0.0)
+        let all_count = points.len() == DECADES.len() && points.iter().all(|(_, size)| *size > 0.0);
+        if all_count { order(&points, 0.0) } else { f64::NAN }
     })
 }
 

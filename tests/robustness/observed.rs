@@ -9,7 +9,7 @@ use declarations::HeavyTop;
 use liestep::effects::{Drag, RigidBody};
 use liestep::mechanics::Sum;
 use liestep::methods::CotangentGauss;
-use liestep::motion::{AnyStepper, Moment};
+use liestep::motion::{AnyStepper, Integrator, Moment};
 use liestep::prelude::*;
 use liestep::with::{
     Background, Column, Csv, Ended, Event, Reason, RecordError, Recorder, RunError, Sink, SinkError, Table, sections,
@@ -275,6 +275,38 @@ impl Write for Full {
     }
 }
 
+/// Counts the rows of each block, and how often the table has ended.
+#[derive(Debug, Default)]
+struct Calls {
+    columns: usize,
+    rows: Vec<usize>,
+    ended: u32,
+}
+
+impl Calls {
+    fn seen(&self) -> (&[usize], u32) {
+        (&self.rows, self.ended)
+    }
+}
+
+impl Sink for Calls {
+    fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
+        self.columns = columns.len();
+        Ok(())
+    }
+
+    fn write(&mut self, rows: &[f64]) -> Result<(), SinkError> {
+        assert_eq!(rows.len() % self.columns, 0);
+        self.rows.push(rows.len() / self.columns);
+        Ok(())
+    }
+
+    fn end(&mut self) -> Result<(), SinkError> {
+        self.ended += 1;
+        Ok(())
+    }
+}
+
 #[test]
 fn what_cannot_be_recorded_ends_the_run() {
     let (stepper, start) = top(0.01);
@@ -298,12 +330,32 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));
 
     // Rows of two lengths would run into each other.
-    let mut recorder = Recorder::new(&stepper, Table::new());
+    let mut calls = Calls::default();
+    let mut recorder = Recorder::new(&stepper, &mut calls);
     recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
-    let mut recorder = recorder.quantity("late", "1", |_| 0.0);
+    recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
+    let mut recorder = recorder.quantity("late", "1", |_| 0.0).quantity("later", "1", |_| 0.0);
     let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
     assert!(error.to_string().contains("the column `late` was added behind the first row"), "{error}");
     assert!(matches!(recorder.finish(), Err(RecordError::Late { .. })));
+    // Those that came before are there, and the table has ended, once; also where nobody asks for more.
+    assert_eq!(calls.seen(), (&[2][..], 1));
+    let mut calls = Calls::default();
+    let mut recorder = Recorder::bare(&stepper, &mut calls);
+    recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
+    drop(recorder.quantity("late", "1", |_| 0.0));
+    assert_eq!(calls.seen(), (&[1][..], 1));
+
+    // The length of blocks may change between two rows.
+    let mut calls = Calls::default();
+    let mut recorder = Recorder::new(&stepper, &mut calls);
+    recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
+    let mut recorder = recorder.in_blocks_of(3);
+    stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(5).unwrap();
+    let mut recorder = recorder.in_blocks_of(1);
+    stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(2).unwrap();
+    recorder.finish().unwrap();
+    assert_eq!(calls.seen(), (&[3, 3, 2, 1, 1][..], 1));
 
     // An observer of one's own.
     let error = stepper.observed(&mut start.clone()).every(3, |_| Err::<(), _>("enough")).steps(10).unwrap_err();
@@ -449,7 +501,7 @@ fn whatever_steps_is_recorded() {
     let scene = HeavyTop::thesis();
     let gauss = CotangentGauss::<_, 2, 3>::new(scene, 0.05).unwrap();
     let mut state = gauss.start(SO3::identity(), VELOCITY).unwrap();
-    let (mut attitude, mut momentum) = (state.attitude(), state.momentum());
+    let (mut attitude, mut momentum, mut single) = (state.attitude(), state.momentum(), state);
     let mut recorder = Recorder::new(&gauss, Table::new());
     gauss
         .observed(&mut state)
@@ -460,9 +512,13 @@ fn whatever_steps_is_recorded() {
         .until(1.0)
         .unwrap();
     for _ in 0..20 {
+        Integrator::step(&gauss, &mut single).unwrap();
         (attitude, momentum) = gauss.step(&attitude, &momentum).unwrap();
     }
-    assert_eq!((state.attitude(), state.momentum()), (attitude, momentum));
-    assert_eq!(recorder.finish().unwrap().column("momentum_y").unwrap().last(), Some(momentum.y));
+    assert_eq!(state, single);
+    assert_eq!(recorder.finish().unwrap().column("momentum_y").unwrap().last(), Some(single.momentum().y));
+    // The sums of a run are compensated, and those of the map itself aren't.
+    let apart = (state.attitude().matrix() - attitude.matrix()).norm();
+    assert!(apart < 1e-14 && (state.momentum() - momentum).norm() < 1e-13, "{apart:e}");
     assert!(gauss.start(SO3::from_matrix_unchecked(nalgebra::Matrix3::zeros()), VELOCITY).is_err());
 }

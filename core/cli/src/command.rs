@@ -32,7 +32,7 @@ pub(crate) fn command() -> Command {
                 .arg(scenes())
                 .arg(out())
                 .arg(flag("csv", "Also write a table as CSV, while it runs"))
-                .arg(flag("arrow", "Also write the table as a stream of Arrow IPC, while it runs"))
+                .arg(flag("arrow", "Also write the table as a stream of Arrow IPC, .arrows, while it runs"))
                 .arg(flag("html", "Also write a page that plays the motion, to be opened in a browser")),
         )
         .subcommand(Command::new("check").about("Reads scenes and makes their first step").arg(scenes()))

@@ -8,7 +8,7 @@ use clap::ArgMatches;
 use liestep::SO3;
 use liestep::motion::{AnyStepper, Moment};
 use liestep_ensemble::{Failed, Failure, Local, Reduced, Reduction, Report, Store};
-use liestep_scene::{Distribution, Ensemble, Mistake, SceneFile};
+use liestep_scene::{Column, Drawn, Mistake, SceneFile, Spread};
 
 use crate::failure::Failure as Ended;
 use crate::output::{Output, Progress, print};
@@ -42,7 +42,7 @@ pub(crate) fn ensemble(given: &ArgMatches) -> Result<(), Ended> {
 }
 
 /// Makes what is missing in the folder of a file's shards, and prints what is there then.
-fn made(path: &Path, scene: &SceneFile, drawn: &Ensemble, local: &Local<'_>, output: &Output) -> Result<Report, Ended> {
+fn made(path: &Path, scene: &SceneFile, drawn: &Drawn, local: &Local<'_>, output: &Output) -> Result<Report, Ended> {
     let cannot = |error: &dyn std::fmt::Display| Ended::Output(format!("{}: {error}", path.display()));
     if scene.events().next().is_some() {
         eprintln!("note: {}: events aren't looked for in an ensemble", path.display());
@@ -64,7 +64,8 @@ fn made(path: &Path, scene: &SceneFile, drawn: &Ensemble, local: &Local<'_>, out
     }
     let mut failures: Vec<Failed> = Vec::new();
     if report.failed > 0 {
-        for shard in store.shards(plan.fingerprint()).map_err(|error| cannot(&error))?.flatten() {
+        for shard in store.shards(plan.fingerprint()).map_err(|error| cannot(&error))? {
+            let shard = shard.map_err(|fault| cannot(&fault))?;
             failures.extend(shard.failures.into_iter().take(SHOWN - failures.len()));
             if failures.len() == SHOWN {
                 break;
@@ -81,12 +82,12 @@ fn made(path: &Path, scene: &SceneFile, drawn: &Ensemble, local: &Local<'_>, out
 type Member = AnyStepper<SO3, ()>;
 
 /// What is run: the file as a whole tells it from others.
-fn plan(scene: &SceneFile, drawn: &Ensemble) -> liestep_ensemble::Ensemble<Member> {
+fn plan(scene: &SceneFile, drawn: &Drawn) -> liestep_ensemble::Ensemble<Member> {
     let own = drawn.clone();
     let make = move |member: &liestep_ensemble::Member<'_>| {
-        let mut draw = |name: &str, distribution: Distribution| match distribution {
-            Distribution::Uniform { from, to } => member.uniform(name, from..to),
-            Distribution::Normal { mean, deviation } => member.normal(name, mean, deviation),
+        let mut draw = |name: &str, spread: Spread| match spread {
+            Spread::Uniform { from, to } => member.uniform(name, from..to),
+            Spread::Normal { mean, deviation } => member.normal(name, mean, deviation),
         };
         let started = own.member(&mut draw).and_then(|scene| scene.stepper());
         started.map_err(|mistake| Failure::Other(mistake.to_string()))
@@ -100,25 +101,33 @@ fn plan(scene: &SceneFile, drawn: &Ensemble) -> liestep_ensemble::Ensemble<Membe
     if let Some(members) = drawn.chunk() {
         plan = plan.chunks_of(members);
     }
-    for (column, place, name) in columns(scene) {
-        let value = move |run: &liestep_ensemble::Run<'_, Member>| {
-            let numbers = SceneFile::numbers(column, &Moment::of_step(run.stepper, run.state));
+    let names: Vec<_> = columns(scene).map(|(_, _, name)| name).collect();
+    let all = scene.columns().to_vec();
+    plan = plan.keep_named(&names, move |run, row| {
+        let numbers = SceneFile::numbers(&all, &Moment::of_step(run.stepper, run.state));
+        row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+    });
+    for (column, place, name) in columns(scene).filter(|(column, ..)| has_moments(*column)) {
+        plan = plan.reduce(name, Reduction::Moments, move |run| {
+            let numbers = SceneFile::numbers(&[column], &Moment::of_step(run.stepper, run.state));
             numbers.get(place).copied().unwrap_or(f64::NAN)
-        };
-        plan = plan.keep([name], move |run| [value(run)]).reduce(name, Reduction::Moments, value);
+        });
     }
     plan.keep(["t"], |run| [run.stepper.time(run.state)])
 }
 
+/// A quaternion and its opposite are one attitude, and which of them a member ends with means nothing.
+fn has_moments(column: Column) -> bool {
+    column != Column::Quaternion
+}
+
 /// Each number of the scene's columns: its column, its place there and its name.
-fn columns(scene: &SceneFile) -> impl Iterator<Item = (liestep_scene::Column, usize, &'static str)> + '_ {
-    let numbers = |column: liestep_scene::Column| {
-        column.names().iter().enumerate().map(move |(place, name)| (column, place, *name))
-    };
+fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static str)> + '_ {
+    let numbers = |column: Column| column.names().iter().enumerate().map(move |(place, name)| (column, place, *name));
     scene.columns().iter().copied().flat_map(numbers)
 }
 
-fn told_of(scene: &SceneFile, drawn: &Ensemble, report: &Report, folder: &str) -> String {
+fn told_of(scene: &SceneFile, drawn: &Drawn, report: &Report, folder: &str) -> String {
     let mut text = format!(
         "{}\n  {} members drawn by the seed {}: {} finished, {} failed\n",
         scene.title(),

@@ -76,6 +76,9 @@ pub(crate) fn scenes(paths: &[&PathBuf]) -> Result<Vec<SceneFile>, Failure> {
     paths.iter().map(|path| liestep_scene::read(path).map_err(Failure::from)).collect()
 }
 
+/// What a stream of Arrow IPC is called; `.arrow` is a file of it, which readers open in another way.
+const ARROW_STREAM: &str = "arrows";
+
 fn run(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
     let scenes = scenes(&paths)?;
@@ -85,7 +88,8 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
             eprintln!("[{number}/{}] {}", paths.len(), path.display());
         }
         let grows = |table: &&str| given.get_flag(table);
-        let tables: Vec<_> = ["csv", "arrow"].into_iter().filter(grows).collect();
+        let kinds = ["csv", "arrow"].into_iter().filter(grows);
+        let tables: Vec<_> = kinds.map(|kind| if kind == "arrow" { ARROW_STREAM } else { kind }).collect();
         let run = simulate(scene, tables.iter().map(|table| (*table, output.grows(&name(path, table)))))?;
         let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
         output.write(&name(path, "svg"), &picture)?;
@@ -115,7 +119,7 @@ fn simulate<'a>(scene: &SceneFile, tables: impl Iterator<Item = (&'a str, Growin
     let mut progress = Progress::new();
     let mut told = |share| progress.show(share);
     let sink = |(kind, file): (&str, Growing)| -> Box<dyn Sink> {
-        if kind == "arrow" { Box::new(ArrowStream::new(file)) } else { Box::new(Csv::new(file)) }
+        if kind == ARROW_STREAM { Box::new(ArrowStream::new(file)) } else { Box::new(Csv::new(file)) }
     };
     let mut tables = Tables(tables.map(sink).collect());
     if tables.0.is_empty() { scene.run_told(&mut told) } else { scene.run_recorded(&mut told, &mut tables) }
@@ -134,7 +138,8 @@ impl Sink for Tables {
     }
 
     fn end(&mut self) -> Result<(), SinkError> {
-        self.0.iter_mut().try_for_each(|table| table.end())
+        // All of them, also behind one that can't.
+        self.0.iter_mut().map(|table| table.end()).fold(Ok(()), Result::and)
     }
 }
 

@@ -43,6 +43,7 @@ pub struct Ensemble<M: Integrator> {
     pub(crate) chunk: Option<u64>,
     pub(crate) make: Box<Make<M>>,
     pub(crate) grouped: Grouped<M>,
+    takes_turns: bool,
     pub(crate) names: Vec<String>,
     pub(crate) columns: Vec<Box<Values<M>>>,
     pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
@@ -74,7 +75,7 @@ impl<M: Integrator> Ensemble<M> {
     where
         M: Batchable<AutoF64x8> + 'static,
     {
-        Self::of(name, members, steps, Box::new(make), in_lanes::<M>)
+        Self::of(name, members, steps, Box::new(make), in_lanes::<M>, false)
     }
 
     /// As [`new`](Self::new), for any stepper: members take their turns.
@@ -87,10 +88,10 @@ impl<M: Integrator> Ensemble<M> {
     where
         M: Clone + 'static,
     {
-        Self::of(name, members, steps, Box::new(make), one_by_one::<M>)
+        Self::of(name, members, steps, Box::new(make), one_by_one::<M>, true)
     }
 
-    fn of(name: &str, members: u64, steps: u64, make: Box<Make<M>>, grouped: Grouped<M>) -> Self {
+    fn of(name: &str, members: u64, steps: u64, make: Box<Make<M>>, grouped: Grouped<M>, takes_turns: bool) -> Self {
         Self {
             name: name.to_owned(),
             members,
@@ -101,6 +102,7 @@ impl<M: Integrator> Ensemble<M> {
             chunk: None,
             make,
             grouped,
+            takes_turns,
             names: Vec::new(),
             columns: Vec::new(),
             reductions: Vec::new(),
@@ -139,6 +141,7 @@ impl<M: Integrator> Ensemble<M> {
     /// So many members to a chunk, which is what one worker makes at a time and one file holds.
     ///
     /// If nothing is said it is about a second's work of one core, and a million rows at most where one member hasn't more.
+    /// Of members that go one by one it is a 64th of them at most, so that all cores and all shares have some.
     ///
     /// # Panics
     ///
@@ -166,6 +169,31 @@ impl<M: Integrator> Ensemble<M> {
             self.names.push(name.to_owned());
         }
         self.columns.push(Box::new(move |run, row| row.extend(values(run))));
+        self
+    }
+
+    /// As [`keep`](Self::keep), of names that are known when the program runs: the slice has a place for each, NaN until
+    /// it is filled.
+    ///
+    /// # Panics
+    ///
+    /// As [`keep`](Self::keep).
+    #[must_use]
+    pub fn keep_named(
+        mut self,
+        names: &[&str],
+        values: impl Fn(&Run<'_, M>, &mut [f64]) + Send + Sync + 'static,
+    ) -> Self {
+        for name in names {
+            self.assert_new_column(name);
+            self.names.push((*name).to_owned());
+        }
+        let count = names.len();
+        self.columns.push(Box::new(move |run, row| {
+            let start = row.len();
+            row.resize(start + count, f64::NAN);
+            values(run, &mut row[start..]);
+        }));
         self
     }
 
@@ -207,14 +235,18 @@ impl<M: Integrator> Ensemble<M> {
     }
 
     pub(crate) fn members_of_chunk(&self) -> u64 {
-        // What a core makes in a second of the steps of (3.13) in lanes.
-        const STEPS: u64 = 1 << 25;
+        // What a core makes in a second of the steps of (3.13) in lanes, and of any one by one.
+        const STEPS: [u64; 2] = [1 << 25, 1 << 22];
         const ROWS: u64 = 1 << 20;
+        // One by one, where there are so many members.
+        const CHUNKS: u64 = 64;
         self.chunk.unwrap_or_else(|| {
             let rows = self.every.map_or(1, |every| self.steps / every + 2);
-            let members = (STEPS / self.steps.max(1)).min(ROWS / rows.min(ROWS)).clamp(1, 1 << 16);
+            let most = if self.takes_turns { self.members.div_ceil(CHUNKS) } else { 1 << 16 };
+            let steps = STEPS[usize::from(self.takes_turns)];
+            let members = (steps / self.steps.max(1)).min(ROWS / rows.min(ROWS)).min(most).clamp(1, 1 << 16);
             // Full lanes, if there are members for one.
-            if members < LANES as u64 { members } else { members - members % LANES as u64 }
+            if self.takes_turns || members < LANES as u64 { members } else { members - members % LANES as u64 }
         })
     }
 

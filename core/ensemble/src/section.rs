@@ -36,7 +36,8 @@ type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec
 ///     Ok((stepper, state))
 /// });
 /// // The first axis rises through the horizontal plane.
-/// let horizon = Section::new(Event::rising(), sections::plane(Vector3::x(), Vector3::z()));
+/// let plane = sections::plane(Vector3::x(), Vector3::z());
+/// let horizon = Section::<Stepper<RigidBody<f64>>>::new(Event::rising(), plane);
 /// let ensemble = ensemble.section(horizon.keep(["t", "turning"], |now| [now.time(), now.velocity().x]));
 /// let shard = ensemble.chunk(0, &|| false).ok_or("it was stopped")?;
 /// let crossings = &shard.rows.crossings[0];

@@ -403,7 +403,8 @@ fn members_go_as_far_as_their_steps_do() {
         let (stepper, state) = top(member)?;
         Ok((OnlySteps(stepper), state))
     });
-    let stepwise = stepwise.seed(7).keep(["x", "y", "z"], |run| axis(run.state)).chunk(0, &|| false).unwrap();
+    let stepwise =
+        stepwise.seed(7).chunks_of(20).keep(["x", "y", "z"], |run| axis(run.state)).chunk(0, &|| false).unwrap();
     let expected = tops(20, STEPS).chunk(0, &|| false).unwrap();
     assert_eq!((stepwise.finished, &stepwise.failures), (17, &expected.failures));
     assert_eq!(stepwise.rows.step, expected.rows.step);
@@ -469,9 +470,28 @@ fn an_error_stops_the_other_workers() {
 #[test]
 fn chunks_hold_a_million_rows_at_most() {
     for (steps, every, members) in [(1 << 22, 1 << 22, 8), (1 << 23, 1 << 23, 4), (1 << 18, 1, 3), (1 << 30, 1, 1)] {
-        let chunks = Ensemble::one_by_one("tops", 24, steps, top).every(every).chunks();
+        let chunks = Ensemble::new("tops", 24, steps, top).every(every).chunks();
         assert_eq!(chunks, 24_u64.div_ceil(members), "{steps} steps, every {every}");
     }
+}
+
+/// One by one there is something to share, however little work it is; and a second's work is shorter.
+#[test]
+fn chunks_of_members_one_by_one_can_be_shared() {
+    for (members, steps, chunks) in
+        [(0, 1, 0), (1, 1, 1), (24, 1, 24), (200, 4800, 50), (6400, 1, 64), (6400, 1 << 20, 1600)]
+    {
+        assert_eq!(Ensemble::one_by_one("tops", members, steps, top).chunks(), chunks, "{members} of {steps} steps");
+    }
+}
+
+/// Names of the moment are columns as others are; what isn't filled is no number.
+#[test]
+fn columns_are_named_when_the_program_runs() {
+    let fixed = tops(20, STEPS).keep(["t", "none"], |run| [run.stepper.time(run.state), f64::NAN]);
+    let named = tops(20, STEPS).keep_named(&["t", "none"], |run, row| row[0] = run.stepper.time(run.state));
+    assert_eq!(fixed.fingerprint(), named.fingerprint());
+    assert!(message(|| tops(1, 1).keep_named(&["a", "a"], |_, _| ())).contains("`a`"));
 }
 
 fn message(of: impl FnOnce() -> Ensemble<Top> + std::panic::UnwindSafe) -> String {
@@ -535,7 +555,8 @@ fn other_scenes_and_methods() {
         let state = stepper.start(SO3::identity(), member.direction("Omega"))?;
         Ok((stepper, state))
     });
-    let energy = alone.keep(["energy"], |run| [run.stepper.energy(run.state)]).every(50).chunk(0, &|| false).unwrap();
+    let energy = alone.chunks_of(3).keep(["energy"], |run| [run.stepper.energy(run.state)]).every(50);
+    let energy = energy.chunk(0, &|| false).unwrap();
     let energy = &energy.rows.columns[0];
     assert!(energy.chunks(3).all(|run| (run[0] - run[2]).abs() < 1e-14), "{energy:?}");
     let composed = |alone: bool| {
@@ -552,7 +573,7 @@ fn other_scenes_and_methods() {
         } else {
             Ensemble::new("composed", 20, 50, make)
         };
-        made.keep(["x", "y", "z"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
+        made.chunks_of(20).keep(["x", "y", "z"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
     };
     assert_eq!(composed(false), composed(true));
 }

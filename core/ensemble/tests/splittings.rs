@@ -67,7 +67,7 @@ fn assert_same<P>(
         ensemble.keep(["p", "q", "r"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
     };
     let together = kept(Ensemble::new("tops", MEMBERS, STEPS, member));
-    let alone = kept(Ensemble::one_by_one("tops", MEMBERS, STEPS, member));
+    let alone = kept(Ensemble::one_by_one("tops", MEMBERS, STEPS, member).chunks_of(MEMBERS));
     assert!(bits(&together) == bits(&alone), "{name}: {:?}, {:?}", together.failures, alone.failures);
     let [failed] = together.failures.as_slice() else { panic!("{name}: {:?}", together.failures) };
     let is_named = matches!(failed.failure, Failure::Step(StepError::AngleWithoutDigits { .. }));

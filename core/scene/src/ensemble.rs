@@ -1,5 +1,6 @@
 //! Scenes whose values are drawn: the table `ensemble`.
 
+use std::borrow::Cow;
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 
@@ -18,7 +19,7 @@ use crate::sweep::measured;
 
 /// The scenes of an ensemble: each draws its values, by what the one who runs it draws with.
 #[derive(Clone)]
-pub struct Ensemble {
+pub struct Drawn {
     members: u64,
     seed: u64,
     every: Option<u64>,
@@ -33,7 +34,7 @@ pub type Started = (AnyStepper<SO3, ()>, AnyState<SO3, ()>);
 
 /// What a value is drawn from; in the unit that the file has.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Distribution {
+pub enum Spread {
     /// Each value from the first to below the second as likely.
     Uniform {
         /// The least.
@@ -70,8 +71,9 @@ enum Component {
 #[derive(Clone)]
 struct Draw {
     name: String,
-    distribution: Distribution,
+    spread: Spread,
     unit: String,
+    /// That of its first number.
     span: Range<usize>,
 }
 
@@ -95,7 +97,7 @@ const DRAWN: [&str; 11] = [
     "start",
 ];
 
-impl Ensemble {
+impl Drawn {
     /// How many members there are.
     #[must_use]
     pub fn members(&self) -> u64 {
@@ -132,7 +134,7 @@ impl Ensemble {
     /// # Errors
     ///
     /// A [`Mistake`] where there is no such scene, as of a mass below zero.
-    pub fn member(&self, draw: &mut dyn FnMut(&str, Distribution) -> f64) -> Result<SceneFile, Mistake> {
+    pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<SceneFile, Mistake> {
         let mut document =
             DeTable::parse(&self.text).map_err(|error| Mistake::of_toml(&self.path, &self.text, &error))?;
         for table in ["sweep", "ensemble"] {
@@ -144,7 +146,7 @@ impl Ensemble {
     fn with_values(
         &self,
         document: Document<'_>,
-        draw: &mut dyn FnMut(&str, Distribution) -> f64,
+        draw: &mut dyn FnMut(&str, Spread) -> f64,
     ) -> Result<SceneFile, Mistake> {
         let located = |(span, message): Wrong| Mistake::at(&self.path, place_of(&self.text, &span), message);
         // As they could have been written.
@@ -172,10 +174,10 @@ impl Ensemble {
 }
 
 impl Component {
-    fn text(&self, file: &str, draw: &mut dyn FnMut(&str, Distribution) -> f64) -> String {
+    fn text(&self, file: &str, draw: &mut dyn FnMut(&str, Spread) -> f64) -> String {
         match self {
-            Self::Draw(Draw { name, distribution, unit, .. }) => {
-                let number = draw(name, *distribution);
+            Self::Draw(Draw { name, spread, unit, .. }) => {
+                let number = draw(name, *spread);
                 if unit.is_empty() { format!("{number:?}") } else { format!("\"{number:?} {unit}\"") }
             }
             Self::Fixed(span) => file.get(span.clone()).unwrap_or_default().to_owned(),
@@ -209,10 +211,10 @@ impl SceneFile {
         }
     }
 
-    /// The numbers of a column in a moment of such a stepper. Of the two quaternions it is either.
+    /// The numbers of its columns in a moment of such a stepper, one after the other. Of the two quaternions it is either.
     #[must_use]
-    pub fn numbers(column: Column, now: &Moment<'_, AnyStepper<SO3, ()>>) -> Vec<f64> {
-        column.values(&Row::new(Sample::of(now)))
+    pub fn numbers(columns: &[Column], now: &Moment<'_, AnyStepper<SO3, ()>>) -> Vec<f64> {
+        Row::new(Sample::of(now)).numbers(columns)
     }
 }
 
@@ -222,7 +224,7 @@ pub(crate) fn read(
     document: &Document<'_>,
     table: &Spanned<DeValue<'_>>,
     file: &SceneFile,
-) -> Result<Ensemble, Mistake> {
+) -> Result<Drawn, Mistake> {
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts(table).map_err(located)?;
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
@@ -236,27 +238,50 @@ pub(crate) fn read(
             format!("an ensemble keeps states, and `{names}` is measured from the start of a run; leave it out"),
         );
     }
+    let written = table.get_ref().as_table().and_then(|table| table.get("every"));
+    if let (Some(every), Some(steps), Some(value)) = (ensemble.every, file.steps(), written)
+        && every > steps
+    {
+        let message =
+            format!("a run has {steps} steps, so none is kept on its way; leave `every` out to keep the ends only");
+        return Err(located((value.span(), message)));
+    }
+    for Axis { keys, .. } in &ensemble.axes {
+        // What a file doesn't have isn't there because of a number that is drawn.
+        let [tables @ .., _] = keys.as_slice() else { continue };
+        let mut here = Some(document.get_ref());
+        for key in tables {
+            let name = key.get_ref();
+            let inner = here.and_then(|table| table.get(name.as_str()));
+            if inner.is_none() {
+                let message =
+                    format!("the file has no `{name}`, of which something could be drawn; write the table `[{name}]`");
+                return Err(located((key.span(), message)));
+            }
+            here = inner.and_then(|value| value.get_ref().as_table());
+        }
+    }
     (ensemble.path, ensemble.text) = (path.to_owned(), text.to_owned());
     // What is wrong with a unit or a key is wrong with every member.
     for end in [true, false] {
-        ensemble.with_values(document.clone(), &mut |_, distribution| match distribution {
-            Distribution::Uniform { from, to } => {
+        ensemble.with_values(document.clone(), &mut |_, spread| match spread {
+            Spread::Uniform { from, to } => {
                 if end {
                     from
                 } else {
                     to
                 }
             }
-            Distribution::Normal { mean, .. } => mean,
+            Spread::Normal { mean, .. } => mean,
         })?;
     }
     Ok(ensemble)
 }
 
 /// The table, read.
-fn parts(table: &Spanned<DeValue<'_>>) -> Result<Ensemble, Wrong> {
+fn parts(table: &Spanned<DeValue<'_>>) -> Result<Drawn, Wrong> {
     let DeValue::Table(inner) = table.get_ref() else { return Err((table.span(), "`ensemble` is a table".to_owned())) };
-    let mut ensemble = Ensemble {
+    let mut ensemble = Drawn {
         members: 0,
         seed: 0,
         every: None,
@@ -312,8 +337,9 @@ fn collect(table: &DeTable<'_>, way: &[Spanned<String>], axes: &mut Vec<Axis>) -
         let name = keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".");
         let (components, is_list) = match value.get_ref() {
             DeValue::Table(inner) if DISTRIBUTIONS.as_flattened().iter().any(|end| inner.contains_key(*end)) => {
-                (vec![Component::Draw(drawn(inner, value.span(), name)?)], false)
+                (vec![Component::Draw(drawn(inner, &value.span(), name)?)], false)
             }
+            DeValue::Table(inner) if inner.is_empty() => return Err((value.span(), DRAW.to_owned())),
             DeValue::Table(inner) => {
                 collect(inner, &keys, axes)?;
                 continue;
@@ -321,7 +347,7 @@ fn collect(table: &DeTable<'_>, way: &[Spanned<String>], axes: &mut Vec<Axis>) -
             DeValue::Array(values) => {
                 let component = |(place, part): (usize, &Spanned<DeValue<'_>>)| match part.get_ref() {
                     DeValue::Table(inner) => {
-                        drawn(inner, part.span(), format!("{name}.{}", place + 1)).map(Component::Draw)
+                        drawn(inner, &part.span(), format!("{name}.{}", place + 1)).map(Component::Draw)
                     }
                     _ => Ok(Component::Fixed(part.span())),
                 };
@@ -341,26 +367,37 @@ fn collect(table: &DeTable<'_>, way: &[Spanned<String>], axes: &mut Vec<Axis>) -
 /// The two numbers of each distribution.
 const DISTRIBUTIONS: [[&str; 2]; 2] = [["from", "to"], ["mean", "deviation"]];
 
-fn drawn(table: &DeTable<'_>, span: Range<usize>, name: String) -> Result<Draw, Wrong> {
-    let wrong = || (span.clone(), DRAW.to_owned());
-    let number = |key: &str| table.get(key).and_then(|value| measured(value.get_ref()));
-    let [uniform, normal] = DISTRIBUTIONS.map(|[first, second]| number(first).zip(number(second)));
-    let (((first, unit), (second, other)), is_uniform) =
-        uniform.map(|numbers| (numbers, true)).or(normal.map(|numbers| (numbers, false))).ok_or_else(wrong)?;
-    if unit != other || table.len() != 2 {
-        return Err(wrong());
+fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw, Wrong> {
+    let wrong = |span: Range<usize>| (span, DRAW.to_owned());
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    let (first, _) = *entries.first().ok_or_else(|| wrong(span.clone()))?;
+    // The first key says which it is.
+    let is_of = |kind: &[&str; 2], key: &Spanned<Cow<'_, str>>| kind.contains(&key.get_ref().as_ref());
+    let kind = DISTRIBUTIONS.iter().find(|kind| is_of(kind, first)).ok_or_else(|| wrong(first.span()))?;
+    if let Some((key, _)) = entries.iter().find(|(key, _)| !is_of(kind, key)) {
+        return Err(wrong(key.span()));
     }
-    let distribution = if is_uniform {
+    let number = |key: &str| {
+        let value = table.get(key).ok_or_else(|| wrong(span.clone()))?;
+        let (number, unit) = measured(value.get_ref()).ok_or_else(|| wrong(value.span()))?;
+        Ok((number, unit, value.span()))
+    };
+    let [(first, unit, span), (second, other, behind)] = [number(kind[0])?, number(kind[1])?];
+    if unit != other {
+        return Err(wrong(behind));
+    }
+    let spread = if *kind == DISTRIBUTIONS[0] {
         // Their difference is to be a number, too.
         if !(second > first && (second - first).is_finite()) {
-            return Err((span, "a range goes from a number to a larger one".to_owned()));
+            return Err((behind, "a range goes from a number to a larger one".to_owned()));
         }
-        Distribution::Uniform { from: first, to: second }
+        Spread::Uniform { from: first, to: second }
     } else {
         if second < 0.0 {
-            return Err((span, "a standard deviation isn't below zero".to_owned()));
+            return Err((behind, "a standard deviation isn't below zero".to_owned()));
         }
-        Distribution::Normal { mean: first, deviation: second }
+        Spread::Normal { mean: first, deviation: second }
     };
-    Ok(Draw { name, distribution, unit, span })
+    Ok(Draw { name, spread, unit, span })
 }

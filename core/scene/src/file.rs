@@ -12,7 +12,7 @@ use crate::effects::{
     DipoleTable, DragTable, GravityGradientTable, GravityTable, MagneticDampingTable, RotorTable, SpringTable,
     ThrustTable, TorqueTable,
 };
-use crate::ensemble::Ensemble;
+use crate::ensemble::Drawn;
 use crate::events::Event;
 use crate::method::Method;
 use crate::mistake::Mistake;
@@ -44,7 +44,7 @@ use crate::tables::short;
 /// | `[[event]]` | `name`; one of `tilt`, `speed`, `energy`, `velocity_1` to `_3`, `axis_1` to `_3`: the value that is passed; `direction`: `rising`, `falling`, `either`; `stop` |
 /// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: so many steps from row to row |
 /// | `sweep` | any of the keys above: a list of values, or `{ from, to, count }` |
-/// | `ensemble` | `members`; `seed`; `every`: so many steps from row to row, and if it isn't given the ends only; `chunk`: so many members to a file; `draw`: any of the keys of body, effects and start, each drawn from `{ from, to }` or `{ mean, deviation }`, and of lists each component by itself |
+/// | `ensemble` | `members`; `seed`; `every`: so many steps from row to row, and if it isn't given the ends only; `chunk`: so many members to a file, if it isn't given a 64th of them at most; `draw`: any of the keys of body, effects and start, each drawn from `{ from, to }` or `{ mean, deviation }`, and of lists each component by itself |
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -73,7 +73,7 @@ pub struct SceneFile {
     pub(crate) sweep: Option<Sweep>,
     /// The same.
     #[serde(skip)]
-    pub(crate) ensemble: Option<Ensemble>,
+    pub(crate) ensemble: Option<Drawn>,
     #[serde(skip)]
     pub(crate) origin: Origin,
 }
@@ -192,7 +192,7 @@ impl SceneFile {
 
     /// The scenes that are drawn, if the file has a table `ensemble`.
     #[must_use]
-    pub fn ensemble(&self) -> Option<&Ensemble> {
+    pub fn ensemble(&self) -> Option<&Drawn> {
         self.ensemble.as_ref()
     }
 

@@ -52,7 +52,7 @@ use std::path::Path;
 pub use columns::Column;
 pub use derivation::{derivation, derived};
 pub use document::parse;
-pub use ensemble::{Distribution, Ensemble, Started};
+pub use ensemble::{Drawn, Spread, Started};
 pub use events::Happening;
 pub use file::SceneFile;
 pub use mistake::{Kind, Mistake};

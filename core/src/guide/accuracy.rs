@@ -14,8 +14,14 @@
 //! | a body that nothing acts on | the exact motion: a splitting with no kick, over any time in one step |
 //! | a continuous `l(ξ, w)` that no discrete one is declared of | [`CotangentGauss`](crate::methods::CotangentGauss) |
 //!
-//! [`methods`](crate::methods) is the table of what each needs and keeps. All but the last make a `Stepper`, so that
-//! recording, events, substeps, checkpoints and forces go with each.
+//! [`methods`](crate::methods) is the table of what each needs and keeps. What goes with them depends on what they make:
+//!
+//! | made by | is | goes with |
+//! |---|---|---|
+//! | `new` | a [`Stepper`](crate::Stepper) | recording, events, substeps, checkpoints, a force given at each step, scenes with a declared [`force`](macro@crate::force) |
+//! | `composed`, `split`, `processed`, `collocated` | a `Stepper` | the same, but for scenes with a declared `force`, which they don't take |
+//! | `for_accuracy` | an [`AccurateStepper`](crate::accuracy::AccurateStepper), with its start | recording and events |
+//! | `CotangentGauss` | a map of its own | recording and events |
 //!
 //! # The order is the declaration's
 //!

@@ -75,15 +75,33 @@
 //!
 //! | | |
 //! |---|---|
+//! | more than four bodies | [systems](#many-bodies), below |
 //! | compositions to order 10, substeps, compensated sums, [gradients](super::gradients) | yes |
 //! | [recording and events](super::recording) | yes; columns have the number of the body behind their names |
-//! | forces, the effects of the library, splittings | no: those are of one body |
+//! | the effects of the library | not in such a declaration, as they are of one body; in a system they are put on bodies |
+//! | forces, splittings | no: those are of one body |
 //! | `l = …`, the continuous Lagrangian | no |
 //! | contact, impacts, closed loops of joints | no |
 //!
 //! `tests/systems/several_bodies` has chains, coupled attitudes and a spherical double pendulum, with references of 25
 //! digits. By hand any tuple of groups up to four can be written a Lagrangian for:
 //! `examples/how-to-write-a-lagrangian-by-hand.rs` says how, for one group.
+//!
+//! # Many bodies
+//!
+//! The group of a system of `N` bodies is `[SO3; N]`. A term is declared on one body or on two, is derived once, and is put at
+//! places; what is put at places adds with `+`:
+//!
+//! | places | the term is declared on |
+//! |---|---|
+//! | [`Each<N>`](crate::mechanics::Each), [`On<K, N>`](crate::mechanics::On) | one body: put at all, or at the body `K` |
+//! | [`Along<N>`](crate::mechanics::Along) | two bodies: put at neighbours in a row |
+//! | [`Between<A, B, N>`](crate::mechanics::Between), [`Pairs<N>`](crate::mechanics::Pairs) | two bodies: put at `A` and `B`, or at all pairs |
+//!
+//! [`Placed`](crate::mechanics::Placed) has a row of three as a listing. Between bodies only potentials of the ends of a step
+//! are possible, so that each body is solved by itself. A term that couples velocities doesn't compile there. Links on ball joints
+//! couple them, and have a stepper of their own, whose step takes a time proportional to their number:
+//! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
 //!
 //! # Bodies that don't see each other
 //!

@@ -6,7 +6,7 @@
 //!
 //! | you have | take |
 //! |---|---|
-//! | a hundred motions, of any kind | a loop, or threads: steppers are `Send` and `Sync` |
+//! | a hundred motions, of any kind | a loop, or threads: a [`Stepper`](crate::Stepper) is `Send` and `Sync` where its scene is, an [`AnyStepper`](crate::motion::AnyStepper) isn't |
 //! | bodies of one kind, one core | lanes: [`Batch`](crate::motion::Batch) |
 //! | thousands and millions, all cores, a cluster, results in files | the package `liestep-ensemble` in `core/ensemble` |
 //! | a scene file with a table `ensemble` or `sweep` | the program `liestep` |

@@ -7,7 +7,7 @@
 //! | file | written by | format |
 //! |---|---|---|
 //! | `top.csv` | [`Csv`](crate::with::Csv); `liestep run --csv` | comma-separated values, RFC 4180 with line feeds |
-//! | `top.arrows` | `liestep_arrow::ArrowStream` in `core/arrow` | Arrow IPC stream |
+//! | `top.arrows` | `liestep_arrow::ArrowStream` in `core/arrow`; `liestep run --arrow` | Arrow IPC stream |
 //! | `00000000-….arrow` in a folder | `liestep-ensemble` | Arrow IPC file ("Feather"), one for each chunk of members |
 //! | tables of errors and costs | [`Refinement::to_csv`](crate::accuracy::Refinement::to_csv), [`to_json`](crate::accuracy::Refinement::to_json) | CSV, JSON |
 //! | checkpoints | `Stepper::checkpoint` (feature `serde`) | whatever format of serde is chosen; to go on from, not to be read |
@@ -52,7 +52,7 @@
 //!
 //! # Python
 //!
-//! Tried with Python 3.11, NumPy 2.4, SciPy 1.17, PyArrow 26 and Polars 2.1. A table as CSV:
+//! `core/ensemble/elsewhere/run` reads an ensemble's files with Polars and pandas, where Python has them. A table as CSV:
 //!
 //! ```python
 //! import numpy as np
@@ -66,7 +66,7 @@
 //! attitude = Rotation.from_quat(np.column_stack([top[name] for name in ["q_x", "q_y", "q_z", "q_w"]]))
 //! axis = attitude.apply([0, 0, 1])
 //! momentum = attitude.apply(np.column_stack([top[name] for name in ["momentum_x", "momentum_y", "momentum_z"]]))
-//! print("vertical momentum within", np.ptp(momentum[:, 2]))  # 1.3e-13
+//! print("vertical momentum within", np.ptp(momentum[:, 2]))
 //! ```
 //!
 //! Without any library, `csv.DictReader` and `float` read the same numbers. In Polars it is

@@ -76,7 +76,6 @@
 //!     .until(10.0 * period + 0.1)?;
 //! let late: Vec<f64> = (1..).map(|k| 0.5 * period * f64::from(k)).zip(&times).map(|(t, found)| found - t).collect();
 //! assert!(times.len() == 20 && late.iter().all(|late| late.abs() < 1e-3), "{late:?}");
-//! // Half of the step, a sixteenth of the error: the method is of fourth order, and so are its events.
 //! assert!((late[19] / late[9] - 2.0).abs() < 0.1); // the phase grows with time
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

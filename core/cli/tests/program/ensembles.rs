@@ -87,6 +87,27 @@ fn shares_and_a_second_run_make_the_same_files() {
     assert!(spin.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-9));
 }
 
+/// The file that is shipped says nothing of chunks: all cores and both of two shares have some of it.
+#[test]
+fn what_is_shipped_has_many_chunks() {
+    let folder = folder("what_is_shipped_has_many_chunks");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes/detumbling.toml");
+    let text = fs::read_to_string(shipped).unwrap();
+    // For a twentieth of the time, and with quaternions, of which there are no means.
+    let text = text.replace("\"40 min\"", "\"2 min\"") + "\n[output]\ncolumns = [\"quaternion\", \"velocity\"]\n";
+    fs::write(folder.join("detumbling.toml"), text).unwrap();
+    let part = printed(&folder, &["ensemble", "detumbling.toml", "--shard", "1/2", "--out", "."]);
+    let made = files(&folder.join("detumbling.ensemble")).len();
+    assert!(made > 8 && part.contains(&format!("{made} chunks, {made} of them now")), "{made}: {part}");
+    let whole = printed(&folder, &["ensemble", "detumbling.toml", "--out", "."]);
+    let all = files(&folder.join("detumbling.ensemble")).len();
+    assert!(whole.contains(&format!("{all} chunks, {} of them now", all - made)) && all >= 2 * made, "{whole}");
+    assert!(whole.contains("velocity_z") && !whole.contains("q_w"), "{whole}");
+    assert!(shards(&folder.join("detumbling.ensemble")).iter().all(|shard| shard.names.contains(&"q_w".to_owned())));
+}
+
 /// A mass that is drawn below zero is a member that fails, with its number; the others are made.
 #[test]
 fn members_fail_by_themselves() {
@@ -116,19 +137,28 @@ fn mistakes_in_ensembles_have_places() {
     };
     let line = drawn("").lines().count() + 1;
     for (wrong, column, message) in [
-        ("draw.gravity.g = { from = 1, to = \"2 m/s²\" }", 18, "two numbers, or texts with the same unit"),
-        ("draw.gravity.g = { from = 2, to = 1 }", 18, "a range goes from a number to a larger one"),
-        ("draw.gravity.g = { mean = 2, deviation = -1 }", 18, "isn't below zero"),
+        ("draw.gravity.g = { from = 1, to = \"2 m/s²\" }", 35, "two numbers, or texts with the same unit"),
+        ("draw.gravity.g = { from = 2, to = 1 }", 35, "a range goes from a number to a larger one"),
+        ("draw.gravity.g = { mean = 2, deviation = -1 }", 42, "isn't below zero"),
         ("draw.gravity.g = 5", 18, "a value is drawn by"),
-        ("draw.gravity.g = { from = \"1 kg\", to = \"2 kg\" }", 18, "an acceleration isn't in `kg`"),
+        ("draw.gravity.g = { from = \"1 kg\", to = \"2 kg\" }", 27, "an acceleration isn't in `kg`"),
         ("draw.gravity.height = { from = 1, to = 2 }", 14, "unknown field `height`"),
         ("draw.start.velocity = [0, { from = 1, to = 2 }]", 23, "expected three components, found 2"),
         ("draw.start.velocity = [0, 1, 2]", 23, "a value is drawn by"),
         ("draw.run.duration = { from = 1, to = 2 }", 6, "an ensemble draws what is in `body`"),
+        ("draw.gravity.g = { from = true, to = 1 }", 27, "a value is drawn by"),
+        ("draw.gravity.g = { from = 1, mean = 1 }", 30, "a value is drawn by"),
+        ("draw.gravity.g = { from = 1 }", 18, "a value is drawn by"),
+        ("draw.gravity.g = { form = 1, to = 2 }", 20, "a value is drawn by"),
+        ("draw.gravity.g = {}", 18, "a value is drawn by"),
+        ("draw.rotor = {}", 14, "a value is drawn by"),
+        ("draw.rotor.spin = [0, 0, { from = 1, to = 2 }]", 6, "the file has no `rotor`"),
+        ("draw.gravity.g = { from = 1, to = 2 }\nevery = 201", 9, "a run has 200 steps"),
         ("every = 0", 9, "`every` is a whole number from 1"),
         ("column = 1", 1, "`ensemble` has `members`"),
     ] {
         let told = checked(&drawn(wrong));
+        let line = line + wrong.lines().count() - 1;
         assert!(told.contains(&format!("top.toml:{line}:{column}:")) && told.contains(message), "{wrong}: {told}");
     }
     let draws = "draw.gravity.g = { from = 1, to = 2 }";

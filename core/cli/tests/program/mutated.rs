@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use liestep_scene::parse;
+use liestep_scene::{Drawn, Mistake, Spread, parse};
 
 /// Marsaglia's xorshift.
 struct Random(u64);
@@ -32,6 +32,8 @@ fn seeds() -> Vec<String> {
                [thrust]\nat = [0, 0, \"1 cm\"]\nthrust = [1, 0, 0]\n[start]\nquaternion = [1, 0, 0, 0.5]\nvelocity = [0, 0, 1]\n\
                [run]\nstep = 0.01\nduration = 1\nmethod = \"step\"\n[output]\ncolumns = [\"axis\", \"quaternion\"]\nevery = 3\n\
                [[event]]\nname = \"fast\"\nspeed = 1.5\ndirection = \"rising\"\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\nstop = true\n\
+               [ensemble]\nmembers = 3\nevery = 10\ndraw.gravity.m = { mean = 1, deviation = 0.1 }\n\
+               draw.start.velocity = [{ from = -1, to = 1 }, 0, { mean = 1, deviation = 0.5 }]\n\
                [sweep]\ngravity.m = [1, 2]\nspring.k = { from = 1, to = 2, count = 3 }\n";
     let split = "title = \"split\"\n[body]\nmoments = [1, 2, 2.5]\n[dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
                  [start]\neuler = [0, 0, 0]\neuler_rates = [0, 1, 0]\n[run]\nstep = 0.01\nduration = 1\n\
@@ -118,12 +120,49 @@ fn mutated(seed: &str, random: &mut Random) -> String {
     letters.into_iter().collect()
 }
 
-/// Runs so many files, and returns how many of them ran.
-fn survive(cases: usize, seed: u64) -> usize {
-    let (seeds, mut random, mut ran) = (seeds(), Random(seed), 0);
+/// Asserts that a mistake has a place in the text.
+fn assert_placed(mistake: &Mistake, text: &str) {
+    let (line, column) = mistake.place().unwrap_or_else(|| panic!("{mistake}\n{text}"));
+    let lines: Vec<_> = text.split('\n').collect();
+    assert!((1..=lines.len()).contains(&line), "{mistake}\n{text}");
+    assert!((1..=lines[line - 1].chars().count() + 1).contains(&column), "{mistake}\n{text}");
+    assert!(mistake.to_string().len() < 2000, "{mistake}");
+}
+
+/// Makes two members of an ensemble and some of their steps.
+fn make_members(drawn: &Drawn, text: &str, random: &mut Random) {
+    for _ in 0..2 {
+        #[allow(clippy::cast_precision_loss)] // a share
+        let mut draw = |_: &str, spread: Spread| {
+            let part = random.below(1 << 20) as f64 / f64::from(1 << 20);
+            match spread {
+                Spread::Uniform { from, to } => from + (to - from) * part,
+                Spread::Normal { mean, deviation } => mean + deviation * (6.0 * part - 3.0),
+            }
+        };
+        let made = drawn.member(&mut draw).and_then(|scene| {
+            let (stepper, mut state) = scene.stepper()?;
+            // A step that has no solution is the member's own failure.
+            let _ = stepper.run(&mut state, 30);
+            assert!(state.momentum().iter().all(|number| number.is_finite()), "{text}");
+            scene.first(1)
+        });
+        if let Err(mistake) = made {
+            assert_placed(&mistake, text);
+        }
+    }
+}
+
+/// Runs so many files, and returns how many of them ran, and of how many members were made.
+fn survive(cases: usize, seed: u64) -> [usize; 2] {
+    let (seeds, mut random, mut ran, mut drawn) = (seeds(), Random(seed), 0, 0);
     for case in 0..cases {
         let text = mutated(&seeds[random.below(seeds.len())], &mut random);
         let answer = parse("mutated.toml", &text).and_then(|scene| {
+            if let Some(ensemble) = scene.ensemble() {
+                make_members(ensemble, &text, &mut random);
+                drawn += 1;
+            }
             let run = scene.first(30)?;
             let are_finite = |sample: &liestep_scene::Sample| {
                 let vectors = [sample.momentum, sample.velocity, sample.spatial_momentum()];
@@ -137,27 +176,21 @@ fn survive(cases: usize, seed: u64) -> usize {
         });
         match answer {
             Ok(()) => ran += 1,
-            Err(mistake) => {
-                let (line, column) = mistake.place().unwrap_or_else(|| panic!("{mistake}\n{text}"));
-                let lines: Vec<_> = text.split('\n').collect();
-                assert!((1..=lines.len()).contains(&line), "{mistake}\n{text}");
-                assert!((1..=lines[line - 1].chars().count() + 1).contains(&column), "{mistake}\n{text}");
-                assert!(mistake.to_string().len() < 2000, "{mistake}");
-            }
+            Err(mistake) => assert_placed(&mistake, &text),
         }
     }
-    ran
+    [ran, drawn]
 }
 
 #[test]
 fn mutated_files_are_refused_or_run() {
-    let ran = survive(1000, 0x9e37_79b9_7f4a_7c15);
-    assert!((100..900).contains(&ran), "{ran}");
+    let [ran, drawn] = survive(1000, 0x9e37_79b9_7f4a_7c15);
+    assert!((100..900).contains(&ran) && drawn > 20, "{ran} {drawn}");
 }
 
 #[test]
 #[ignore = "a minute: cargo test --release -p liestep-cli -- --ignored"]
 fn ten_thousand_mutated_files_are_refused_or_run() {
-    let ran = survive(10_000, 0x2545_f491_4f6c_dd1d);
-    assert!((1000..9000).contains(&ran), "{ran}");
+    let [ran, drawn] = survive(10_000, 0x2545_f491_4f6c_dd1d);
+    assert!((1000..9000).contains(&ran) && drawn > 200, "{ran} {drawn}");
 }

@@ -345,11 +345,11 @@ fn a_run_as_a_stream_of_arrow() {
     fs::write(folder.join("top.toml"), TOP).unwrap();
     let csv = printed(&folder, &["run", "top.toml", "--csv", "--out", "one"]);
     let both = printed(&folder, &["run", "top.toml", "--csv", "--arrow", "--out", "both"]);
-    assert!(!csv.contains("top.arrow") && both.contains("top.arrow"), "{both}");
+    assert!(!csv.contains("top.arrow") && both.contains("top.arrows "), "{both}");
     let [one, other] = ["one", "both"].map(|out| fs::read(folder.join(out).join("top.csv")).unwrap());
     assert!(one == other);
     // 201 rows of twelve doubles and the time, little-endian and column by column in one block.
-    let stream = fs::read(folder.join("both/top.arrow")).unwrap();
+    let stream = fs::read(folder.join("both/top.arrows")).unwrap();
     let rows = table(&String::from_utf8(one).unwrap());
     for column in 0..rows[0].len() {
         let bytes: Vec<u8> = rows.iter().flat_map(|row| row[column].to_le_bytes()).collect();

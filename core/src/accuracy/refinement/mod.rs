@@ -33,7 +33,7 @@ pub struct Measurement {
 ///
 /// As text it is a table, and [`to_csv`](Self::to_csv) and [`to_json`](Self::to_json) write the same columns; with the
 /// feature `serde` it serialises as the latter does. Errors that were measured otherwise, of another library for
-/// example, come in by [`of`](Self::of) and [`timed`](Self::timed).
+/// example, come in by [`of`](Self::of) and [`timed`](Self::timed), and whole rows are collected.
 ///
 /// | column | |
 /// |---|---|
@@ -75,7 +75,7 @@ impl Refinement {
     #[must_use]
     pub fn of(errors: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let row = |(step, error)| Measurement { step, error, iterations: None, seconds: None };
-        Self { rows: errors.into_iter().map(row).collect() }
+        errors.into_iter().map(row).collect()
     }
 
     /// The runs, in the order in which they were made.
@@ -95,15 +95,16 @@ impl Refinement {
     }
 
     /// The order: the slope of `ln error` over `ln h` by least squares, over the runs whose error is above what rounding
-    /// leaves.
+    /// leaves, finite and not zero.
     ///
-    /// None where fewer than four are, so that a slope isn't read off the edge of a plateau.
+    /// None where fewer than four are, so that a slope isn't read off the edge of a plateau, and where all have one step.
     #[must_use]
-    #[allow(clippy::cast_precision_loss)] // a handful of runs
+    #[allow(clippy::cast_precision_loss, clippy::float_cmp)] // a handful of runs, and steps that are one to the last bit
     pub fn order_above(&self, plateau: f64) -> Option<f64> {
         let above = self.rows.iter().filter(|row| row.error > plateau);
-        let points: Vec<(f64, f64)> = above.map(|row| (row.step.abs().ln(), row.error.ln())).collect();
-        if points.len() < FEWEST_POINTS {
+        let logarithms = above.map(|row| (row.step.abs().ln(), row.error.ln()));
+        let points: Vec<(f64, f64)> = logarithms.filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
+        if points.len() < FEWEST_POINTS || points.iter().all(|point| point.0 == points[0].0) {
             return None;
         }
         let count = points.len() as f64;
@@ -128,9 +129,17 @@ impl Refinement {
         reached.chain(between).min_by(f64::total_cmp)
     }
 
-    /// The longest step whose error isn't larger than this one, s.
+    /// The longest step whose error isn't larger than this one, s; below zero, where the runs go backwards.
     #[must_use]
     pub fn longest_step_to(&self, error: f64) -> Option<f64> {
-        self.rows.iter().filter(|row| row.error <= error).map(|row| row.step).max_by(f64::total_cmp)
+        let steps = self.rows.iter().filter(|row| row.error <= error).map(|row| row.step);
+        steps.max_by(|one, other| one.abs().total_cmp(&other.abs()))
+    }
+}
+
+/// Of rows that were measured otherwise, in the order of the runs.
+impl FromIterator<Measurement> for Refinement {
+    fn from_iter<R: IntoIterator<Item = Measurement>>(rows: R) -> Self {
+        Self { rows: rows.into_iter().collect() }
     }
 }

@@ -17,7 +17,8 @@ pub enum Reference<G: LieGroup> {
     /// A state that is known: of a closed form, or of a method that is more accurate by far.
     End(End<G>),
     /// The run with the most steps, which then is no row. Where that has `r` times the steps of the run before and errors
-    /// fall by the order `p`, the last row's error is too small by the part `r⁻ᵖ`, and those before by less.
+    /// fall by the order `p`, the last row's error is too small by the part `r⁻ᵖ`, and those before by less. It is made
+    /// once, before the others, however long it takes.
     Finest,
 }
 
@@ -53,6 +54,11 @@ pub enum RefinementError {
         /// Why.
         cause: StepError,
     },
+    /// Runs came to their ends, but none near the reference: all errors are 0.5 and more.
+    OtherMotion {
+        /// The least error.
+        least: f64,
+    },
     /// An end, or the reference, isn't made of finite numbers.
     NonFinite {
         /// The step of the run, s.
@@ -74,6 +80,9 @@ impl fmt::Display for RefinementError {
                 "a stepper for {asked:e} s was asked for and makes steps of {found:e} s; build it with the step that the closure is given"
             ),
             Self::Step { cause, .. } => cause.fmt(f),
+            Self::OtherMotion { least } => {
+                write!(f, "no run ends near the reference, the least error is {least:.1e}; make more steps")
+            }
             Self::NonFinite { step } => {
                 write!(f, "the run with steps of {step:e} s, or its reference, doesn't end in finite numbers")
             }

@@ -92,13 +92,13 @@ impl fmt::Display for Refinement {
         let lines: Vec<Row> = self.lines().collect();
         let is_there = |column: usize| column < 2 || lines.iter().any(|line| line[column].is_some());
         for (column, (_, heading)) in COLUMNS.iter().enumerate().filter(|(column, _)| is_there(*column)) {
-            write!(f, "{heading:>width$}", width = width(column))?;
+            write!(f, " {heading:>width$}", width = width(column))?;
         }
         for line in &lines {
             writeln!(f)?;
             for (column, number) in line.iter().enumerate().filter(|(column, _)| is_there(*column)) {
                 let cell = number.map_or_else(|| "–".to_owned(), |number| cell(column, number));
-                write!(f, "{cell:>width$}", width = width(column))?;
+                write!(f, " {cell:>width$}", width = width(column))?;
             }
         }
         Ok(())
@@ -106,8 +106,8 @@ impl fmt::Display for Refinement {
 }
 
 fn width(column: usize) -> usize {
-    // The longest heading has ten letters.
-    if column == 4 { 12 } else { 10 }
+    // Behind a space; the longest heading has ten letters.
+    if column == 4 { 11 } else { 9 }
 }
 
 fn cell(column: usize, number: f64) -> String {

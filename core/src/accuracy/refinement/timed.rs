@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use std::time::{Duration, Instant};
 
-use super::runs::{Ready, Reference, RefinementError, plan};
+use super::runs::{End, Ready, Reference, RefinementError, plan};
 use super::{Measurement, Refinement};
 use crate::error::SetupError;
 use crate::groups::LieGroup;
@@ -14,9 +14,13 @@ use crate::motion::Integrator;
 pub struct Effort {
     /// The first run that takes longer is the last, s.
     pub longest: f64,
-    /// Each run is repeated for about so long; the shortest counts, which other programs disturb least.
+    /// Each run is repeated for about so long, and a thousand times at most; the shortest counts, which other programs
+    /// disturb least. A run that fails isn't repeated.
     pub repeated: Duration,
 }
+
+/// More repetitions find nothing shorter.
+const MOST_REPETITIONS: u32 = 1000;
 
 /// Runs of up to 0.1 s, each repeated for 10 ms.
 impl Default for Effort {
@@ -27,15 +31,20 @@ impl Default for Effort {
 
 impl Effort {
     /// What a run returns, and how long the fastest of its repetitions took, s.
-    pub fn time<X>(&self, mut run: impl FnMut() -> X) -> (X, f64) {
+    ///
+    /// # Errors
+    ///
+    /// The run's own.
+    pub fn time<X, E>(&self, mut run: impl FnMut() -> Result<X, E>) -> Result<(X, f64), E> {
         let started = Instant::now();
-        let mut best = Duration::MAX;
+        let (mut best, mut repetitions) = (Duration::MAX, 0);
         loop {
             let start = Instant::now();
-            let result = run();
+            let result = run()?;
             best = best.min(start.elapsed());
-            if started.elapsed() > self.repeated {
-                return (result, best.as_secs_f64());
+            repetitions += 1;
+            if repetitions == MOST_REPETITIONS || started.elapsed() > self.repeated {
+                return Ok((result, best.as_secs_f64()));
             }
         }
     }
@@ -43,6 +52,12 @@ impl Effort {
 
 /// Errors that are larger are of another motion, and such runs are left out.
 const LARGEST_ERROR: f64 = 0.5;
+
+/// Whether an error is a number and that of the same motion.
+fn is_near(error: f64) -> bool {
+    error < LARGEST_ERROR
+}
+
 /// Below this a double has nothing left.
 const SMALLEST_ERROR: f64 = 1e-14;
 /// Errors that are larger may rise and fall; smaller ones that rise are rounding's.
@@ -59,6 +74,10 @@ struct Progress {
 
 impl Progress {
     fn is_done(&mut self, effort: Effort, error: f64, seconds: f64) -> bool {
+        // What is of another motion, or isn't a number, is no better and no worse.
+        if !is_near(error) {
+            return seconds > effort.longest;
+        }
         let is_better = self.best.is_none_or(|best| error < best);
         self.no_better = if is_better { 0 } else { self.no_better + 1 };
         if is_better {
@@ -103,9 +122,9 @@ impl Refinement {
         for step in parameters {
             // A step may be too long to be solvable; the next is shorter.
             let Some(mut run) = prepare(step) else { continue };
-            let (Some(end), seconds) = effort.time(&mut run) else { continue };
+            let Ok((end, seconds)) = effort.time(|| run().ok_or(())) else { continue };
             let error = error(&end);
-            if error < LARGEST_ERROR {
+            if is_near(error) {
                 rows.push(Measurement { step, error, iterations: None, seconds: Some(seconds) });
             }
             if progress.is_done(effort, error, seconds) {
@@ -119,12 +138,18 @@ impl Refinement {
 /// What accuracy costs in time: as [`convergence`](super::convergence), and each run is timed. What the family does
 /// isn't.
 ///
-/// Runs with a step that has no solution, and those with errors of 0.5 and more, are left out. The last run is the first
-/// that takes longer than the effort allows, or one after which errors have stopped falling.
+/// Runs whose stepper can't be built, whose step has no solution or whose end isn't made of finite numbers are left out,
+/// and so are those with errors of 0.5 and more. The last run is the first that takes longer than the effort allows, or one
+/// after which errors have stopped falling.
+///
+/// [`Reference::Finest`] is one more run, with the most steps, whatever the effort allows. It comes first, it isn't timed and
+/// isn't repeated. Where each number of steps is twice the one before, it takes about as long as all others once; more, where
+/// these end early. [`Reference::End`] costs nothing.
 ///
 /// # Errors
 ///
-/// [`RefinementError`]: of a step, where no run came to its end.
+/// [`RefinementError`] where the plan has no runs or a stepper has another step than it was asked to have; where no run is
+/// left, that of the last one that failed, or [`OtherMotion`](RefinementError::OtherMotion) if none did.
 ///
 /// # Examples
 ///
@@ -164,27 +189,42 @@ pub fn work_precision<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
     effort: Effort,
 ) -> Result<Refinement, RefinementError> {
     let (counts, exact) = plan(&mut family, time, counts, reference)?;
-    let (mut rows, mut progress, mut failure) = (Vec::new(), Progress::default(), None);
+    let (mut rows, mut progress) = (Vec::new(), Progress::default());
+    let (mut failure, mut least) = (None, f64::INFINITY);
     for steps in counts {
-        let ready = Ready::new(&mut family, time, steps)?;
-        let (ended, seconds) = effort.time(|| ready.run());
-        let (end, iterations) = match ended {
-            Ok(ended) => ended,
+        // A step may be too long to be taken, or to be solvable; the next is shorter.
+        let (row, seconds) = match measured(&mut family, (time, steps), &exact, effort) {
+            Ok(measured) => measured,
+            // No shorter step mends this.
+            Err(cause @ RefinementError::OtherStep { .. }) => return Err(cause),
             Err(cause) => {
                 failure = Some(cause);
                 continue;
             }
         };
-        let row = ready.measurement(ready.start(time).difference(&end, &exact), iterations)?;
-        if row.error < LARGEST_ERROR {
-            rows.push(Measurement { seconds: Some(seconds), ..row });
+        least = least.min(row.error);
+        if is_near(row.error) {
+            rows.push(row);
         }
         if progress.is_done(effort, row.error, seconds) {
             break;
         }
     }
-    match failure {
-        Some(cause) if rows.is_empty() => Err(cause),
-        _ => Ok(Refinement { rows }),
+    if rows.is_empty() {
+        return Err(failure.unwrap_or(RefinementError::OtherMotion { least }));
     }
+    Ok(Refinement { rows })
+}
+
+/// A run of so many steps, with its time, s.
+fn measured<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
+    family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
+    (time, steps): (f64, u64),
+    exact: &End<G>,
+    effort: Effort,
+) -> Result<(Measurement, f64), RefinementError> {
+    let ready = Ready::new(family, time, steps)?;
+    let ((end, iterations), seconds) = effort.time(|| ready.run())?;
+    let row = ready.measurement(ready.start(time).difference(&end, exact), iterations)?;
+    Ok((Measurement { seconds: Some(seconds), ..row }, seconds))
 }

@@ -83,7 +83,7 @@ pub enum RecordError {
         /// The name.
         name: String,
     },
-    /// A column was added behind the first row.
+    /// A column was added behind the first row. The rows before it are in the table, which has ended with them.
     Late {
         /// Its name.
         name: String,
@@ -151,7 +151,7 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     /// As many numbers are handed on.
     full: usize,
     stage: Stage,
-    /// Gone when the table is finished.
+    /// Gone when the table has ended.
     sink: Option<S>,
 }
 
@@ -162,8 +162,8 @@ enum Stage {
     Before,
     /// It has them.
     Begun,
-    /// A column came after that, which it doesn't know.
-    Late,
+    /// A column came after that, of this place, which it doesn't know.
+    Late(usize),
     /// It has failed, and gets nothing more: rows behind a gap would look like a whole table.
     Failed,
 }
@@ -207,7 +207,8 @@ where
         }
     }
 
-    /// A column of one's own, with its unit; before the first row, or each further one is an error.
+    /// A column of one's own, with its unit; before the first row. Later it ends the table with the rows that there are, and
+    /// each further row is an error.
     #[must_use]
     pub fn quantity<T: Into<f64>>(
         mut self,
@@ -218,7 +219,7 @@ where
         self.columns.push(Column { name: name.into(), unit: unit.into() });
         self.quantities.push(Box::new(move |now| quantity(now).into()));
         if self.stage == Stage::Begun {
-            self.stage = Stage::Late;
+            self.stage = Stage::Late(self.columns.len() - 1);
         }
         self
     }
@@ -227,6 +228,9 @@ where
     #[must_use]
     pub fn in_blocks_of(mut self, rows: usize) -> Self {
         self.rows_in_a_block = rows.max(1);
+        if self.stage == Stage::Begun {
+            self.full = self.numbers_in_a_block();
+        }
         self
     }
 
@@ -307,9 +311,14 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         match self.stage {
             Stage::Begun => return Ok(()),
             Stage::Failed => return Err(RecordError::Sink { cause: "it has failed before".into() }),
-            Stage::Late => {
-                let name = self.columns.last().map_or_else(String::new, |column| column.name.clone());
-                return Err(RecordError::Late { name });
+            Stage::Late(column) => {
+                // The rows have the columns that the sink knows.
+                if let Some(mut sink) = self.sink.take() {
+                    let rows = &self.block[..core::mem::take(&mut self.filled)];
+                    let written = if rows.is_empty() { Ok(()) } else { sink.write(rows) };
+                    written.and_then(|()| sink.end()).map_err(|cause| self.failed(cause))?;
+                }
+                return Err(RecordError::Late { name: self.columns[column].name.clone() });
             }
             Stage::Before => {}
         }
@@ -321,8 +330,12 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         let begun = self.sink.as_mut().ok_or_else(unreachable)?.begin(columns);
         begun.map_err(|cause| self.failed(cause))?;
         self.stage = Stage::Begun;
-        self.full = self.rows_in_a_block.saturating_mul(self.columns.len());
+        self.full = self.numbers_in_a_block();
         Ok(())
+    }
+
+    fn numbers_in_a_block(&self) -> usize {
+        self.rows_in_a_block.saturating_mul(self.columns.len())
     }
 
     fn failed(&mut self, cause: SinkError) -> RecordError {

@@ -108,9 +108,9 @@ where
     /// whichever function they are of.
     ///
     /// Between two steps the motion is [`Integrator::part`] of one, and a zero is located on it until its time has no
-    /// further digit: to two roundings of its time, and as long as the function takes for four of its own roundings, which
-    /// where it is slow or the time is short is more. The moment that is shown has that time and the motion then, and [`Moment::rising`] the direction.
-    /// The steps stay what they are. [`sections`](crate::with::sections) has functions that are ready made.
+    /// further digit. The time is right to two of its roundings, or to the time in which the function changes by four of
+    /// its own, whichever is longer. The moment that is shown has that time and the motion then, and [`Moment::rising`] the
+    /// direction. The steps stay what they are. [`sections`](crate::with::sections) has functions that are ready made.
     ///
     /// A function that is zero at the end of a step, to the bit, is crossed there if its signs before and after differ; one
     /// that is zero at the start of the run isn't crossed then.
