@@ -129,7 +129,7 @@ fn other_bodies_in_lanes_move_as_alone() {
     });
     // Its step is limited, by the spin of the last ones too.
     let failures = same("a declared flow", false, 0.2, |top| {
-        let flow = top.scene.first.clone();
+        let flow = top.scene.first;
         Stepper::split(top.scene, 0.02, flow, SplittingScheme::STRANG)
     });
     assert!(failures.iter().any(|failed| failed.member == 6) && failures.len() < 8, "{failures:?}");
@@ -142,7 +142,7 @@ fn turned(top: &Top, is_turned: bool) -> Result<(Sum<RigidBody, Gravity>, Inerti
     let unusable = |_| SetupError::Unlike { lane: 0 };
     let inertia = Inertia::new((matrix + matrix.transpose()) * 0.5).map_err(unusable)?;
     let body = RigidBody { J_d: inertia.to_nonstandard() };
-    Ok((body + top.scene.second.clone(), inertia))
+    Ok((body + top.scene.second, inertia))
 }
 
 #[test]
@@ -166,7 +166,7 @@ fn a_processed_body_of_another_step_has_lanes_of_its_own() {
     let scene = body + Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.1, 0.0, 0.4), up: Vector3::z() };
     let of_step = |h| {
         let flow = ExactBody::new(&inertia);
-        Stepper::processed(scene.clone(), h, flow, ProcessedScheme::SIX_A).unwrap().compensated()
+        Stepper::processed(scene, h, flow, ProcessedScheme::SIX_A).unwrap().compensated()
     };
     let [stepper, other] = [0.05, 0.04].map(of_step);
     let start = stepper.start(SO3::exp(Vector3::x() * 0.4), Vector3::new(0.3, 0.2, 2.0)).unwrap();
