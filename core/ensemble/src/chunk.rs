@@ -19,7 +19,8 @@ impl<M: Integrator> Ensemble<M> {
     }
 
     /// What is kept of the members of a chunk: the same for the same plan and number, whoever computes it. `None` if it is
-    /// told to stop on the way, which is asked between members and after each [piece](Self::PIECE) of their steps.
+    /// told to stop on the way, which is asked between members and after each [piece](Self::PIECE) of their steps,
+    /// with sections after each step.
     pub fn chunk(&self, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         self.shard(self.fingerprint(), chunk, is_stopped)
     }

@@ -25,9 +25,11 @@
 //! #!/bin/bash
 //! #SBATCH --array=0-31
 //! #SBATCH --cpus-per-task=8
-//! srun ./ensemble --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --threads 8 --out /shared/out
+//! srun ./ensemble --shard "$SLURM_ARRAY_TASK_ID/32" --threads 8 --out /shared/out
 //! ```
 //!
+//! of which a part may be submitted again (`--array=3`: what counts is the number of shares, and not `SLURM_ARRAY_TASK_COUNT`,
+//! that of the tasks that are submitted together),
 //! an indexed job of Kubernetes, `core/ensemble/elsewhere/kubernetes.yaml`, or, on machines without a scheduler,
 //! `seq 0 31 | parallel ./ensemble --shard {}/32 --out /shared/out`.
 //!
@@ -39,18 +41,22 @@
 //! def make(share):
 //!     subprocess.run(["./ensemble", "--shard", f"{share}/32", "--out", "/shared/out"], check=True)
 //!
-//! client.gather(client.map(make, range(32), retries=3))                                   # dask.distributed
-//! ray.get([ray.remote(max_retries=3)(make).remote(share) for share in range(32)])         # ray
+//! client.gather(client.map(make, range(32), retries=3))               # dask.distributed
+//!
+//! task = ray.remote(max_retries=3, retry_exceptions=True)(make)       # ray
+//! ray.get([task.remote(share) for share in range(32)])
 //! ```
 //!
-//! A task that is tried again makes what is missing of its share.
+//! A task that is tried again makes what is missing of its share. That its program is killed is an exception to Ray, which
+//! it doesn't try again unless it is told to.
 //!
 //! # What was run
 //!
 //! `core/ensemble/elsewhere/run` runs the example `ensemble` by threads; by the job file of Slurm and by the command in that
-//! of Kubernetes, for each of four shares with the environment that the scheduler gives; and by Dask and Ray, with two
-//! workers on one machine, where Python has them (`--install` fetches them). It compares all files, and reads them
-//! with polars and pandas, crossings of sections among them. Of the schedulers themselves none was run: that `sbatch` and
+//! of Kubernetes, for each of four shares with the environment that the scheduler gives, and one of Slurm's as it is
+//! submitted again; and by Dask and Ray, with two workers on one machine, one program of which is killed, where Python has
+//! them (`--install` fetches them). It compares all files, and reads them with polars and pandas, crossings of sections
+//! among them. Of the schedulers themselves none was run: that `sbatch` and
 //! `kubectl` accept the files is not tested.
 //!
 //! # Size of chunks

@@ -142,13 +142,13 @@ impl<M: Integrator> Section<M> {
         is_last: bool,
     ) -> Result<Vec<Crossing>, Failure> {
         let value = (self.function)(&Moment::of_step(stepper, now));
-        let above = side(value);
-        // Whether it crosses here the next sign tells.
-        if above.is_none() && !is_last {
+        let (above, is_lost) = (side(value), value.is_nan());
+        // Whether it crosses at a zero the next sign tells; without a value there is none to wait for.
+        if above.is_none() && !is_lost && !is_last {
             return Ok(Vec::new());
         }
         let crosses = above.is_some() && watch.above.is_some() && above != watch.above;
-        let found = if crosses || value.is_nan() || self.event.bound().is_some() {
+        let found = if crosses || is_lost || self.event.bound().is_some() {
             (self.find)(self, stepper, &watch.before, now.steps() - watch.before.steps()).map_err(failure)?
         } else {
             Vec::new()

@@ -22,7 +22,7 @@ pub enum Status {
     Going,
     /// 1: it was at its end.
     Finished,
-    /// 2: its next step had no solution.
+    /// 2: it could be followed no further: its next step had no solution, or the function of a section has no value here.
     Stopped,
     /// 3: it couldn't be made; its columns are NaN.
     Impossible,
@@ -96,13 +96,22 @@ impl Crossings {
         Arc::new(lists.finish())
     }
 
-    /// Takes lists in again; the first column says whose they are.
+    /// Takes lists in again; the first column says whose they are. `None` where another has lists of other lengths.
     fn read(&mut self, place: usize, array: &ArrayRef, first_row: usize) -> Option<()> {
         let lists = array.as_list_opt::<i32>()?;
+        let lengths = lists.value_offsets().windows(2).map(|ends| usize::try_from(ends[1] - ends[0]));
         if place == 0 {
-            let lengths = lists.value_offsets().windows(2).map(|ends| usize::try_from(ends[1] - ends[0]));
             for (row, length) in lengths.enumerate() {
                 self.row.extend(core::iter::repeat_n(first_row + row, length.ok()?));
+            }
+        } else {
+            // What was there before belongs to the rows of other batches.
+            let own = self.row.partition_point(|row| *row < first_row);
+            let rows = lengths
+                .enumerate()
+                .flat_map(|(row, length)| core::iter::repeat_n(first_row + row, length.unwrap_or(usize::MAX)));
+            if !rows.eq(self.row.get(own..)?.iter().copied()) {
+                return None;
             }
         }
         // Of what is before the first list and behind the last nothing is part of one.
@@ -227,7 +236,9 @@ impl Shard {
             crossings.columns.push(vec![]);
         }
         for batch in reader {
-            shard.append(&batch.map_err(|error| error.to_string())?).ok_or("its columns are of other types")?;
+            shard
+                .append(&batch.map_err(|error| error.to_string())?)
+                .ok_or("its columns are of other types or lengths")?;
         }
         Ok(Some(shard))
     }
@@ -278,7 +289,7 @@ impl Shard {
         let mut shard = Self {
             plan: u64::from_str_radix(&value("plan")?, 16).ok()?,
             chunk: value("chunk")?.parse().ok()?,
-            // A plan has no more sections than would fill a screen; a file may say anything.
+            // A plan has less than 256 sections; a file may say anything, and so much memory isn't taken for it.
             rows: Rows::of_columns(0, vec![Crossings::default(); usize::from(value("sections")?.parse::<u8>().ok()?)]),
             finished: value("finished")?.parse().ok()?,
             names: Vec::new(),
@@ -303,7 +314,40 @@ impl Shard {
 
 #[cfg(test)]
 mod tests {
-    use super::{FORMAT, Rows, Shard};
+    use super::{Crossings, FORMAT, Rows, Shard, Status};
+
+    /// Two columns of one section whose lists differ in length have no rows in common.
+    #[test]
+    fn columns_of_a_section_have_lists_of_the_same_lengths() {
+        let lists = |row: Vec<usize>| {
+            let crossings = Crossings { names: vec!["t".to_owned()], row, columns: vec![vec![1.0, 2.0, 3.0]] };
+            crossings.lists(&crossings.columns[0], 4)
+        };
+        let (own, other) = (lists(vec![0, 2, 2]), lists(vec![0, 0, 2]));
+        for (second, expected) in [(&own, Some(())), (&other, None)] {
+            let mut crossings = Crossings { columns: vec![vec![]; 2], ..Crossings::default() };
+            // Behind another batch of four rows.
+            for first_row in [0, 4] {
+                assert_eq!(crossings.read(0, &own, first_row), Some(()));
+                assert_eq!(
+                    crossings.read(1, if first_row == 0 { &own } else { second }, first_row),
+                    expected.or((first_row == 0).then_some(()),)
+                );
+            }
+            assert_eq!(crossings.row, [0, 2, 2, 4, 6, 6]);
+        }
+    }
+
+    #[test]
+    fn two_crossings_of_a_member_are_read_as_they_were_written() {
+        let crossings =
+            Crossings { names: vec!["t".to_owned()], row: vec![0, 0, 1], columns: vec![vec![0.5, 0.75, 1.0]] };
+        let mut rows = Rows::of_columns(0, vec![crossings]);
+        rows.push(3, 10, Status::Going, core::iter::empty());
+        rows.push(3, 20, Status::Finished, core::iter::empty());
+        let shard = Shard { plan: 1, chunk: 2, names: vec![], rows, finished: 1, failures: vec![], reduced: vec![] };
+        assert_eq!(Shard::of_bytes(&shard.to_bytes().unwrap()), Ok(Some(shard)));
+    }
 
     /// A later version's file isn't damaged: there is nothing to be made anew in its place.
     #[test]

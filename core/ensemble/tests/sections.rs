@@ -1,12 +1,12 @@
 //! What is kept at sections is what a run of each member alone finds, to the bit.
 
-#![allow(clippy::cast_precision_loss)] // hundreds of steps and crossings
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // hundreds of steps
 
 use std::sync::{Arc, Mutex};
 
 use liestep::motion::Moment;
 use liestep::with::{Event, sections};
-use liestep_ensemble::{Ensemble, Failure, Local, Reduced, Reduction, Section, Shard, Status, Store, Table};
+use liestep_ensemble::{Ensemble, Failed, Failure, Local, Reduced, Reduction, Section, Shard, Status, Store, Table};
 use nalgebra::Vector3;
 
 use crate::common::{Folder, Top, contents, top, tops, with_columns};
@@ -146,24 +146,46 @@ fn a_zero_at_the_end_of_a_step_is_one_crossing() {
 
 #[test]
 fn a_function_without_a_value_stops_its_member() {
-    let ensemble = tops(12, STEPS).section(
-        Section::new(
-            Event::crossing(),
-            |now: &Moment<'_, Top>| {
-                if now.time() > 1.0 && now.velocity().z < 4.5 { f64::NAN } else { 1.0 }
-            },
-        )
-        .keep(["t"], |now| [now.time()]),
-    );
-    let shard = ensemble.chunk(0, &|| false).unwrap();
-    let undisturbed = tops(12, STEPS).chunk(0, &|| false).unwrap();
-    let lost: Vec<_> = shard.failures.iter().filter(|failed| matches!(failed.failure, Failure::Other(_))).collect();
-    assert!((1..10).contains(&lost.len()) && shard.finished + lost.len() as u64 == undisturbed.finished, "{lost:?}");
-    for failed in lost {
-        assert!(failed.failure.to_string().contains("no value at t = "), "{failed:?}");
-        assert!(failed.steps > 50);
-        let row = shard.rows.member.iter().position(|member| *member == failed.member).unwrap();
-        assert_eq!((shard.rows.status[row], shard.rows.step[row]), (Status::Stopped, failed.steps));
+    const FIRST: u64 = 50;
+    let has_none = |now: &Moment<'_, Top>| now.time() > (FIRST as f64 - 0.5) * 0.02 && now.velocity().z < 4.5;
+    let section = |event| {
+        let function = move |now: &Moment<'_, Top>| if has_none(now) { f64::NAN } else { 1.0 };
+        Section::new(event, function).keep(["t"], |now| [now.time()])
+    };
+    let undisturbed = tops(12, STEPS).every(1).chunk(0, &|| false).unwrap();
+    // The same condition, of each member's steps.
+    let spins = Section::new(Event::crossing(), |_: &Moment<'_, Top>| 1.0);
+    let watched = tops(12, STEPS).every(1).section(spins).keep(["w"], |run| [run.stepper.velocity(run.state).z]);
+    let watched = watched.chunk(0, &|| false).unwrap().rows;
+    let first_without = |member: u64| {
+        let steps = watched.member.iter().zip(&watched.step).zip(&watched.columns[4]);
+        let lost = |((of, step), w): &((&u64, &u64), &f64)| **of == member && **step >= FIRST && **w < 4.5;
+        steps.into_iter().find(lost).map(|((_, step), _)| *step)
+    };
+    for event in [Event::crossing(), Event::crossing().curvature(1.0)] {
+        let shard = tops(12, STEPS).section(section(event)).chunk(0, &|| false).unwrap();
+        let is_lost = |failed: &&Failed| matches!(failed.failure, Failure::Other(_));
+        let lost: Vec<_> = shard.failures.iter().filter(is_lost).collect();
+        assert!((1..10).contains(&lost.len()), "{lost:?}");
+        assert_eq!(shard.finished + lost.len() as u64, undisturbed.finished, "{lost:?}");
+        for failed in lost {
+            assert!(failed.failure.to_string().contains("no value at t = "), "{failed:?}");
+            assert_eq!(Some(failed.steps), first_without(failed.member), "{failed:?}");
+            let row = shard.rows.member.iter().position(|member| *member == failed.member).unwrap();
+            assert_eq!((shard.rows.status[row], shard.rows.step[row]), (Status::Stopped, failed.steps));
+        }
+    }
+    // At one step only, with a sign before and behind, and right behind a zero.
+    for zero in [0, 1] {
+        let only =
+            Section::new(Event::crossing(), move |now: &Moment<'_, Top>| match (now.time() / 0.02).round() as u64 {
+                40 => f64::NAN,
+                step if step + zero == 40 => 0.0,
+                _ => 1.0,
+            });
+        let shard = tops(2, STEPS).section(only).chunk(0, &|| false).unwrap();
+        let steps: Vec<u64> = shard.failures.iter().map(|failed| failed.steps).collect();
+        assert_eq!((shard.finished, steps), (0, vec![40, 40]));
     }
     // From the start on.
     let never = Section::new(Event::crossing(), |_: &Moment<'_, Top>| f64::NAN);

@@ -2,20 +2,20 @@
 
 #![allow(non_snake_case)] // the letters of the field
 
-use liestep::effects::{Gravity, PrincipalBody};
-use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, Sum, Term};
+use liestep::effects::{Gravity, PrincipalBody, RigidBody};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, RigidScene, Sum, Term};
 use liestep::methods::{ExactBody, ProcessedScheme, SplitBody, SplittingScheme, SymmetricBody};
-use liestep::motion::{Batchable, Integrator, Plan};
+use liestep::motion::{Batch, Batchable, Integrator, Plan};
 use liestep::{SO3, SetupError, State, StepError, Stepper};
-use liestep_ensemble::{Ensemble, Failure, Member, Shard};
-use nalgebra::Vector3;
+use liestep_ensemble::{Ensemble, Failed, Failure, Member, Shard};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use simba::simd::AutoF64x8;
 
 const MEMBERS: u64 = 21;
 const STEPS: u64 = 150;
 
 type Scene = Sum<PrincipalBody, Gravity>;
-type StateOf<P> = State<SO3, <Scene as Term>::Advected, <P as Plan<Scene>>::Kept>;
+type StateOf<S, P> = State<SO3, <S as Term>::Advected, <P as Plan<S>>::Kept>;
 
 /// A body, in one order of its moments, and what is heavy in it, on the third axis or beside. The spin of member 6 has
 /// no digit left within a step; the others turn from slowly to several radians a step.
@@ -43,15 +43,33 @@ fn bits(shard: &Shard) -> (Vec<u64>, Vec<u64>, String) {
     (shard.rows.step.clone(), values, format!("{:?}", shard.failures))
 }
 
-/// Kept on the way, so that runs are of unequal lengths.
-fn assert_same<P>(
+fn assert_same<S, P>(
     name: &str,
     is_symmetric: bool,
     beside: f64,
-    make: impl Fn(Top) -> Result<Stepper<Scene, P>, SetupError> + Copy + Send + Sync + 'static,
+    make: impl Fn(Top) -> Result<Stepper<S, P>, SetupError> + Copy + Send + Sync + 'static,
 ) where
-    P: Plan<Scene> + Clone + 'static,
-    Stepper<Scene, P>: Batchable<AutoF64x8> + Integrator<State = StateOf<P>>,
+    S: RigidScene<Scalar = f64> + Clone + 'static,
+    P: Plan<S> + Clone + 'static,
+    Stepper<S, P>: Batchable<AutoF64x8> + Integrator<State = StateOf<S, P>>,
+{
+    let failures = same(name, is_symmetric, beside, make);
+    let [failed] = failures.as_slice() else { panic!("{name}: {failures:?}") };
+    let is_named = matches!(failed.failure, Failure::Step(StepError::AngleWithoutDigits { .. }));
+    assert!(failed.member == 6 && is_named, "{name}: {failed:?}");
+}
+
+/// Kept on the way, so that runs are of unequal lengths. The members that fail, which are the same, too.
+fn same<S, P>(
+    name: &str,
+    is_symmetric: bool,
+    beside: f64,
+    make: impl Fn(Top) -> Result<Stepper<S, P>, SetupError> + Copy + Send + Sync + 'static,
+) -> Vec<Failed>
+where
+    S: RigidScene<Scalar = f64> + Clone + 'static,
+    P: Plan<S> + Clone + 'static,
+    Stepper<S, P>: Batchable<AutoF64x8> + Integrator<State = StateOf<S, P>>,
 {
     let member = move |member: &Member<'_>| -> Result<_, Failure> {
         let top = top(member, is_symmetric, beside)?;
@@ -60,18 +78,16 @@ fn assert_same<P>(
         let state = stepper.start(SO3::exp(Vector3::x() * member.uniform("tilt", 0.1..2.0)), velocity)?;
         Ok((stepper, state))
     };
-    let kept = |ensemble: Ensemble<Stepper<Scene, P>>| {
+    let kept = |ensemble: Ensemble<Stepper<S, P>>| {
         let of_attitude =
-            |state: &StateOf<P>| -> [f64; 3] { state.attitude().as_matrix().column(0).into_owned().into() };
+            |state: &StateOf<S, P>| -> [f64; 3] { state.attitude().as_matrix().column(0).into_owned().into() };
         let ensemble = ensemble.every(40).keep(["x", "y", "z"], move |run| of_attitude(run.state));
         ensemble.keep(["p", "q", "r"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
     };
     let together = kept(Ensemble::new("tops", MEMBERS, STEPS, member));
     let alone = kept(Ensemble::one_by_one("tops", MEMBERS, STEPS, member).chunks_of(MEMBERS));
     assert!(bits(&together) == bits(&alone), "{name}: {:?}, {:?}", together.failures, alone.failures);
-    let [failed] = together.failures.as_slice() else { panic!("{name}: {:?}", together.failures) };
-    let is_named = matches!(failed.failure, Failure::Step(StepError::AngleWithoutDigits { .. }));
-    assert!(failed.member == 6 && is_named, "{name}: {failed:?}");
+    together.failures
 }
 
 #[test]
@@ -100,6 +116,76 @@ fn other_bodies_in_lanes_move_as_alone() {
     assert_same("processed", false, 0.2, |top| {
         Stepper::processed(top.scene, 0.05, ExactBody::new(&top.inertia), ProcessedScheme::SIX_A)
     });
+    assert_same("nine rotations", false, 0.2, |top| {
+        Stepper::split(top.scene, 0.05, SplitBody::<9>::new(&top.inertia)?, SplittingScheme::STRANG)
+    });
+    assert_same("compensated, exact", false, 0.2, |top| {
+        let scheme = SplittingScheme::NYSTROM_6;
+        Ok(Stepper::split(top.scene, 0.05, ExactBody::new(&top.inertia), scheme)?.compensated())
+    });
+    assert_same("compensated, processed", false, 0.2, |top| {
+        let scheme = ProcessedScheme::SIX_A;
+        Ok(Stepper::processed(top.scene, 0.05, ExactBody::new(&top.inertia), scheme)?.compensated())
+    });
+    // Its step is limited, by the spin of the last ones too.
+    let failures = same("a declared flow", false, 0.2, |top| {
+        let flow = top.scene.first;
+        Stepper::split(top.scene, 0.02, flow, SplittingScheme::STRANG)
+    });
+    assert!(failures.iter().any(|failed| failed.member == 6) && failures.len() < 8, "{failures:?}");
+}
+
+/// The same body and weight, in other axes where the third moment is so.
+fn turned(top: &Top, is_turned: bool) -> Result<(Sum<RigidBody, Gravity>, Inertia), SetupError> {
+    let turn = if is_turned { Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner() } else { Matrix3::identity() };
+    let matrix = turn * top.inertia.as_matrix() * turn.transpose();
+    let unusable = |_| SetupError::Unlike { lane: 0 };
+    let inertia = Inertia::new((matrix + matrix.transpose()) * 0.5).map_err(unusable)?;
+    let body = RigidBody { J_d: inertia.to_nonstandard() };
+    Ok((body + top.scene.second, inertia))
+}
+
+#[test]
+fn bodies_in_other_axes_move_in_lanes_as_alone() {
+    assert_same("turned axes", false, 0.2, |top| {
+        let (scene, inertia) = turned(&top, true)?;
+        Stepper::split(scene, 0.05, ExactBody::new(&inertia), SplittingScheme::NYSTROM_6)
+    });
+    assert_same("some turned", false, 0.2, |top| {
+        let (scene, inertia) = turned(&top, top.inertia.as_matrix().m33 > 1.8)?;
+        Stepper::split(scene, 0.05, ExactBody::new(&inertia), SplittingScheme::STRANG)
+    });
+}
+
+/// One that was stepped by another step enters the processor, and those that are inside go on there: they are unlike.
+#[test]
+fn a_processed_body_of_another_step_has_lanes_of_its_own() {
+    let moments = Vector3::new(1.1, 1.5, 1.7);
+    let inertia = Inertia::from_principal_moments(moments).unwrap();
+    let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments).unwrap() };
+    let scene = body + Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.1, 0.0, 0.4), up: Vector3::z() };
+    let of_step = |h| {
+        let flow = ExactBody::new(&inertia);
+        Stepper::processed(scene, h, flow, ProcessedScheme::SIX_A).unwrap().compensated()
+    };
+    let [stepper, other] = [0.05, 0.04].map(of_step);
+    let start = stepper.start(SO3::exp(Vector3::x() * 0.4), Vector3::new(0.3, 0.2, 2.0)).unwrap();
+    let begun = |by: &_| {
+        let mut state = start;
+        Stepper::run(by, &mut state, 10).unwrap();
+        state
+    };
+    let (inside, outside) = (begun(&stepper), begun(&other));
+    let bodies = |states: &[_]| states.iter().map(|state| (stepper.clone(), *state)).collect::<Vec<_>>();
+    let lanes = |states: &[_]| Batch::<AutoF64x8, _>::new(&bodies(states));
+    assert!(matches!(lanes(&[inside, inside, outside]), Err(SetupError::Unlike { lane: 2 })));
+    assert!(matches!(lanes(&[outside, inside]), Err(SetupError::Unlike { lane: 1 })));
+    for state in [inside, outside] {
+        let (mut batch, mut alone) = (lanes(&[state; 3]).unwrap(), state);
+        batch.run(7);
+        stepper.run(&mut alone, 7).unwrap();
+        assert_eq!(batch.state(2), alone);
+    }
 }
 
 /// Unlike schemes share no lanes; nor do bodies of which one spins about an axis of its own.

@@ -42,11 +42,11 @@ mod so3;
 mod su2;
 mod translations;
 
-pub(crate) use advected::homogeneous;
 pub use advected::{
     Advected, Configuration, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, Relative,
     SeenFrom,
 };
+pub(crate) use advected::{homogeneous, seen_of_unit};
 pub use bodies::Pair;
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};

@@ -42,7 +42,12 @@ where
             assert_small(rate - derivative(|t| entries_at(t)[place]), DIFFERENCE, "the rate is −ξ·w");
         }
 
-        let v: A = random.sample();
+        // ⟨b, f⁻¹ · v⟩ = ⟨b pulled back, v⟩, in what is linear in v.
+        let (v, by): (A, A) = (random.sample(), random.sample());
+        let paired = |a: &A, b: &A| entries(a).iter().zip(entries(b)).map(|(a, b)| a * b).sum::<f64>();
+        let nothing = A::from_entries(&mut || 0.0);
+        let seen = paired(&by, &v.seen_from(&f)) - paired(&by, &nothing.seen_from(&f));
+        assert_small(seen - paired(&by.pulled_back(&f), &v), allowed * 10.0, "pulled back is transposed");
         let sum = combined(&w, &v).advect(&f.increment());
         let expected = combined(&w.advect(&f.increment()), &v.advect(&f.increment()));
         assert_same(&sum, &expected, allowed, "the action is linear");

@@ -82,8 +82,11 @@ impl Random {
     }
 }
 
-/// A number of the normal distribution with the mean 0 and the deviation 1, of two of the uniform one on `[0, 1)`, by the
-/// transform of Box and Muller.
+/// A number of the normal distribution with the mean 0 and the deviation 1, of two that are uniform on an interval of
+/// length one, by the transform of Box and Muller.
+///
+/// The first is of `[0, 1)`: at 1 the number is infinite, and beyond it is NaN. The second is an angle in turns, of which
+/// any whole number may be taken off, so that `[−½, ½)` does as well as `[0, 1)`.
 #[must_use]
 pub fn normal([radius, angle]: [f64; 2]) -> f64 {
     // The first is below one, and so its rest above zero.

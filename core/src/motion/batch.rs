@@ -95,7 +95,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
     }
 
     fn set(&mut self, lane: usize, stepper: &M, state: &M::State) -> bool {
-        self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state)
+        self.stepper.set_lane(lane, stepper) && self.state.set_lane(lane, state) && self.stepper.is_in_step(&self.state)
     }
 
     /// So many steps of every body that hasn't stopped, as by [`run_as_far`](Integrator::run_as_far) of its own.

@@ -62,6 +62,13 @@ pub trait Integrator {
         self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
     }
 
+    /// Whether the lanes of a state go on in one way, as they have to in a [`Batch`](crate::motion::Batch); one of a body
+    /// alone always does.
+    #[must_use]
+    fn is_in_step(&self, _state: &Self::State) -> bool {
+        true
+    }
+
     /// The motion a fraction of a step after this state, which stays where it is.
     ///
     /// It is a step of the same method with that fraction of `h`. So it has the method's order and keeps what its steps
@@ -192,6 +199,10 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
             return self.run_in_place(state, steps);
         }
         self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
+    }
+
+    fn is_in_step(&self, state: &Self::State) -> bool {
+        self.plan.is_in_step(&state.kept)
     }
 
     fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<Motion<Group<S>, S::Advected>, StepError> {

@@ -48,6 +48,11 @@ pub trait Plan<S: Effect> {
     /// What is kept at the beginning of a motion.
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept;
 
+    /// Whether the lanes of what is kept go on in one way. A body alone has no other beside it.
+    fn is_in_step(&self, _kept: &Self::Kept) -> bool {
+        true
+    }
+
     /// One step; marked `#[inline(always)]`, as the instructions of the machine are those of what is inlined.
     ///
     /// # Errors

@@ -47,6 +47,11 @@ impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<
     }
 
     #[inline(always)]
+    fn pulled_back(&self, _: &G) -> Self {
+        *self
+    }
+
+    #[inline(always)]
     fn change(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())
     }

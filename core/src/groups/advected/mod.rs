@@ -36,7 +36,7 @@ pub use tensors::{ContravariantTensor, ContravariantVector, CovariantTensor, Mix
 use nalgebra::{SMatrix, SVector};
 
 use crate::groups::LieGroup;
-use crate::numbers::{Coordinates, Entries, Real, sum};
+use crate::numbers::{Coordinates, Entries, Real, real, sum, zero};
 
 /// The advected parameters of a Lagrangian: `()` for none, a vector for one, a tuple for several.
 pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
@@ -64,12 +64,44 @@ pub trait Advected<G: LieGroup>: Entries<G::Scalar> + Debug + PartialEq {
     #[must_use]
     fn seen_through(&self, matrix: &G::Matrix, inverse: &G::Matrix) -> Self;
 
+    /// Of a number's gradient by what is seen, scalar by scalar, the gradient by the spatial value: the transpose of what is
+    /// linear in [`seen_from`](Self::seen_from).
+    ///
+    /// By default it is made of what is seen of each unit, which takes as many turns as there are scalars.
+    #[inline]
+    #[must_use]
+    fn pulled_back(&self, attitude: &G) -> Self {
+        let mut number = 0;
+        Self::from_entries(&mut || {
+            let mut sum = real::<G::Scalar>(0.0);
+            let _ = seen_of_unit::<G, Self>(number, attitude).zip(self, &mut |seen, by| {
+                sum += seen * by;
+                seen
+            });
+            number += 1;
+            sum
+        })
+    }
+
     /// Whether all components are finite.
     fn is_finite(&self) -> bool;
 }
 
+/// How the value that the body sees changes with the scalar of this number of the value in space.
+pub(crate) fn seen_of_unit<G: LieGroup, A: Advected<G>>(number: usize, attitude: &G) -> A {
+    let mut place = 0;
+    let unit = A::from_entries(&mut || {
+        place += 1;
+        if place == number + 1 { real(1.0) } else { real(0.0) }
+    });
+    // What is seen of a point is affine in it.
+    unit.seen_from(attitude).zip(&zero::<G::Scalar, A>().seen_from(attitude), &mut |a, b| a - b)
+}
+
 impl<G: LieGroup> Advected<G> for () {
     fn seen_from(&self, _: &G) -> Self {}
+
+    fn pulled_back(&self, _: &G) -> Self {}
 
     fn change(&self, _: &G::Matrix) -> Self {}
 
@@ -91,6 +123,12 @@ where
     #[inline]
     fn seen_from(&self, attitude: &G) -> Self {
         transpose_mul(&attitude.matrix(), self)
+    }
+
+    /// `ρ(g)` times the gradient.
+    #[inline(always)]
+    fn pulled_back(&self, attitude: &G) -> Self {
+        mul(&attitude.matrix(), self)
     }
 
     /// `Dᵀ w`.
@@ -129,12 +167,31 @@ fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N
     product
 }
 
+/// `A v`, unrolled.
+#[inline(always)]
+fn mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
+    let mut product = SVector::zeros();
+    for i in 0..N {
+        let mut sum = a[(i, 0)] * v[0];
+        for j in 1..N {
+            sum += a[(i, j)] * v[j];
+        }
+        product[i] = sum;
+    }
+    product
+}
+
 macro_rules! tuple {
     ($($name:ident $index:tt),+) => {
         impl<G: LieGroup, $($name: Advected<G>),+> Advected<G> for ($($name,)+) {
             #[inline(always)]
             fn seen_from(&self, attitude: &G) -> Self {
                 ($(self.$index.seen_from(attitude),)+)
+            }
+
+            #[inline(always)]
+            fn pulled_back(&self, attitude: &G) -> Self {
+                ($(self.$index.pulled_back(attitude),)+)
             }
 
             #[inline(always)]

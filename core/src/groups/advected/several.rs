@@ -70,6 +70,11 @@ impl<const A: usize, G: Factor<A>, W: Advected<G::Of>> Advected<G> for SeenFrom<
     }
 
     #[inline(always)]
+    fn pulled_back(&self, attitude: &G) -> Self {
+        Self(self.0.pulled_back(&attitude.factor()))
+    }
+
+    #[inline(always)]
     fn change(&self, increment: &G::Matrix) -> Self {
         Self(self.0.change(&G::of_matrix(increment)))
     }
@@ -102,6 +107,13 @@ where
     fn seen_from(&self, attitude: &G) -> Self {
         let (from, to) = (Factor::<A>::factor(attitude), Factor::<B>::factor(attitude));
         Self(product(&product(&from.inverse().matrix(), &self.0), &to.matrix()))
+    }
+
+    /// `g_A⁻ᵀ` times the gradient times `g_Bᵀ`.
+    #[inline]
+    fn pulled_back(&self, attitude: &G) -> Self {
+        let (from, to) = (Factor::<A>::factor(attitude), Factor::<B>::factor(attitude));
+        Self(product(&product(&from.inverse().matrix().transpose(), &self.0), &to.matrix().transpose()))
     }
 
     /// `E Q + (Q + E Q) D_B` with `E = F_A⁻¹ − I`.
@@ -137,6 +149,12 @@ where
     #[inline]
     fn seen_from(&self, attitude: &G) -> Self {
         Self(product(&self.0, &attitude.factor().matrix()))
+    }
+
+    /// The gradient times `g_Bᵀ`.
+    #[inline]
+    fn pulled_back(&self, attitude: &G) -> Self {
+        Self(product(&self.0, &attitude.factor().matrix().transpose()))
     }
 
     /// `R D`.

@@ -35,7 +35,7 @@ lanes_of_wrapper!(
 );
 
 macro_rules! kind {
-    ($type:ident, $seen:expr, $change:expr, $rate:expr, $through:expr) => {
+    ($type:ident, $seen:expr, $pulled:expr, $change:expr, $rate:expr, $through:expr) => {
         impl<T: Real, const N: usize> Entries<T> for $type<T, N> {
             fn from_entries(next: &mut impl FnMut() -> T) -> Self {
                 Self(Entries::from_entries(next))
@@ -56,6 +56,10 @@ macro_rules! kind {
         {
             fn seen_from(&self, attitude: &G) -> Self {
                 Self($seen(&self.0, attitude))
+            }
+
+            fn pulled_back(&self, attitude: &G) -> Self {
+                Self($pulled(&self.0, attitude))
             }
 
             fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
@@ -80,6 +84,7 @@ macro_rules! kind {
 kind!(
     ContravariantVector,
     |v: &SVector<T, N>, g: &G| g.inverse().matrix() * v,
+    |by: &SVector<T, N>, g: &G| g.inverse().matrix().transpose() * by,
     |v: &SVector<T, N>, d| G::inverse_increment(d) * v,
     |v: &SVector<T, N>, x: &SMatrix<T, N, N>| -(x * v),
     |v: &SVector<T, N>, _: &SMatrix<T, N, N>, inverse: &SMatrix<T, N, N>| inverse * v
@@ -90,6 +95,10 @@ kind!(
     |s: &SMatrix<T, N, N>, g: &G| {
         let inverse = g.inverse().matrix();
         inverse * s * inverse.transpose()
+    },
+    |by: &SMatrix<T, N, N>, g: &G| {
+        let inverse = g.inverse().matrix();
+        inverse.transpose() * by * inverse
     },
     |s: &SMatrix<T, N, N>, d| {
         let inverse = G::inverse_increment(d);
@@ -103,6 +112,7 @@ kind!(
 kind!(
     CovariantTensor,
     |s: &SMatrix<T, N, N>, g: &G| g.matrix().transpose() * s * g.matrix(),
+    |by: &SMatrix<T, N, N>, g: &G| g.matrix() * by * g.matrix().transpose(),
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
         let change = d.transpose() * s;
         change + (s + change) * d
@@ -114,6 +124,7 @@ kind!(
 kind!(
     MixedTensor,
     |s: &SMatrix<T, N, N>, g: &G| g.inverse().matrix() * s * g.matrix(),
+    |by: &SMatrix<T, N, N>, g: &G| g.inverse().matrix().transpose() * by * g.matrix().transpose(),
     |s: &SMatrix<T, N, N>, d: &SMatrix<T, N, N>| {
         let change = G::inverse_increment(d) * s;
         change + (s + change) * d

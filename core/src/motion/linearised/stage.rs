@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use crate::groups::{Advected as _, LieGroup};
+use crate::groups::{Advected as _, LieGroup, seen_of_unit};
 use crate::mechanics::pattern;
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
@@ -91,24 +91,11 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         }
     }
 
-    /// How the value that the body sees changes with scalar `number` of its value in space.
-    #[inline(always)]
-    fn seen(&self, number: usize) -> E::Advected {
-        let mut place = 0;
-        let unit = E::Advected::from_entries(&mut || {
-            place += 1;
-            if place == number + 1 { real(1.0) } else { real(0.0) }
-        });
-        let origin = zero::<Scalar<E>, E::Advected>().seen_from(&self.attitude);
-        // What is seen of a point is affine in it.
-        unit.seen_from(&self.attitude).zip(&origin, &mut |a, b| a - b)
-    }
-
     /// The derivatives of `μ` and `μ⁺` by all parameters; those of one that is visited again are added.
     pub(super) fn forwards(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
         self.by_parameters(visit);
         E::carried_parameters(&self.advected, &mut |place, parameter| {
-            let seen = self.seen(place);
+            let seen: E::Advected = seen_of_unit(place, &self.attitude);
             let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
             self.by_advected(&mut |number, by_start, by_end| {
                 let change = entry(&seen, number);
@@ -132,15 +119,12 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 *entry = paired(start, end);
             }
         });
+        let mut by_seen = by_advected.iter();
+        let by_seen = E::Advected::from_entries(&mut || by_seen.next().copied().unwrap_or_else(|| real(0.0)));
+        let mut by_carried = None;
         E::carried_parameters(&self.advected, &mut |place, parameter| {
-            let (mut sum, mut number) = (real::<Scalar<E>>(0.0), 0);
-            self.seen(place).each(&mut |seen| {
-                if let Some(&by) = gradient.by_advected.get(number) {
-                    sum += seen * by;
-                }
-                number += 1;
-            });
-            gradient.add(self.first + parameter, sum);
+            let by_carried = by_carried.get_or_insert_with(|| by_seen.pulled_back(&self.attitude));
+            gradient.add(self.first + parameter, entry(by_carried, place));
         });
     }
 

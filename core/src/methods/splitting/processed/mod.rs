@@ -39,7 +39,8 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 /// # Contract
 ///
 /// As [`Stepper`](crate::Stepper)'s. Steps one by one and at once give the same bits. A control force acts on what is
-/// read, and the next step goes inside from there; of several lanes all do, where one was pushed.
+/// read, and the next step goes inside from there; of several lanes all do, where one was pushed. A body that was stepped
+/// by another `h` is in no [`Batch`](crate::motion::Batch) with those that are inside already.
 ///
 /// # Examples
 ///
@@ -207,6 +208,14 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         Inside(None)
     }
 
+    /// A lane that comes from a step of another length has to enter, and those beside it that don't would lose digits.
+    fn is_in_step(&self, kept: &Self::Kept) -> bool {
+        kept.0.is_none_or(|inside| {
+            let is_there = inside.h.simd_eq(self.kernel.h);
+            is_there.all() || !is_there.any()
+        })
+    }
+
     #[inline(always)]
     fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
@@ -231,7 +240,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
             return Ok(0);
         }
         let (mut next, mut all, mut iterations) = (*motion, 0, 0);
-        match kept.0.filter(|inside| inside.h == self.kernel.h) {
+        match kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all()) {
             Some(inside) => next.show(inside.after(next.now().steps)),
             None => self.kernel.make_all(&self.enter, &mut next, &mut iterations)?,
         }
