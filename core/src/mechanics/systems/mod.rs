@@ -72,32 +72,12 @@ use crate::numbers::{Blocks, Coordinates as _, real};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A term that couples velocities isn't one for two places:
-///
-/// ```compile_fail,E0080
-/// use liestep::groups::Relative;
-/// use liestep::mechanics::Along;
-/// use liestep::{Stepper, lagrangian};
-/// use nalgebra::Vector3;
-///
-/// #[lagrangian(
-///     group(F_1 = SO3, F_2 = SO3),
-///     advected(Q = F_2.seen_from(F_1)),
-///     l_d = ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s))) / h,
-/// )]
-/// struct Linked {
-///     rho: Vector3<f64>,
-///     s: Vector3<f64>,
-/// }
-/// let joint = Along::<3>::of([Linked { rho: Vector3::z(), s: Vector3::z() }]);
-/// let _ = liestep::mechanics::Effect::validate(&joint);
-/// ```
+/// A term that couples velocities isn't one for two places, and doesn't compile there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<P, E, const M: usize> {
-    /// The places.
-    pub places: P,
-    /// The terms, one for all or one for each.
-    pub terms: [E; M],
+    places: P,
+    /// One for all or one for each, as [`of`](Each::of) has checked.
+    terms: [E; M],
 }
 
 macro_rules! of {
@@ -181,10 +161,23 @@ where
     type Group = P::Group;
     type Advected = P::Advected;
 
+    /// A wrong parameter of a term of several is that of its body, or of the first of its two.
     fn validate(&self) -> Result<(), SetupError> {
         // A term that isn't possible here is refused when the crate is built.
         let _ = <Self as Effect>::PARTS;
-        self.terms.iter().try_for_each(E::validate)
+        let mut checked = Ok(());
+        P::visit(|at| {
+            if checked.is_ok() && (at.place < M) {
+                checked = self.terms[at.place].validate().map_err(|error| match error {
+                    // What is the same at all places is of no body.
+                    SetupError::Parameter { field, cause } if M > 1 || (P::AT_ONE_BODY && P::PLACES == 1) => {
+                        SetupError::BodyParameter { body: at.bodies[0], field, cause }
+                    }
+                    error => error,
+                });
+            }
+        });
+        checked
     }
 
     fn advected(&self) -> P::Advected {

@@ -2,26 +2,23 @@
 
 use core::array::from_fn;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
 use super::elimination::{Updated, Work, momenta, momenta_of_velocities, newton, outwards, simplified, velocities};
-use super::{Chain, Link};
+use super::{Chain, Link, ROUNDED};
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup, SO3};
 use crate::motion::{Integrator, Motion, State, StepReport, is_due};
 use crate::numbers::Bodies;
-use crate::solving::{has_sufficed, may_suffice};
+use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, has_sufficed, may_suffice};
 
-/// Newton's iteration from the guess takes two or three; more means that it goes nowhere.
-const MOST_ITERATIONS: u32 = 20;
-/// With shortened updates more are needed.
-const MOST_SHORTENED: u32 = 60;
-/// The longest update of a link in half coordinates then, half a radian.
-const LONGEST: f64 = 0.25;
+/// The square of half the Cayley coordinates up to which a guess is continued from three steps, 67°: they grow without
+/// bound towards 180°, and a wanted solution is below 90°, where the square is one.
+const CONTINUED: f64 = 4.0 / 9.0;
 
 /// The state of a chain: attitudes, body momenta, and the last increments.
 type ChainState<const N: usize> = State<[SO3; N], (), ChainMemory<N>>;
@@ -133,16 +130,10 @@ impl<const N: usize> ChainStepper<N> {
         attitudes: [SO3; N],
         momentum: Bodies<Vector3<f64>, N>,
     ) -> Result<ChainState<N>, SetupError> {
-        // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
-        let worst = attitudes.iter().map(LieGroup::defect).fold(
-            0.0,
-            |worst: f64, defect| {
-                if defect <= worst { worst } else { defect }
-            },
-        );
-        let is_allowed = worst <= f64::EPSILON * 1e4;
-        if !is_allowed {
-            return Err(SetupError::NotInGroup { defect: worst });
+        // NaN isn't allowed either, whichever link has it.
+        let is_allowed = |defect: &f64| *defect <= ROUNDED;
+        if let Some(defect) = attitudes.iter().map(LieGroup::defect).find(|defect| !is_allowed(defect)) {
+            return Err(SetupError::NotInGroup { defect });
         }
         if !momentum.0.iter().flatten().all(|entry| entry.is_finite()) {
             return Err(SetupError::NonFinite { what: "momentum" });
@@ -156,6 +147,16 @@ impl<const N: usize> ChainStepper<N> {
     ///
     /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out.
     pub fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
+        self.step_by(state, |work, kept| self.solve(work, kept))
+    }
+
+    /// One step with the increments that something solves for; returns its iterations.
+    #[inline(always)]
+    pub(super) fn step_by(
+        &self,
+        state: &mut ChainState<N>,
+        solve: impl FnOnce(&mut [Work; N], &ChainMemory<N>) -> Result<u32, StepError>,
+    ) -> Result<StepReport, StepError> {
         let mut work = Self::work(&state.motion.attitude);
         let (links, h) = (&self.chain.links[..], self.h);
         for (((work, attitude), momentum), weight) in
@@ -165,7 +166,7 @@ impl<const N: usize> ChainStepper<N> {
             // (h/2) w × g s: the kick before the step.
             work.target = (momentum + w.cross(weight) * (0.5 * h)) * h;
         }
-        let iterations = if h == 0.0 { 0 } else { self.solve(&mut work, &state.kept)? };
+        let iterations = if h == 0.0 { 0 } else { solve(&mut work, &state.kept)? };
         outwards(links, &mut work);
         momenta(links, &mut work);
         let mut next = *state;
@@ -189,7 +190,8 @@ impl<const N: usize> ChainStepper<N> {
         next.kept.follow(&work);
         next.motion.steps += 1;
         if is_due(next.motion.steps) {
-            next.motion.attitude = next.motion.attitude.map(|attitude| orthogonal(&attitude));
+            // What links feel of each other cancels as far as their attitudes are rotations.
+            next.motion.attitude = next.motion.attitude.map(|attitude| attitude.straightened());
         }
         *state = next;
         Ok(StepReport::of(iterations))
@@ -262,50 +264,56 @@ impl<const N: usize> ChainStepper<N> {
     /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
     fn solve(&self, work: &mut [Work; N], kept: &ChainMemory<N>) -> Result<u32, StepError> {
         let links = &self.chain.links[..];
+        // The iterations of abandoned attempts count.
+        let mut spent = 0;
+        let mut attempt = |work: &mut [Work], most, longest| {
+            let (iterations, is_solved) = attempt(links, work, most, longest);
+            spent += iterations;
+            if is_solved { Ok(spent) } else { Err(spent) }
+        };
         if kept.known > 0 {
             kept.guess(work);
-            if let Some(iterations) = attempt(links, work, MOST_ITERATIONS, f64::INFINITY) {
+            if let Ok(iterations) = attempt(work, MAX_ITERATIONS, f64::INFINITY) {
                 return Ok(iterations);
             }
         }
-        let abandoned = if kept.known > 0 { MOST_ITERATIONS } else { 0 };
         let mut slow = *work;
         velocities(links, &mut slow);
         for (work, slow) in work.iter_mut().zip(&slow) {
             // `target` is h times the momentum.
             work.half = slow.z * 0.5;
         }
-        if let Some(iterations) = attempt(links, work, MOST_ITERATIONS, f64::INFINITY) {
-            return Ok(abandoned + iterations);
+        if let Ok(iterations) = attempt(work, MAX_ITERATIONS, f64::INFINITY) {
+            return Ok(iterations);
         }
         for work in work.iter_mut() {
             work.half = Vector3::zeros();
         }
-        if let Some(iterations) = attempt(links, work, MOST_SHORTENED, LONGEST) {
-            return Ok(abandoned + MOST_ITERATIONS + iterations);
-        }
-        Err(reason(work, &slow, abandoned + MOST_ITERATIONS + MOST_SHORTENED))
+        attempt(work, MAX_DAMPED_ITERATIONS, LONGEST_DAMPED).map_err(|iterations| reason(work, &slow, iterations))
     }
 }
 
-/// Newton's iteration: how many were made, if it has settled near the identity with all determinants positive.
-fn attempt(links: &[Link], work: &mut [Work], most: u32, longest: f64) -> Option<u32> {
-    for iteration in 1..=most {
+/// Newton's iteration: how many were made, and whether it has settled near the identity with all determinants positive.
+fn attempt(links: &[Link], work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
+    let mut made = 0;
+    for _ in 0..most {
+        made += 1;
         let Updated { update, size, largest } = newton(links, work, longest);
         if !size.is_finite() {
-            return None;
+            return (made, false);
         }
-        if update <= size * (f64::EPSILON / 64.0) {
-            return work.iter().all(Work::is_wanted).then_some(iteration);
+        if update <= size * (f64::EPSILON * SETTLED) {
+            return (made, work.iter().all(Work::is_wanted));
         }
         if largest <= longest * longest && may_suffice(update, size) {
             let second = simplified(links, work);
+            made += 1;
             if has_sufficed(update, second.update, second.size) {
-                return work.iter().all(Work::is_wanted).then_some(iteration + 1);
+                return (made, work.iter().all(Work::is_wanted));
             }
         }
     }
-    None
+    (made, false)
 }
 
 /// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it has
@@ -325,13 +333,6 @@ fn reason(work: &[Work], slow: &[Work], iterations: u32) -> StepError {
     StepError::NotConverged { iterations, residual: (update / size).sqrt() }
 }
 
-/// The rotation next to one that roundings have moved a little, `R (3 I − RᵀR)/2`. What links feel of each other cancels
-/// as far as their attitudes are rotations.
-fn orthogonal(attitude: &SO3) -> SO3 {
-    let r = attitude.as_matrix();
-    SO3::from_matrix_unchecked(r + r * (Matrix3::identity() - r.tr_mul(r)) * 0.5)
-}
-
 impl<const N: usize> ChainMemory<N> {
     /// The parabola through the last three increments, or as many as there are.
     fn guess(&self, work: &mut [Work; N]) {
@@ -343,7 +344,7 @@ impl<const N: usize> ChainMemory<N> {
                 _ => a + (a - b) + ((a - b) - (b - c)),
             };
             // Far from the identity coordinates change too fast to be continued.
-            work.half = if guess.norm_squared() < 4.0 / 9.0 { guess } else { a };
+            work.half = if guess.norm_squared() < CONTINUED { guess } else { a };
         }
     }
 
