@@ -1,5 +1,7 @@
 //! What needs no solved equations: conservation laws of a step with whatever increments.
 
+use std::println;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::elimination::{newton, velocities};
