@@ -190,15 +190,6 @@ impl<T: RealField + Copy> TryFrom<Matrix3<T>> for SO3<T> {
     }
 }
 
-impl<T: Real> SO3<T> {
-    /// The rotation next to one that roundings have moved a little, by one Newton step of the polar decomposition,
-    /// `½ R (3 I − RᵀR)`, which squares the defect.
-    pub(crate) fn straightened(&self) -> Self {
-        let gram = self.0.transpose() * self.0;
-        Self(self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5))
-    }
-}
-
 impl<T: Real> LieGroup for SO3<T> {
     type Scalar = T;
     type Vector = Vector3<T>;
@@ -329,11 +320,13 @@ impl<T: Real> LieGroup for SO3<T> {
         (square(on) + square(off) * real(2.0)).simd_sqrt()
     }
 
-    /// From 2¹¹ ε on, which a random walk reaches in some ten million steps.
+    /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
+    /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
     fn restored(&self) -> Option<(Self, Mask<T>)> {
         let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
         far.any().then(|| {
-            let nearest = self.straightened().0;
+            let gram = self.0.transpose() * self.0;
+            let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
             (Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry))), far)
         })
     }

@@ -72,7 +72,26 @@ use crate::numbers::{Blocks, Coordinates as _, real};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// A term that couples velocities isn't one for two places, and doesn't compile there.
+/// A term that couples velocities isn't one for two places:
+///
+/// ```compile_fail,E0080
+/// use liestep::groups::Relative;
+/// use liestep::mechanics::Along;
+/// use liestep::{Stepper, lagrangian};
+/// use nalgebra::Vector3;
+///
+/// #[lagrangian(
+///     group(F_1 = SO3, F_2 = SO3),
+///     advected(Q = F_2.seen_from(F_1)),
+///     l_d = ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s))) / h,
+/// )]
+/// struct Linked {
+///     rho: Vector3<f64>,
+///     s: Vector3<f64>,
+/// }
+/// let joint = Along::<3>::of([Linked { rho: Vector3::z(), s: Vector3::z() }]);
+/// let _ = liestep::mechanics::Effect::validate(&joint);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<P, E, const M: usize> {
     places: P,

@@ -2,7 +2,7 @@
 
 use core::array::from_fn;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
@@ -190,8 +190,7 @@ impl<const N: usize> ChainStepper<N> {
         next.kept.follow(&work);
         next.motion.steps += 1;
         if is_due(next.motion.steps) {
-            // What links feel of each other cancels as far as their attitudes are rotations.
-            next.motion.attitude = next.motion.attitude.map(|attitude| attitude.straightened());
+            next.motion.attitude = next.motion.attitude.map(|attitude| orthogonal(&attitude));
         }
         *state = next;
         Ok(StepReport::of(iterations))
@@ -331,6 +330,13 @@ fn reason(work: &[Work], slow: &[Work], iterations: u32) -> StepError {
     let sum = |of: fn(&Work) -> &Vector3<f64>| work.iter().map(|work| of(work).norm_squared()).sum::<f64>();
     let (update, size) = (sum(|work| &work.z), sum(|work| &work.half));
     StepError::NotConverged { iterations, residual: (update / size).sqrt() }
+}
+
+/// The rotation next to one that roundings have moved a little, `R (3 I − RᵀR)/2`. What links feel of each other cancels
+/// as far as their attitudes are rotations.
+fn orthogonal(attitude: &SO3) -> SO3 {
+    let r = attitude.as_matrix();
+    SO3::from_matrix_unchecked(r + r * (Matrix3::identity() - r.tr_mul(r)) * 0.5)
 }
 
 impl<const N: usize> ChainMemory<N> {
