@@ -13,8 +13,6 @@
 
 mod elimination;
 mod stepper;
-#[cfg(test)]
-mod tests;
 
 use nalgebra::{Matrix3, Vector3};
 

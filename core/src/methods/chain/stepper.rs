@@ -147,16 +147,6 @@ impl<const N: usize> ChainStepper<N> {
     ///
     /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out.
     pub fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
-        self.step_by(state, |work, kept| self.solve(work, kept))
-    }
-
-    /// One step with the increments that something solves for; returns its iterations.
-    #[inline(always)]
-    pub(super) fn step_by(
-        &self,
-        state: &mut ChainState<N>,
-        solve: impl FnOnce(&mut [Work; N], &ChainMemory<N>) -> Result<u32, StepError>,
-    ) -> Result<StepReport, StepError> {
         let mut work = Self::work(&state.motion.attitude);
         let (links, h) = (&self.chain.links[..], self.h);
         for (((work, attitude), momentum), weight) in
@@ -166,7 +156,7 @@ impl<const N: usize> ChainStepper<N> {
             // (h/2) w × g s: the kick before the step.
             work.target = (momentum + w.cross(weight) * (0.5 * h)) * h;
         }
-        let iterations = if h == 0.0 { 0 } else { solve(&mut work, &state.kept)? };
+        let iterations = if h == 0.0 { 0 } else { self.solve(&mut work, &state.kept)? };
         outwards(links, &mut work);
         momenta(links, &mut work);
         let mut next = *state;
