@@ -38,7 +38,7 @@ pub struct ChainMemory<const N: usize> {
 /// # Contract
 ///
 /// - Joints don't open: attitudes are all there is.
-/// - The momentum about the vertical is kept to rounding, however well the equations are solved.
+/// - The momentum about the vertical is kept to rounding.
 /// - A step satisfies its momentum equations to rounding, or is an error that names a link and leaves the state as it was.
 /// - Nothing is allocated. A chain of `N` links takes about `2 N` kB of stack.
 ///
