@@ -193,7 +193,8 @@ pub enum StepError {
     Singular,
     /// One of several bodies that move each other has no increment that continues the identity at this step.
     UnsolvedBody {
-        /// The body, from zero: the first that turns too far, or whose part of the Jacobian has the wrong sign.
+        /// The body, from zero: the first that turns too far where the iteration has ended, or whose part of the Jacobian
+        /// has the wrong sign there. Where it has ended in no numbers, the one that would turn farthest.
         body: usize,
         /// How far it would turn at the velocity that it has after the first kick, rad.
         turn: f64,

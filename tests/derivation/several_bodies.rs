@@ -17,12 +17,19 @@ use num_dual::{Dual64, HyperDual64};
         Q = F_2.seen_from(F_1),
         R = F_1.seen_from(space),
     ),
-    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
-        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
-        + ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s))) / h
-        - 0.5 * h * k * (w.dot(&(rho + F_1 * rho)) + v.dot(&(A * (F_2 * s))))
-        + h * k * ((A * Q).trace() + (F_1.transpose() * Q * F_2 * A).trace() + (R * F_1 * rho).dot(&(A * s)))
-        - h * (Q * v).dot(&w) * (F_1 * s).dot(&(Q * (F_2 * rho))),
+    l_d = {
+        // Called with the inverse of a field, and with another matrix.
+        let U = |Q: Matrix3<T>, y: Vector3<T>| { let r = Q * y; (r + y).dot(&r) * y.z };
+        let turns = (vee(F_1) - vee(F_2)).norm_squared() / h
+            + h * vee(Q - Q.transpose()).dot(&s) + h * ((Q - Q.transpose()) * A * (Q * Q)).trace();
+        ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+            + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+            + ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s))) / h
+            - 0.5 * h * k * (w.dot(&(rho + F_1 * rho)) + v.dot(&(A * (F_2 * s))))
+            + h * k * ((A * Q).trace() + (F_1.transpose() * Q * F_2 * A).trace() + (R * F_1 * rho).dot(&(A * s)))
+            - h * (Q * v).dot(&w) * (F_1 * s).dot(&(Q * (F_2 * rho)))
+            - h * (U(inverse(J_1), w) + U(A, v)) + turns
+    },
 )]
 struct Pair<T: Real> {
     J_1: NonstandardInertia<T>,

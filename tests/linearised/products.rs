@@ -1,9 +1,10 @@
-//! A product of groups, with a relative configuration, against differences of the stepper.
+//! Products of groups, with a relative configuration and with translations, against differences of the stepper.
 
-use liestep::groups::{CayleyRetraction, LieGroup as _, Retraction as _};
+use liestep::groups::{CayleyRetraction, LieGroup, R1, R3, Retraction};
 use liestep::laws::samples::Random;
+use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::{SO3, Stepper, lagrangian};
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::dual::{Columns, STEP, STEPS, assert_columns};
 use super::scenes::{J_D, Numbers, SEEDS};
@@ -47,33 +48,101 @@ fn links(varied: Option<(usize, f64)>) -> Links {
     }
 }
 
+/// A body with a wheel that hangs at a place that is translated: matrices of a turn, a line and space together.
+#[lagrangian(
+    group(F = SO3, t = R1, d = R3),
+    gradients,
+    advected(
+        w = up.seen_from(F),
+        R = F.seen_from(space),
+        s = t.seen_from(space),
+        x = d.seen_from(space),
+    ),
+    l_d = {
+        let U = |R: Matrix3<f64>, x: Vector3<f64>, s: f64| {
+            0.5 * k * (x + R * rho).norm_squared() + g * s.cos() * x.z
+        };
+        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+            + m * d.dot(&(R * ((F - I) * rho))) / h + J_w * (t + rho.dot(&vee(F))).powi(2) / (2.0 * h)
+            - 0.5 * h * (U(R, x, s) + U(R * F, x + d, s + t) + g * w.dot(&(rho + F * rho)))
+    },
+)]
+#[derive(Clone, Debug)]
+struct Carried {
+    J: Matrix3<f64>,
+    m: f64,
+    J_w: f64,
+    rho: Vector3<f64>,
+    g: f64,
+    k: f64,
+    up: Vector3<f64>,
+}
+
+fn carried(varied: Option<(usize, f64)>) -> Carried {
+    let mut n = Numbers::new(varied);
+    Carried {
+        J: n.symmetric(&(J_D * 2.0)),
+        m: n.number(0.8),
+        J_w: n.number(0.3),
+        rho: n.vector(0.2, -0.1, 0.5),
+        g: n.number(2.81),
+        k: n.number(1.7),
+        up: n.vector(0.0, 0.6, 0.8),
+    }
+}
+
 /// By differences of the fourth order: off by some `10⁻¹²` times the fifth derivative, and by some `10⁻¹²` of rounding, of
 /// which a small column has a large part.
-fn by_differences(parameters: usize, start: (Pair, Vector6<f64>)) -> Columns<6> {
+fn by_differences<L, const D: usize>(
+    scene: impl Fn(Option<(usize, f64)>) -> L,
+    parameters: usize,
+    start: (L::Group, SVector<f64, D>),
+) -> Columns<D>
+where
+    L: DiscreteLagrangian<
+            Scalar = f64,
+            Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>,
+            Retraction = CayleyRetraction,
+        > + Regular,
+    CayleyRetraction: Retraction<L::Group>,
+{
     const SMALL: f64 = 1e-3;
-    let end = |varied: Option<(usize, f64)>, turn: Vector6<f64>, push: Vector6<f64>| {
-        let stepper = Stepper::new(links(varied), STEP).expect("a stepper");
+    let end = |varied: Option<(usize, f64)>, turn: SVector<f64, D>, push: SVector<f64, D>| {
+        let stepper = Stepper::new(scene(varied), STEP).expect("a stepper");
         let attitude = start.0.compose(&CayleyRetraction::retract(&turn));
         let mut state = stepper.start_with_momentum(attitude, start.1 + push).expect("a start");
         stepper.run(&mut state, STEPS).expect("steps");
         (state.attitude(), state.momentum())
     };
-    let zero = Vector6::zeros();
+    let zero = SVector::zeros();
     let (middle, _) = end(None, zero, zero);
-    let column = |outcome: &dyn Fn(f64) -> (Pair, Vector6<f64>)| {
+    let column = |outcome: &dyn Fn(f64) -> (L::Group, SVector<f64, D>)| {
         let [a, b, c, d] = [2.0, 1.0, -1.0, -2.0].map(|step| {
             let (attitude, momentum) = outcome(step * SMALL);
             // Odd in a turn, and the same to the first order.
-            (Pair::vee(&middle.inverse().compose(&attitude).matrix()), momentum)
+            (L::Group::vee(&middle.inverse().compose(&attitude).matrix()), momentum)
         });
         let slope = |a, b, c, d| ((b - c) * 8.0 - (a - d)) / (12.0 * SMALL);
         (slope(a.0, b.0, c.0, d.0), slope(a.1, b.1, c.1, d.1))
     };
-    let axis = |k: usize| Vector6::<f64>::ith(k, 1.0);
-    let of_attitude = (0..6).map(|k| column(&|by| end(None, axis(k) * by, zero)));
-    let of_momentum = (0..6).map(|k| column(&|by| end(None, zero, axis(k) * by)));
+    let axis = |k: usize| SVector::<f64, D>::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
+    let of_attitude = (0..D).map(|k| column(&|by| end(None, axis(k) * by, zero)));
+    let of_momentum = (0..D).map(|k| column(&|by| end(None, zero, axis(k) * by)));
     let of_parameters = (0..parameters).map(|number| column(&|by| end(Some((number, by)), zero, zero)));
     of_attitude.chain(of_momentum).chain(of_parameters).collect()
+}
+
+#[test]
+fn a_body_with_a_wheel_that_is_translated() {
+    let stepper = Stepper::new(carried(None), STEP).expect("a stepper");
+    let parameters = stepper.linearised().expect("derivatives").parameters().len();
+    for seed in SEEDS {
+        let mut random = Random::new(seed);
+        let attitude: (SO3, R1, R3) = CayleyRetraction::retract(&random.sample());
+        let start = (attitude, random.sample());
+        let expected = by_differences(carried, parameters, start);
+        assert_columns(&stepper, start, &expected, (1e-10, 1e-7), seed);
+    }
 }
 
 #[test]
@@ -84,7 +153,7 @@ fn two_links() {
         let mut random = Random::new(seed);
         let attitude: Pair = CayleyRetraction::retract(&random.sample());
         let start = (attitude, random.sample());
-        let expected = by_differences(parameters, start);
+        let expected = by_differences(links, parameters, start);
         assert_columns(&stepper, start, &expected, (1e-10, 1e-7), seed);
     }
 }

@@ -5,16 +5,15 @@
 
 use core::marker::PhantomData;
 
-use super::iteration::{Lanes, MAX_ITERATIONS, Root, SquareOf, System, is_positive};
+use super::iteration::{
+    LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SquareOf, System, is_positive,
+};
 use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
 use crate::groups::{LieGroup, Retraction};
 use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, pattern};
 use crate::numbers::{Coordinates as _, Mask, Pattern, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
-
-/// The damped retry shortens its steps, and so needs more of them than [`MAX_ITERATIONS`].
-const MAX_DAMPED_ITERATIONS: u32 = 60;
 
 /// What else is asked of a momentum equation where a solution is doubtful.
 trait Equation<G: LieGroup>: System<G> {
@@ -115,12 +114,12 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
         (lanes, MAX_ITERATIONS)
     }
 
-    /// As [`iterate`](Self::iterate), with no update longer than a quarter, half a radian.
+    /// As [`iterate`](Self::iterate), with no update longer than [`LONGEST_DAMPED`].
     fn iterate_damped(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
         for iteration in 1..=MAX_DAMPED_ITERATIONS {
             let (update, det) = self.update(&lanes.half);
             let length = update.dot(&update).simd_sqrt();
-            let longest = real::<G::Scalar>(0.25);
+            let longest = real::<G::Scalar>(LONGEST_DAMPED);
             let factor = (longest / length).select(length.simd_gt(longest), real(1.0));
             lanes.advance(&update, det, &(update * factor));
             if lanes.settled.all() {

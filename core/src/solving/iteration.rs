@@ -6,7 +6,16 @@ use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
 /// Quadratic convergence needs at most nine up to 0.999 of the fold; more means that there is no solution.
-pub(super) const MAX_ITERATIONS: u32 = 20;
+pub(crate) const MAX_ITERATIONS: u32 = 20;
+/// Newton's iteration with shortened updates needs more of them.
+pub(crate) const MAX_DAMPED_ITERATIONS: u32 = 60;
+/// The longest update then, of half the coordinates: half a radian.
+pub(crate) const LONGEST_DAMPED: f64 = 0.25;
+/// The square of the last update relative to the unknown's, in roundings.
+///
+/// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
+/// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
+pub(crate) const SETTLED: f64 = 1.0 / 64.0;
 
 /// Of the group's vectors, the square matrices.
 pub(super) type SquareOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordinates<<G as LieGroup>::Scalar>>::Square;
@@ -118,14 +127,11 @@ impl<G: LieGroup> Lanes<G> {
     }
 }
 
-/// Whether the next update would be below rounding.
-///
-/// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
-/// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
+/// Whether the next update would be below rounding; see [`SETTLED`].
 #[inline(always)]
 pub(super) fn settled<G: LieGroup>(update: &G::Vector, half: &G::Vector) -> Mask<G::Scalar> {
     use nalgebra::SimdRealField as _;
-    let tolerance = G::Scalar::simd_default_epsilon() * real(1.0 / 64.0);
+    let tolerance = G::Scalar::simd_default_epsilon() * real(SETTLED);
     update.dot(update).simd_le(half.dot(half) * tolerance)
 }
 

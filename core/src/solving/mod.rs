@@ -18,7 +18,7 @@ mod solvability;
 pub(crate) use branch::trusted_radius;
 pub(crate) use guess::{Continued, DIFFERENCES, History};
 pub use guess::{Guess, Warm};
-pub(crate) use iteration::{Kick, Root};
+pub(crate) use iteration::{Kick, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SETTLED};
 pub(crate) use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Problem, newton_system, step_terms};
 pub(crate) use reused_jacobian::{has_sufficed, may_suffice, safe};

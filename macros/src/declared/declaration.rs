@@ -43,11 +43,12 @@ impl Role {
         }
     }
 
-    /// The names that mean something in each expression, and can't be those of parameters.
+    /// The names that mean something in each expression, and can't be those of parameters, of `let`s or of what a function is called
+    /// with: what is compiled finds the one that was declared, whatever else has its name.
     pub(crate) fn reserved(self) -> &'static [&'static str] {
         match self {
-            Self::Lagrangian => &["F", "I", "h", "hat", "vee", "log", "exp"],
-            Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "eta", "eta_next"],
+            Self::Lagrangian => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
+            Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
         }
     }
 

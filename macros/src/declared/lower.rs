@@ -8,8 +8,9 @@ use syn::ext::IdentExt as _;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{
-    Carried, Declared, DeclaredContinuous, Displacements, Let, hat, linear_forms, matrix_symbol, unit,
+    Carried, Declared, DeclaredContinuous, Displacements, Let, Seen, hat, linear_forms, matrix_symbol, unit,
 };
+use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
@@ -160,8 +161,7 @@ fn parameters(
         let shape = ambient(kind.shape());
         let structure = match kind {
             FieldKind::Point(_) => Structure::Point,
-            // Of factors that aren't added those that turn.
-            FieldKind::Configuration(_) => Structure::Rotation,
+            FieldKind::Configuration(_) if is_orthogonal(&declaration.group, w.seen) => Structure::Rotation,
             _ => Structure::General,
         };
         let structure = weaker(Name::Advected(index), structure);
@@ -170,6 +170,16 @@ fn parameters(
         advected.push(Carried { symbol, variance: kind.variance(), seen: w.seen });
     }
     advected
+}
+
+/// Whether the configurations of these factors are orthogonal matrices.
+fn is_orthogonal(group: &Group, seen: Seen) -> bool {
+    let turns = |factor: usize| group.factor(factor).orthogonal && !group.factor(factor).is_added;
+    match seen {
+        Seen::Relative { of, from } => turns(of) && turns(from),
+        Seen::Configuration(of) => turns(of),
+        _ => false,
+    }
 }
 
 /// Whether a `let` names anything but a name.

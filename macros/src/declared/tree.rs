@@ -49,6 +49,8 @@ pub(crate) struct Tree {
     /// How deep the operations are nested, through `let`s too.
     pub(crate) depth: usize,
     pub(crate) frames: Frames,
+    /// Whether nothing but increments and relative configurations is in it, and numbers.
+    pub(crate) is_of_turns: bool,
 }
 
 /// Among several bodies, from which one a vector is seen, by the place of its factor: first what rows belong to, then
@@ -59,12 +61,14 @@ impl Tree {
     pub(crate) fn new(span: Span, shape: Shape, kind: Kind) -> Rc<Self> {
         let depth = kind.operands().into_iter().flatten().map(|operand| operand.depth).max().unwrap_or(0) + 1;
         let frames = if shape == Shape::Scalar { [None; 2] } else { kind.frames() };
-        Rc::new(Self { span, end: span, shape, kind, depth, frames })
+        let is_of_turns = shape == Shape::Scalar || kind.operands().into_iter().flatten().all(|part| part.is_of_turns);
+        Rc::new(Self { span, end: span, shape, kind, depth, frames, is_of_turns })
     }
 
     /// What a name stands for, seen from bodies.
-    pub(crate) fn seen(span: Span, shape: Shape, name: Name, frames: Frames) -> Rc<Self> {
-        Rc::new(Self { span, end: span, shape, kind: Kind::Name(name), depth: 1, frames })
+    pub(crate) fn seen(span: Span, shape: Shape, name: Name, (frames, is_turn): (Frames, bool)) -> Rc<Self> {
+        let is_of_turns = is_turn || shape == Shape::Scalar;
+        Rc::new(Self { span, end: span, shape, kind: Kind::Name(name), depth: 1, frames, is_of_turns })
     }
 
     /// A scalar in the place of another one.
@@ -142,11 +146,18 @@ impl Kind {
             Self::Negate(a) | Self::Bound(_, a) | Self::Divide(a, _) => a.frames,
             Self::Transpose(a) | Self::Inverse(a) => [a.frames[1], a.frames[0]],
             Self::Add(a, b) | Self::Subtract(a, b) | Self::Cross(a, b) | Self::ComponentMultiply(a, b) => {
-                [0, 1].map(|side| a.frames[side].or(b.frames[side]))
+                [0, 1].map(|side| match (a.frames[side], b.frames[side]) {
+                    // What compares two bodies in their own axes is seen from neither.
+                    (Some(first), Some(second)) if first != second => None,
+                    (first, second) => first.or(second),
+                })
             }
             Self::Multiply(a, b) if a.shape == Shape::Scalar => b.frames,
             Self::Multiply(a, b) if b.shape == Shape::Scalar => a.frames,
-            Self::Multiply(a, b) => [a.frames[0], b.frames[1]],
+            Self::Multiply(a, b) => match (a.frames[1], b.frames[0]) {
+                (Some(from), Some(of)) if from != of => [None; 2],
+                _ => [a.frames[0], b.frames[1]],
+            },
             // Of a matrix from one body to another it is seen from neither.
             Self::Vee(a) => match a.frames {
                 [Some(row), Some(column)] if row != column => [None; 2],

@@ -4,11 +4,12 @@
 #![allow(non_snake_case)]
 
 use declarations::motions::{matrix, number, read, vector};
-use liestep::effects::{Gravity, PrincipalBody, Spring};
+use liestep::effects::{CayleyBody, Gravity, PrincipalBody, Spring};
 use liestep::groups::{Advected as _, CayleyRetraction, Retraction};
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{
-    Along, Between, DiagonalNonstandardInertia, DiscreteLagrangian, Each, On, Pairs, Regular, Term as _,
+    Along, Between, DiagonalNonstandardInertia, DiscreteLagrangian, Each, Effect as _, Inertia, On, Pairs, Regular,
+    Term as _,
 };
 use liestep::methods::CompositionScheme;
 use liestep::numbers::Bodies;
@@ -146,6 +147,30 @@ fn pairs_are_what_is_between_each_two() {
     assert!(apart(&first.attitude(), &free.attitude()) > 1e-2, "the bodies don't feel each other");
 }
 
+/// Terms whose momentum equations are multiplied by different powers of `1 + |y|²` are brought to one power body by body,
+/// each with its own `y`.
+#[test]
+fn unlike_denominators() {
+    const { assert!(CayleyBody::<f64>::DENOMINATORS != PrincipalBody::<f64>::DENOMINATORS) };
+    let bodies = [principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0])];
+    let more = [[0.4, 0.5, 0.6], [1.0, 0.7, 0.9]];
+    let more = more.map(|J| CayleyBody { J: Inertia::from_principal_moments(Vector3::from(J)).unwrap() });
+    let together = Stepper::new(Each::<2>::of(bodies) + Each::<2>::of(more), 0.05).unwrap();
+    let attitudes = [0.1, 0.2].map(|angle| SO3::from_euler_angles(angle, 0.7, -angle));
+    let velocities = [Vector3::new(1.0, 2.0, 3.0), Vector3::new(-4.0, 0.2, 1.3)];
+    let mut state = together.start(attitudes, Bodies(velocities)).unwrap();
+    together.run(&mut state, 100).unwrap();
+    for k in 0..2 {
+        let alone = Stepper::new(bodies[k] + more[k], 0.05).unwrap();
+        let mut one = alone.start(attitudes[k], velocities[k]).unwrap();
+        alone.run(&mut one, 100).unwrap();
+        let errors =
+            [apart(&[one.attitude()], &state.attitude()[k..=k]), (state.momentum().0[k] - one.momentum()).norm()];
+        println!("{k}: {errors:?}");
+        assert!(errors.iter().all(|&error| error < 1e-12), "{k}: {errors:?}");
+    }
+}
+
 /// Momentum maps, diamond and momentum equation are derivatives of the sum of what was declared.
 #[test]
 fn what_is_put_at_places_is_derived_there() {
@@ -225,6 +250,12 @@ fn errors() {
     assert!(matches!(Stepper::new(scene, f64::NAN), Err(SetupError::InvalidStep { .. })));
     let broken = bodies + Along::<2>::of([Alike { kappa: f64::NAN }]);
     assert!(matches!(Stepper::new(broken, 0.01), Err(SetupError::Parameter { field: "kappa", .. })));
+    // A parameter of one of several is that of its body.
+    let weight = |m: f64| Gravity { m, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+    let of_second = |result: Result<(), SetupError>| matches!(result, Err(SetupError::BodyParameter { body: 1, .. }));
+    assert!(of_second(Each::<2>::of([weight(1.0), weight(f64::NAN)]).validate()));
+    assert!(of_second(On::<1, 2>::of([weight(f64::NAN)]).validate()));
+    assert!(matches!(Each::<2>::of([weight(f64::NAN)]).validate(), Err(SetupError::Parameter { .. })));
     let stepper = Stepper::new(scene, 0.1).unwrap();
     let fast = Bodies([Vector3::zeros(), Vector3::new(0.0, 0.0, 100.0)]);
     let mut state = stepper.start([SO3::identity(); 2], fast).unwrap();

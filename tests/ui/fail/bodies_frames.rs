@@ -71,4 +71,34 @@ struct Bound {
     up: Vector3<f64>,
 }
 
+// A field has the name that is offered.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(w = up.seen_from(F_1), v = up.seen_from(F_2)),
+    l_d = ((F_1 - I) * Q * (F_1 - I).transpose()).trace() / (2.0 * h)
+        + ((F_2 - I) * Q_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+        - h * k * w.dot(&v),
+)]
+struct Taken {
+    Q: NonstandardInertia,
+    Q_2: NonstandardInertia,
+    k: f64,
+    up: Vector3<f64>,
+}
+
+// A vector that is seen isn't a turn.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(w = up.seen_from(F_1), Q = F_2.seen_from(F_1)),
+    l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+        + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+        - h * k * (vee(F_2).dot(&w) + Q.trace()),
+)]
+struct Turn {
+    J_1: NonstandardInertia,
+    J_2: NonstandardInertia,
+    k: f64,
+    up: Vector3<f64>,
+}
+
 fn main() {}

@@ -183,4 +183,68 @@ struct Twice {
     up: Vector3<f64>,
 }
 
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let U = |y: Vector3<f64>| -> f64 { y.z };
+        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w)
+    },
+)]
+struct Returned {
+    J: NonstandardInertia,
+    k: f64,
+    up: Vector3<f64>,
+}
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let U = |A: nalgebra::Matrix3<f64>| (inverse(A) * w).z;
+        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(F)
+    },
+)]
+struct Inverted {
+    J: NonstandardInertia,
+    k: f64,
+    up: Vector3<f64>,
+}
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let a = |x: f64| x + 1.0;
+        let b = |x: f64| a(x) * a(x);
+        let c = |x: f64| b(x) * b(x);
+        let d = |x: f64| c(x) * c(x);
+        let e = |x: f64| d(x) * d(x);
+        let f = |x: f64| e(x) * e(x);
+        let g = |x: f64| f(x) * f(x);
+        let p = |x: f64| g(x) * g(x);
+        let q = |x: f64| p(x) * p(x);
+        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * q(w.z)
+    },
+)]
+struct Many {
+    J: NonstandardInertia,
+    k: f64,
+    up: Vector3<f64>,
+}
+
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = {
+        let U = |x: f64, y: Vector3<f64>| x * y.z;
+        ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h) - h * k * U(w.z, w)
+    },
+)]
+struct Generic<T: liestep::numbers::Real> {
+    J: NonstandardInertia<T>,
+    k: T,
+    up: Vector3<T>,
+}
+
 fn main() {}

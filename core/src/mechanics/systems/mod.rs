@@ -94,10 +94,9 @@ use crate::numbers::{Blocks, Coordinates as _, real};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<P, E, const M: usize> {
-    /// The places.
-    pub places: P,
-    /// The terms, one for all or one for each.
-    pub terms: [E; M],
+    places: P,
+    /// One for all or one for each, as [`of`](Each::of) has checked.
+    terms: [E; M],
 }
 
 macro_rules! of {
@@ -181,10 +180,23 @@ where
     type Group = P::Group;
     type Advected = P::Advected;
 
+    /// A wrong parameter of a term of several is that of its body, or of the first of its two.
     fn validate(&self) -> Result<(), SetupError> {
         // A term that isn't possible here is refused when the crate is built.
         let _ = <Self as Effect>::PARTS;
-        self.terms.iter().try_for_each(E::validate)
+        let mut checked = Ok(());
+        P::visit(|at| {
+            if checked.is_ok() && (at.place < M) {
+                checked = self.terms[at.place].validate().map_err(|error| match error {
+                    // What is the same at all places is of no body.
+                    SetupError::Parameter { field, cause } if M > 1 || (P::AT_ONE_BODY && P::PLACES == 1) => {
+                        SetupError::BodyParameter { body: at.bodies[0], field, cause }
+                    }
+                    error => error,
+                });
+            }
+        });
+        checked
     }
 
     fn advected(&self) -> P::Advected {

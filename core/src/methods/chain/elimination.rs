@@ -210,8 +210,8 @@ fn solved(work: &mut [Work], longest: f64) -> Updated {
         work.z = (z - y.cross(&z) + y * y.dot(&z)) * 0.5;
         let square = work.z.norm_squared();
         update += square;
-        // What isn't a number isn't small.
-        largest = if square <= largest { largest } else { square };
+        // What isn't a number makes the size none either.
+        largest = largest.max(square);
     }
     let part = if largest > longest * longest { longest / largest.sqrt() } else { 1.0 };
     let mut size = 0.0;

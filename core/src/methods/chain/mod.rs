@@ -21,6 +21,9 @@ pub use stepper::{ChainMemory, ChainStepper};
 use crate::error::SetupError;
 use crate::mechanics::NonstandardInertia;
 
+/// How far from one what should be of length one may be: what a unit quaternion or a matrix printed to a dozen digits leaves.
+const ROUNDED: f64 = f64::EPSILON * 1e4;
+
 /// A link of a [`Chain`], in its own axes, with the joint it hangs on as the origin.
 // The letters of the field.
 #[allow(non_snake_case)]
@@ -61,6 +64,9 @@ impl<const N: usize> Chain<N> {
         }
         if !self.up.iter().all(|entry| entry.is_finite()) {
             return Err(SetupError::Parameter { field: "up", cause: "is not finite" });
+        }
+        if (self.up.norm_squared() - 1.0).abs() > ROUNDED {
+            return Err(SetupError::Parameter { field: "up", cause: "is not of length one" });
         }
         for (body, link) in self.links.iter().enumerate() {
             let refused = |field, cause| Err(SetupError::BodyParameter { body, field, cause });

@@ -9,19 +9,16 @@ use nalgebra::{Matrix3, Vector3};
 use nalgebra::ComplexField as _;
 
 use super::elimination::{Updated, Work, momenta, momenta_of_velocities, newton, outwards, simplified, velocities};
-use super::{Chain, Link};
+use super::{Chain, Link, ROUNDED};
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup, SO3};
 use crate::motion::{Integrator, Motion, State, StepReport, is_due};
 use crate::numbers::Bodies;
-use crate::solving::{has_sufficed, may_suffice};
+use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, has_sufficed, may_suffice};
 
-/// Newton's iteration from the guess takes two or three; more means that it goes nowhere.
-const MOST_ITERATIONS: u32 = 20;
-/// With shortened updates more are needed.
-const MOST_SHORTENED: u32 = 60;
-/// The longest update of a link in half coordinates then, half a radian.
-const LONGEST: f64 = 0.25;
+/// The square of half the Cayley coordinates up to which a guess is continued from three steps, 67°: they grow without
+/// bound towards 180°, and a wanted solution is below 90°, where the square is one.
+const CONTINUED: f64 = 4.0 / 9.0;
 
 /// The state of a chain: attitudes, body momenta, and the last increments.
 type ChainState<const N: usize> = State<[SO3; N], (), ChainMemory<N>>;
@@ -41,7 +38,7 @@ pub struct ChainMemory<const N: usize> {
 /// # Contract
 ///
 /// - Joints don't open: attitudes are all there is.
-/// - The momentum about the vertical is kept to rounding, however well the equations are solved.
+/// - The momentum about the vertical is kept to rounding.
 /// - A step satisfies its momentum equations to rounding, or is an error that names a link and leaves the state as it was.
 /// - Nothing is allocated. A chain of `N` links takes about `2 N` kB of stack.
 ///
@@ -133,16 +130,10 @@ impl<const N: usize> ChainStepper<N> {
         attitudes: [SO3; N],
         momentum: Bodies<Vector3<f64>, N>,
     ) -> Result<ChainState<N>, SetupError> {
-        // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
-        let worst = attitudes.iter().map(LieGroup::defect).fold(
-            0.0,
-            |worst: f64, defect| {
-                if defect <= worst { worst } else { defect }
-            },
-        );
-        let is_allowed = worst <= f64::EPSILON * 1e4;
-        if !is_allowed {
-            return Err(SetupError::NotInGroup { defect: worst });
+        // NaN isn't allowed either, whichever link has it.
+        let is_allowed = |defect: &f64| *defect <= ROUNDED;
+        if let Some(defect) = attitudes.iter().map(LieGroup::defect).find(|defect| !is_allowed(defect)) {
+            return Err(SetupError::NotInGroup { defect });
         }
         if !momentum.0.iter().flatten().all(|entry| entry.is_finite()) {
             return Err(SetupError::NonFinite { what: "momentum" });
@@ -262,50 +253,56 @@ impl<const N: usize> ChainStepper<N> {
     /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
     fn solve(&self, work: &mut [Work; N], kept: &ChainMemory<N>) -> Result<u32, StepError> {
         let links = &self.chain.links[..];
+        // The iterations of abandoned attempts count.
+        let mut spent = 0;
+        let mut attempt = |work: &mut [Work], most, longest| {
+            let (iterations, is_solved) = attempt(links, work, most, longest);
+            spent += iterations;
+            if is_solved { Ok(spent) } else { Err(spent) }
+        };
         if kept.known > 0 {
             kept.guess(work);
-            if let Some(iterations) = attempt(links, work, MOST_ITERATIONS, f64::INFINITY) {
+            if let Ok(iterations) = attempt(work, MAX_ITERATIONS, f64::INFINITY) {
                 return Ok(iterations);
             }
         }
-        let abandoned = if kept.known > 0 { MOST_ITERATIONS } else { 0 };
         let mut slow = *work;
         velocities(links, &mut slow);
         for (work, slow) in work.iter_mut().zip(&slow) {
             // `target` is h times the momentum.
             work.half = slow.z * 0.5;
         }
-        if let Some(iterations) = attempt(links, work, MOST_ITERATIONS, f64::INFINITY) {
-            return Ok(abandoned + iterations);
+        if let Ok(iterations) = attempt(work, MAX_ITERATIONS, f64::INFINITY) {
+            return Ok(iterations);
         }
         for work in work.iter_mut() {
             work.half = Vector3::zeros();
         }
-        if let Some(iterations) = attempt(links, work, MOST_SHORTENED, LONGEST) {
-            return Ok(abandoned + MOST_ITERATIONS + iterations);
-        }
-        Err(reason(work, &slow, abandoned + MOST_ITERATIONS + MOST_SHORTENED))
+        attempt(work, MAX_DAMPED_ITERATIONS, LONGEST_DAMPED).map_err(|iterations| reason(work, &slow, iterations))
     }
 }
 
-/// Newton's iteration: how many were made, if it has settled near the identity with all determinants positive.
-fn attempt(links: &[Link], work: &mut [Work], most: u32, longest: f64) -> Option<u32> {
-    for iteration in 1..=most {
+/// Newton's iteration: how many were made, and whether it has settled near the identity with all determinants positive.
+fn attempt(links: &[Link], work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
+    let mut made = 0;
+    for _ in 0..most {
+        made += 1;
         let Updated { update, size, largest } = newton(links, work, longest);
         if !size.is_finite() {
-            return None;
+            return (made, false);
         }
-        if update <= size * (f64::EPSILON / 64.0) {
-            return work.iter().all(Work::is_wanted).then_some(iteration);
+        if update <= size * (f64::EPSILON * SETTLED) {
+            return (made, work.iter().all(Work::is_wanted));
         }
         if largest <= longest * longest && may_suffice(update, size) {
             let second = simplified(links, work);
+            made += 1;
             if has_sufficed(update, second.update, second.size) {
-                return work.iter().all(Work::is_wanted).then_some(iteration + 1);
+                return (made, work.iter().all(Work::is_wanted));
             }
         }
     }
-    None
+    (made, false)
 }
 
 /// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it has
@@ -343,7 +340,7 @@ impl<const N: usize> ChainMemory<N> {
                 _ => a + (a - b) + ((a - b) - (b - c)),
             };
             // Far from the identity coordinates change too fast to be continued.
-            work.half = if guess.norm_squared() < 4.0 / 9.0 { guess } else { a };
+            work.half = if guess.norm_squared() < CONTINUED { guess } else { a };
         }
     }
 

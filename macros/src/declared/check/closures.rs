@@ -6,14 +6,16 @@ use std::rc::Rc;
 use proc_macro2::Span;
 use quote::ToTokens as _;
 use syn::ext::IdentExt as _;
-use syn::{Expr, ExprCall, ExprClosure, Ident, Pat, Type};
+use syn::spanned::Spanned as _;
+use syn::{Expr, ExprCall, ExprClosure, Ident, Pat, ReturnType, Type};
 
 use super::{Binding, Checker};
-use crate::declared::parse::field_kind;
-use crate::declared::{FieldKind, Kind, Shape, Spelling, Tree};
+use crate::declared::parse::{field_kind, scalar_of};
+use crate::declared::{FieldKind, Kind, Scalar, Shape, Spelling, Tree};
 use crate::mathematics::symbolic::Rational;
 
-/// A function calls another, and so on: each call is checked for itself.
+/// Each call is checked for itself, and functions that each call the one before twice make twice as many calls each. What
+/// a call is called with may be a `let` of its own, of which the derivation takes fewer.
 const MOST_CALLS: usize = 200;
 
 /// What is known of a function.
@@ -53,6 +55,9 @@ impl Checker<'_> {
             self.errors.push(word, "leave this word away: a function is `|x: f64| …`");
         }
         let parameters: Vec<_> = closure.inputs.iter().map(|parameter| self.parameter(parameter)).collect();
+        if let ReturnType::Type(_, ty) = &closure.output {
+            self.errors.push(ty.span(), "leave the type away: it follows from the expression");
+        }
         if parameters.is_empty() {
             let message = "a function of nothing is a value: write `let U = …;`";
             self.errors.push(closure.inputs_begin.span, message);
@@ -74,7 +79,9 @@ impl Checker<'_> {
             return None;
         }
         self.scopes.push(scope);
+        let derived = self.derived.clone();
         let body = self.expression(&closure.body);
+        self.derived = derived;
         let scope = self.scopes.pop().unwrap_or_default();
         body?;
         for binding in scope.values().filter(|binding| !binding.used) {
@@ -105,8 +112,19 @@ impl Checker<'_> {
                 return None;
             }
         };
+        if !self.is_free(&name) {
+            return None;
+        }
         let kind = field_kind(&typed.ty, &self.declaration.item);
         if let Some(kind @ (FieldKind::Scalar | FieldKind::Vector(_) | FieldKind::Matrix(_))) = kind {
+            let (Scalar::Primitive(common) | Scalar::Parameter(common)) = &self.declaration.scalar;
+            let parameters = || self.declaration.item.generics.type_params();
+            let is_scalar =
+                |name: &Ident| name == "f64" || name == "f32" || parameters().any(|parameter| parameter.ident == *name);
+            if let Some(found) = scalar_of(&typed.ty).filter(|found| found != common && is_scalar(found)) {
+                self.errors.push(found.span(), format!("the scalar of this struct is `{common}`: write it here too"));
+                return None;
+            }
             return Some((name, kind.shape()));
         }
         let message = "a function is called with numbers: write f64, Vector3<f64> or Matrix3<f64>, or the same with the \
@@ -157,7 +175,7 @@ impl Checker<'_> {
             }
             fits &= self.is_passed_right(&name.to_string(), passed, false);
             let (span, end) = (argument.span, argument.end);
-            let bound = Tree::new(span, *shape, Kind::Bound(parameter.unraw().to_string(), argument));
+            let bound = Tree::new(span, *shape, Kind::Bound(self.in_derivation(parameter), argument));
             let tree = Some(Tree::until(bound, end));
             let binding = Binding { tree, closure: None, span: parameter.span(), references: Some(0), used: true };
             scope.insert(Spelling::of(parameter), binding);

@@ -4,6 +4,10 @@
 //! brings a vector from one body to another. Fields may belong to any, and so may what is seen from space: where the
 //! attitude of one body is given relative to another, that is the other. Only two bodies that are known and differ are a
 //! mistake.
+//!
+//! Turns have an axis and an angle of their own, so they may be compared without a frame in common: how much two bodies
+//! turn, each in its axes, as in `vee(F_1) - vee(F_2)`, or a relative configuration with its transpose. For the same reason
+//! a relative configuration may be repeated, `Q * Q`.
 
 use std::rc::Rc;
 
@@ -31,11 +35,31 @@ pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
     }
 }
 
+/// Whether what a name stands for is a turn: an increment, or a relative configuration.
+pub(super) fn is_turn(declaration: &Declaration, name: Name) -> bool {
+    match name {
+        Name::Increment(_) => true,
+        Name::Advected(index) => {
+            declaration.advected.get(index).is_some_and(|w| matches!(w.seen, Seen::Relative { .. }) && !w.is_given)
+        }
+        _ => false,
+    }
+}
+
+/// Whether both are turns between the same two bodies, in whatever direction.
+fn are_relative_alike(a: &Tree, b: &Tree) -> bool {
+    let [first, second] = [a, b].map(|tree| match tree.frames {
+        [Some(to), Some(from)] if to != from => Some((to.min(from), to.max(from))),
+        _ => None,
+    });
+    first.is_some() && first == second
+}
+
 impl Checker<'_> {
     /// Whether the columns of the left factor of a product are seen from where the rows of the right one are.
     pub(super) fn meet(&mut self, whole: &Expr, (left, right): (&Expr, &Expr), trees: (&Tree, &Tree)) -> bool {
         let (Some(from), Some(of)) = (trees.0.frames[1], trees.1.frames[0]) else { return true };
-        if from == of {
+        if from == of || are_relative_alike(trees.0, trees.1) {
             return true;
         }
         for (operand, tree, fits) in [(right, trees.1, 0), (left, trees.0, 1)] {
@@ -76,6 +100,12 @@ impl Checker<'_> {
         (left, right): (&Expr, &Expr),
         (a, b): (&Rc<Tree>, &Rc<Tree>),
     ) -> bool {
+        // Matrices that each stay with their body may be meant for a trace of both.
+        let stays =
+            |tree: &Tree| !tree.shape.is_vector() && tree.frames[0].is_some() && tree.frames[0] == tree.frames[1];
+        if (a.is_of_turns && b.is_of_turns) || (matches!(how, How::Sum(_)) && stays(a) && stays(b)) {
+            return true;
+        }
         for side in [0, 1] {
             let (Some(first), Some(second)) = (a.frames[side], b.frames[side]) else { continue };
             if first == second {
@@ -113,7 +143,9 @@ impl Checker<'_> {
             return (format!("{name}.transpose()"), String::new());
         }
         let body = |factor: usize| &self.declaration.factors[factor].name;
-        ("Q".to_owned(), format!(" (declare `Q = {}.seen_from({})`)", body(of), body(from)))
+        let free = self.free_name("Q");
+        let declare = format!(" (declare `{free} = {}.seen_from({})`)", body(of), body(from));
+        (free, declare)
     }
 
     /// A plain name as it is written, else where it is seen from.

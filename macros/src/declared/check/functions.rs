@@ -97,6 +97,13 @@ impl Checker<'_> {
                 None
             }
             (Kind::Name(Name::Field(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
+            // What stands for the parameter of a function.
+            (Kind::Number(_), _) => {
+                let message = "`inverse` takes `F` or a field of the struct by its name: call this function with the \
+                               inverse, as in `U(inverse(J))`";
+                self.errors.push(at, message);
+                None
+            }
             _ => {
                 self.errors.push(at, "`inverse` takes `F` or a field of the struct: make this matrix a field");
                 None

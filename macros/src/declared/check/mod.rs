@@ -42,6 +42,7 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
         is_too_deep: false,
         matrices,
         calls: 0,
+        derived: BTreeSet::new(),
     };
     let tree = checker.expression(expression);
     let used = checker.used;
@@ -126,6 +127,8 @@ struct Checker<'a> {
     matrices: Group,
     /// How many closures have been called, each of which may call others.
     calls: usize,
+    /// The names that `let`s and the parameters of functions have in the derivation, where each is one value's alone.
+    derived: BTreeSet<String>,
 }
 
 impl Checker<'_> {
@@ -301,6 +304,10 @@ impl Checker<'_> {
         if let Some(ty) = ty {
             self.errors.push(ty.span(), "leave the type away: it follows from the expression");
         }
+        if !self.is_free(name) {
+            self.bind_nothing(pattern);
+            return;
+        }
         let Some(init) = local.init.as_ref().filter(|init| init.diverge.is_none()) else {
             self.errors.push(local.span(), "a binding needs a value: `let name = …;`");
             self.bind_nothing(pattern);
@@ -315,13 +322,53 @@ impl Checker<'_> {
         }
         let tree = self.expression(&init.expr).map(|tree| {
             let (span, end, shape) = (tree.span, tree.end, tree.shape);
-            Tree::until(Tree::new(span, shape, Kind::Bound(name.unraw().to_string(), tree)), end)
+            let derived = self.in_derivation(name);
+            Tree::until(Tree::new(span, shape, Kind::Bound(derived, tree)), end)
         });
         let references = self.references(&init.expr);
         let binding = Binding { tree, closure: None, span: name.span(), references, used: false };
         if let Some(scope) = self.scopes.last_mut() {
             scope.insert(Spelling::of(name), binding);
         }
+    }
+
+    /// Whether a name means nothing else: what is compiled would find that, or hide it.
+    fn is_free(&mut self, name: &syn::Ident) -> bool {
+        let (letters, the) = (name.unraw().to_string(), self.declaration.role.definite());
+        let is_increment = self.declaration.factors.iter().any(|factor| factor.name == letters);
+        if is_increment || self.declaration.role.reserved().contains(&letters.as_str()) {
+            self.errors.push(name.span(), format!("`{letters}` already has a meaning in {the}: choose another name"));
+            return false;
+        }
+        true
+    }
+
+    /// What a value is called in the derivation: as it is bound, and from the second one of that name on with a number.
+    fn in_derivation(&mut self, name: &syn::Ident) -> String {
+        let name = name.unraw().to_string();
+        let is_taken = |name: &String| self.derived.contains(name) || self.is_parameter(name);
+        let numbered = (2..).map(|number| format!("{name}_{number}"));
+        let derived = if is_taken(&name) { numbered.into_iter().find(|name| !is_taken(name)) } else { None };
+        let derived = derived.unwrap_or(name);
+        self.derived.insert(derived.clone());
+        derived
+    }
+
+    /// Whether a field, an advected parameter or an increment has this name.
+    fn is_parameter(&self, name: &str) -> bool {
+        self.declaration.fields.iter().any(|field| field.plain_name() == name)
+            || self.declaration.advected.iter().any(|w| w.plain_name() == name)
+            || self.declaration.factors.iter().any(|factor| factor.name == name)
+    }
+
+    /// That name, with a number if something has it already.
+    fn free_name(&self, name: &str) -> String {
+        let is_bound = |name: &str| self.scopes.iter().flat_map(BTreeMap::keys).any(|bound| bound.letters == name);
+        let is_taken = |name: &str| self.is_parameter(name) || is_bound(name);
+        if !is_taken(name) {
+            return name.to_owned();
+        }
+        (2..).map(|number| format!("{name}_{number}")).find(|name| !is_taken(name)).unwrap_or_default()
     }
 
     /// The names of a `let` with a mistake are known, and have no tree.
@@ -428,7 +475,8 @@ impl Checker<'_> {
             }
         };
         self.used.push(found);
-        Some(Tree::seen(span, shape, found, frames::of(self.declaration, found)))
+        let seen = (frames::of(self.declaration, found), frames::is_turn(self.declaration, found));
+        Some(Tree::seen(span, shape, found, seen))
     }
 
     /// A continuous Lagrangian knows no step.

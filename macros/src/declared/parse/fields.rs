@@ -90,7 +90,7 @@ fn digit(name: &str) -> Option<usize> {
 }
 
 /// The scalar that a type is made of; an inertia without arguments has `f64`.
-fn scalar_of(ty: &Type) -> Option<Ident> {
+pub(crate) fn scalar_of(ty: &Type) -> Option<Ident> {
     let segment = last_segment(ty)?;
     match &segment.arguments {
         PathArguments::AngleBracketed(arguments) if !arguments.args.is_empty() => match arguments.args.first()? {

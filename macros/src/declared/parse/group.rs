@@ -114,8 +114,8 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
         }
         if factors.len() == MOST_FACTORS {
             let message = format!(
-                "at most {MOST_FACTORS} factors are declared together: declare what couples fewer of them as a term of \
-                 its own"
+                "at most {MOST_FACTORS} factors are declared together: declare what one body or two have as terms of \
+                 their own, and put them at the places of a system of many, `Each::<N>::of([…]) + Along::<N>::of([…])`"
             );
             errors.push_decisive(increment.span(), message);
             break;

@@ -20,7 +20,7 @@ use crate::mathematics::group::Group;
 use arguments::{Arguments, Source, arguments_from};
 use fields::{points, scalar};
 
-pub(crate) use fields::field_kind;
+pub(crate) use fields::{field_kind, scalar_of};
 pub(crate) use own_group::{Asked, OwnGroup, asked, own_group};
 
 /// The declaration, with its mistakes reported; `None` where nothing of it can be read.

@@ -2,7 +2,7 @@
 
 use super::{expanded, is_refused, tokens};
 use crate::declared::errors::Errors;
-use crate::declared::{Role, parse};
+use crate::declared::{Kind, Role, check, parse};
 use crate::judged::conserved;
 
 const BODIES: &str = "struct Bodies { J_1: NonstandardInertia, J_2: NonstandardInertia, k: f64, up: Vector3<f64>, \
@@ -72,6 +72,73 @@ fn what_couples_is_solved_together() {
     );
     assert!(apart.contains("Conserved: no momentum"));
     assert!(apart.contains("F = (F_1, F_2) = g⁻¹ g⁺"));
+}
+
+/// What compares turns, or repeats one, needs no frame in common; what a body sees does.
+#[test]
+fn turns_are_compared() {
+    let is_right = |potential: &str| {
+        let arguments = format!(
+            "group(F_1 = SO3, F_2 = SO3), advected(w = up.seen_from(F_1), v = other.seen_from(F_2), \
+             Q = F_2.seen_from(F_1)), l_d = {KINETIC} - h * k * (w.z + v.z + {potential} + Q.trace())"
+        );
+        !is_refused(&expanded(&arguments, BODIES))
+    };
+    for right in [
+        "(Q - Q.transpose()).norm_squared()",
+        "(Q + Q.transpose()).norm_squared()",
+        "(Q * Q).trace()",
+        "(Q * Q * Q).trace()",
+        "w.dot(&(Q * Q * w))",
+        "w.dot(&((Q - Q.transpose()) * v))",
+        "vee(Q - Q.transpose()).norm_squared()",
+        "(vee(F_1) - vee(F_2)).norm_squared() / h.powi(2)",
+        "(2.0 * vee(F_1)).dot(&(-vee(F_2))) / h.powi(2)",
+        "(F_1 - F_2).norm_squared() / h.powi(2)",
+        "((F_1 - I) * J_1 * (F_1 - I).transpose() + (F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / h.powi(2)",
+        "{ let a = vee(F_1); let b = vee(F_2); (a - b).norm_squared() / h.powi(2) }",
+    ] {
+        assert!(is_right(right), "{right}");
+    }
+    for mistake in [
+        "w.dot(&v)",
+        "(w - v).norm_squared()",
+        "w.dot(&vee(F_2))",
+        "(Q * w).z",
+        "(F_1.transpose() * Q.transpose() * F_2).trace()",
+    ] {
+        assert!(!is_right(mistake), "{mistake}");
+    }
+}
+
+/// What two calls are called with are two values, and so is what is shadowed.
+#[test]
+fn a_name_is_one_value_in_the_derivation() {
+    let arguments = "group(F_1 = SO3, F_2 = SO3), advected(w = up.seen_from(F_1), v = up.seen_from(F_2), \
+                     Q = F_2.seen_from(F_1)), l_d = {
+                         let U = |Q: Matrix3<f64>, y: Vector3<f64>| { let r = y + Q * y; r.dot(&r) * (Q + I).trace() };
+                         let y = U(F_1 * F_1 + I, w + F_1 * w);
+                         let y = y + U(F_2 * F_2 + I, v + F_2 * v);
+                         ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+                             + ((F_2 - I) * J_1 * (F_2 - I).transpose()).trace() / (2.0 * h)
+                             - h * (y + y * y + Q.trace())
+                     }";
+    let item = "struct Bodies { J_1: NonstandardInertia, up: Vector3<f64> }";
+    let mut errors = Errors::default();
+    let declaration = parse::declaration(Role::Lagrangian, &tokens(arguments), &tokens(item), &mut errors);
+    let tree = check::check(&declaration.expect("a declaration"), &mut errors).expect("a Lagrangian");
+    assert!(errors.is_empty());
+    let (mut open, mut names) = (vec![&tree], std::collections::BTreeMap::new());
+    while let Some(tree) = open.pop() {
+        if let Kind::Bound(name, _) = &tree.kind {
+            names.insert(std::rc::Rc::as_ptr(tree), name.clone());
+        }
+        open.extend(tree.kind.operands().into_iter().flatten());
+    }
+    let different: std::collections::BTreeSet<_> = names.values().cloned().collect();
+    assert_eq!(different.len(), names.len(), "{names:?}");
+    let expected = ["Q_2", "Q_3", "r", "r_2", "y", "y_2", "y_3", "y_4"];
+    assert_eq!(different.into_iter().collect::<Vec<_>>(), expected);
 }
 
 /// One body by another name.
