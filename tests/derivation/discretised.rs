@@ -75,7 +75,8 @@ struct Ambient {
 impl Ambient {
     fn new() -> Self {
         let J = Inertia::from_principal_moments(Vector3::new(0.4, 0.6, 0.9)).unwrap();
-        Self { J, k: 0.1, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) }
+        // At 0.1 the differences that the diamond is compared with are off by 3e-10 of 23, more than is allowed for them.
+        Self { J, k: 0.001, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) }
     }
 }
 
