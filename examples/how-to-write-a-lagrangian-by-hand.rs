@@ -79,6 +79,7 @@ impl Effect for Body {
     const PARTS: Parts = Parts { unknown: true, kick_before: false, kick_after: false };
     const DENOMINATORS: u32 = 1;
     const INERTIA_IS_CONSTANT: bool = true;
+    const IS_QUADRATIC: bool = true;
     const DERIVATION: &'static str = "the free rigid body (3.13), by hand";
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

@@ -44,6 +44,14 @@ pub enum SetupError {
         /// Which part.
         what: &'static str,
     },
+    /// No velocity has the initial momentum, or none on whose side of the singularities of `∂²l/∂ξ²` rest is.
+    NoVelocity,
+    /// The momentum of the initial velocity is that of another, which the motion would start with.
+    AmbiguousVelocity {
+        /// By how much the two differ, relative to the one that was given, both measured by the momentum that they would
+        /// have with the inertia at rest. NaN where the velocity has no momentum, or its momentum no velocity.
+        difference: f64,
+    },
     /// The initial attitude isn't in the group.
     NotInGroup {
         /// How far the matrix is from the relation of the group.
@@ -104,6 +112,18 @@ impl fmt::Display for SetupError {
                 "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values"
             ),
             Self::NonFinite { what } => write!(f, "the initial {what} is not finite; give finite numbers"),
+            Self::NoVelocity => write!(
+                f,
+                "no velocity that rest can be continued to has the initial momentum; choose a momentum nearer to that at rest"
+            ),
+            Self::AmbiguousVelocity { difference } if difference.is_nan() => write!(
+                f,
+                "the initial velocity has no momentum, or none that determines a velocity: it is out of the range in which the Lagrangian is defined and regular; choose a velocity nearer to rest"
+            ),
+            Self::AmbiguousVelocity { difference } => write!(
+                f,
+                "the momentum of the initial velocity is that of another velocity, too (relative difference {difference:e}): the kinetic part is singular between rest and it; choose a velocity nearer to rest"
+            ),
             Self::NotInGroup { defect } => {
                 write!(
                     f,

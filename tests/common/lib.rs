@@ -6,6 +6,7 @@
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
+pub mod affine;
 pub mod any_scalar;
 pub mod examples;
 pub mod order;

@@ -5,7 +5,8 @@ use core::fmt::Debug;
 
 use liestep::groups::Retraction as _;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Term, Vector, WithKinetic,
+    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, Square, Term, Vector,
+    WithKinetic,
 };
 use liestep::numbers::Real;
 use liestep::prelude::*;
@@ -63,6 +64,7 @@ macro_rules! staged_as {
 
         const PARTS: Parts = <$inner>::PARTS;
         const INERTIA_IS_CONSTANT: bool = <$inner>::INERTIA_IS_CONSTANT;
+        const IS_QUADRATIC: bool = <$inner>::IS_QUADRATIC;
         const DERIVATION: &'static str = <$inner>::DERIVATION;
 
         fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
@@ -79,6 +81,11 @@ macro_rules! staged_as {
 
         fn potential(&self, w: &Self::Advected) -> Self::Scalar {
             self.0.potential(w)
+        }
+
+        fn limit(&self, velocity: &Vector<Self>, w: &Self::Advected) -> Limit<Self> {
+            let Limit { l, momentum, hessian } = self.0.limit(velocity, w);
+            Limit { l, momentum, hessian }
         }
     };
 }

@@ -81,6 +81,7 @@ impl Effect for HandWrittenTop {
 
     const DENOMINATORS: u32 = 1;
     const INERTIA_IS_CONSTANT: bool = true;
+    const IS_QUADRATIC: bool = true;
     const DERIVATION: &'static str = "the heavy top (3.13), by hand";
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

@@ -39,14 +39,59 @@ fn every_numbered_equation_has_a_row() {
     let expected: BTreeSet<_> =
         NUMBERED.iter().flat_map(|&(chapter, last)| (1..=last).map(move |equation| (chapter, equation))).collect();
     assert_eq!(found, expected);
-    // One click from the number to where it is.
-    let linked = |row: &[&str]| row[2].contains('[') && row[2].contains(']');
+    // One click from the number to where it is, or the rule that makes it.
+    let linked = |row: &[&str]| links(row[2]).next().is_some();
     let unlinked: Vec<_> = rows().filter(|row| row.len() == 4 && !numbers(row[0]).is_empty() && !linked(row)).collect();
     assert!(unlinked.is_empty(), "{unlinked:?}");
     for figure in 1..=10 {
         let name = format!("3.{figure}");
         assert!(rows().any(|row| row.len() == 3 && row[0].split(", ").any(|part| part == name)), "figure {name}");
     }
+}
+
+/// What a cell links to, by the labels of the definitions at the end of the page.
+fn links(cell: &str) -> impl Iterator<Item = &str> {
+    let mut parts = cell.split('[').skip(1).peekable();
+    core::iter::from_fn(move || {
+        let (label, after) = parts.next()?.split_once(']')?;
+        // Of `[text][label]` the label.
+        let is_text = after.is_empty() && parts.peek().is_some();
+        Some((label, is_text))
+    })
+    .filter_map(|(label, is_text)| (!is_text).then_some(label))
+}
+
+/// `# A title` as rustdoc names it in addresses.
+fn anchor(heading: &str) -> String {
+    let letters = heading.trim_start_matches('#').trim().to_lowercase().replace(' ', "-");
+    letters.chars().filter(|c| c.is_alphanumeric() || *c == '-' || *c == '_').collect()
+}
+
+/// Each link has its definition; one into a chapter of the guide leads to a heading, under which the equations of its row are
+/// printed.
+#[test]
+fn links_lead_to_equations() {
+    let guide = include_str!("../../core/src/guide/thesis.rs");
+    let definition = |label: &str| PAGE.lines().find_map(|line| line.strip_prefix(&format!("//! [{label}]: ")));
+    let mut printed = 0;
+    for row in rows().filter(|row| row.len() == 4 && !numbers(row[0]).is_empty()) {
+        for label in links(row[2]) {
+            let target = definition(label).unwrap_or_else(|| panic!("{label} is nowhere"));
+            let Some((page, heading)) = target.split_once('#') else { continue };
+            assert_eq!(page, "crate::guide::thesis", "{label}");
+            let mut lines = guide.lines().filter_map(|line| line.strip_prefix("//!")).map(str::trim);
+            assert!(lines.any(|line| line.starts_with('#') && anchor(line) == heading), "{heading} isn't a heading");
+            let section: Vec<&str> =
+                lines.take_while(|line| !line.starts_with("# ") && !line.starts_with("## ")).collect();
+            for (chapter, equation) in numbers(row[0]).into_iter().filter(|_| row[2].starts_with("printed in")) {
+                let number = format!("({chapter}.{equation})");
+                let is_printed = |line: &&str| line.strip_suffix(&number).is_some_and(|left| left.contains(['=', '⟨']));
+                assert!(section.iter().any(|line| is_printed(&line)), "{number} isn't printed under {heading}");
+                printed += 1;
+            }
+        }
+    }
+    assert_eq!(printed, 14, "(1.7) to (1.10), (1.13), (1.15) and (3.5) to (3.12)");
 }
 
 #[test]

@@ -1,15 +1,16 @@
 //! Lagrangians on groups other than SO(3): every derived term against central differences of the declared `l_d`, the
 //! staged step against the unstaged terms, and what the discrete flow conserves exactly.
 
+use checks::affine::Affine;
 use checks::random::Random;
 use checks::structure::{System, momenta, stages};
 use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use liestep::groups::{Generators, Heisenberg, LieGroup, MatrixGroup, R2, SE2, SE3, SL2, SO2, SU2};
+use liestep::groups::{Heisenberg, LieGroup, R2, SE2, SE3, SL2, SO2, SU2};
 use liestep::mechanics::Regular;
 use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Coordinates;
 use liestep::{Stepper, lagrangian};
-use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, SVector, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix2, Matrix3, Matrix4, SMatrix, SVector, Vector2, Vector3, Vector4};
 
 /// A planar pendulum.
 #[lagrangian(
@@ -102,20 +103,6 @@ struct Particle {
     origin: Vector3<f64>,
     up: Vector3<f64>,
 }
-
-/// The affine maps `x ↦ a x + b` of the line: a group of one's own.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct AffineGenerators;
-
-impl Generators<2, 2> for AffineGenerators {
-    const GENERATORS: [[[f64; 2]; 2]; 2] = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
-
-    fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
-        m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
-    }
-}
-
-type Affine<T = f64> = MatrixGroup<AffineGenerators, T, 2, 2>;
 
 /// A scale and a shift.
 #[lagrangian(

@@ -47,6 +47,7 @@ impl Effect for Drag {
     const PARTS: Parts = Parts { unknown: true, kick_before: false, kick_after: true };
     const DENOMINATORS: u32 = 1;
     const INERTIA_IS_CONSTANT: bool = true;
+    const IS_QUADRATIC: bool = true;
     const DERIVATION: &'static str = "viscous drag, by hand";
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

@@ -3,25 +3,12 @@
 // The letters of the field; all of it is seen by this crate alone.
 #![allow(non_snake_case, unreachable_pub)]
 
+use checks::affine::Affine;
 use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use liestep::groups::{Generators, Heisenberg, MatrixGroup, R1, R2, R3, SE2, SE3, SL2, SO2, SU2};
+use liestep::groups::{Heisenberg, R1, R2, R3, SE2, SE3, SL2, SO2, SU2};
 use liestep::laws::samples::Random;
 use liestep::{SO3, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SMatrix, Vector2, Vector3, Vector4};
-
-/// A group of one's own, the affine maps `x ↦ a x + b` of the line, `a > 0`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AffineGenerators;
-
-impl Generators<2, 2> for AffineGenerators {
-    const GENERATORS: [[[f64; 2]; 2]; 2] = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
-
-    fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
-        m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
-    }
-}
-
-type Affine<T> = MatrixGroup<AffineGenerators, T, 2, 2>;
 
 /// Four coefficients, of which about a third are zero: which terms there are is random too.
 fn coefficients(random: &mut Random) -> Vector4<f64> {

@@ -7,8 +7,8 @@ mod continuous;
 mod family;
 
 use checks::structure::{System, momenta, poisson, stages, symmetry, two_flows};
+use liestep::Stepper;
 use liestep::laws::samples::{Random, along};
-use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Coordinates;
 use nalgebra::{SMatrix, SVector};
 use proptest::prelude::*;
@@ -32,9 +32,10 @@ where
     assert!(defect < 1e-11, "Poisson: {defect:e}");
 
     let mut random = Random::new(seed);
-    let flow = DiscreteLiePoisson::new(lagrangian.clone(), 0.02).unwrap();
+    let stepper = Stepper::new(lagrangian.clone(), 0.02).unwrap();
     let attitude = along::<L::Group, N, D>(&random.sample(), 1.0);
-    let (momentum, parameters) = symmetry::drift(&flow, (attitude, random.sample()), 30);
+    let start = stepper.start(attitude, random.sample()).unwrap();
+    let (momentum, parameters) = symmetry::drift(&stepper.flow(), (attitude, start.momentum()), 30);
     println!("drift {momentum:.1e} {parameters:.1e}");
     assert!(momentum < ROUNDING, "momentum along a symmetry: {momentum:e}");
     assert!(parameters < ROUNDING, "parameters: {parameters:e}");

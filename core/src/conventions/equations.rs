@@ -17,13 +17,13 @@
 //! | (1.3), (1.6) | `δξ = η' + ad_ξ η` | [`lie_bracket`] | `core/src/laws/group.rs` `variations` |
 //! | (1.4) | `d/dt δl/δξ = ad*_ξ δl/δξ` | [`euler_poincare`], [`momentum_rate`]; exact for a free body in [`ExactBody`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
 //! | (1.5) | `ġ = g ξ` | [`RightHandSide`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/derivation/continuous.rs` `discretisations_converge_to_the_continuous_motion` |
-//! | (1.7)–(1.9) | the canonical bracket and Hamilton's equations | in [the guide][lie-poisson]; on `T*GL(n)` [`CotangentGauss`], on `T*ℝ⁴` `core/src/methods/gauss/lift.rs` | `tests/groups/reduction.rs` `reduction_of_the_bracket` `legendre_transform`; `tests/accuracy/poisson.rs` |
-//! | (1.10) | `{f, k}∘r = {f∘r, k∘r}` | in [the guide][lie-poisson] | `tests/groups/reduction.rs` `reduction_of_the_bracket` |
+//! | (1.7)–(1.9) | the canonical bracket and Hamilton's equations | printed in [the guide][lie-poisson]; on `T*GL(n)` [`CotangentGauss`], on `T*ℝ⁴` `core/src/methods/gauss/lift.rs` | `tests/groups/reduction.rs` `reduction_of_the_bracket` `legendre_transform`; `tests/accuracy/poisson.rs` |
+//! | (1.10) | `{f, k}∘r = {f∘r, k∘r}` | printed in [the guide][lie-poisson] | `tests/groups/reduction.rs` `reduction_of_the_bracket` |
 //! | lemma 1.2.1, (1.11) | `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩` | [`lie_poisson_bracket`] | `tests/groups/reduction.rs` `reduction_of_the_bracket`; `core/src/laws/group.rs` `lie_poisson_brackets` |
 //! | theorem 1.2.2, (1.12) | `μ̇ = ad*_{δh/δμ} μ` | [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `core/src/laws/group.rs` `lie_poisson_brackets` |
-//! | (1.13) | `𝔽L` before reduction | in [the guide][lie-poisson] | `tests/groups/reduction.rs` `legendre_transform` |
+//! | (1.13) | `𝔽L` before reduction | printed in [the guide][lie-poisson] | `tests/groups/reduction.rs` `legendre_transform` |
 //! | (1.14) | `μ = δl/δξ` | [`momentum`], inverse [`velocity`]; [`Stepper::start`], [`Stepper::velocity`] | `tests/systems/limit.rs` `assert_limit`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
-//! | (1.15) | `H = ⟨𝔽L, ġ⟩ − L` | in [the guide][lie-poisson] | `tests/groups/reduction.rs` `legendre_transform` |
+//! | (1.15) | `H = ⟨𝔽L, ġ⟩ − L` | printed in [the guide][lie-poisson] | `tests/groups/reduction.rs` `legendre_transform` |
 //! | (1.16) | `h(μ) = μ·ξ − l(ξ)`, with `δh/δμ = ξ` | [`hamiltonian`], [`Stepper::energy`] | `tests/systems/limit.rs` `assert_limit`; `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
 //! | lemma 1.3.1 | `𝔽l` carries (1.4) to (1.12) | [`euler_poincare`], [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform` |
 //! | example 1 | the free body; `J = tr(J_d) I − J_d` | [`NonstandardInertia::to_inertia`], [`ExactBody`] | `tests/derivation/thesis.rs` `matrix_in_the_trace`; `tests/hard_cases/bodies/inertia.rs` `conversions_agree_with_the_integrals` |
@@ -69,8 +69,8 @@
 //! | | what | where | checked by |
 //! |---|---|---|---|
 //! | (3.1)–(3.4) | Euler angles and their rates | [`from_euler_angles`], [`euler_angles`], `examples/common/heavy_top/euler_angles.rs`; no angle enters a step | `tests/hard_cases/bodies/euler_angles.rs` `t10_frame_and_rates` |
-//! | (3.5)–(3.9) | inertia, momenta and moment in the frame of the axis | in [the guide][top]; `examples/common/heavy_top/euler_angles.rs` | `tests/hard_cases/bodies/euler_angles.rs` `t10_equations_of_motion` |
-//! | (3.10)–(3.12) | equations of motion in Euler angles | in [the guide][top]; `examples/common/heavy_top/euler_angles.rs`, as a rival | `tests/hard_cases/bodies/euler_angles.rs` `t10_equations_of_motion`; `tests/hard_cases/rows.rs` `t10_euler_angles` |
+//! | (3.5)–(3.9) | inertia, momenta and moment in the frame of the axis | printed in [the guide][top]; `examples/common/heavy_top/euler_angles.rs` | `tests/hard_cases/bodies/euler_angles.rs` `t10_equations_of_motion` |
+//! | (3.10)–(3.12) | equations of motion in Euler angles | printed in [the guide][top]; `examples/common/heavy_top/euler_angles.rs`, as a rival | `tests/hard_cases/bodies/euler_angles.rs` `t10_equations_of_motion`; `tests/hard_cases/rows.rs` `t10_euler_angles` |
 //! | three kinds of precession | looping, cuspidal, unidirectional | `examples/common/heavy_top/precession.rs` | `tests/hard_cases/rows.rs` `t11_nutation_and_precession` |
 //! | section 3.2, `Ω̂ ≈ (F − I)/h` | the trapezoidal rule makes (3.13) | `discretise = trapezoid` | `tests/derivation/thesis.rs` `trapezoidal_rule_gives_3_13`; `tests/derivation/continuous.rs` `the_trapezoidal_rule_makes_the_steps_of_the_heavy_top` |
 //! | (3.13) | the reduced discrete Lagrangian | `examples/common/heavy_top/declaration.rs`; [`RigidBody`] and [`Gravity`] | `tests/derivation/thesis.rs` `trapezoidal_rule_gives_3_13`; `tests/effects/sums.rs` `body_and_gravity_are_the_heavy_top` |

@@ -13,7 +13,9 @@
 //! | a run that is observed and can't go on | [`RunError`](crate::with::RunError), with the time |
 //! | a file that can't be written, a checkpoint of another scene | [`RecordError`](crate::with::RecordError), `with::CheckpointError` (feature `serde`) |
 //!
-//! No input makes the library panic, hang, or go on with NaN. Errors are enums that aren't exhaustive, with the numbers
+//! No input makes the library panic, hang, or go on with NaN. What is read off a state may be NaN where there is nothing to
+//! read: the velocity and the energy of a momentum that no velocity has, which an `l` that isn't quadratic in the velocity
+//! may lead to. A step solves for increments, and doesn't need them. Errors are enums that aren't exhaustive, with the numbers
 //! that one needs, and their text says what to do.
 //!
 //! # A step that is too long

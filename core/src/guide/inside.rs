@@ -9,8 +9,9 @@
 //! | `liestep-macros`, in `macros` | when a user's crate is compiled | derives, judges, and writes code |
 //! | `liestep`, in `core` | in the user's program | groups, solving, stepping, methods |
 //!
-//! They meet in a few traits. The macro implements [`Effect`](crate::mechanics::Effect), which is all that a step asks of a
-//! term, and [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian). Who would rather not use the macro writes these by
+//! They meet in a few traits. The macro implements [`Term`](crate::mechanics::Term), which says on which group a term is and
+//! what it sees there, and [`Effect`](crate::mechanics::Effect): these two are all that a step asks of a term. It implements
+//! [`DiscreteLagrangian`](crate::mechanics::DiscreteLagrangian), too. Who would rather not use the macro writes these by
 //! hand: `examples/how-to-write-a-lagrangian-by-hand.rs`.
 //!
 //! # From tokens to code

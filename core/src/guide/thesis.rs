@@ -69,9 +69,21 @@
 //! {f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩
 //! ```
 //!
-//! which is [`lie_poisson_bracket`]: what the canonical bracket of `T*G` and Hamilton's equations there, (1.7) to (1.9),
-//! become on functions of the momentum alone, (1.10). Before reduction the transform is `𝔽L`, (1.13), with
-//! `H = ⟨𝔽L, ġ⟩ − L`, (1.15); the tests compute these to compare, and a program needs none of them. With the bracket a reduced Hamiltonian moves the momentum by (1.12), `μ̇ = ad*_{δh/δμ} μ`.
+//! which is [`lie_poisson_bracket`]. It is what is left of the canonical bracket of `T*G` and of Hamilton's equations there
+//! on functions of the momentum alone, with `r` for the map from `T*G` to the momentum. Before reduction the Legendre
+//! transform is `𝔽L`:
+//!
+//! ```text
+//! {F, K}(q, p) = ∂F/∂qⁱ ∂K/∂p_i − ∂K/∂qⁱ ∂F/∂p_i        (1.7)
+//! {·, H} = Z_H(·)                                       (1.8)
+//! q̇ = ∂H/∂p,    ṗ = −∂H/∂q                              (1.9)
+//! {f, k}∘r = {f∘r, k∘r}                                 (1.10)
+//! ⟨𝔽L(q, v), u⟩ = d/ds L(q, v + su) at s = 0            (1.13)
+//! H = ⟨𝔽L(g, ġ), ġ⟩ − L(g, ġ)                           (1.15)
+//! ```
+//!
+//! The tests compute these to compare; a program needs none of them. With the bracket a reduced Hamiltonian moves the
+//! momentum by (1.12), `μ̇ = ad*_{δh/δμ} μ`.
 //! The reduced Legendre transform (1.14) goes from one side to the other, and (1.16) is its Hamiltonian:
 //!
 //! <math display="block">
@@ -223,8 +235,22 @@
 //!
 //! # Chapter 3: the heavy top
 //!
-//! The equations of motion in Euler angles, (3.5) to (3.12), have poles where the axis is vertical. Here they are a rival
-//! and a reference of the tests; a step has no angles in it.
+//! Section 3.1 describes a symmetric top, with moments `I_0` across its axis and `I` along it, in the frame `(X, Y, Z)` that
+//! follows precession `φ` and nutation `θ`, but not the spin `ψ`; `ρ` is how far the centre of mass is up the axis:
+//!
+//! ```text
+//! 𝕀 = diag(I_0, I_0, I)                                                     (3.5)
+//! H_X = I_0 ω_X = I_0 θ'                                                    (3.6)
+//! H_Y = I_0 ω_Y = I_0 φ' sin θ                                              (3.7)
+//! H_Z = I ω_Z = I ψ' + I φ' cos θ                                           (3.8)
+//! M_X = m g ρ sin θ,    M_Y = 0,    M_Z = 0                                 (3.9)
+//! m g ρ sin θ = I_0 (θ'' − φ'² sin θ cos θ) + I φ' sin θ (φ' cos θ + ψ')    (3.10)
+//! 0 = I_0 (φ'' sin θ + 2 φ' θ' cos θ) − I θ' (φ' cos θ + ψ')                (3.11)
+//! 0 = I (ψ'' + φ'' cos θ − φ' θ' sin θ)                                     (3.12)
+//! ```
+//!
+//! The equations of motion, (3.10) to (3.12), have poles where the axis is vertical. Here they are a rival and a reference of
+//! the tests; a step has no angles in it.
 //!
 //! The trapezoidal rule with `Ω̂ ≈ (F − I)/h` makes (3.13) of (2.3):
 //!

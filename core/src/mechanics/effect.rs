@@ -6,13 +6,13 @@ use core::fmt::Debug;
 
 use crate::error::SetupError;
 use crate::groups::{LieGroup, Retraction};
-use crate::mechanics::continuous::velocity_by_newton;
+use crate::mechanics::continuous::Newton;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
 use crate::numbers::{Blocks, Coordinates, Pattern, Real, real, reported};
-use nalgebra::SimdBool as _;
+use nalgebra::{SimdBool as _, SimdPartialOrd as _};
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Term>::Scalar;
@@ -160,7 +160,7 @@ pub trait Effect: Term {
 
     /// Whether the continuous limit is quadratic in the velocity. Where it isn't, [`inertia`](Self::inertia) and
     /// [`momentum_bias`](Self::momentum_bias) are those at rest, and [`limit`](Self::limit) says what is elsewhere.
-    const IS_QUADRATIC: bool = true;
+    const IS_QUADRATIC: bool;
 
     /// Unknowns between which the Jacobian of [`newton_system`](Self::newton_system) is zero for all values: where nothing
     /// but potentials of the ends of a step couples bodies, each is solved for itself. The blocks end where factors of the
@@ -310,15 +310,15 @@ pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, 
 }
 
 /// `ξ = J⁻¹(μ − s(w))`: the body velocity of the momentum `μ`. Where `l` isn't quadratic, it is solved for; NaN where no
-/// velocity has this momentum.
+/// velocity has this momentum, of several lanes in those alone.
 pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let near_rest = velocity_near_rest(effect, momentum, w);
     if E::IS_QUADRATIC {
         return near_rest;
     }
     let (of, hessian) = (|xi: &Vector<E>| effect.limit(xi, w).momentum, |xi: &Vector<E>| effect.limit(xi, w).hessian);
-    velocity_by_newton::<Scalar<E>, _>(momentum, near_rest, of, hessian)
-        .unwrap_or_else(|_| Vector::<E>::zero() * real(f64::NAN))
+    let found = Newton::<Scalar<E>, _>::new(momentum, near_rest, of, hessian);
+    found.velocity.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
 }
 
 /// The same by the inertia at rest: right where `l` is quadratic, elsewhere an estimate.
@@ -329,7 +329,32 @@ fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advect
 /// The body velocity of the momentum `μ`, or what is near it: a guess.
 pub(crate) fn estimated_velocity<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let velocity = velocity_of_momentum(effect, momentum, w);
-    if E::IS_QUADRATIC || velocity.is_finite() { velocity } else { velocity_near_rest(effect, momentum, w) }
+    if E::IS_QUADRATIC || velocity.is_finite() {
+        return velocity;
+    }
+    // NaN isn't equal to itself.
+    let size = velocity.dot(&velocity);
+    velocity.select(size.simd_eq(size), velocity_near_rest(effect, momentum, w))
+}
+
+/// Whether the velocity that was given is the one found of its momentum `μ`, to what rounding leaves of it where `l` is
+/// regular; `inertia` is that at rest, which makes the components of both commensurable.
+pub(crate) fn check_velocity<T: Real, V: Coordinates<T>>(
+    given: &V,
+    found: &V,
+    momentum: &V,
+    inertia: &V::Square,
+) -> Result<(), SetupError> {
+    let (image, difference) = (*inertia * *given, *inertia * (*found - *given));
+    let epsilon = T::simd_default_epsilon();
+    // At a fold of the momentum half of the digits of a velocity are lost. What cancels in the momentum is lost anyway.
+    let of_fold = image.dot(&image) * epsilon * real(256.0);
+    let of_sum = momentum.dot(momentum) * epsilon * epsilon * real(1e8);
+    let missed = difference.dot(&difference);
+    if missed.simd_le(of_fold + of_sum).all() {
+        return Ok(());
+    }
+    Err(SetupError::AmbiguousVelocity { difference: reported((missed / image.dot(&image)).simd_sqrt()) })
 }
 
 /// `ξ·∂l/∂ξ − l`, the energy of the continuous limit: `½ ξ·Jξ + V(w)` where it is quadratic.

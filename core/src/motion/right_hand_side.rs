@@ -51,6 +51,27 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
     /// [`SetupError::Parameter`] for a parameter that can't be used, [`SetupError::NonFinite`] for an advected one,
     /// [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] where a momentum doesn't determine a velocity
     /// at rest.
+    ///
+    /// Generators of a declaration that aren't those of its group are an error when a program is built:
+    ///
+    /// ```compile_fail,E0080
+    /// use liestep::groups::R1;
+    /// use liestep::lagrangian;
+    /// use liestep::motion::RightHandSide;
+    ///
+    /// type Line<T = f64> = R1<T>;
+    ///
+    /// #[lagrangian(
+    ///     group = Line,
+    ///     generators = [[[0.0, 2.0], [0.0, 0.0]]], // of R1 the entry is 1
+    ///     l_d = m * (F - I).norm_squared() / (2.0 * h),
+    /// )]
+    /// struct Particle {
+    ///     m: f64,
+    /// }
+    ///
+    /// let _ = RightHandSide::new(Particle { m: 1.0 });
+    /// ```
     pub fn new(lagrangian: L) -> Result<Self, SetupError> {
         lagrangian.validate()?;
         let spatial = lagrangian.advected();

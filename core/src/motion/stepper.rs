@@ -1,10 +1,10 @@
 //! The stepper: a scene, a method, and all that is put around a step.
 
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected as _, LieGroup as _, SO3};
+use crate::groups::{Advected as _, LieGroup, SO3};
 use crate::mechanics::{
     AxiallyInvariant, DiscreteLagrangian, Effect, Group, LeftInvariant, Regular, Scalar, Term, Vector, check_inertia,
-    energy, momentum_of_velocity, velocity_of_momentum,
+    check_velocity, energy, momentum_of_velocity, velocity_of_momentum,
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
@@ -102,14 +102,20 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
-    /// is advected or given is degenerate there.
+    /// is advected or given is degenerate there; [`SetupError::AmbiguousVelocity`] where the continuous limit isn't
+    /// quadratic in the velocity, and the momentum doesn't lead back to this one.
     pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
         let attitude = attitude.into();
+        check_attitude(&attitude)?;
         let w = self.scene.advected().seen_from(&attitude);
         let momentum = momentum_of_velocity(&self.scene, &velocity, &w);
+        if !S::IS_QUADRATIC {
+            let found = velocity_of_momentum(&self.scene, &momentum, &w);
+            check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &self.scene.inertia(&w))?;
+        }
         self.start_with_momentum(attitude, momentum)
     }
 
@@ -118,19 +124,14 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError`] where the attitude isn't in the group, something isn't finite, or an inertia that depends on what
-    /// is advected or given is degenerate there.
+    /// is advected or given is degenerate there; [`SetupError::NoVelocity`] where no velocity has this momentum.
     pub fn start_with_momentum(
         &self,
         attitude: impl Into<Group<S>>,
         momentum: Vector<S>,
     ) -> Result<StateOf<S, P>, SetupError> {
         let attitude = attitude.into();
-        // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
-        let allowed = Scalar::<S>::simd_default_epsilon() * real(1e4);
-        let defect = attitude.defect();
-        if !defect.simd_le(allowed).all() {
-            return Err(SetupError::NotInGroup { defect: reported(defect) });
-        }
+        check_attitude(&attitude)?;
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
@@ -141,7 +142,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         if !S::IS_QUADRATIC {
             let w = self.scene.advected().seen_from(&attitude);
             if !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
-                return Err(SetupError::NonFinite { what: "velocity with this momentum" });
+                return Err(SetupError::NoVelocity);
             }
         }
         Ok(self.begin(attitude, momentum))
@@ -435,8 +436,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         velocity_of_momentum(&self.scene, &motion.momentum, &motion.advected)
     }
 
-    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J. Where the scene is a [`DiscreteLagrangian`] it
-    /// oscillates about its initial value, at the order of the scheme, and doesn't drift.
+    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J. NaN where it isn't,
+    /// and no [`velocity`](Self::velocity) has this momentum.
+    ///
+    /// Where the scene is a [`DiscreteLagrangian`] it oscillates about its initial value, at the order of the scheme, and
+    /// doesn't drift.
     #[must_use]
     pub fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
         energy(&self.scene, &motion.momentum, &motion.advected)
@@ -547,6 +551,14 @@ where
     P: InLanes<W>,
 {
     type Together = Stepper<S::Together, P::Together>;
+}
+
+/// Whether a motion may start here.
+fn check_attitude<G: LieGroup>(attitude: &G) -> Result<(), SetupError> {
+    // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
+    let allowed = G::Scalar::simd_default_epsilon() * real(1e4);
+    let defect = attitude.defect();
+    if defect.simd_le(allowed).all() { Ok(()) } else { Err(SetupError::NotInGroup { defect: reported(defect) }) }
 }
 
 /// A step of this state.

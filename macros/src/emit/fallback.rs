@@ -102,6 +102,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         #effect {
             #types
             const INERTIA_IS_CONSTANT: #core::primitive::bool = true;
+            const IS_QUADRATIC: #core::primitive::bool = true;
             const DERIVATION: &'static #core::primitive::str = "";
             fn describe(&self, _: &mut dyn #private::SceneVisitor<#scalar>) { loop {} }
             fn momentum_jacobian(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #square { loop {} }

@@ -69,7 +69,7 @@ pub(crate) fn implementation(
         Role::Force => ("Force", TokenStream::new()),
     };
     let (of_role, effect_of) = (header.implementation(name), header.implementation("Effect"));
-    let term = emitter.term(&TokenStream::new());
+    let term = emitter.term(&stages::same_generators(&emitter.code));
     let invariance = invariance(declaration, &header);
     let addition = header.addition();
     let lanes = lanes::lanes(&header, Some(&declaration.fields));

@@ -7,6 +7,7 @@ use quote::quote_spanned;
 
 use super::code::{Form, needed};
 use super::{Code, Emitter};
+use crate::mathematics::derive::Inverse;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Stage, SymbolId};
 use crate::program::{Graph, Kernel, Node, NodeId};
@@ -80,11 +81,9 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     );
     let construction =
         super::docs::stage(graph, &constants.keys().copied().collect::<Vec<_>>(), Stage::Construction, "construction");
-    let generators = same_generators(&emitter.code);
     let methods = quote_spanned! {span=>
         #[doc = #construction]
         fn constants(&self, h: #scalar) -> Self::Constants {
-            #generators
             #constants_body
         }
 
@@ -171,11 +170,13 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
         });
         quote_spanned!(span=> const APART: #private::Blocks = #blocks;)
     });
+    let is_quadratic = !emitter.equations.is_some_and(|equations| equations.derived.inverse == Inverse::Nonlinear);
     let [step, iteration] = kernel.operations().map(Literal::u32_unsuffixed);
     quote_spanned! {span=>
         const PARTS: #private::Parts = #private::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
         const DENOMINATORS: #u32 = #denominators;
         const INERTIA_IS_CONSTANT: #bool = #is_constant;
+        const IS_QUADRATIC: #bool = #is_quadratic;
         #apart
         const OPERATIONS: #private::Operations = #private::Operations { step: #step, iteration: #iteration };
     }

@@ -1,4 +1,5 @@
-//! The continuous equations: derived of a declared `l`, or of the limit of a declared `l_d`, and checked exactly.
+//! The continuous equations: derived of a declared `l`, or of the limit of a declared `l_d`, and checked exactly. That an `l`
+//! which isn't quadratic in the velocity is the limit of what is made of it is checked to rounding.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -17,6 +18,8 @@ pub(crate) struct Equations {
     pub(crate) derived: Continuous,
     /// A basis of the directions along which the body momentum is conserved for all values of the parameters.
     pub(crate) right_symmetries: Vec<Vec<Rational>>,
+    /// Whether what was made of a declared `l` was seen to have it for its limit; no point may tell.
+    pub(crate) is_limit_confirmed: bool,
 }
 
 impl Equations {
@@ -51,9 +54,15 @@ pub(crate) fn continuous(
     chosen: &Chosen,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    let Some(equations) = declared else { return of_limit(declaration, chosen, errors) };
+    let Some(mut equations) = declared else { return of_limit(declaration, chosen, errors) };
     let disagrees = match equations.derived.inverse {
-        Inverse::Nonlinear => verify::series_disagrees(declaration, tree, discrete),
+        Inverse::Nonlinear => {
+            let found = verify::has_limit(declaration, tree, discrete);
+            equations.is_limit_confirmed = found.is_some();
+            let [here, there] = [&equations.names, &chosen.lowered.names];
+            found == Some(false)
+                || verify::rest_disagrees(declaration, (here, &equations.derived), (there, &chosen.derived))
+        }
         Inverse::Constant | Inverse::Varying => {
             verify::limit_disagrees(declaration, tree, &chosen.lowered.names, &chosen.derived)
         }
@@ -88,5 +97,5 @@ fn checked(
         return None;
     }
     let right_symmetries = verify::right_symmetries(declaration, &names, &derived);
-    Some(Equations { names, derived, right_symmetries })
+    Some(Equations { names, derived, right_symmetries, is_limit_confirmed: true })
 }

@@ -6,31 +6,19 @@
 //! l = ½ q(ξ) (1 + (w·r)²) + c w·(ξ̂ r) − k (w·r)²,     q = tr(ξ̂ J ξ̂ᵀ),     w = gᵀ a_0
 //! ```
 
-use liestep::groups::{Generators, LieGroup, MatrixGroup, SE3, SL2};
+use checks::affine::Affine;
+use liestep::groups::{LieGroup, SE3, SL2};
 use liestep::lagrangian;
 use liestep::laws::samples::{MatrixLieGroup, Random};
+use liestep::mechanics::ContinuousLagrangian;
 use liestep::methods::CotangentGauss;
-use nalgebra::{DMatrix, Matrix2, Matrix4, RealField, SMatrix, SVector, Vector2, Vector4};
+use nalgebra::{DMatrix, Matrix2, Matrix4, SMatrix, SVector, Vector2, Vector4};
 use num_traits::{One as _, Zero as _};
 
 use super::collocation::Tableau;
 use super::{DoubleDouble, long};
 
 type Long = DMatrix<DoubleDouble>;
-
-/// The affine maps `x ↦ a x + b` of the line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct AffineGenerators;
-
-impl Generators<2, 2> for AffineGenerators {
-    const GENERATORS: [[[f64; 2]; 2]; 2] = [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 1.0], [0.0, 0.0]]];
-
-    fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {
-        m[(1, 0)].abs() + (m[(1, 1)] - T::one()).abs()
-    }
-}
-
-type Affine<T = f64> = MatrixGroup<AffineGenerators, T, 2, 2>;
 
 macro_rules! declared {
     ($name:ident: $group:ident, $vector:ident, $matrix:ident $(, $($own:tt)*)?) => {
@@ -254,6 +242,32 @@ fn column<const R: usize>(vector: &SVector<f64, R>) -> Long {
     Long::from_iterator(R, 1, vector.iter().map(|&entry| long(entry)))
 }
 
+/// How far numbers are from the long ones, relative to these.
+fn relative<'a>(expected: &Long, found: impl Iterator<Item = &'a f64>) -> f64 {
+    let rounded = expected.map(DoubleDouble::rounded);
+    let apart: f64 = rounded.iter().zip(found).map(|(a, b)| (a - b).powi(2)).sum();
+    apart.sqrt() / rounded.norm()
+}
+
+/// How far the library is followed.
+const STEP: f64 = 0.2;
+const STEPS: u32 = 5;
+
+/// Where the library's motion is then, from the identity.
+fn library<L, const PAIRS: usize, const N: usize, const D: usize>(
+    declared: &L,
+    momentum: &SVector<f64, D>,
+) -> (SMatrix<f64, N, N>, SVector<f64, D>)
+where
+    L: ContinuousLagrangian<Scalar = f64, Group: MatrixLieGroup<N, D>> + Clone,
+{
+    let gauss = CotangentGauss::<_, PAIRS, N>::new(declared.clone(), STEP).unwrap();
+    let start = (L::Group::identity(), *momentum);
+    let (attitude, momentum) =
+        (0..STEPS).fold(start, |(attitude, momentum), _| gauss.step(&attitude, &momentum).unwrap());
+    (attitude.matrix(), momentum)
+}
+
 /// Orders from five stages to eight, the Poisson property, and the library's step.
 macro_rules! assert_collocation {
     ($declared:ident: $group:ident, $n:literal, $d:literal, $time:literal) => {
@@ -280,6 +294,8 @@ macro_rules! assert_collocation {
             let expected = 2.0 * f64::from(u32::try_from(stages).unwrap());
             // The order of a symmetric method is even, so that one above 2s − 1 is 2s.
             assert!(order > expected - 1.0, "{name}, {stages} stages: order {order}, errors {errors:?}");
+            // On affine maps these steps are too long for the leading term alone.
+            assert!(name == "Affine" || order < expected + 1.0, "{name}, {stages} stages: order {order}");
         }
 
         let z = Long::from_iterator($d + $n, 1, long_momentum.iter().chain(spatial.iter()).copied());
@@ -291,14 +307,18 @@ macro_rules! assert_collocation {
         }
 
         let declared = $declared::read(&system, &w);
-        let gauss = CotangentGauss::<_, 3, $n>::new(declared, 0.2).unwrap();
-        let (attitude, after) = gauss.step(&$group::identity(), &momentum).unwrap();
-        let expected = system.end(&Tableau::new(6), &spatial, &long_momentum, long(0.2), 1);
-        let found = attitude.matrix();
-        let pairs = found.iter().zip(expected.0.iter()).chain(after.iter().zip(expected.1.iter()));
-        let apart = pairs.map(|(found, expected)| (found - expected.rounded()).abs()).fold(0.0, f64::max);
-        println!("{name}: the library is {apart:.1e} apart");
-        assert!(apart < 1e-13, "{name}: the library is {apart:e} apart");
+        let ends = [
+            library::<_, 1, $n, $d>(&declared, &momentum),
+            library::<_, 2, $n, $d>(&declared, &momentum),
+            library::<_, 3, $n, $d>(&declared, &momentum),
+            library::<_, 4, $n, $d>(&declared, &momentum),
+        ];
+        for (stages, (attitude, after)) in [2, 4, 6, 8].into_iter().zip(ends) {
+            let expected = system.end(&Tableau::new(stages), &spatial, &long_momentum, long(STEP), STEPS);
+            let apart = relative(&expected.0, attitude.iter()).max(relative(&expected.1, after.iter()));
+            println!("{name}, {stages} stages: the library is {apart:.1e} apart");
+            assert!(apart < 1e-14, "{name}, {stages} stages: the library is {apart:e} apart");
+        }
     };
 }
 

@@ -38,13 +38,12 @@ pub fn symmetries<L: System<N, D>, const N: usize, const D: usize>(lagrangian: &
 /// Both are relative to the sizes that rounding is relative to.
 pub fn drift<L: System<N, D>, const N: usize, const D: usize>(
     flow: &DiscreteLiePoisson<L>,
-    (mut attitude, velocity): (L::Group, SVector<f64, D>),
+    (mut attitude, mut momentum): (L::Group, SVector<f64, D>),
     steps: u32,
 ) -> (f64, f64) {
     let lagrangian = flow.scene();
     let symmetries = symmetries::<L, N, D>(lagrangian);
     let mut w = lagrangian.advected().seen_from(&attitude);
-    let mut momentum = lagrangian.inertia(&lagrangian.advected()) * velocity + lagrangian.momentum_bias(&w);
     let in_space = |attitude: &L::Group, momentum: &SVector<f64, D>| attitude.inverse().adjoint_transpose(momentum);
     let start = in_space(&attitude, &momentum);
     let (mut change, mut missed) = (0.0_f64, 0.0_f64);

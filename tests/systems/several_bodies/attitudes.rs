@@ -68,6 +68,7 @@ impl Effect for Row {
 
     const PARTS: Parts = Parts::ALL;
     const INERTIA_IS_CONSTANT: bool = true;
+    const IS_QUADRATIC: bool = true;
     const APART: Blocks = <Group as LieGroup>::FACTORS;
     const DERIVATION: &'static str = "four coupled attitudes, by hand";
 

@@ -168,6 +168,7 @@ impl Effect for Chain {
     type StepTerms = (Components, Seen);
 
     const INERTIA_IS_CONSTANT: bool = false;
+    const IS_QUADRATIC: bool = true;
     const DERIVATION: &'static str = "a chain of three links, by hand";
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::coefficients::Coefficients;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{ContinuousLagrangian, check_inertia};
+use crate::mechanics::{ContinuousLagrangian, Legendre, check_inertia, check_velocity};
 use crate::motion::{Integrator, Motion, State, StepReport};
 use crate::numbers::{Coordinates, carried_sum};
 
@@ -198,7 +198,8 @@ where
     ///
     /// # Errors
     ///
-    /// [`SetupError`] where the attitude isn't in the group or the velocity isn't finite.
+    /// [`SetupError`] where the attitude isn't in the group or the velocity isn't finite, and
+    /// [`SetupError::AmbiguousVelocity`] where its momentum doesn't lead back to it.
     pub fn start(
         &self,
         attitude: impl Into<L::Group>,
@@ -211,10 +212,19 @@ where
         if !is_in_group {
             return Err(SetupError::NotInGroup { defect });
         }
+        if !Coordinates::is_finite(&velocity) {
+            return Err(SetupError::NonFinite { what: "velocity" });
+        }
         let advected = self.advected(&attitude);
         let momentum = self.lagrangian.momentum(&velocity, &advected);
+        if L::LEGENDRE == Legendre::Nonlinear {
+            let found = self.lagrangian.velocity(&momentum, &advected);
+            let found = found.unwrap_or_else(|_| SVector::from_element(f64::NAN));
+            let inertia = self.lagrangian.velocity_hessian(&SVector::zeros(), &advected);
+            check_velocity::<f64, _>(&velocity, &found, &momentum, &inertia)?;
+        }
         if !Coordinates::is_finite(&momentum) {
-            return Err(SetupError::NonFinite { what: "velocity" });
+            return Err(SetupError::NonFinite { what: "momentum" });
         }
         Ok(State { motion: Motion { attitude, momentum, advected, steps: 0 }, kept: CotangentCarry::nothing() })
     }

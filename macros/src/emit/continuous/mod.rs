@@ -103,11 +103,8 @@ fn of_effect(header: &Header) -> TokenStream {
 /// What a stepper has to know of an `l` that isn't quadratic in the velocity.
 pub(super) fn at_velocity(header: &Header, equations: &Equations) -> Option<TokenStream> {
     let (private, vector) = (&header.private, header.vector());
-    let bool = quote_spanned!(Span::mixed_site()=> #private::core::primitive::bool);
     (equations.derived.inverse == Inverse::Nonlinear).then(|| {
         quote_spanned! {Span::mixed_site()=>
-            const IS_QUADRATIC: #bool = false;
-
             fn limit(&self, velocity: &#vector, w: &Self::Advected) -> #private::Limit<Self> {
                 #private::Limit {
                     l: #private::ContinuousLagrangian::l(self, velocity, w),

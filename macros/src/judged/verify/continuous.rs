@@ -274,6 +274,56 @@ pub(crate) fn energy_is_kept(
     })
 }
 
+/// `J`, `s` and `V` of the limit of a discrete Lagrangian, as operations.
+struct LimitTerms {
+    graph: Graph,
+    inertia: Vec<NodeId>,
+    bias: Vec<NodeId>,
+    potential: NodeId,
+}
+
+impl LimitTerms {
+    fn new(derived: &Derived) -> Self {
+        let (mut graph, none) = (Graph::default(), BTreeMap::new());
+        let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
+        let bias = components(&mut graph, derived, &none, &derived.limit.bias);
+        let mut scalariser = crate::program::Scalariser { graph: &mut graph, symbols: &derived.symbols, given: none };
+        let potential = scalariser.scalar(&derived.limit.potential);
+        Self { graph, inertia, bias, potential }
+    }
+
+    /// `J` by rows, `s` and `V`.
+    fn at(&self, names: &BTreeMap<Name, SymbolId>, point: &Point<Residue>) -> (Vec<Residue>, Vec<Residue>, Residue) {
+        let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, point.values.get(name)?.clone())));
+        let inputs = inputs.collect();
+        let at = |outputs: &[NodeId]| evaluated(&self.graph, outputs, &inputs);
+        let potential = at(&[self.potential]).first().copied().unwrap_or(Residue::UNDEFINED);
+        (at(&self.inertia), at(&self.bias), potential)
+    }
+}
+
+/// Whether `J`, `s` and `V`, which a stepper has of an `l` that isn't quadratic in the velocity, aren't what its derivatives
+/// are at rest.
+pub(crate) fn rest_disagrees(
+    declaration: &Declaration,
+    (names, continuous): (&BTreeMap<Name, SymbolId>, &Continuous),
+    (symbols, derived): (&BTreeMap<Name, SymbolId>, &Derived),
+) -> bool {
+    let (terms, limit) = (Terms::new(continuous), LimitTerms::new(derived));
+    let differs = |a: &Residue, b: &Residue| a.is_defined() && b.is_defined() && a != b;
+    (1..=POINTS).any(|seed| {
+        let mut point = Point::new(declaration, Residue::stream(seed));
+        if let Some(velocity) = point.values.get_mut(&Name::Velocity) {
+            *velocity = velocity.map(|_| Residue::ZERO);
+        }
+        let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
+        let (inertia, bias, potential) = limit.at(symbols, &point);
+        let pairs =
+            [(at(&terms.hessian), inertia), (at(&terms.momentum), bias), (at(&[terms.lagrangian]), vec![-potential])];
+        pairs.iter().any(|(here, there)| here.iter().zip(there).any(|(a, b)| differs(a, b)))
+    })
+}
+
 /// Whether the limit of a discretisation is the Lagrangian that was discretised.
 pub(crate) fn limit_disagrees(
     declaration: &Declaration,
@@ -281,23 +331,14 @@ pub(crate) fn limit_disagrees(
     names: &BTreeMap<Name, SymbolId>,
     derived: &Derived,
 ) -> bool {
-    let (mut graph, none) = (Graph::default(), BTreeMap::new());
-    let inertia = square(&mut graph, derived, &none, &derived.limit.inertia);
-    let bias = components(&mut graph, derived, &none, &derived.limit.bias);
-    let mut scalariser =
-        crate::program::Scalariser { graph: &mut graph, symbols: &derived.symbols, given: none.clone() };
-    let potential = scalariser.scalar(&derived.limit.potential);
+    let terms = LimitTerms::new(derived);
     (1..=POINTS).any(|seed| {
         let point = Point::new(declaration, Residue::stream(seed));
-        let inputs = names.iter().filter_map(|(name, symbol)| Some((*symbol, point.values.get(name)?.clone())));
-        let inputs = inputs.collect();
-        let at = |outputs: &[NodeId]| evaluated(&graph, outputs, &inputs);
         let (xi, dimension) = (point.velocity(), point.group().dimension());
-        let inertia = at(&inertia);
+        let (inertia, bias, potential) = terms.at(names, &point);
         let image: Vec<Residue> = inertia.chunks(dimension).map(|row| dot(row, &xi)).collect();
         let half = Residue::of(Rational::new(1, 2));
-        let potential = at(&[potential]).first().copied().unwrap_or(Residue::UNDEFINED);
-        let limit = half * dot(&xi, &image) + dot(&at(&bias), &xi) - potential;
+        let limit = half * dot(&xi, &image) + dot(&bias, &xi) - potential;
         let declared = Evaluation::new(&point.values).of(tree).first();
         limit.is_defined() && declared.is_defined() && limit != declared
     })

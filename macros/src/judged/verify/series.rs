@@ -61,6 +61,11 @@ impl Series {
         self.coefficients.iter().all(|c| *c == 0.0)
     }
 
+    /// Whether all coefficients of lower powers are known.
+    pub(super) const fn is_known_below(&self, power: i32) -> bool {
+        self.end >= power
+    }
+
     pub(super) fn at(&self, power: i32) -> f64 {
         let index = usize::try_from(power - self.first).ok();
         index.and_then(|index| self.coefficients.get(index)).copied().unwrap_or(0.0)
