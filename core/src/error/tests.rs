@@ -2,6 +2,7 @@
 //!
 //! A variant that isn't listed here doesn't compile: the matches are without a wildcard.
 
+#[cfg(feature = "serde")]
 use alloc::borrow::ToOwned as _;
 use alloc::string::ToString as _;
 use std::println;

@@ -178,7 +178,7 @@ fn is_orthogonal(group: &Group, seen: Seen) -> bool {
     match seen {
         Seen::Relative { of, from } => turns(of) && turns(from),
         Seen::Configuration(of) => turns(of),
-        _ => false,
+        Seen::From(_) => false,
     }
 }
 

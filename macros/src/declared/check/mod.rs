@@ -368,7 +368,11 @@ impl Checker<'_> {
         if !is_taken(name) {
             return name.to_owned();
         }
-        (2..).map(|number| format!("{name}_{number}")).find(|name| !is_taken(name)).unwrap_or_default()
+        let mut number = 2;
+        while is_taken(&format!("{name}_{number}")) {
+            number += 1;
+        }
+        format!("{name}_{number}")
     }
 
     /// The names of a `let` with a mistake are known, and have no tree.
