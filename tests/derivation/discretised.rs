@@ -116,7 +116,8 @@ where
     let quarter = swings[0] / swings[1];
     println!("{name}: energy {energy}, swings {swings:?}, {quarter:.3} times");
     assert!((quarter - 4.0).abs() < 0.2, "{name}: the energy's swings {swings:?}");
-    assert!(swings[0] < 1e-3 * (1.0 + energy.abs()), "{name}: the energy's swing {swings:?} of {energy}");
+    // Twice the largest, that of the sum, whose gravity makes 7 rad/s of a small body within the second.
+    assert!(swings[0] < 4e-3 * (1.0 + energy.abs()), "{name}: the energy's swing {swings:?} of {energy}");
 
     let time = 0.5;
     let gauss = CotangentGauss::<L, 3, N>::new(system.clone(), time / 20.0).unwrap();
