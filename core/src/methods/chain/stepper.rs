@@ -108,7 +108,7 @@ impl<const N: usize> ChainStepper<N> {
     ///
     /// [`SetupError`] where an attitude isn't a rotation or something isn't finite.
     pub fn start(&self, attitudes: [SO3; N], velocities: Bodies<Vector3<f64>, N>) -> Result<ChainState<N>, SetupError> {
-        if !velocities.0.iter().flatten().all(|entry| entry.is_finite()) {
+        if !velocities.0.iter().flatten().copied().all(f64::is_finite) {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
         let mut work = Self::work(&attitudes);
@@ -135,7 +135,7 @@ impl<const N: usize> ChainStepper<N> {
         if let Some(defect) = attitudes.iter().map(LieGroup::defect).find(|defect| !is_allowed(defect)) {
             return Err(SetupError::NotInGroup { defect });
         }
-        if !momentum.0.iter().flatten().all(|entry| entry.is_finite()) {
+        if !momentum.0.iter().flatten().copied().all(f64::is_finite) {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
         Ok(self.adopt(&Motion { attitude: attitudes, momentum, advected: (), steps: 0 }))
