@@ -62,7 +62,12 @@ fn run(way: &str, steps: u32) -> Result<(), Box<dyn Error>> {
     }
     match way {
         "unobserved" => drop(stepper.run(&mut state, steps)?),
-        "observed" => drop(stepper.observed(&mut state).every(10, |now| drop(black_box(now))).steps(steps)?),
+        "observed" => {
+            let look = |now: &_| {
+                black_box(now);
+            };
+            stepper.observed(&mut state).every(10, look).steps(steps)?;
+        }
         "columns" => recorded!(Nowhere),
         "csv" => recorded!(Csv::new(std::io::sink())),
         "csv in a thread" => recorded!(Background::new(Csv::new(std::io::sink()))),
