@@ -86,6 +86,39 @@ fn acted<T: Real + RealField + Copy>(e: &Matrices<T>, w: &Values) -> <Pair<T> as
     )
 }
 
+/// What a declaration on a product derives, against dual numbers of its `l_d` along the turns of each component.
+macro_rules! assert_derived {
+    ($dimension:literal of $system:expr, $first:expr, $second:expr; $f:expr, $values:expr, $w:expr, $h:expr) => {
+        let (system, first, second, f, values, w, h) = (&$system, &$first, &$second, $f, $values, $w, $h);
+        let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
+        let (diamond, momentum) = (system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h));
+        let jacobian = system.momentum_jacobian(&f, &w, h);
+        let scale = right.norm() + left.norm() + diamond.norm() + jacobian.norm();
+        let close = |what: &str, found: f64, expected: f64| {
+            assert!((found - expected).abs() <= 1e-13 * scale, "{what}: {found} instead of {expected}, scale {scale}");
+        };
+        let still = turned(0, Dual64::from(0.0));
+        let at = |f: &Matrices<Dual64>, e: &Matrices<Dual64>| first.l_d(f, &acted(e, &values), Dual64::from(h)).eps;
+        for k in 0..$dimension {
+            let (turn, f_k) = (turned(k, Dual64::new(0.0, 1.0)), lifted(&f));
+            close("right momentum", right[k], at(&product(&turn, &f_k), &still));
+            close("left momentum", left[k], at(&product(&f_k, &turn), &still));
+            close("diamond", diamond[k], -at(&f_k, &turn));
+            close("momentum", momentum[k], at(&product(&turn, &f_k), &turn));
+            for j in 0..$dimension {
+                let turn = turned(k, HyperDual64::new(0.0, 1.0, 0.0, 0.0));
+                let inner = turned(j, HyperDual64::new(0.0, 0.0, 1.0, 0.0));
+                let moved = product(&turn, &product(&inner, &lifted(&f)));
+                let value = second.l_d(&moved, &acted(&turn, &values), HyperDual64::from(h));
+                close("Jacobian", jacobian[(k, j)], value.eps1eps2);
+            }
+        }
+        let energy = -first.l_d(&lifted(&f), &acted(&still, &values), Dual64::new(h, 1.0)).eps;
+        assert!((system.discrete_energy(&f, &w, h) - energy).abs() <= 1e-13 * (energy.abs() + scale / h));
+    };
+}
+pub(crate) use assert_derived;
+
 #[test]
 fn two_bodies() {
     let rotations = Random::new(11).hard_rotations();
@@ -99,30 +132,6 @@ fn two_bodies() {
         let rotation = |r: &mut Random| *SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(r.vector())).as_matrix();
         let values = (r.vector(), r.vector(), rotation(&mut r), rotation(&mut r));
         let w = acted(&<(SO3, SO3)>::identity().matrix(), &values);
-        let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
-        let (diamond, momentum) = (system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h));
-        let jacobian = system.momentum_jacobian(&f, &w, h);
-        let scale = right.norm() + left.norm() + diamond.norm() + jacobian.norm();
-        let close = |what: &str, found: f64, expected: f64| {
-            assert!((found - expected).abs() <= 1e-13 * scale, "{what}: {found} instead of {expected}, scale {scale}");
-        };
-        let still = turned(0, Dual64::from(0.0));
-        let at = |f: &Matrices<Dual64>, e: &Matrices<Dual64>| first.l_d(f, &acted(e, &values), Dual64::from(h)).eps;
-        for k in 0..6 {
-            let (turn, f_k) = (turned(k, Dual64::new(0.0, 1.0)), lifted(&f));
-            close("right momentum", right[k], at(&product(&turn, &f_k), &still));
-            close("left momentum", left[k], at(&product(&f_k, &turn), &still));
-            close("diamond", diamond[k], -at(&f_k, &turn));
-            close("momentum", momentum[k], at(&product(&turn, &f_k), &turn));
-            for j in 0..6 {
-                let turn = turned(k, HyperDual64::new(0.0, 1.0, 0.0, 0.0));
-                let inner = turned(j, HyperDual64::new(0.0, 0.0, 1.0, 0.0));
-                let moved = product(&turn, &product(&inner, &lifted(&f)));
-                let value = second.l_d(&moved, &acted(&turn, &values), HyperDual64::from(h));
-                close("Jacobian", jacobian[(k, j)], value.eps1eps2);
-            }
-        }
-        let energy = -first.l_d(&lifted(&f), &acted(&still, &values), Dual64::new(h, 1.0)).eps;
-        assert!((system.discrete_energy(&f, &w, h) - energy).abs() <= 1e-13 * (energy.abs() + scale / h));
+        assert_derived!(6 of system, first, second; f, values, w, h);
     }
 }

@@ -9,6 +9,8 @@ use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, Vector3, Vector4, convert};
 use num_dual::{Dual64, HyperDual64};
 
+use crate::several_bodies::assert_derived;
+
 // With functions: what both ends of a step have, one of them calling another.
 #[lagrangian(
     group(F = SO3, d_1 = R3, t = R1, d_2 = R3),
@@ -115,30 +117,6 @@ fn bodies_that_are_translated() {
         let attitude = *SO3::from(nalgebra::UnitQuaternion::from_scaled_axis(r.vector())).as_matrix();
         let values = (r.vector(), attitude, r.vector(), r.vector(), r.signed());
         let w = acted(&turned(0, 0.0), &values);
-        let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
-        let (diamond, momentum) = (system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h));
-        let jacobian = system.momentum_jacobian(&f, &w, h);
-        let scale = right.norm() + left.norm() + diamond.norm() + jacobian.norm();
-        let close = |what: &str, found: f64, expected: f64| {
-            assert!((found - expected).abs() <= 1e-13 * scale, "{what}: {found} instead of {expected}, scale {scale}");
-        };
-        let still = turned(0, Dual64::from(0.0));
-        let at = |f: &Matrices<Dual64>, e: &Matrices<Dual64>| first.l_d(f, &acted(e, &values), Dual64::from(h)).eps;
-        for k in 0..10 {
-            let (turn, f_k) = (turned(k, Dual64::new(0.0, 1.0)), lifted(&f));
-            close("right momentum", right[k], at(&product(&turn, &f_k), &still));
-            close("left momentum", left[k], at(&product(&f_k, &turn), &still));
-            close("diamond", diamond[k], -at(&f_k, &turn));
-            close("momentum", momentum[k], at(&product(&turn, &f_k), &turn));
-            for j in 0..10 {
-                let turn = turned(k, HyperDual64::new(0.0, 1.0, 0.0, 0.0));
-                let inner = turned(j, HyperDual64::new(0.0, 0.0, 1.0, 0.0));
-                let moved = product(&turn, &product(&inner, &lifted(&f)));
-                let value = second.l_d(&moved, &acted(&turn, &values), HyperDual64::from(h));
-                close("Jacobian", jacobian[(k, j)], value.eps1eps2);
-            }
-        }
-        let energy = -first.l_d(&lifted(&f), &acted(&still, &values), Dual64::new(h, 1.0)).eps;
-        assert!((system.discrete_energy(&f, &w, h) - energy).abs() <= 1e-13 * (energy.abs() + scale / h));
+        assert_derived!(10 of system, first, second; f, values, w, h);
     }
 }

@@ -16,7 +16,7 @@ use liestep::numbers::Bodies;
 use liestep::{SO3, SetupError, State, Stepper};
 use nalgebra::Vector3;
 
-use super::{End, all, apart, attitudes_of};
+use super::{End, all, apart, attitudes_of, tenths};
 
 /// Two bodies would like to stand alike.
 #[liestep::lagrangian(
@@ -223,22 +223,14 @@ fn energy_and_momentum_of_a_million_steps() {
     let stepper = Stepper::new(row(), 0.01).unwrap();
     let mut state = stepper.start(start, velocity).unwrap();
     let (before, energy) = (whole(&state), stepper.energy(&state));
-    let tenths = [(); 10].map(|()| {
-        let (mut sum, mut most) = (0.0, 0.0_f64);
-        for _ in 0..10_000 {
-            stepper.run(&mut state, 10).unwrap();
-            let difference = stepper.energy(&state) - energy;
-            sum += difference;
-            most = most.max(difference.abs());
-        }
-        (sum / 10_000.0, most)
+    let (means, most) = tenths(|| {
+        stepper.run(&mut state, 10).unwrap();
+        stepper.energy(&state) - energy
     });
-    let most = tenths.iter().map(|tenth| tenth.1).fold(0.0, f64::max);
-    let means = tenths.map(|tenth| tenth.0);
     let spread = means.iter().fold(0.0_f64, |spread, mean| spread.max((mean - means[0]).abs()));
     let momentum = (whole(&state) - before).norm() / before.norm();
     println!("energy {energy}: within {most:.1e}, means apart by {spread:.1e}; momentum {momentum:.1e}");
-    assert!(most < 1e-3 * energy.abs() && spread < 0.1 * most, "{tenths:?}");
+    assert!(most < 1e-3 * energy.abs() && spread < 0.1 * most, "{most} {means:?}");
     assert!(momentum < 2e-12);
 }
 
