@@ -218,8 +218,18 @@ impl<'a> Expansion<'a> {
     }
 
     fn power(&self, base: Series, exponent: i32) -> Result<Series, LimitError> {
-        let factor = if exponent < 0 { self.reciprocal(&base)? } else { base };
-        (0..exponent.unsigned_abs()).try_fold(Series::one(), |product, _| self.times(&product, &factor))
+        let mut square = if exponent < 0 { self.reciprocal(&base)? } else { base };
+        let (mut product, mut left) = (Series::one(), exponent.unsigned_abs());
+        while left > 0 {
+            if left % 2 == 1 {
+                product = self.times(&product, &square)?;
+            }
+            left /= 2;
+            if left > 0 {
+                square = self.times(&square, &square)?;
+            }
+        }
+        Ok(product)
     }
 
     /// `1/(c hˡ (1 + ε)) = c⁻¹ h⁻ˡ Σ (−ε)ᵐ`.
