@@ -1,10 +1,12 @@
-//! Methods of higher order: their coefficients, the order of each measured, and what each conserves.
+//! Methods of higher order: their coefficients, the order of each measured, and what each conserves; and what a million
+//! steps lose by rounding.
 //!
-//! One crate, so that the declarations are expanded once.
+//! One crate, so that the declarations are expanded once, and a fast one.
 
 // The letters of the field.
 #![allow(non_snake_case)]
 
+mod compensated;
 mod composition;
 mod conditions;
 mod convergence;

@@ -6,7 +6,6 @@
 mod any_method;
 mod checkpoints;
 mod command_lines;
-mod compensated;
 mod long_drifts;
 mod observed;
 mod policies;
