@@ -28,12 +28,14 @@ fn times(count: usize, arguments: &str, item: &str) -> Vec<Duration> {
 }
 
 #[test]
+#[ignore = "a time, for a quiet machine: `cargo test -p liestep-macros time:: -- --ignored --nocapture`"]
 fn the_heavy_top_expands_quickly() {
     let times = times(50, HEAVY_TOP, &top("NonstandardInertia"));
     assert!(times[0] <= Duration::from_millis(50), "{times:?}");
 }
 
 #[test]
+#[ignore = "a time, for a quiet machine: `cargo test -p liestep-macros time:: -- --ignored --nocapture`"]
 fn the_sixth_order_top_expands_within_a_second() {
     let (arguments, item) = sixth();
     let times = times(5, arguments, item);
