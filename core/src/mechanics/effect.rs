@@ -345,16 +345,12 @@ pub(crate) fn velocity_and_energy<E: Effect>(
     momentum: &Vector<E>,
     w: &E::Advected,
 ) -> (Vector<E>, Scalar<E>) {
-    match inertia {
-        Some(known) => {
-            let velocity = Vector::<E>::solve_again(&known.factors, known.det, &(*momentum - effect.momentum_bias(w)));
-            (velocity, quadratic_energy(effect, &velocity, &known.matrix, w))
-        }
-        None => {
-            let velocity = velocity_of_momentum(effect, momentum, w);
-            (velocity, energy_of_velocity(effect, &velocity, w))
-        }
+    if let Some(known) = inertia {
+        let velocity = Vector::<E>::solve_again(&known.factors, known.det, &(*momentum - effect.momentum_bias(w)));
+        return (velocity, quadratic_energy(effect, &velocity, &known.matrix, w));
     }
+    let velocity = velocity_of_momentum(effect, momentum, w);
+    (velocity, energy_of_velocity(effect, &velocity, w))
 }
 
 /// The same by the inertia at rest: right where `l` is quadratic, elsewhere an estimate.

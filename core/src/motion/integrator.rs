@@ -7,7 +7,7 @@ use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
 use crate::motion::any::{AnyState, AnyStepper};
-use crate::motion::plan::Plan;
+use crate::motion::plan::{NextSteps, Plan};
 use crate::motion::report::StepReport;
 use crate::motion::stepper::{StateOf, Stepper};
 use crate::motion::summation::Motion;
@@ -72,7 +72,7 @@ pub trait Integrator {
         &self,
         state: &mut Self::State,
         steps: u64,
-        next: &mut dyn FnMut(&Motion<Self::Group, Self::Advected>) -> u64,
+        next: &mut NextSteps<'_, Self::Group, Self::Advected>,
     ) -> Result<u64, StepError> {
         run_by_run(self, state, steps, next)
     }
@@ -198,7 +198,7 @@ fn run_by_run<I: Integrator + ?Sized>(
     integrator: &I,
     state: &mut I::State,
     mut steps: u64,
-    next: &mut dyn FnMut(&Motion<I::Group, I::Advected>) -> u64,
+    next: &mut NextSteps<'_, I::Group, I::Advected>,
 ) -> Result<u64, StepError> {
     let mut iterations = 0;
     while steps > 0 {
@@ -240,7 +240,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         &self,
         state: &mut Self::State,
         steps: u64,
-        next: &mut dyn FnMut(&Motion<Group<S>, S::Advected>) -> u64,
+        next: &mut NextSteps<'_, Group<S>, S::Advected>,
     ) -> Result<u64, StepError> {
         if const { P::RUNS_BY_STEPS } {
             self.run_in_place(state, steps, Some(next))

@@ -162,8 +162,10 @@ pub(crate) fn step<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     }
 }
 
-/// How many steps are to be made after those that were, by the motion then.
-pub(crate) type Next<'a, G, A> = Option<&'a mut dyn FnMut(&Motion<G, A>) -> u64>;
+/// Says how many steps are to be made after those that were, by the motion then.
+pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>) -> u64 + 'a;
+
+pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
 
 /// So many steps, and what comes after them.
 struct Run<'a, 'n, S: Effect, P: Plan<S>>(
