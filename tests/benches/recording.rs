@@ -63,10 +63,12 @@ fn run(way: &str, steps: u32) -> Result<(), Box<dyn Error>> {
     match way {
         "unobserved" => drop(stepper.run(&mut state, steps)?),
         "observed" => {
-            let look = |now: &_| {
-                black_box(now);
-            };
-            stepper.observed(&mut state).every(10, look).steps(steps)?;
+            stepper
+                .observed(&mut state)
+                .every(10, |now| {
+                    black_box(now);
+                })
+                .steps(steps)?;
         }
         "columns" => recorded!(Nowhere),
         "csv" => recorded!(Csv::new(std::io::sink())),

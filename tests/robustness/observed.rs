@@ -107,6 +107,27 @@ fn a_run_ends_when_it_is_told_to() {
     assert_eq!((ended.steps, back.time(&state)), (2, -0.02));
 }
 
+/// Several who look at the ends of steps are shown each its own, of a run that goes on from step 5.
+#[test]
+fn each_observer_sees_its_steps() {
+    let (stepper, mut state) = top(0.01);
+    stepper.run(&mut state, 5).unwrap();
+    let (seen, shares) = (RefCell::new(Vec::new()), RefCell::new(Vec::new()));
+    let ended = stepper
+        .observed(&mut state)
+        .every(7, |now| seen.borrow_mut().push((now.steps(), 7)))
+        .every(10, |now| seen.borrow_mut().push((now.steps(), 10)))
+        .progress(|share| shares.borrow_mut().push(share))
+        .steps(300)
+        .unwrap();
+    assert_eq!((ended.steps, ended.reason, state.steps()), (300, Reason::Done, 305));
+    let due = |step: u64| {
+        [7, 10].into_iter().filter(move |every| step.is_multiple_of(*every)).map(move |every| (step, every))
+    };
+    assert_eq!(seen.into_inner(), (6..=305).flat_map(due).collect::<Vec<_>>());
+    assert_eq!(shares.into_inner(), (1..=100).map(|share| f64::from(share) / 100.0).collect::<Vec<_>>());
+}
+
 /// What observers see has no influence, and is seen in order.
 #[test]
 fn given_times_are_shown_in_order() {

@@ -4,16 +4,17 @@
 #![allow(non_snake_case)]
 
 use liestep::accuracy::{Accuracy, Choice};
-use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
+use liestep::effects::{PrincipalBody, RigidBody};
 use liestep::groups::Advected;
 use liestep::methods::ExactBody;
 use liestep::motion::AnyStepper;
 use liestep::{SO3, SetupError, Stepper};
 
-use crate::body::{Distribution, Kinetic};
+use crate::body::Distribution;
 use crate::effects::Table as _;
 use crate::ensemble::Started;
 use crate::file::{Pace, SceneFile};
+use crate::kinetic::OtherBody;
 use crate::method::{Method, Stages};
 use crate::run::{Run, Stopped, Told, make};
 use crate::switched::Switched;
@@ -104,10 +105,10 @@ fn stepped(file: &SceneFile, h: f64, wanted: Wanted<'_, '_>) -> Result<(), Stopp
             if file.force().is_some() { step!(only damped) } else { step!(with_rotor) }
         }};
     }
-    let J = file.body.inertia();
-    match (file.body.kinetic, file.body.mass) {
+    match (OtherBody::of(file.body.kinetic, file.body.inertia()), file.body.mass) {
+        (Some(body), _) => with_effects!(body),
         // The kinetic term that most files have is there in four sums, not two.
-        (Kinetic::Rigid, Distribution::Principal(J_d)) => {
+        (None, Distribution::Principal(J_d)) => {
             let (potentials, with_rotor, driven, damped) = sums!(file, PrincipalBody { J_d });
             if file.magnetic_damping.is_some() {
                 step!(only damped)
@@ -119,11 +120,7 @@ fn stepped(file: &SceneFile, h: f64, wanted: Wanted<'_, '_>) -> Result<(), Stopp
                 step!(potentials)
             }
         }
-        (Kinetic::Rigid, Distribution::Full(J_d)) => with_effects!(RigidBody { J_d }),
-        (Kinetic::Cayley, _) => with_effects!(CayleyBody { J }),
-        (Kinetic::Geodesic, _) => with_effects!(GeodesicBody { J }),
-        (Kinetic::FourthOrder, _) => with_effects!(FourthOrderBody { J }),
-        (Kinetic::SixthOrder, _) => with_effects!(SixthOrderBody { J }),
+        (None, Distribution::Full(J_d)) => with_effects!(RigidBody { J_d }),
     }
 }
 

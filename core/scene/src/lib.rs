@@ -32,6 +32,7 @@ mod effects;
 mod ensemble;
 mod events;
 mod file;
+mod kinetic;
 mod method;
 mod mistake;
 mod page;

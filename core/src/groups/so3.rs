@@ -302,8 +302,8 @@ impl<T: Real> LieGroup for SO3<T> {
         let Some((own, behind)) = numbers.split_first_chunk_mut::<4>() else { return &mut [] };
         let [w, x, y, z] = quaternion;
         let before = own[0] * w + own[1] * x + own[2] * y + own[3] * z;
-        let sign = (-T::one()).select(before.simd_lt(T::zero()), T::one());
-        *own = quaternion.map(|part| part * sign);
+        let flips = before.simd_lt(T::zero());
+        *own = if flips.any() { quaternion.map(|part| (-part).select(flips, part)) } else { quaternion };
         behind
     }
 

@@ -99,8 +99,9 @@
 //! summed.run(&mut other, 1000)?;
 //! assert!((one.momentum() - other.momentum()).norm() < 1e-10);
 //!
-//! // What was derived is text, too.
-//! assert!(HeavyTop::DERIVATION.contains("δl_d/δw ⋄ w = (h m g/2) (F rho wᵀ − w rhoᵀ Fᵀ + rho wᵀ − w rhoᵀ)^∨    [(2.1)]"));
+//! // What was derived is text, too; of a type alone it is its `DERIVATION`, of the trait `Effect`.
+//! let diamond = "δl_d/δw ⋄ w = (h m g/2) (F rho wᵀ − w rhoᵀ Fᵀ + rho wᵀ − w rhoᵀ)^∨    [(2.1)]";
+//! assert!(declared.derivation().contains(diamond));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

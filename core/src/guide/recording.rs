@@ -45,6 +45,10 @@
 //! | what the files mean elsewhere | [`files`](super::files) |
 //! | what it costs | `cargo bench --bench recording` |
 //!
+//! A heavy top's step takes 80 ns. At every tenth step the columns above cost a run a twentieth; as text they cost as much as
+//! four to five steps, a half, or less where another thread has a core to itself. A run of a
+//! hundred million steps and its file takes 4 MB of memory (`cargo bench --bench recording -- memory 100000000`).
+//!
 //! # Between two steps
 //!
 //! The motion a fraction of a step after a state is a step of the same method with that fraction of `h`. So it has the

@@ -321,6 +321,38 @@ pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, 
     found.velocity.select(found.is_settled & found.is_regular, Vector::<E>::zero() * real(f64::NAN))
 }
 
+/// An inertia that is the same wherever a body is, with the factors by which the velocities of many momenta are solved
+/// for.
+#[derive(Clone, Copy, Debug)]
+pub struct FactoredInertia<G: LieGroup> {
+    matrix: <G::Vector as Coordinates<G::Scalar>>::Square,
+    factors: <G::Vector as Coordinates<G::Scalar>>::Square,
+    det: G::Scalar,
+}
+
+/// The inertia in factors, if it is known once for all.
+pub(crate) fn factored_inertia<E: Effect>(effect: &E) -> Option<FactoredInertia<Group<E>>> {
+    let matrix = constant_inertia(effect).ok()?;
+    let (factors, det) = Vector::<E>::factorise(&matrix);
+    Some(FactoredInertia { matrix, factors, det })
+}
+
+/// The body velocity of the momentum `μ` and the energy, by the inertia in factors if there is one: the same, to the bit.
+#[inline(always)]
+pub(crate) fn velocity_and_energy<E: Effect>(
+    effect: &E,
+    inertia: Option<&FactoredInertia<Group<E>>>,
+    momentum: &Vector<E>,
+    w: &E::Advected,
+) -> (Vector<E>, Scalar<E>) {
+    if let Some(known) = inertia {
+        let velocity = Vector::<E>::solve_again(&known.factors, known.det, &(*momentum - effect.momentum_bias(w)));
+        return (velocity, quadratic_energy(effect, &velocity, &known.matrix, w));
+    }
+    let velocity = velocity_of_momentum(effect, momentum, w);
+    (velocity, energy_of_velocity(effect, &velocity, w))
+}
+
 /// The same by the inertia at rest: right where `l` is quadratic, elsewhere an estimate.
 fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     Vector::<E>::solve(&effect.inertia(w), &(*momentum - effect.momentum_bias(w))).0
@@ -363,13 +395,17 @@ pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advecte
 }
 
 /// The same, of a velocity that is known.
-pub(crate) fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
+fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
     if !E::IS_QUADRATIC {
         let Limit { l, momentum, .. } = effect.limit(velocity, w);
         return velocity.dot(&momentum) - l;
     }
-    let kinetic = velocity.dot(&(effect.inertia(w) * *velocity)) * crate::numbers::real(0.5);
-    kinetic + effect.potential(w)
+    quadratic_energy(effect, velocity, &effect.inertia(w), w)
+}
+
+#[inline(always)]
+fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Square<E>, w: &E::Advected) -> Scalar<E> {
+    velocity.dot(&(*inertia * *velocity)) * real(0.5) + effect.potential(w)
 }
 
 /// The inertia, if it is the same wherever the body is.

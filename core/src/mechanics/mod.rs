@@ -22,10 +22,13 @@ mod term;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square, Vector};
+pub use effect::{
+    Effect, FactoredInertia, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square,
+    Vector,
+};
 pub(crate) use effect::{
-    check_inertia, check_velocity, constant_inertia, energy, energy_of_velocity, estimated_velocity,
-    momentum_of_velocity, pattern, velocity_of_momentum,
+    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
+    momentum_of_velocity, pattern, velocity_and_energy, velocity_of_momentum,
 };
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};

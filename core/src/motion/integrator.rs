@@ -5,9 +5,9 @@ use core::ops::{ControlFlow, Deref};
 
 use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, Group, Scalar, Vector, energy_of_velocity};
+use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
 use crate::motion::any::{AnyState, AnyStepper};
-use crate::motion::plan::Plan;
+use crate::motion::plan::{NextSteps, Plan};
 use crate::motion::report::StepReport;
 use crate::motion::stepper::{StateOf, Stepper};
 use crate::motion::summation::Motion;
@@ -62,6 +62,21 @@ pub trait Integrator {
         self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
     }
 
+    /// So many steps, one at least, and then as many as `next` says of the motion after the last, until it says none;
+    /// returns all iterations.
+    ///
+    /// # Errors
+    ///
+    /// As [`run_as_far`](Self::run_as_far).
+    fn run_shown(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        next: &mut NextSteps<'_, Self::Group, Self::Advected>,
+    ) -> Result<u64, StepError> {
+        run_by_run(self, state, steps, next)
+    }
+
     /// Whether the lanes of a state go on in one way, as they have to in a [`Batch`](crate::motion::Batch); one of a body
     /// alone always does.
     #[must_use]
@@ -98,10 +113,16 @@ pub trait Integrator {
     /// The energy, J; NaN where a momentum has none.
     fn energy(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self>;
 
-    /// Both, where what they share is computed once.
+    /// What the velocities of many motions may share, if anything.
+    fn factored_inertia(&self) -> Option<FactoredInertia<Self::Group>> {
+        None
+    }
+
+    /// Both, to the bit, with what they and others share computed once.
     fn velocity_and_energy(
         &self,
         motion: &Motion<Self::Group, Self::Advected>,
+        _inertia: Option<&FactoredInertia<Self::Group>>,
     ) -> (<Self::Group as LieGroup>::Vector, ScalarIn<Self>) {
         (self.velocity(motion), self.energy(motion))
     }
@@ -173,6 +194,20 @@ fn step_by_step<I: Integrator + ?Sized>(integrator: &I, state: &mut I::State, st
     Ok(iterations)
 }
 
+fn run_by_run<I: Integrator + ?Sized>(
+    integrator: &I,
+    state: &mut I::State,
+    mut steps: u64,
+    next: &mut NextSteps<'_, I::Group, I::Advected>,
+) -> Result<u64, StepError> {
+    let mut iterations = 0;
+    while steps > 0 {
+        iterations += integrator.run_as_far(state, steps)?;
+        steps = next(state);
+    }
+    Ok(iterations)
+}
+
 /// The scalar of an integrator.
 pub type ScalarIn<I> = <<I as Integrator>::Group as LieGroup>::Scalar;
 
@@ -196,9 +231,22 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     fn run_as_far(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
         if const { P::RUNS_BY_STEPS } {
             // It stops where they do, and nothing need be copied.
-            return self.run_in_place(state, steps);
+            return self.run_in_place(state, steps, None);
         }
         self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
+    }
+
+    fn run_shown(
+        &self,
+        state: &mut Self::State,
+        steps: u64,
+        next: &mut NextSteps<'_, Group<S>, S::Advected>,
+    ) -> Result<u64, StepError> {
+        if const { P::RUNS_BY_STEPS } {
+            self.run_in_place(state, steps, Some(next))
+        } else {
+            run_by_run(self, state, steps, next)
+        }
     }
 
     fn is_in_step(&self, state: &Self::State) -> bool {
@@ -225,10 +273,17 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         Stepper::energy(self, motion)
     }
 
-    #[inline]
-    fn velocity_and_energy(&self, motion: &Motion<Group<S>, S::Advected>) -> (Vector<S>, Scalar<S>) {
-        let velocity = Stepper::velocity(self, motion);
-        (velocity, energy_of_velocity(self.scene(), &velocity, &motion.advected))
+    fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
+        factored_inertia(self.scene())
+    }
+
+    #[inline(always)]
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<Group<S>, S::Advected>,
+        inertia: Option<&FactoredInertia<Group<S>>>,
+    ) -> (Vector<S>, Scalar<S>) {
+        velocity_and_energy(self.scene(), inertia, &motion.momentum, &motion.advected)
     }
 }
 

@@ -132,7 +132,7 @@ pub trait Plan<S: Effect> {
         let solvable = |fraction: f64| {
             self.refolded(scene, self.step_size() * real(fraction)).is_ok_and(|part| {
                 let (mut motion, mut kept) = (*motion, part.keep(scene, motion));
-                run_called(&part, scene, &mut motion, &mut kept, 1).is_ok()
+                run_called(&part, scene, &mut motion, &mut kept, (1, None)).is_ok()
             })
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.step_size() * real(fraction))
@@ -162,29 +162,50 @@ pub(crate) fn step<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
     }
 }
 
-/// So many steps.
-struct Run<'a, S: Effect, P: Plan<S>>(&'a P, &'a S, &'a mut Motion<Group<S>, S::Advected>, &'a mut P::Kept, u64);
+/// Says how many steps are to be made after those that were, by the motion then.
+pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>) -> u64 + 'a;
 
-impl<S: Effect, P: Plan<S>> Kernel for Run<'_, S, P> {
+pub(crate) type Next<'a, G, A> = Option<&'a mut NextSteps<'a, G, A>>;
+
+/// So many steps, and what comes after them.
+struct Run<'a, 'n, S: Effect, P: Plan<S>>(
+    &'a P,
+    &'a S,
+    &'a mut Motion<Group<S>, S::Advected>,
+    &'a mut P::Kept,
+    (u64, Next<'n, Group<S>, S::Advected>),
+);
+
+impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     type Output = Result<u64, StepError>;
     const VECTORS: Vectors = P::VECTORS;
 
+    /// Those who look at the motion are called from here, so that constants needn't be loaded again after them.
     #[inline(always)]
     fn run(self) -> Self::Output {
-        let Self(plan, scene, motion, kept, steps) = self;
-        plan.run(scene, motion, kept, steps)
+        let Self(plan, scene, motion, kept, (mut steps, mut next)) = self;
+        let mut iterations = 0;
+        loop {
+            iterations += plan.run(scene, motion, kept, steps)?;
+            steps = next.as_mut().map_or(0, |next| next(motion));
+            if steps == 0 {
+                return Ok(iterations);
+            }
+        }
     }
 }
 
-/// [`Plan::run`] with the vector instructions of the machine; called, so that there is one copy of a method's steps for all
-/// that runs them.
+/// [`Plan::run`] with the vector instructions of the machine, and as [`Integrator::run_shown`] goes on; called, so that
+/// there is one copy of a method's steps for all that runs them.
+///
+/// [`Integrator::run_shown`]: crate::motion::Integrator::run_shown
 #[inline(never)]
 pub(crate) fn run_called<S: Effect, P: Plan<S>>(
     plan: &P,
     scene: &S,
     motion: &mut Motion<Group<S>, S::Advected>,
     kept: &mut P::Kept,
-    steps: u64,
+    steps: (u64, Next<'_, Group<S>, S::Advected>),
 ) -> Result<u64, StepError> {
     dispatch(Run(plan, scene, motion, kept, steps))
 }

@@ -1,5 +1,7 @@
 //! The stepper: a scene, a method, and all that is put around a step.
 
+use alloc::string::String;
+
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup, SO3};
 use crate::mechanics::{
@@ -8,7 +10,7 @@ use crate::mechanics::{
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::{Plan, Steerable, run_called, step};
+use crate::motion::plan::{Next, Plan, Steerable, run_called, step};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -187,27 +189,33 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// As [`step`](Self::step).
     pub fn run(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
         let mut next = *state;
-        let iterations = self.run_in_place(&mut next, steps)?;
+        let iterations = self.run_in_place(&mut next, steps, None)?;
         *state = next;
         Ok(iterations)
     }
 
-    /// As [`run`](Self::run), but after an error the state may be anywhere.
-    pub(crate) fn run_in_place(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
-        let made = self.run_unexplained(state, steps);
+    /// As [`run`](Self::run), but after an error the state may be anywhere; it goes on as
+    /// [`Integrator::run_shown`](crate::motion::Integrator::run_shown) does.
+    pub(crate) fn run_in_place(
+        &self,
+        state: &mut StateOf<S, P>,
+        steps: u64,
+        next: Next<'_, Group<S>, S::Advected>,
+    ) -> Result<u64, StepError> {
+        let made = run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, next));
         made.map_err(|error| self.plan.explained(error, &self.scene, &state.motion, &state.kept))
     }
 
     /// As [`run`](Self::run), but after an error the state may be anywhere, and what would do isn't looked for.
     #[inline]
     pub(crate) fn run_unexplained(&self, state: &mut StateOf<S, P>, steps: u64) -> Result<u64, StepError> {
-        run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, steps)
+        run_called(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, None))
     }
 
     /// One step as a run of one, where that is the same: for callers that would else have another copy of it compiled.
     pub(crate) fn step_or_run(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         if const { P::STEPS_BY_RUNS || P::RUNS_BY_STEPS } {
-            self.run_in_place(state, 1).map(StepReport::of_run)
+            self.run_in_place(state, 1, None).map(StepReport::of_run)
         } else {
             self.step_called(state)
         }
@@ -229,7 +237,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
         let mut next = state.motion;
         let mut kept = part.keep(scene, &next);
-        run_called(&part, scene, &mut next, &mut kept, 1)
+        run_called(&part, scene, &mut next, &mut kept, (1, None))
             .map_err(|error| part.explained(error, scene, &state.motion, &kept))?;
         next.steps = state.steps;
         Ok(next)
@@ -408,6 +416,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     #[must_use]
     pub fn scene(&self) -> &S {
         &self.scene
+    }
+
+    /// What was declared of each term of the scene, and everything derived from it, as text.
+    #[must_use]
+    pub fn derivation(&self) -> String {
+        S::derivation()
     }
 
     /// The method, folded.

@@ -204,6 +204,31 @@ fn kinetic_terms_and_methods() {
     }
 }
 
+/// Each kinetic term by its name has the order of its own, and errors of its own, where nothing acts on the body.
+#[test]
+fn kinetic_terms_have_their_orders() {
+    let velocity = |body: &str, run: &str| {
+        let text = format!(
+            "title = \"free\"\n[body]\nmoments = [3, 4, 5.5]\n{body}\n[start]\neuler = [0, 0, 0]\nvelocity = [1, 2.5, 2]\n\
+             [run]\nduration = 3.2\n{run}\n"
+        );
+        let row = rows(&folder("orders"), &text).pop().unwrap();
+        Vector3::new(row[1], row[2], row[3])
+    };
+    // The motion of a free body is one flow of a splitting.
+    let exact = velocity("", "step = 0.1\nmethod = { splitting = \"Strang\" }");
+    let mut errors = Vec::new();
+    for (name, order) in
+        [("rigid", 2.0), ("cayley", 2.0), ("geodesic", 2.0), ("fourth-order", 4.0), ("sixth-order", 6.0)]
+    {
+        let error = |h: f64| (velocity(&format!("kinetic = \"{name}\""), &format!("step = {h}")) - exact).norm();
+        let (coarse, fine) = (error(0.1), error(0.05));
+        assert!(((coarse / fine).log2() - order).abs() < 0.2, "{name}: {coarse} {fine}");
+        assert!(errors.iter().all(|other: &f64| (coarse / other - 1.0).abs() > 0.05), "{name}: {errors:?} {coarse}");
+        errors.push(coarse);
+    }
+}
+
 /// A ball that rolls on: its tilt passes 60° at π/6, 5π/6, 7π/6, … half seconds, between the steps.
 #[test]
 fn events() {

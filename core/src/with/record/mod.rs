@@ -21,6 +21,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use crate::groups::LieGroup;
+use crate::mechanics::FactoredInertia;
 use crate::motion::{Integrator, Moment, ScalarIn};
 use crate::numbers::{Entries as _, real};
 
@@ -143,6 +144,7 @@ pub struct Recorder<'a, I: Integrator, S: Sink> {
     shows_motion: bool,
     /// The numbers of the attitude in the row before.
     attitude: Vec<ScalarIn<I>>,
+    inertia: Option<FactoredInertia<I::Group>>,
     quantities: Vec<Quantity<'a, I>>,
     /// Rows, of which so many numbers are there.
     block: Vec<f64>,
@@ -179,6 +181,7 @@ where
         let mut recorder = Self::bare(integrator, sink);
         let (attitude, components) = (I::Group::named_numbers(), I::Group::named_components());
         recorder.attitude = vec![real(0.0); attitude.len()];
+        recorder.inertia = integrator.factored_inertia();
         recorder.shows_motion = true;
         let named = |quantity: &'static str, which: usize| {
             components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
@@ -197,6 +200,7 @@ where
             columns: vec![Column { name: "t".to_owned(), unit: "s".to_owned() }],
             shows_motion: false,
             attitude: Vec::new(),
+            inertia: None,
             quantities: Vec::new(),
             block: Vec::new(),
             filled: 0,
@@ -254,21 +258,29 @@ where
         if self.block.len() < end {
             self.make_room(end);
         }
-        let (time, mut row) = self.block[self.filled..end].split_at_mut(1);
+        let (time, mut own) = self.block[self.filled..end].split_at_mut(1);
         time.fill(now.time().into());
         if self.shows_motion {
             now.attitude.write_numbers(&mut self.attitude);
-            let (attitude, behind) = row.split_at_mut(self.attitude.len());
-            attitude.iter_mut().zip(&self.attitude).for_each(|(place, &number)| *place = number.into());
-            let (velocity, energy) = now.integrator().velocity_and_energy(now);
-            let behind = write::<I>(behind, &velocity);
-            row = write::<I>(behind, &now.momentum);
-            if let [of_energy, of_defect, own @ ..] = row {
-                (*of_energy, *of_defect) = (energy.into(), now.attitude.defect().into());
-                row = own;
+            let (attitude, behind) = own.split_at_mut(self.attitude.len());
+            let numbers = self.attitude.iter().map(|&number| number.into());
+            // Quickly where the compiler knows the length: of a quaternion.
+            if let Ok(four) = <&mut [f64; 4]>::try_from(&mut *attitude) {
+                four.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+            } else {
+                attitude.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
             }
+            let (motion, behind) = behind.split_at_mut(2 * <I::Group as LieGroup>::DIMENSION + 2);
+            let (velocity, energy) = now.integrator().velocity_and_energy(now, self.inertia.as_ref());
+            let mut places = motion.iter_mut();
+            let mut write = |number: ScalarIn<I>| places.next().map_or((), |place| *place = number.into());
+            velocity.each(&mut write);
+            now.momentum.each(&mut write);
+            write(energy);
+            write(now.attitude.defect());
+            own = behind;
         }
-        row.iter_mut().zip(&mut self.quantities).for_each(|(place, quantity)| *place = quantity(now));
+        own.iter_mut().zip(&mut self.quantities).for_each(|(place, quantity)| *place = quantity(now));
         self.filled = end;
         if end >= self.full { self.flush() } else { Ok(()) }
     }
@@ -342,20 +354,6 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         self.stage = Stage::Failed;
         RecordError::Sink { cause }
     }
-}
-
-/// Writes components to the beginning of a row, and returns what is behind them.
-#[inline(always)]
-fn write<'r, I>(row: &'r mut [f64], components: &<I::Group as LieGroup>::Vector) -> &'r mut [f64]
-where
-    I: Integrator,
-    ScalarIn<I>: Into<f64>,
-{
-    // Of a length that the compiler knows.
-    let (own, behind) = row.split_at_mut(<I::Group as LieGroup>::DIMENSION);
-    let mut places = own.iter_mut();
-    components.each(&mut |component| places.next().map_or((), |place| *place = component.into()));
-    behind
 }
 
 /// The sink is there until the recorder is gone.

@@ -15,6 +15,7 @@ use event::Watched;
 use core::iter::Peekable;
 use core::ops::ControlFlow;
 
+use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::Effect;
 use crate::methods::CotangentGauss;
@@ -72,11 +73,23 @@ type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 pub struct Run<'a, I: Integrator> {
     integrator: &'a I,
     state: &'a mut I::State,
-    regular: Vec<Regular<'a, I>>,
-    conditions: Vec<Condition<'a, I>>,
+    observers: Observers<'a, I>,
     timed: Vec<Timed<'a, I>>,
     watched: Vec<Watched<'a, I>>,
+}
+
+/// Who looks at the ends of steps only.
+struct Observers<'a, I: Integrator> {
+    regular: Vec<Regular<'a, I>>,
+    conditions: Vec<Condition<'a, I>>,
     progress: Option<Box<dyn FnMut(f64) + 'a>>,
+    /// The steps from which and up to which the run goes.
+    start: u64,
+    end: u64,
+    /// The next step after which progress is told.
+    told: u64,
+    /// The next step after which there is more to do than to show it.
+    seldom: u64,
 }
 
 /// An observer that is shown every so many steps.
@@ -125,11 +138,17 @@ impl<'a, I: Integrator> Run<'a, I> {
         Self {
             integrator,
             state,
-            regular: Vec::new(),
-            conditions: Vec::new(),
+            observers: Observers {
+                regular: Vec::new(),
+                conditions: Vec::new(),
+                progress: None,
+                start: 0,
+                end: 0,
+                told: 0,
+                seldom: 0,
+            },
             timed: Vec::new(),
             watched: Vec::new(),
-            progress: None,
         }
     }
 
@@ -140,7 +159,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
         if steps > 0 {
             let observer = Box::new(move |now: &Moment<'_, I>| observer(now).verdict());
-            self.regular.push(Regular { every: steps, due: 0, observer });
+            self.observers.regular.push(Regular { every: steps, due: 0, observer });
         }
         self
     }
@@ -148,13 +167,13 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// Stops the run at its start, or after the first step, where this is so. A run that goes on from there makes no step
     /// while it is.
     pub fn stop_when(mut self, condition: impl FnMut(&Moment<'_, I>) -> bool + 'a) -> Self {
-        self.conditions.push(Box::new(condition));
+        self.observers.conditions.push(Box::new(condition));
         self
     }
 
     /// Tells what share of the run is made, from 0 to 1, at most a hundred times.
     pub fn progress(mut self, progress: impl FnMut(f64) + 'a) -> Self {
-        self.progress = Some(Box::new(progress));
+        self.observers.progress = Some(Box::new(progress));
         self
     }
 
@@ -165,40 +184,45 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// [`RunError`].
     pub fn steps(mut self, steps: u64) -> Result<Ended, RunError> {
         let mut ended = Ended { steps: 0, iterations: 0, reason: Reason::Done };
-        let start = self.state.steps();
-        let end = start.saturating_add(steps);
-        for Regular { every, due, .. } in &mut self.regular {
-            *due = if start == 0 { 0 } else { (start / *every).saturating_add(1).saturating_mul(*every) };
-        }
+        let (integrator, start) = (self.integrator, self.state.steps());
+        self.observers.begin(start, start.saturating_add(steps));
         self.look_first()?;
-        if self.show_timed(None, reported(self.integrator.time(self.state)), &mut ended)?
-            || self.show_regular(&mut ended)?
-            || self.condition_holds(&mut ended)
-        {
+        if self.show_timed(None, reported(integrator.time(self.state)), &mut ended)? {
             return Ok(ended);
         }
-        let looks_between = !(self.timed.is_empty() && self.watched.is_empty());
-        let goes_step_by_step = looks_between || !self.conditions.is_empty();
-        let mut told = start.saturating_add(part_told(start, end));
-        while self.state.steps() < end {
-            let made = if goes_step_by_step { 1 } else { self.next_shown(told, end) - self.state.steps() };
-            // Else nothing is copied.
-            let stops = if looks_between {
-                let before = self.state.clone();
-                ended.iterations += self.advance(made)?;
-                ended.steps += made;
-                self.show_between(&before, &mut ended)?
-            } else {
-                ended.iterations += self.advance(made)?;
-                ended.steps += made;
-                false
-            };
-            if stops || self.show_regular(&mut ended)? || self.condition_holds(&mut ended) {
-                break;
-            }
-            self.show_progress(start, end, &mut told);
+        let mut next = self.observers.show(&Moment::of_step(integrator, self.state), &mut ended)?;
+        if next == 0 {
+            return Ok(ended);
         }
+        if self.timed.is_empty() && self.watched.is_empty() {
+            let mut shown = Ok(());
+            let made = integrator.run_shown(self.state, next, &mut |motion| {
+                let next = self.observers.show(&Moment::of_step(integrator, motion), &mut ended);
+                next.unwrap_or_else(|error| {
+                    shown = Err(error);
+                    0
+                })
+            });
+            shown?;
+            ended.iterations = made.map_err(|cause| self.stuck(cause))?;
+        } else {
+            while next > 0 {
+                let before = self.state.clone();
+                ended.iterations += integrator.run_as_far(self.state, 1).map_err(|cause| self.stuck(cause))?;
+                next = if self.show_between(&before, &mut ended)? {
+                    0
+                } else {
+                    self.observers.show(&Moment::of_step(integrator, self.state), &mut ended)?
+                };
+            }
+        }
+        ended.steps = self.state.steps() - start;
         Ok(ended)
+    }
+
+    #[cold]
+    fn stuck(&self, cause: StepError) -> RunError {
+        RunError::Step { time: reported(self.integrator.time(self.state)), cause }
     }
 
     /// Shows what there is within a step.
@@ -209,44 +233,6 @@ impl<'a, I: Integrator> Run<'a, I> {
             }
         }
         self.show_timed(Some(before), reported(self.integrator.time(self.state)), ended)
-    }
-
-    /// The next step after which something is to be done.
-    fn next_shown(&self, told: u64, end: u64) -> u64 {
-        let next = self.regular.iter().fold(end, |next, regular| next.min(regular.due));
-        if self.progress.is_some() { next.min(told) } else { next }
-    }
-
-    /// So many steps, and where there are none the most there are.
-    fn advance(&mut self, steps: u64) -> Result<u64, RunError> {
-        let made = self.integrator.run_as_far(self.state, steps);
-        made.map_err(|cause| RunError::Step { time: reported(self.integrator.time(self.state)), cause })
-    }
-
-    /// Shows a step to those whose turn it is; returns whether one of them stops the run.
-    fn show_regular(&mut self, ended: &mut Ended) -> Result<bool, RunError> {
-        let now = Moment::of_step(self.integrator, self.state);
-        let mut stops = false;
-        for Regular { every, due, observer } in &mut self.regular {
-            if *due == now.steps() {
-                *due = due.saturating_add(*every);
-                stops |= show(observer, &now, ended)?;
-            }
-        }
-        Ok(stops)
-    }
-
-    /// Whether the run stops here by a condition.
-    fn condition_holds(&mut self, ended: &mut Ended) -> bool {
-        if self.conditions.is_empty() {
-            return false;
-        }
-        let now = Moment::of_step(self.integrator, self.state);
-        let holds = self.conditions.iter_mut().any(|condition| condition(&now));
-        if holds {
-            ended.reason = Reason::Stopped { time: reported(now.time()) };
-        }
-        holds
     }
 
     /// Shows the times from the state before up to this time.
@@ -278,16 +264,65 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
         Ok(stops)
     }
+}
 
-    #[allow(clippy::cast_precision_loss)] // a share
-    fn show_progress(&mut self, start: u64, end: u64, told: &mut u64) {
-        let now = self.state.steps();
-        if let Some(progress) = &mut self.progress
-            && (now == end || now == *told)
-        {
-            *told = now.saturating_add(part_told(start, end));
-            progress((now - start) as f64 / (end - start) as f64);
+impl<I: Integrator> Observers<'_, I> {
+    /// Looks for what is due from one step to another.
+    fn begin(&mut self, start: u64, end: u64) {
+        (self.start, self.end, self.told, self.seldom) = (start, end, start, start);
+        for Regular { every, due, .. } in &mut self.regular {
+            *due = if start == 0 { 0 } else { (start / *every).saturating_add(1).saturating_mul(*every) };
         }
+    }
+
+    /// Shows a step to those whose turn it is; returns how many there are to the next that somebody wants to see, and none
+    /// at the end of the run, which an observer or a condition may be.
+    #[inline(always)]
+    fn show(&mut self, now: &Moment<'_, I>, ended: &mut Ended) -> Result<u64, RunError> {
+        let (made, mut next, mut stops) = (now.steps(), self.seldom, false);
+        for Regular { every, due, observer } in &mut self.regular {
+            if *due == made {
+                *due = due.saturating_add(*every);
+                stops |= show(observer, now, ended)?;
+            }
+            next = next.min(*due);
+        }
+        if stops {
+            return Ok(0);
+        }
+        if made == self.seldom {
+            return Ok(self.look_seldom(now, ended));
+        }
+        Ok(next - made)
+    }
+
+    /// Conditions, progress and the end; returns as [`show`](Self::show).
+    #[cold]
+    #[allow(clippy::cast_precision_loss)] // a share
+    fn look_seldom(&mut self, now: &Moment<'_, I>, ended: &mut Ended) -> u64 {
+        let made = now.steps();
+        if self.conditions.iter_mut().any(|condition| condition(now)) {
+            ended.reason = Reason::Stopped { time: reported(now.time()) };
+            return 0;
+        }
+        if let Some(progress) = &mut self.progress
+            && made > self.start
+            && (made == self.told || made == self.end)
+        {
+            progress((made - self.start) as f64 / (self.end - self.start) as f64);
+        }
+        if made == self.told {
+            // At most a hundred times.
+            self.told = made.saturating_add((self.end - self.start).div_ceil(100).max(1));
+        }
+        self.seldom = if !self.conditions.is_empty() {
+            self.end.min(made + 1)
+        } else if self.progress.is_some() {
+            self.end.min(self.told)
+        } else {
+            self.end
+        };
+        self.regular.iter().fold(self.seldom, |next, regular| next.min(regular.due)) - made
     }
 }
 
@@ -335,12 +370,8 @@ where
     }
 }
 
-/// So many steps are made from one time that progress is told to the next.
-fn part_told(start: u64, end: u64) -> u64 {
-    (end - start).div_ceil(100).max(1)
-}
-
 /// Shows a moment; returns whether the observer stops the run.
+#[inline(always)]
 fn show<I: Integrator>(
     observer: &mut Observer<'_, I>,
     now: &Moment<'_, I>,
@@ -348,10 +379,14 @@ fn show<I: Integrator>(
 ) -> Result<bool, RunError> {
     match observer(now) {
         Ok(ControlFlow::Continue(())) => Ok(false),
-        Ok(ControlFlow::Break(())) => {
-            ended.reason = Reason::Stopped { time: reported(now.time()) };
-            Ok(true)
-        }
-        Err(cause) => Err(RunError::Observer { time: reported(now.time()), cause }),
+        verdict => stopped(verdict, reported(now.time()), ended),
     }
+}
+
+#[cold]
+#[inline(never)]
+fn stopped(verdict: Verdict, time: f64, ended: &mut Ended) -> Result<bool, RunError> {
+    let _ = verdict.map_err(|cause| RunError::Observer { time, cause })?;
+    ended.reason = Reason::Stopped { time };
+    Ok(true)
 }
