@@ -1,16 +1,21 @@
 //! Continuous Lagrangians: what `discretise` makes of them, and their equations against those by hand.
 
 use checks::random::Random;
-use declarations::{ContinuousTop, HeavyTop, RelativisticParticle};
+use checks::structure::System;
+use declarations::{ContinuousTop, HeavyTop, RelativisticParticle, SlidingTop};
 use liestep::effects::{Gravity, RigidBody, Rotor};
 use liestep::groups::R3;
-use liestep::mechanics::{ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia};
+use liestep::mechanics::{
+    ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Effect, Inertia, Legendre,
+};
 use liestep::methods::CotangentGauss;
 use liestep::motion::{Integrator, RightHandSide};
-use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
-use nalgebra::{Matrix3, RealField, UnitQuaternion, Vector3, Vector4, convert};
-use num_dual::Dual64;
+use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper, lagrangian};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector4};
+use num_dual::HyperDual64;
 use workbench::runge_kutta;
+
+use crate::dual_numbers::{assert_terms, by_hand};
 
 fn moments() -> DiagonalNonstandardInertia {
     DiagonalNonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap()
@@ -44,25 +49,19 @@ macro_rules! discretised {
             l = 0.5 * Omega.dot(&(J * Omega)) + s.dot(&Omega) - k * w.dot(&rho) - k * w.dot(&rho).powi(2),
             discretise = $rule$(($retraction))?,
         )]
-        struct $name<T: RealField + Copy> {
-            J: Inertia<T>,
-            s: Vector3<T>,
-            k: T,
-            rho: Vector3<T>,
-            up: Vector3<T>,
+        struct $name {
+            J: Inertia,
+            s: Vector3<f64>,
+            k: f64,
+            rho: Vector3<f64>,
+            up: Vector3<f64>,
         }
 
-        impl<T: RealField + Copy> $name<T> {
+        impl $name {
             fn new() -> Self {
-                let J = Matrix3::new(3.0, 0.2, -0.1, 0.2, 2.5, 0.3, -0.1, 0.3, 4.0).map(convert);
-                let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(convert);
-                Self {
-                    J: Inertia::new(J).unwrap(),
-                    s: vector(0.3, -0.2, 0.5),
-                    k: convert(1.7),
-                    rho: vector(0.1, -0.2, 1.0),
-                    up: vector(0.0, 0.0, 1.0),
-                }
+                let J = Matrix3::new(3.0, 0.2, -0.1, 0.2, 2.5, 0.3, -0.1, 0.3, 4.0);
+                let (s, rho) = (Vector3::new(0.3, -0.2, 0.5), Vector3::new(0.1, -0.2, 1.0));
+                Self { J: Inertia::new(J).unwrap(), s, k: 1.7, rho, up: Vector3::z() }
             }
         }
     )+};
@@ -73,83 +72,27 @@ discretised! {
     MidpointExp: midpoint(exp), Chord: chord, ChordCayley: chord(Cayley), ChordExp: chord(exp)
 }
 
-/// `l_d` of each rule, by hand.
-fn by_hand(rule: &str, f: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
-    let top = Trapezoid::<f64>::new();
-    let rotation = UnitQuaternion::from_matrix(f);
-    let (axis, angle) = (rotation.axis().unwrap(), rotation.angle());
-    let potential = |w: &Vector3<f64>| top.k * w.dot(&top.rho) + top.k * w.dot(&top.rho).powi(2);
-    let kinetic = |velocity: &Vector3<f64>| 0.5 * velocity.dot(&(top.J.as_matrix() * velocity)) + top.s.dot(velocity);
-    let moving = if rule.ends_with("Cayley") {
-        kinetic(&(axis.into_inner() * (2.0 * (angle / 2.0).tan() / h)))
-    } else if rule.ends_with("exp") {
-        kinetic(&(axis.into_inner() * (angle / h)))
-    } else {
-        let (x, J) = ((f - Matrix3::identity()) / h, top.J.as_matrix());
-        let nonstandard = Matrix3::identity() * (0.5 * J.trace()) - J;
-        let skew = Vector3::new(x.m32 - x.m23, x.m13 - x.m31, x.m21 - x.m12) * 0.5;
-        0.5 * (x * nonstandard * x.transpose()).trace() + top.s.dot(&skew)
+/// `l_d` and its derived terms as made by hand, and a step back undoes a step.
+fn assert_discretised<L: System<3, 3, Advected = Vector3<f64>>>(rule: &str, system: &L) {
+    let Trapezoid { J, s, k, rho, .. } = Trapezoid::new();
+    let [s, rho] = [s, rho].map(|vector| vector.map(HyperDual64::from));
+    let l = |q: HyperDual64, xi: &Vector3<_>, w: &Vector3<_>| {
+        let height = w.dot(&rho);
+        q * 0.5 + s.dot(xi) - (height + height * height) * k
     };
-    let next = f.transpose() * w;
-    let rest = if rule.starts_with("trapezoid") {
-        0.5 * (potential(w) + potential(&next))
-    } else if rule.starts_with("chord") {
-        potential(&((w + next) * 0.5))
-    } else {
-        potential(&(UnitQuaternion::from_axis_angle(&axis, -angle / 2.0) * w))
-    };
-    h * (moving - rest)
-}
-
-/// `l_d` by hand, its derivatives by dual numbers of the generated one, order two, and a step back undoes a step.
-fn assert_discretised<L, D>(rule: &str, system: &L, dual: &D)
-where
-    L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
-        + ContinuousLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>
-        + Effect<Kinetic = liestep::mechanics::WithKinetic>,
-    D: DiscreteLagrangian<Scalar = Dual64, Group = SO3<Dual64>, Advected = Vector3<Dual64>>,
-{
-    let mut random = Random::new(17);
-    for _ in 0..10 {
-        let (f, w, h) = (UnitQuaternion::from_scaled_axis(random.vector() * 0.4), random.vector(), 0.03);
-        let f = f.to_rotation_matrix().into_inner();
-        let expected = by_hand(rule, &f, &w, h);
-        let found = system.l_d(&f, &w, h);
-        assert!((found - expected).abs() <= 1e-12 * (1.0 + expected.abs()), "{rule}: {found} and {expected}");
-        let slope = |element: Matrix3<Dual64>, w: Vector3<Dual64>| dual.l_d(&element, &w, convert(h)).eps;
-        let lift = |m: &Matrix3<f64>| m.map(convert::<f64, Dual64>);
-        let epsilon = Dual64::new(0.0, 1.0);
-        let momentum = Vector3::from_fn(|k, _| {
-            let generator = lift(&SO3::hat_of(k)) * epsilon;
-            let moved = w.map(convert::<f64, Dual64>);
-            slope(lift(&f) + generator * lift(&f), moved + generator * moved)
-        });
-        let mu = system.legendre_minus(&f, &w, h);
-        assert!((mu - momentum).norm() <= 1e-10 * (1.0 + mu.norm()), "{rule}: {mu} and {momentum}");
-    }
+    assert_terms(rule, (system, 0.05), |f, w, h| by_hand(rule, J.as_matrix(), l, (f, w, h)), 17);
     const { assert!(L::SELF_ADJOINT) };
-}
-
-/// The basis of so(3) as matrices.
-trait Basis {
-    fn hat_of(k: usize) -> Matrix3<f64>;
-}
-
-impl Basis for SO3 {
-    fn hat_of(k: usize) -> Matrix3<f64> {
-        Vector3::from_fn(|j, _| if j == k { 1.0 } else { 0.0 }).cross_matrix()
-    }
 }
 
 #[test]
 fn every_discretisation_is_what_it_says() {
-    assert_discretised("trapezoid", &Trapezoid::new(), &Trapezoid::new());
-    assert_discretised("trapezoid Cayley", &TrapezoidCayley::new(), &TrapezoidCayley::new());
-    assert_discretised("trapezoid exp", &TrapezoidExp::new(), &TrapezoidExp::new());
-    assert_discretised("midpoint exp", &MidpointExp::new(), &MidpointExp::new());
-    assert_discretised("chord", &Chord::new(), &Chord::new());
-    assert_discretised("chord Cayley", &ChordCayley::new(), &ChordCayley::new());
-    assert_discretised("chord exp", &ChordExp::new(), &ChordExp::new());
+    assert_discretised("trapezoid", &Trapezoid::new());
+    assert_discretised("trapezoid(Cayley)", &TrapezoidCayley::new());
+    assert_discretised("trapezoid(exp)", &TrapezoidExp::new());
+    assert_discretised("midpoint(exp)", &MidpointExp::new());
+    assert_discretised("chord", &Chord::new());
+    assert_discretised("chord(Cayley)", &ChordCayley::new());
+    assert_discretised("chord(exp)", &ChordExp::new());
 }
 
 /// Steps of each discretisation converge, at order two, to what a solver makes of the continuous equations.
@@ -180,13 +123,13 @@ fn discretisations_converge_to_the_continuous_motion() {
         println!("{name}: {ratio}");
         assert!((3.7..4.3).contains(&ratio), "{name}: {ratio}");
     }
-    check(Trapezoid::<f64>::new, "trapezoid");
-    check(TrapezoidCayley::<f64>::new, "trapezoid(Cayley)");
-    check(TrapezoidExp::<f64>::new, "trapezoid(exp)");
-    check(MidpointExp::<f64>::new, "midpoint(exp)");
-    check(Chord::<f64>::new, "chord");
-    check(ChordCayley::<f64>::new, "chord(Cayley)");
-    check(ChordExp::<f64>::new, "chord(exp)");
+    check(Trapezoid::new, "trapezoid");
+    check(TrapezoidCayley::new, "trapezoid(Cayley)");
+    check(TrapezoidExp::new, "trapezoid(exp)");
+    check(MidpointExp::new, "midpoint(exp)");
+    check(Chord::new, "chord");
+    check(ChordCayley::new, "chord(Cayley)");
+    check(ChordExp::new, "chord(exp)");
 }
 
 /// A sum has the sum of the terms, and the bias of a rotor: by hand, `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
@@ -368,6 +311,86 @@ fn a_momentum_that_is_small_beside_that_at_rest() {
         let expected = kinetic / (1.0 - kinetic.norm_squared() / 1600.0).sqrt();
         assert!((velocity - expected).norm() < 1e-13 * charged.s.norm(), "{size}: {velocity}");
     }
+}
+
+/// The kinetic part of a top whose tip slides, and a momentum at rest that depends on how it stands.
+#[lagrangian(
+    group = SO3,
+    velocity = Omega,
+    advected(w = up),
+    l = 0.5 * Omega.dot(&(J * Omega)) + 0.5 * m * w.dot(&Omega.cross(&rho)).powi(2)
+        + Omega.dot(&(A * w)) - m * g * w.dot(&rho),
+)]
+#[derive(Clone)]
+struct Sliding {
+    J: Inertia,
+    A: Matrix3<f64>,
+    m: f64,
+    g: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// `μ = M(w) ξ + A w`, and what follows of it.
+fn assert_sliding<L>(
+    name: &str,
+    system: &L,
+    (J, A): (Matrix3<f64>, Matrix3<f64>),
+    (m, g, rho): (f64, f64, Vector3<f64>),
+) where
+    L: ContinuousLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone,
+{
+    let mut random = Random::new(9);
+    for _ in 0..20 {
+        let (xi, w) = (random.vector() * 3.0, random.vector());
+        let lever = rho.cross(&w);
+        let inertia = J + lever * lever.transpose() * m;
+        let momentum = inertia * xi + A * w;
+        let slope = xi.cross(&rho) * (m * xi.dot(&lever)) + A.transpose() * xi - rho * (m * g);
+        let torque = momentum.cross(&xi) + slope.cross(&w);
+        let near = |what: &str, found: Vector3<f64>, expected: Vector3<f64>| {
+            let error = (found - expected).norm();
+            assert!(error <= 1e-13 * (1.0 + momentum.norm() + torque.norm()), "{name}, {what}: {found} {expected}");
+        };
+        near("momentum", system.momentum(&xi, &w), momentum);
+        near("velocity", system.velocity(&momentum, &w).unwrap(), xi);
+        let (rate, turn) = system.lie_poisson(&momentum, &w).unwrap();
+        near("Lie–Poisson", rate, torque);
+        near("ẇ", turn, w.cross(&xi));
+        // d/dt of M(w) ξ + A w.
+        let (acceleration, turn) = system.euler_poincare(&xi, &w).unwrap();
+        let carried = rho.cross(&turn);
+        let change = (carried * lever.dot(&xi) + lever * carried.dot(&xi)) * m + A * turn;
+        near("Euler–Poincaré", inertia * acceleration + change, torque);
+        let energy = 0.5 * xi.dot(&(inertia * xi)) + m * g * w.dot(&rho);
+        assert!((system.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (1.0 + energy.abs()));
+        // A body that is turned back by the attitude sees what stands in space.
+        let numbers = RightHandSide::new(system.clone()).unwrap();
+        let (_, rate) = numbers.rates(&SO3::identity(), &momentum).unwrap();
+        near("for a solver", rate, system.lie_poisson(&momentum, &Vector3::z()).unwrap().0);
+    }
+}
+
+/// By hand `M(w) = J + m (ρ × w)(ρ × w)ᵀ` and `s(w) = A w`: momentum, its closed inverse, the rates of velocity and
+/// momentum, the energy; the same of the limit of a declared `l_d`, and for a solver.
+#[test]
+fn an_inertia_that_depends_on_what_is_advected() {
+    let J = Matrix3::new(3.0, 0.2, -0.1, 0.2, 2.5, 0.3, -0.1, 0.3, 4.0);
+    let A = Matrix3::new(0.4, -0.7, 0.1, 0.3, 0.2, -0.5, 0.6, 0.1, -0.3);
+    let (m, g, rho) = (1.1, 9.81, Vector3::new(0.5, -0.2, 1.0));
+    let sliding = |A: Matrix3<f64>, m: f64| Sliding { J: Inertia::new(J).unwrap(), A, m, g, rho, up: Vector3::z() };
+    let limit = SlidingTop { J_d: Inertia::new(J).unwrap().to_nonstandard(), m, g, rho, up: Vector3::z() };
+    const { assert!(matches!(Sliding::LEGENDRE, Legendre::Varying)) };
+    const { assert!(matches!(SlidingTop::LEGENDRE, Legendre::Varying)) };
+
+    assert_sliding("declared", &sliding(A, m), (J, A), (m, g, rho));
+    assert_sliding("limit", &limit, (J, Matrix3::zeros()), (m, g, rho));
+
+    // Where the inertia is singular no momentum has one velocity.
+    let unit = Sliding { J: Inertia::new(Matrix3::identity()).unwrap(), rho: Vector3::x(), ..sliding(A, -1.0) };
+    let error = unit.velocity(&Vector3::new(1.0, 2.0, 3.0), &Vector3::z()).unwrap_err();
+    assert!(matches!(error, StepError::Singular), "{error}");
+    assert!(matches!(RightHandSide::new(unit), Err(SetupError::SingularKinetic { .. })));
 }
 
 /// Of a symmetric top the momenta about the vertical and about its axis, of an asymmetric one the first, of a free body

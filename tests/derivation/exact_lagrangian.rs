@@ -3,33 +3,35 @@
 use declarations::{FourthOrderTop, HeavyTop, LogTop, SixthOrderTop, Top};
 use liestep::mechanics::{DiscreteLagrangian, Inertia};
 use liestep::prelude::*;
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 use workbench::measure::{four_halvings, order};
+use workbench::runge_kutta;
 
 /// The action `∫₀ʰ l dt` along the motion that begins with a velocity and a vertical, and the increment of that motion,
 /// by the classical Runge–Kutta method and Simpson's rule.
 fn exact(top: &HeavyTop, velocity: Vector3<f64>, w: Vector3<f64>, h: f64) -> (f64, Matrix3<f64>) {
     const STEPS: u32 = 64;
-    type State = (Matrix3<f64>, Vector3<f64>);
     let moments = top.moments();
     let seen = |f: &Matrix3<f64>| f.transpose() * w;
-    let l = |(f, o): &State| 0.5 * o.dot(&moments.component_mul(o)) - top.m * top.g * seen(f).dot(&top.rho);
-    let rate = |(f, o): &State| -> State {
-        let torque = moments.component_mul(o).cross(o) + seen(f).cross(&top.rho) * (top.m * top.g);
-        (f * o.cross_matrix(), torque.component_div(&moments))
+    // Attitude and velocity, side by side.
+    let joined = |f: Matrix3<f64>, o: Vector3<f64>| Matrix3x4::from_fn(|i, j| if j < 3 { f[(i, j)] } else { o[i] });
+    let apart = |z: &Matrix3x4<f64>| (z.fixed_columns::<3>(0).into_owned(), z.column(3).into_owned());
+    let l = |z: &Matrix3x4<f64>| {
+        let (f, o) = apart(z);
+        0.5 * o.dot(&moments.component_mul(&o)) - top.m * top.g * seen(&f).dot(&top.rho)
     };
-    let plus = |z: &State, k: &State, t: f64| (z.0 + k.0 * t, z.1 + k.1 * t);
+    let rate = |z: Matrix3x4<f64>| {
+        let (f, o) = apart(&z);
+        let torque = moments.component_mul(&o).cross(&o) + seen(&f).cross(&top.rho) * (top.m * top.g);
+        joined(f * o.cross_matrix(), torque.component_div(&moments))
+    };
     let t = h / f64::from(STEPS);
-    let (mut z, mut action) = ((Matrix3::identity(), velocity), 0.0);
+    let (mut z, mut action) = (joined(Matrix3::identity(), velocity), 0.0);
     for i in 0..STEPS {
         action += l(&z) * if i == 0 { 1.0 } else { f64::from(2 + 2 * (i % 2)) };
-        let k1 = rate(&z);
-        let k2 = rate(&plus(&z, &k1, 0.5 * t));
-        let k3 = rate(&plus(&z, &k2, 0.5 * t));
-        let k4 = rate(&plus(&z, &k3, t));
-        z = plus(&plus(&plus(&plus(&z, &k1, t / 6.0), &k2, t / 3.0), &k3, t / 3.0), &k4, t / 6.0);
+        z += runge_kutta::change(z, t, rate);
     }
-    ((action + l(&z)) * t / 3.0, z.0)
+    ((action + l(&z)) * t / 3.0, apart(&z).0)
 }
 
 /// A Lagrangian of order `r` misses the action of a step by `O(h^{r+1})`: [MW01], theorem 2.3.1.

@@ -6,6 +6,7 @@
 mod by_hand;
 mod continuous;
 mod discretised;
+mod dual_numbers;
 mod equations;
 mod exact_lagrangian;
 mod golden_steps;

@@ -3,7 +3,7 @@
 //! The gradient of `l` is that of dual numbers, its change along a motion that of hyper-dual ones; the brackets and the
 //! rates of what is advected are those of the library, which its laws test.
 
-use checks::structure::numbers::Numbers;
+use checks::structure::numbers::{Numbers, lifted, varied};
 use checks::structure::poisson;
 use liestep::groups::{Advected, LieGroup};
 use liestep::laws::samples::{MatrixLieGroup, Random};
@@ -11,26 +11,13 @@ use liestep::mechanics::ContinuousLagrangian;
 use liestep::methods::CotangentGauss;
 use liestep::motion::RightHandSide;
 use liestep::numbers::{Coordinates, Entries};
-use nalgebra::{RealField, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual64};
 use workbench::runge_kutta;
 
-/// Some hundred roundings, relative to the size of the terms.
-const BOUND: f64 = 1e-13;
-
-/// The same numbers in another scalar.
-fn lifted<T: RealField + Copy, A: Entries<f64>, B: Entries<T>>(a: &A) -> B {
-    let mut entries = Vec::new();
-    a.each(&mut |entry| entries.push(entry));
-    let mut entries = entries.into_iter();
-    B::from_entries(&mut || nalgebra::convert(entries.next().expect("as many")))
-}
-
-/// `a + ε b`, for a unit `ε` of another scalar.
-fn varied<T: RealField + Copy, A: Entries<f64>, B: Entries<T>>(a: &A, b: &A, unit: T) -> B {
-    let (a, b): (B, B) = (lifted(a), lifted(b));
-    a.zip(&b, &mut |a, b| a + b * unit)
-}
+/// Some dozens of roundings, relative to the size of the terms. Of 4400 Lagrangians, 400 on each group, the worst is off
+/// by 3e-16.
+const BOUND: f64 = 1e-14;
 
 fn assert_near<const D: usize>(found: &SVector<f64, D>, expected: &SVector<f64, D>, scale: f64, what: &str) {
     let error = (found - expected).norm();
@@ -63,6 +50,7 @@ where
     assert_near(&system.momentum(&xi, &w), &momentum, scale, "momentum");
     assert_near(&system.diamond_rate(&xi, &w), &diamond, scale, "diamond");
     let rate = L::Group::lie_bracket_transpose(&xi, &momentum) + diamond;
+    assert_near(&system.momentum_rate(&xi, &w), &rate, scale, "rate of the momentum");
 
     // Along the motion the momentum changes as (1.4) and (2.2) say.
     let (acceleration, turn) = system.euler_poincare(&xi, &w).expect("regular");
@@ -73,20 +61,20 @@ where
         hyper.l(&(along + direction * second), &varied(&w, &turn, first)).eps1eps2
     });
     let scale = scale + system.velocity_hessian(&xi, &w).norm() * acceleration.norm();
-    assert_near(&change, &rate, 10.0 * scale, "Euler–Poincaré");
+    assert_near(&change, &rate, scale, "Euler–Poincaré");
 
     // Solved for the velocity again, and with the Hamiltonian's equations in (μ, w).
     let found = system.velocity(&momentum, &w).expect("a convex kinetic energy");
     let condition = system.velocity_hessian(&xi, &w).norm();
-    assert_near(&found, &xi, 100.0 * (1.0 + condition) * (1.0 + xi.norm()), "velocity of the momentum");
+    assert_near(&found, &xi, (1.0 + condition) * (1.0 + xi.norm()), "velocity of the momentum");
     let (torque, again) = system.lie_poisson(&momentum, &w).expect("a convex kinetic energy");
-    assert_near(&torque, &rate, 100.0 * (1.0 + condition) * scale, "Lie–Poisson");
+    assert_near(&torque, &rate, scale, "Lie–Poisson");
     let mut entries = Vec::new();
     again.each(&mut |entry| entries.push(entry));
     let mut others = Vec::new();
     turn.each(&mut |entry| others.push(entry));
-    let size = 1.0 + condition;
-    assert!(entries.iter().zip(&others).all(|(a, b)| (a - b).abs() <= 1e-11 * size), "the rate of what is advected");
+    let allowed = 10.0 * BOUND * (1.0 + condition) * (1.0 + xi.norm());
+    assert!(entries.iter().zip(&others).all(|(a, b)| (a - b).abs() <= allowed), "the rate of what is advected");
     let energy = momentum.dot(&xi) - dual.l(&lifted(&xi), &lifted(&w)).re;
     let hamiltonian = system.hamiltonian(&momentum, &w).expect("a convex kinetic energy");
     assert!((hamiltonian - energy).abs() <= 10.0 * BOUND * (scale + energy.abs() + (momentum.dot(&xi)).abs()));
@@ -99,7 +87,7 @@ where
     let state = numbers.state(&attitude, &momentum);
     let mut rates = vec![0.0; state.len()];
     numbers.rate(&state, &mut rates).expect("a convex kinetic energy");
-    assert_near(&SVector::from_column_slice(&rates[N * N..]), &expected, 10.0 * (1.0 + expected.norm()), "numbers");
+    assert_near(&SVector::from_column_slice(&rates[N * N..]), &expected, 1.0 + expected.norm(), "numbers");
 }
 
 /// Where a motion ends after the time, in so many steps; `None` where one is too long for the iteration.

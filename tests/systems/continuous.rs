@@ -10,6 +10,7 @@ use checks::structure::axis;
 use liestep::laws::samples::derivative;
 use liestep::laws::samples::{MatrixLieGroup, along};
 use nalgebra::{SMatrix, SVector};
+use workbench::runge_kutta;
 
 /// A body on a group: its inertia in the basis of the algebra, and its potential at a place, in J.
 pub(crate) struct Body<'a, const N: usize, const D: usize> {
@@ -32,17 +33,14 @@ impl<const N: usize, const D: usize> Body<'_, N, D> {
     /// The solution after the time `t`, by the classical Runge–Kutta method.
     pub(crate) fn solution<G: MatrixLieGroup<N, D>>(&self, start: Phase<N, D>, t: f64, steps: u32) -> Phase<N, D> {
         let inverse = self.inertia.try_inverse().expect("an inertia");
-        let h = t / f64::from(steps);
-        let after = |z: &Phase<N, D>, rate: &Phase<N, D>, h: f64| (z.0 + rate.0 * h, z.1 + rate.1 * h);
-        let mut z = start;
+        let numbers = |(g, momentum): Phase<N, D>| g.iter().chain(&momentum).copied().collect::<Vec<_>>();
+        let phase = |y: &[f64]| (SMatrix::from_column_slice(&y[..N * N]), SVector::from_column_slice(&y[N * N..]));
+        let mut state = numbers(start);
         for _ in 0..steps {
-            let k1 = self.rate::<G>(&inverse, &z);
-            let k2 = self.rate::<G>(&inverse, &after(&z, &k1, 0.5 * h));
-            let k3 = self.rate::<G>(&inverse, &after(&z, &k2, 0.5 * h));
-            let k4 = self.rate::<G>(&inverse, &after(&z, &k3, h));
-            let sum = (k1.0 + (k2.0 + k3.0) * 2.0 + k4.0, k1.1 + (k2.1 + k3.1) * 2.0 + k4.1);
-            z = after(&z, &sum, h / 6.0);
+            let rate =
+                |y: &[f64], rate: &mut [f64]| rate.copy_from_slice(&numbers(self.rate::<G>(&inverse, &phase(y))));
+            runge_kutta::step(rate, &mut state, t / f64::from(steps));
         }
-        z
+        phase(&state)
     }
 }

@@ -7,8 +7,9 @@ use checks::structure::System;
 use declarations::{OrbitingBody, TetheredPlate, UnderwaterBody};
 use liestep::Stepper;
 use liestep::groups::{LieGroup as _, SL2};
-use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Matrix4, Point3, SMatrix, SVector, Vector3, Vector6};
 use workbench::measure::{four_halvings, order, relative, steps_in};
+use workbench::runge_kutta;
 
 use crate::continuous::{Body, Phase};
 use crate::samples::{self, Start};
@@ -155,37 +156,29 @@ fn sliding_top() {
     let top = samples::sliding_top();
     let inertia = ordinary(top.J_d.as_matrix());
     let (attitude, velocity) = samples::on_so3();
+    let stack = |p: Vector3<f64>, w: Vector3<f64>| Vector6::from_iterator(p.iter().chain(&w).copied());
     let momentum = |velocity: &Vector3<f64>, w: &Vector3<f64>| {
         let lever = top.rho.cross(w);
         inertia * velocity + lever * (top.m * lever.dot(velocity))
     };
-    let rate = |(p, w): (Vector3<f64>, Vector3<f64>)| {
+    let rate = |z: Vector6<f64>| {
+        let (p, w) = (z.fixed_rows::<3>(0).into_owned(), z.fixed_rows::<3>(3).into_owned());
         let lever = top.rho.cross(&w);
         let omega = (inertia + lever * lever.transpose() * top.m).try_inverse().unwrap() * p;
         let arm = omega.cross(&top.rho);
         let slope = arm * (top.m * w.dot(&arm)) - top.rho * (top.m * top.g);
-        (p.cross(&omega) + slope.cross(&w), w.cross(&omega))
+        stack(p.cross(&omega) + slope.cross(&w), w.cross(&omega))
     };
     let start = attitude.inverse().as_matrix() * top.up;
-    let mut exact = (momentum(&velocity, &start), start);
     let steps = 2000;
-    let h = 1.0 / f64::from(steps);
-    let at =
-        |(p, w): (Vector3<f64>, Vector3<f64>), (dp, dw): (Vector3<f64>, Vector3<f64>), s: f64| (p + dp * s, w + dw * s);
-    for _ in 0..steps {
-        let first = rate(exact);
-        let second = rate(at(exact, first, 0.5 * h));
-        let third = rate(at(exact, second, 0.5 * h));
-        let fourth = rate(at(exact, third, h));
-        for (slope, part) in [(first, 1.0), (second, 2.0), (third, 2.0), (fourth, 1.0)] {
-            exact = at(exact, slope, part * h / 6.0);
-        }
-    }
+    let exact = (0..steps).fold(stack(momentum(&velocity, &start), start), |z, _| {
+        z + runge_kutta::change(z, 1.0 / f64::from(steps), rate)
+    });
     let errors = [80_u32, 160, 320].map(|steps| {
         let stepper = liestep::Stepper::new(top.clone(), 1.0 / f64::from(steps)).unwrap();
         let mut state = stepper.start(attitude, velocity).unwrap();
         stepper.run(&mut state, u64::from(steps)).unwrap();
-        (state.momentum() - exact.0).norm() + (state.advected() - exact.1).norm()
+        (stack(state.momentum(), state.advected()) - exact).norm()
     });
     println!("{errors:?}");
     for pair in errors.windows(2) {

@@ -22,7 +22,7 @@
 //! | lemma 1.2.1, (1.11) | `{f, k}(μ) = −⟨μ, ad_{δf/δμ} δk/δμ⟩` | [`lie_poisson_bracket`] | `tests/groups/reduction.rs` `reduction_of_the_bracket`; `core/src/laws/group.rs` `lie_poisson_brackets` |
 //! | theorem 1.2.2, (1.12) | `μ̇ = ad*_{δh/δμ} μ` | [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `core/src/laws/group.rs` `lie_poisson_brackets` |
 //! | (1.13) | `𝔽L` before reduction | printed in [the guide][lie-poisson] | `tests/groups/reduction.rs` `legendre_transform` |
-//! | (1.14) | `μ = δl/δξ` | [`momentum`], inverse [`velocity`]; [`Stepper::start`], [`Stepper::velocity`] | `tests/systems/limit.rs` `assert_limit`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
+//! | (1.14) | `μ = δl/δξ` | [`momentum`], inverse [`velocity`]; [`Stepper::start`], [`Stepper::velocity`] | `tests/systems/limit.rs` `assert_limit`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `tests/derivation/continuous.rs` `an_inertia_that_depends_on_what_is_advected` |
 //! | (1.15) | `H = ⟨𝔽L, ġ⟩ − L` | printed in [the guide][lie-poisson] | `tests/groups/reduction.rs` `legendre_transform` |
 //! | (1.16) | `h(μ) = μ·ξ − l(ξ)`, with `δh/δμ = ξ` | [`hamiltonian`], [`Stepper::energy`] | `tests/systems/limit.rs` `assert_limit`; `tests/groups/reduction.rs` `legendre_transform`; `tests/random_lagrangians/continuous.rs` `assert_equations` |
 //! | lemma 1.3.1 | `𝔽l` carries (1.4) to (1.12) | [`euler_poincare`], [`lie_poisson`] | `tests/groups/reduction.rs` `legendre_transform` |
@@ -49,7 +49,7 @@
 //! | | what | where | checked by |
 //! |---|---|---|---|
 //! | actions on `V` and `V*` | `ρ(g)`, `ξ·v` | [`Advected`] | `core/src/laws/advected.rs` `kinds_move_as_declared` `kinds_act` `pairings_are_invariant` |
-//! | (2.1) | `δl_d/δw ⋄ w` | [`diamond`] | `tests/common/structure/momenta.rs` `assert_momenta` |
+//! | (2.1) | `δl_d/δw ⋄ w` | [`diamond`] | `tests/common/structure/momenta.rs` `assert_momenta`; `tests/derivation/dual_numbers.rs` `assert_terms` |
 //! | theorem 2.1.1, (2.2) | continuous advected equations | [`momentum_rate`], [`advected_rate`], [`RightHandSide`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `tests/systems/order.rs` `assert_second_order` |
 //! | example 3, (2.3) | continuous Lagrangian of a top | [`l`], and [`inertia`], [`momentum_bias`], [`potential`] of a limit | `tests/systems/limit.rs` `assert_limit`; `tests/hard_cases/rows.rs` `t1_orders_of_the_tops_of_the_thesis` |
 //! | theorem 2.2.1 | reduced and unreduced paths are one | | `tests/systems/unreduced.rs` `assert_variational` |

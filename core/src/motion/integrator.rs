@@ -107,7 +107,7 @@ pub trait Integrator {
     /// The step `h`, s.
     fn step_size(&self) -> ScalarIn<Self>;
 
-    /// The body velocity, on SO(3) in rad/s; NaN where a momentum has none.
+    /// The body velocity, on SO(3) in rad/s; NaN where a momentum has none, see [`Stepper::velocity`].
     fn velocity(&self, motion: &Motion<Self::Group, Self::Advected>) -> <Self::Group as LieGroup>::Vector;
 
     /// The energy, J; NaN where a momentum has none.

@@ -36,7 +36,7 @@ type Square<L> = <Velocity<L> as Coordinates<<L as Term>::Scalar>>::Square;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct RightHandSide<L: ContinuousLagrangian> {
+pub struct RightHandSide<L: Term> {
     lagrangian: L,
     spatial: L::Advected,
     /// `M` factorised, and its determinant, where it is the same for all `ξ` and `w`.

@@ -443,15 +443,20 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         self.step_size() * real(motion.steps as f64)
     }
 
-    /// The body velocity, on SO(3) in rad/s. NaN where the continuous limit isn't quadratic in the velocity, and no velocity
-    /// has this momentum.
+    /// The body velocity, on SO(3) in rad/s.
+    ///
+    /// Where the continuous limit isn't quadratic in the velocity, a discrete momentum may be one that no velocity has,
+    /// though the next step has a solution: the velocity is NaN then, of several lanes in those alone.
+    /// [`ContinuousLagrangian::velocity`](crate::mechanics::ContinuousLagrangian::velocity) of the [scene](Self::scene) says
+    /// why, as an error. The number enters no state: a [control force](Self::step_forced), an event and a refinement
+    /// that are made of it are refused.
     #[must_use]
     pub fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
         velocity_of_momentum(&self.scene, &motion.momentum, &motion.advected)
     }
 
-    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J. NaN where it isn't,
-    /// and no [`velocity`](Self::velocity) has this momentum.
+    /// The energy of the continuous system, `½ Ω·JΩ + V(w)` where it is quadratic in the velocity, J; where there is no
+    /// [`velocity`](Self::velocity) it is NaN, too.
     ///
     /// Where the scene is a [`DiscreteLagrangian`] it oscillates about its initial value, at the order of the scheme, and
     /// doesn't drift.

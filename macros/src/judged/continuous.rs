@@ -1,5 +1,4 @@
-//! The continuous equations: derived of a declared `l`, or of the limit of a declared `l_d`, and checked exactly. That an `l`
-//! which isn't quadratic in the velocity is the limit of what is made of it is checked to rounding.
+//! The continuous equations: derived of a declared `l`, or of the limit of a declared `l_d`, and checked exactly.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;

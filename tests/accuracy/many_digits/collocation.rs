@@ -29,18 +29,10 @@ fn legendre(n: usize, x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     (value, index(n) * (before - x * value) / (DoubleDouble::one() - x * x))
 }
 
-/// Coefficients of the product of a polynomial and `x − root`, from the constant one on.
-fn times_root(polynomial: &[DoubleDouble], root: DoubleDouble) -> Vec<DoubleDouble> {
-    let zero = DoubleDouble::zero();
-    let shifted = core::iter::once(zero).chain(polynomial.iter().copied());
-    let same = polynomial.iter().copied().chain([zero]);
-    shifted.zip(same).map(|(shifted, same)| shifted - root * same).collect()
-}
-
 impl Tableau {
     pub(crate) fn new(stages: usize) -> Self {
         let (half, one) = (long(0.5), DoubleDouble::one());
-        let nodes: Vec<_> = (0..stages)
+        let nodes: Vec<DoubleDouble> = (0..stages)
             .map(|k| {
                 let angle = core::f64::consts::PI * (index(k).rounded() + 0.75) / (index(stages).rounded() + 0.5);
                 let mut x = long(-angle.cos());
@@ -51,16 +43,24 @@ impl Tableau {
                 (x + one) * half
             })
             .collect();
-        // ∫₀ᶜ of the polynomial that is one at a node and zero at the others.
-        let integral = |j: usize, to: DoubleDouble| {
-            let others = (0..stages).filter(|k| *k != j);
-            let numerator = others.clone().fold(vec![one], |polynomial, k| times_root(&polynomial, nodes[k]));
-            let denominator = others.fold(one, |product, k| product * (nodes[j] - nodes[k]));
-            let terms = numerator.iter().enumerate().rev();
-            terms.fold(DoubleDouble::zero(), |sum, (power, c)| (sum + *c / index(power + 1)) * to) / denominator
+        let weight = |c: DoubleDouble| {
+            let x = c + c - one;
+            let (_, slope) = legendre(stages, x);
+            one / ((one - x * x) * slope * slope)
         };
-        let row = |to: DoubleDouble| (0..stages).map(|j| integral(j, to)).collect::<Vec<_>>();
-        Self { weights: row(one), a: nodes.iter().map(|node| row(*node)).collect() }
+        let weights: Vec<_> = nodes.iter().map(|node| weight(*node)).collect();
+        // The polynomial that is one at a node and zero at the others.
+        let lagrange = |j: usize, x: DoubleDouble| {
+            let others = (0..stages).filter(|k| *k != j);
+            others.fold(one, |product, k| product * (x - nodes[k]) / (nodes[j] - nodes[k]))
+        };
+        // ∫₀ᶜ of it, which the rule itself integrates exactly: multiplied out, it would lose digits.
+        let integral = |c: DoubleDouble, j: usize| {
+            let sum = nodes.iter().zip(&weights).map(|(node, weight)| *weight * lagrange(j, c * *node));
+            c * sum.fold(DoubleDouble::zero(), |sum, term| sum + term)
+        };
+        let a = nodes.iter().map(|node| (0..stages).map(|j| integral(*node, j)).collect()).collect();
+        Self { weights, a }
     }
 }
 

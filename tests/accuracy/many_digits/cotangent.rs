@@ -281,21 +281,19 @@ macro_rules! assert_collocation {
             let h = long(time) / long(steps.into());
             system.end(&Tableau::new(stages), &spatial, &long_momentum, h, steps)
         };
-        let exact = after(10, 28);
+        let exact = after(10, 56);
         for stages in 5..=8 {
             let error = |steps: u32| {
                 let end = after(stages, steps);
                 (end.0 - &exact.0).map(DoubleDouble::rounded).norm()
                     + (end.1 - &exact.1).map(DoubleDouble::rounded).norm()
             };
-            let errors = [10, 14].map(error);
+            // By half as many steps the leading term isn't alone yet; by twice as many the error is rounding.
+            let errors = [20, 28].map(error);
             let order = (errors[0] / errors[1]).ln() / 1.4_f64.ln();
             println!("{name}, {stages} stages: order {order:.2}, errors {errors:?}");
             let expected = 2.0 * f64::from(u32::try_from(stages).unwrap());
-            // The order of a symmetric method is even, so that one above 2s − 1 is 2s.
-            assert!(order > expected - 1.0, "{name}, {stages} stages: order {order}, errors {errors:?}");
-            // On affine maps these steps are too long for the leading term alone.
-            assert!(name == "Affine" || order < expected + 1.0, "{name}, {stages} stages: order {order}");
+            assert!((order - expected).abs() < 0.15, "{name}, {stages} stages: order {order}, errors {errors:?}");
         }
 
         let z = Long::from_iterator($d + $n, 1, long_momentum.iter().chain(spatial.iter()).copied());
@@ -324,12 +322,12 @@ macro_rules! assert_collocation {
 
 #[test]
 fn cotangent_collocation_on_sl2() {
-    assert_collocation!(OnSl2: SL2, 2, 3, 2.0);
+    assert_collocation!(OnSl2: SL2, 2, 3, 4.0);
 }
 
 #[test]
 fn cotangent_collocation_on_se3() {
-    assert_collocation!(OnSe3: SE3, 4, 6, 4.0);
+    assert_collocation!(OnSe3: SE3, 4, 6, 6.0);
 }
 
 #[test]

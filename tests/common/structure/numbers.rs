@@ -1,7 +1,22 @@
-//! Advected parameters as columns of numbers.
+//! Advected parameters as columns of numbers, and in other scalars.
 
 use liestep::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, MixedTensor};
-use nalgebra::{Point, SMatrix, SVector};
+use liestep::numbers::Entries;
+use nalgebra::{Point, RealField, SMatrix, SVector};
+
+/// The same numbers in another scalar.
+pub fn lifted<T: RealField + Copy, A: Entries<f64>, B: Entries<T>>(a: &A) -> B {
+    let mut entries = Vec::new();
+    a.each(&mut |entry| entries.push(entry));
+    let mut entries = entries.into_iter();
+    B::from_entries(&mut || nalgebra::convert(entries.next().expect("as many")))
+}
+
+/// `a + ε b`, for a unit `ε` of another scalar.
+pub fn varied<T: RealField + Copy, A: Entries<f64>, B: Entries<T>>(a: &A, b: &A, unit: T) -> B {
+    let (a, b): (B, B) = (lifted(a), lifted(b));
+    a.zip(&b, &mut |a, b| a + b * unit)
+}
 
 /// What can be taken apart into numbers and put together again: the parameters of one kind, none, or several.
 pub trait Numbers: Copy {

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::coefficients::Coefficients;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{ContinuousLagrangian, Legendre, check_inertia, check_velocity};
+use crate::mechanics::{ContinuousLagrangian, Legendre, Term, check_inertia, check_velocity};
 use crate::motion::{Integrator, Motion, State, StepReport};
 use crate::numbers::{Coordinates, carried_sum};
 
@@ -62,7 +62,7 @@ use nalgebra::ComplexField as _;
 ///
 /// \[HLW06\], theorems IV.2.2 and VI.4.2; see [`conventions`](crate::conventions).
 #[derive(Clone, Debug)]
-pub struct CotangentGauss<L: ContinuousLagrangian, const PAIRS: usize, const N: usize> {
+pub struct CotangentGauss<L: Term, const PAIRS: usize, const N: usize> {
     lagrangian: L,
     spatial: L::Advected,
     h: f64,

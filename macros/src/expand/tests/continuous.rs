@@ -392,7 +392,7 @@ fn the_limit_of_what_isnt_quadratic() {
     }
 }
 
-/// A root that has values below the velocity of light alone, and one that has none at any point that is tried.
+/// A root that has values below the velocity of light alone, and one that has none: the finite field tells of both.
 #[test]
 fn the_limit_of_a_root() {
     let l = |inside: &str, sign: char| {
@@ -414,7 +414,12 @@ fn the_limit_of_a_root() {
     assert_eq!(limit(&l(root, '+'), &l(turned, '+')), Some(false));
     assert_eq!(limit(&l(root, '+'), &l(root, '-')), Some(false));
     let nowhere = "-1.0 - v.norm_squared() / (c * c)";
-    assert_eq!(limit(&l(nowhere, '+'), &l(nowhere, '+')), None);
+    assert_eq!(limit(&l(nowhere, '+'), &l(nowhere, '+')), Some(true));
+    assert_eq!(limit(&l(nowhere, '+'), &l(nowhere, '-')), Some(false));
+    // A term that rounding would hide.
+    let small = "1.0 + 1e-15 - v.norm_squared() / (c * c)";
+    assert_eq!(limit(&l(root, '+'), &l(small, '+')), Some(false));
+    assert_eq!(limit(&l(small, '+'), &l(small, '+')), Some(true));
 }
 
 /// What a stepper has of an `l` at rest is what its derivatives are there.

@@ -12,8 +12,9 @@ use super::evaluation::Evaluation;
 use super::inertia::{KineticPart, classified};
 use super::number::Number;
 use super::residue::Residue;
+use super::series::PowerSeries;
 use super::value::Value;
-use super::{SAMPLES, parameter, stream};
+use super::{SAMPLES, exponential, increments, parameter, stream};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
 use crate::mathematics::derive::{Continuous, Derived};
 use crate::mathematics::group::Group;
@@ -141,12 +142,29 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     fn lifted(&self) -> Values<Dual<T>> {
+        self.in_numbers(Dual::constant)
+    }
+
+    /// In other numbers.
+    fn in_numbers<U: Number>(&self, of: impl Fn(T) -> U) -> Values<U> {
         let lifted = |value: &Value<T>| Value {
             rows: value.rows,
             columns: value.columns,
-            entries: value.entries.iter().map(|&entry| Dual::constant(entry)).collect(),
+            entries: value.entries.iter().map(|&entry| of(entry)).collect(),
         };
         self.values.iter().map(|(name, value)| (*name, lifted(value))).collect()
+    }
+}
+
+impl Point<'_, Residue> {
+    /// As power series in `h`, along `F = exp(h ξ̂)`.
+    fn moving(&self) -> Values<PowerSeries<Residue>> {
+        let mut values = self.in_numbers(PowerSeries::constant);
+        let velocity = values.get(&Name::Velocity).map_or_else(Vec::new, |velocity| velocity.entries.clone());
+        let step = element(self.group(), &velocity).map(|entry| entry * PowerSeries::STEP);
+        values.extend(increments(self.group(), &exponential(&step)));
+        values.insert(Name::Step, Value::scalar(PowerSeries::STEP));
+        values
     }
 }
 
@@ -342,6 +360,23 @@ pub(crate) fn limit_disagrees(
         let declared = Evaluation::new(&point.values).of(tree).first();
         limit.is_defined() && declared.is_defined() && limit != declared
     })
+}
+
+/// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`; `None` where no point tells.
+pub(crate) fn has_limit(declaration: &Declaration, l: &Rc<Tree>, discrete: &Rc<Tree>) -> Option<bool> {
+    let told = (1..=POINTS).filter_map(|seed| {
+        let values = Point::new(declaration, Residue::stream(seed)).moving();
+        let along = Evaluation::new(&values).of(discrete).first();
+        let rest = along - PowerSeries::STEP * Evaluation::new(&values).of(l).first();
+        if !rest.is_defined() {
+            return None;
+        }
+        match rest.order() {
+            Some(order) => Some(order >= 2),
+            None => rest.is_known_below(2).then_some(true),
+        }
+    });
+    told.reduce(|all, one| all && one)
 }
 
 /// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved.

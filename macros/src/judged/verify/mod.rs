@@ -36,12 +36,13 @@ use crate::program::{Graph, Input, Kernel, NodeId};
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
 #[cfg(test)]
 pub(crate) use continuous::energy_is_kept;
-pub(crate) use continuous::{disagreement, kinetic_hessian, limit_disagrees, rest_disagrees, right_symmetries};
+pub(crate) use continuous::{
+    disagreement, has_limit, kinetic_hessian, limit_disagrees, rest_disagrees, right_symmetries,
+};
 use evaluation::Evaluation;
 pub(super) use force::force;
 pub(super) use inertia::{KineticPart, kinetic_part};
 use number::Number;
-pub(crate) use orders::has_limit;
 pub(super) use orders::{TermMistake, not_smooth_at_identity, term_mistakes};
 use step::Step;
 use terms::Terms;

@@ -20,9 +20,6 @@ const MOST_SPLITS: usize = 200;
 /// A sum isn't looked for below more factors than these.
 const MOST_FACTORS: usize = 10;
 
-/// So many points are tried; the velocities of the last are a thousandth of those of the first.
-const POINTS: u32 = 11;
-
 /// What is wrong with a term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TermMistake {
@@ -76,24 +73,6 @@ pub(crate) fn not_smooth_at_identity(declaration: &Declaration, tree: &Rc<Tree>)
     singular(tree, &Points::new(declaration).at_rest)
 }
 
-/// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, to rounding. The first point tells at which
-/// both have values, and `O(h²)` can be told from nothing; `None` where no point does. The velocities are smaller from point
-/// to point, as an `l` that isn't quadratic in them may have values near rest alone.
-pub(crate) fn has_limit(declaration: &Declaration, l: &Rc<Tree>, discrete: &Rc<Tree>) -> Option<bool> {
-    (0..POINTS).find_map(|draw| {
-        let points = Points::drawn(declaration, draw);
-        let along = Evaluation::new(&points.moving).of(discrete).first();
-        let rest = along - Series::STEP * Evaluation::new(&points.moving).of(l).first();
-        if !rest.is_defined() {
-            return None;
-        }
-        match rest.order() {
-            Some(order) => Some(order >= 2),
-            None => rest.is_known_below(2).then_some(true),
-        }
-    })
-}
-
 type Values = BTreeMap<Name, Value<Series>>;
 
 /// Numbers for all names, with `h` as it is.
@@ -110,15 +89,9 @@ struct Points {
 
 impl Points {
     fn new(declaration: &Declaration) -> Self {
-        Self::drawn(declaration, 0)
-    }
-
-    /// Other ones for each draw, whose velocities are half as large as those of the draw before.
-    fn drawn(declaration: &Declaration, draw: u32) -> Self {
         let group = &declaration.group;
-        let slowness = Series::constant(0.5_f64.powi(i32::try_from(draw).unwrap_or(i32::MAX)));
         let numbers = |seed: u64| {
-            let mut number = stream(seed + 3 * u64::from(draw));
+            let mut number = stream(seed);
             move || Series::constant(number())
         };
         let mut number = numbers(1);
@@ -127,8 +100,7 @@ impl Points {
         for (index, field) in declaration.fields.iter().enumerate() {
             at_rest.insert(Name::Field(index), parameter(field.kind, &mut number));
         }
-        let speeds: Vec<Series> =
-            group.generators.iter().map(|_| (number() + Series::constant(0.5)) * slowness).collect();
+        let speeds: Vec<Series> = group.generators.iter().map(|_| number() + Series::constant(0.5)).collect();
         let velocity = Value::combination(group.size, &group.generators, &speeds);
         at_rest.insert(Name::Velocity, Value { rows: speeds.len(), columns: 1, entries: speeds });
         for name in [Name::DisplacementBefore, Name::DisplacementAfter] {

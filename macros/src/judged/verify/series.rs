@@ -1,8 +1,10 @@
-//! Power series in `h` with numbers for coefficients: how a declared expression goes as `h → 0`.
+//! Power series in `h` with numbers for coefficients: how a declared expression goes as `h → 0`. In a finite field nothing
+//! is rounded.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::number::Number;
+use super::residue::Residue;
 use crate::mathematics::symbolic::{Function, Rational};
 
 /// As many coefficients are known from the first on.
@@ -13,37 +15,106 @@ const NEVER: i32 = 1_000;
 /// What rounding leaves where numbers cancel, with some digits to spare: what is taken for nothing is no mistake.
 const ROUNDING: f64 = 1e-11;
 
-/// `Σ c_i hⁱ + O(hᵉ)`, from the first power whose coefficient isn't zero; undefined where that is NaN.
+/// What coefficients are.
+pub(super) trait Coefficient: Number + PartialEq {
+    fn is_defined(self) -> bool;
+
+    /// `x + y`, zero where only rounding is left.
+    fn sum(self, other: Self) -> Self;
+
+    /// Whether a root is real.
+    fn is_positive(self) -> bool;
+
+    /// `Σ_{i ≥ n} C(i, n) (−1)ⁱ a^(i − n)/(2i + k)!` of `a`.
+    fn stumpff(self, k: u8, n: usize) -> Self;
+}
+
+impl Coefficient for f64 {
+    fn is_defined(self) -> bool {
+        self.is_finite()
+    }
+
+    fn sum(self, other: Self) -> Self {
+        let sum = self + other;
+        if sum.abs() <= ROUNDING * (self.abs() + other.abs()) { 0.0 } else { sum }
+    }
+
+    fn is_positive(self) -> bool {
+        self > 0.0
+    }
+
+    fn stumpff(self, k: u8, n: usize) -> Self {
+        let (mut sum, mut term) = (0.0, first_of_stumpff::<Self>(k, n));
+        for i in n..n + 100 {
+            sum += term;
+            let next = 2 * i + usize::from(k);
+            let [above, below, once, twice] = [i + 1, i + 1 - n, next + 1, next + 2].map(small::<Self>);
+            term *= -self * above / (below * once * twice);
+        }
+        sum
+    }
+}
+
+impl Coefficient for Residue {
+    fn is_defined(self) -> bool {
+        Self::is_defined(self)
+    }
+
+    fn sum(self, other: Self) -> Self {
+        self + other
+    }
+
+    /// The stand-in for roots has a value everywhere.
+    fn is_positive(self) -> bool {
+        self != Self::ZERO
+    }
+
+    /// At zero; elsewhere the field has no such sums.
+    fn stumpff(self, k: u8, n: usize) -> Self {
+        if self == Self::ZERO { first_of_stumpff(k, n) } else { Self::UNDEFINED }
+    }
+}
+
+/// `(−1)ⁿ/(2n + k)!`.
+fn first_of_stumpff<T: Number>(k: u8, n: usize) -> T {
+    let first = (1..=2 * n + usize::from(k)).fold(T::ONE, |product, i| product / small(i));
+    if n.is_multiple_of(2) { first } else { -first }
+}
+
+/// With numbers that are rounded.
+pub(super) type Series = PowerSeries<f64>;
+
+/// `Σ c_i hⁱ + O(hᵉ)`, from the first power whose coefficient isn't zero; undefined where that is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Series {
+pub(super) struct PowerSeries<T> {
     first: i32,
     /// The power `e` from which on nothing is known.
     end: i32,
-    coefficients: [f64; LENGTH],
+    coefficients: [T; LENGTH],
 }
 
-impl Series {
+impl<T: Coefficient> PowerSeries<T> {
     /// `h`.
-    pub(super) const STEP: Self = Self::from_one_coefficient(1, 1.0);
+    pub(super) const STEP: Self = Self::from_one_coefficient(1, T::ONE);
 
-    const fn from_one_coefficient(first: i32, value: f64) -> Self {
-        let mut coefficients = [0.0; LENGTH];
+    const fn from_one_coefficient(first: i32, value: T) -> Self {
+        let mut coefficients = [T::ZERO; LENGTH];
         coefficients[0] = value;
         Self { first, end: first + LENGTH_I32, coefficients }
     }
 
-    pub(super) fn constant(value: f64) -> Self {
-        if value == 0.0 { Self::ZERO } else { Self::from_one_coefficient(0, value) }
+    pub(super) fn constant(value: T) -> Self {
+        if value == T::ZERO { Self::ZERO } else { Self::from_one_coefficient(0, value) }
     }
 
     /// With the coefficients from the power `first` on.
-    fn new(first: i32, end: i32, coefficients: [f64; LENGTH]) -> Self {
+    fn new(first: i32, end: i32, coefficients: [T; LENGTH]) -> Self {
         let end = end.min(first.saturating_add(LENGTH_I32));
         let known = usize::try_from(end.saturating_sub(first)).unwrap_or(0);
-        let Some(zeros) = coefficients[..known].iter().position(|c| *c != 0.0) else {
-            return Self { first: end, end, coefficients: [0.0; LENGTH] };
+        let Some(zeros) = coefficients[..known].iter().position(|c| *c != T::ZERO) else {
+            return Self { first: end, end, coefficients: [T::ZERO; LENGTH] };
         };
-        let mut shifted = [0.0; LENGTH];
+        let mut shifted = [T::ZERO; LENGTH];
         shifted[..known - zeros].copy_from_slice(&coefficients[zeros..known]);
         Self { first: first + i32::try_from(zeros).unwrap_or(0), end, coefficients: shifted }
     }
@@ -54,11 +125,11 @@ impl Series {
     }
 
     pub(super) fn is_defined(&self) -> bool {
-        self.coefficients.iter().all(|c| c.is_finite())
+        self.coefficients.iter().all(|c| c.is_defined())
     }
 
     pub(super) fn is_zero(&self) -> bool {
-        self.coefficients.iter().all(|c| *c == 0.0)
+        self.coefficients.iter().all(|c| *c == T::ZERO)
     }
 
     /// Whether all coefficients of lower powers are known.
@@ -66,19 +137,19 @@ impl Series {
         self.end >= power
     }
 
-    pub(super) fn at(&self, power: i32) -> f64 {
+    pub(super) fn at(&self, power: i32) -> T {
         let index = usize::try_from(power - self.first).ok();
-        index.and_then(|index| self.coefficients.get(index)).copied().unwrap_or(0.0)
+        index.and_then(|index| self.coefficients.get(index)).copied().unwrap_or(T::ZERO)
     }
 
     fn reciprocal(self) -> Self {
         if self.is_zero() || !self.is_defined() {
             return Self::UNDEFINED;
         }
-        let mut coefficients = [0.0; LENGTH];
-        coefficients[0] = 1.0 / self.coefficients[0];
+        let mut coefficients = [T::ZERO; LENGTH];
+        coefficients[0] = T::ONE / self.coefficients[0];
         for n in 1..LENGTH {
-            let sum = (1..=n).fold(0.0, |sum, i| cancelled(sum, self.coefficients[i] * coefficients[n - i]));
+            let sum = (1..=n).fold(T::ZERO, |sum, i| sum.sum(self.coefficients[i] * coefficients[n - i]));
             coefficients[n] = -sum * coefficients[0];
         }
         let length = self.end - self.first;
@@ -86,7 +157,7 @@ impl Series {
     }
 
     /// `f(a + x)` with `x` the rest without the constant `a`, from the coefficients of Taylor's series about `a`.
-    fn composed(self, taylor: &[f64; LENGTH]) -> Self {
+    fn composed(self, taylor: &[T; LENGTH]) -> Self {
         let rest = self - Self::constant(self.at(0));
         let mut sum = Self::ZERO;
         for coefficient in taylor.iter().rev() {
@@ -97,7 +168,7 @@ impl Series {
 
     /// Of an even power of `h` times a positive number.
     fn root(self) -> Self {
-        let positive = self.coefficients[0] > 0.0;
+        let positive = self.coefficients[0].is_positive();
         if self.is_zero() {
             // The root of O(hᵉ) is O(h^(e/2)), that of an exact zero exactly zero.
             let end = if self.end >= NEVER { self.end } else { self.end / 2 };
@@ -108,61 +179,47 @@ impl Series {
         }
         let half = self.first / 2;
         let unit = Self { first: 0, end: self.end - self.first, ..self };
-        let first = unit.at(0).sqrt();
-        let mut taylor = [first; LENGTH];
+        let first = unit.at(0).apply(Function::Sqrt);
+        let (mut taylor, half_of_one) = ([first; LENGTH], T::of(Rational::new(1, 2)));
         for n in 1..LENGTH {
-            taylor[n] = taylor[n - 1] * (0.5 - small(n - 1)) / (small(n) * unit.at(0));
+            taylor[n] = taylor[n - 1] * (half_of_one - small(n - 1)) / (small::<T>(n) * unit.at(0));
         }
         let root = unit.composed(&taylor);
         Self { first: root.first + half, end: root.end + half, ..root }
     }
 }
 
-/// `x + y`, zero where only rounding is left.
-fn cancelled(x: f64, y: f64) -> f64 {
-    let sum = x + y;
-    if sum.abs() <= ROUNDING * (x.abs() + y.abs()) { 0.0 } else { sum }
-}
-
-#[allow(clippy::cast_precision_loss)] // below a hundred
-fn small(n: usize) -> f64 {
-    n as f64
+/// Below a hundred.
+fn small<T: Number>(n: usize) -> T {
+    T::of(Rational::integer(i128::try_from(n).unwrap_or(0)))
 }
 
 /// `f⁽ⁿ⁾(a)/n!`.
-fn taylor(function: Function, a: f64) -> [f64; LENGTH] {
-    let mut factorial = 1.0;
+fn taylor<T: Coefficient>(function: Function, a: T) -> [T; LENGTH] {
+    let mut factorial = T::ONE;
+    let [sine, cosine] = [Function::Sin, Function::Cos];
     std::array::from_fn(|n| {
-        factorial *= small(n.max(1));
+        factorial = factorial * small(n.max(1));
         match function {
-            Function::Exp => a.exp() / factorial,
-            Function::Sin => [a.sin(), a.cos(), -a.sin(), -a.cos()][n % 4] / factorial,
-            Function::Cos => [a.cos(), -a.sin(), -a.cos(), a.sin()][n % 4] / factorial,
-            Function::Ln if n == 0 => a.ln(),
-            Function::Ln => -(-1.0 / a).powi(i32::try_from(n).unwrap_or(0)) / small(n),
-            // Not asked for.
-            Function::Sqrt => f64::NAN,
-            Function::LogRatio(k) => {
-                Function::LogRatio(k.saturating_add(u8::try_from(n).unwrap_or(u8::MAX))).apply(a) / factorial
+            Function::Exp => a.apply(function) / factorial,
+            Function::Sin | Function::Cos => {
+                let turned = n + usize::from(function == cosine);
+                let value = a.apply(if turned.is_multiple_of(2) { sine } else { cosine });
+                (if turned % 4 < 2 { value } else { -value }) / factorial
             }
-            Function::Stumpff(k) => stumpff(k, n, a),
+            Function::Ln if n == 0 => a.apply(function),
+            Function::Ln => -(-T::ONE / a).power(i32::try_from(n).unwrap_or(0)) / small(n),
+            // Not asked for.
+            Function::Sqrt => T::UNDEFINED,
+            Function::LogRatio(k) => {
+                a.apply(Function::LogRatio(k.saturating_add(u8::try_from(n).unwrap_or(u8::MAX)))) / factorial
+            }
+            Function::Stumpff(k) => a.stumpff(k, n),
         }
     })
 }
 
-/// `Σ_{i ≥ n} C(i, n) (−1)ⁱ a^(i − n)/(2i + k)!`.
-fn stumpff(k: u8, n: usize, a: f64) -> f64 {
-    let first = (1..=2 * n + usize::from(k)).fold(1.0, |product, i| product / small(i));
-    let (mut sum, mut term) = (0.0, if n.is_multiple_of(2) { first } else { -first });
-    for i in n..n + 100 {
-        sum += term;
-        let next = 2 * i + usize::from(k);
-        term *= -a * small(i + 1) / (small(i + 1 - n) * small(next + 1) * small(next + 2));
-    }
-    sum
-}
-
-impl Add for Series {
+impl<T: Coefficient> Add for PowerSeries<T> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -170,15 +227,15 @@ impl Add for Series {
             return Self::UNDEFINED;
         }
         let (first, end) = (self.first.min(other.first), self.end.min(other.end));
-        let mut coefficients = [0.0; LENGTH];
+        let mut coefficients = [T::ZERO; LENGTH];
         for (power, sum) in (first..end).zip(&mut coefficients) {
-            *sum = cancelled(self.at(power), other.at(power));
+            *sum = self.at(power).sum(other.at(power));
         }
         Self::new(first, end, coefficients)
     }
 }
 
-impl Neg for Series {
+impl<T: Coefficient> Neg for PowerSeries<T> {
     type Output = Self;
 
     fn neg(self) -> Self {
@@ -186,7 +243,7 @@ impl Neg for Series {
     }
 }
 
-impl Sub for Series {
+impl<T: Coefficient> Sub for PowerSeries<T> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -194,7 +251,7 @@ impl Sub for Series {
     }
 }
 
-impl Mul for Series {
+impl<T: Coefficient> Mul for PowerSeries<T> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -203,15 +260,15 @@ impl Mul for Series {
         }
         let first = self.first.saturating_add(other.first).min(NEVER);
         let end = self.end.saturating_add(other.first).min(other.end.saturating_add(self.first)).min(NEVER);
-        let mut coefficients = [0.0; LENGTH];
+        let mut coefficients = [T::ZERO; LENGTH];
         for (n, sum) in coefficients.iter_mut().enumerate() {
-            *sum = (0..=n).fold(0.0, |sum, i| cancelled(sum, self.coefficients[i] * other.coefficients[n - i]));
+            *sum = (0..=n).fold(T::ZERO, |sum, i| sum.sum(self.coefficients[i] * other.coefficients[n - i]));
         }
         Self::new(first, end, coefficients)
     }
 }
 
-impl Div for Series {
+impl<T: Coefficient> Div for PowerSeries<T> {
     type Output = Self;
 
     #[allow(clippy::suspicious_arithmetic_impl)] // by the reciprocal
@@ -220,13 +277,13 @@ impl Div for Series {
     }
 }
 
-impl Number for Series {
-    const ZERO: Self = Self { first: NEVER, end: NEVER, coefficients: [0.0; LENGTH] };
-    const ONE: Self = Self::from_one_coefficient(0, 1.0);
-    const UNDEFINED: Self = Self::from_one_coefficient(0, f64::NAN);
+impl<T: Coefficient> Number for PowerSeries<T> {
+    const ZERO: Self = Self { first: NEVER, end: NEVER, coefficients: [T::ZERO; LENGTH] };
+    const ONE: Self = Self::from_one_coefficient(0, T::ONE);
+    const UNDEFINED: Self = Self::from_one_coefficient(0, T::UNDEFINED);
 
     fn of(value: Rational) -> Self {
-        Self::constant(value.to_f64())
+        Self::constant(T::of(value))
     }
 
     fn power(self, exponent: i32) -> Self {

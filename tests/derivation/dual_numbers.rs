@@ -1,0 +1,116 @@
+//! The derived terms of a discrete Lagrangian against hyper-dual numbers of it, on any matrix group; and what the rules of
+//! `discretise` make on SO(3), by hand.
+
+use checks::structure::numbers::{lifted, varied};
+use checks::structure::{System, axis, random_advected};
+use liestep::groups::{Advected as _, LieGroup as _};
+use liestep::laws::samples::{Random, along};
+use liestep::numbers::Entries;
+use nalgebra::{Matrix3, RealField, SMatrix, Vector3, convert};
+use num_dual::HyperDual64;
+
+/// Of terms that cancel, relative to the largest.
+const ROUNDING: f64 = 1e-13;
+
+/// `l_d` itself and every derived term, at the identity, next to it and at random increments; and what hangs together of
+/// the momenta, `(L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF` and `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`.
+pub(crate) fn assert_terms<L, W, const N: usize, const D: usize>(
+    name: &str,
+    (system, h): (&L, f64),
+    l_d: impl Fn(&SMatrix<HyperDual64, N, N>, &W, HyperDual64) -> HyperDual64,
+    seed: u64,
+) where
+    L: System<N, D>,
+    W: Entries<HyperDual64>,
+{
+    let mut random = Random::new(seed);
+    let step = HyperDual64::from(h);
+    let units = [HyperDual64::new(0.0, 1.0, 0.0, 0.0), HyperDual64::new(0.0, 0.0, 1.0, 0.0)];
+    let lift = |matrix: &SMatrix<f64, N, N>| matrix.map(HyperDual64::from);
+    // exp(ε E_k), as ε² = 0.
+    let turned = |k: usize, unit: HyperDual64| SMatrix::identity() + lift(&L::Group::hat(&axis(k, 1.0))) * unit;
+    let mut worst = 0.0_f64;
+    for size in [0.0, 1e-8, 0.1, 0.5, 0.5] {
+        let element = along::<L::Group, N, D>(&random.sample(), size);
+        let (f, w) = (element.matrix(), random_advected(system, &mut random));
+        let (long, still) = (lift(&f), lifted::<_, _, W>(&w));
+        let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
+        let (diamond, momentum) = (system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h));
+        let (value, jacobian) = (system.l_d(&f, &w, h), system.momentum_jacobian(&f, &w, h));
+        let scale = value.abs() + right.norm() + left.norm() + diamond.norm() + jacobian.norm();
+        let mut close = |what: &str, found: f64, expected: f64, scale: f64| {
+            let error = (found - expected).abs() / scale;
+            worst = worst.max(error);
+            assert!(error <= ROUNDING, "{name}, {what}: {found} and {expected} of {scale:e} at {size}");
+        };
+        close("l_d", value, l_d(&long, &still, step).re, scale);
+        for k in 0..D {
+            let turn = turned(k, units[0]);
+            let carried = varied(&w, &w.rate(&L::Group::hat(&axis(k, -1.0))), units[0]);
+            close("right momentum", right[k], l_d(&(turn * long), &still, step).eps1, scale);
+            close("left momentum", left[k], l_d(&(long * turn), &still, step).eps1, scale);
+            close("diamond", diamond[k], -l_d(&long, &carried, step).eps1, scale);
+            close("momentum", momentum[k], l_d(&(turn * long), &carried, step).eps1, scale);
+            for j in 0..D {
+                let second = l_d(&(turn * turned(j, units[1]) * long), &carried, step).eps1eps2;
+                close("Jacobian", jacobian[(k, j)], second, scale);
+            }
+        }
+        let energy = -l_d(&long, &still, step + units[0]).eps1;
+        close("energy", system.discrete_energy(&f, &w, h), energy, energy.abs() + scale);
+        let moved = element.adjoint_transpose(&(momentum + diamond));
+        close("left = Ad* right", (left - element.adjoint_transpose(&right)).norm(), 0.0, scale);
+        close("μ⁺ = Ad* (μ + diamond)", (system.legendre_plus(&f, &w, h) - moved).norm(), 0.0, scale);
+    }
+    println!("{name}: derived terms to {worst:.1e}");
+}
+
+/// What a rule of `discretise` makes of an `l` on SO(3), as a function of `ξ·Jξ`, `ξ` and `w`.
+pub(crate) fn by_hand<T: RealField + Copy>(
+    rule: &str,
+    J: &Matrix3<f64>,
+    l: impl Fn(T, &Vector3<T>, &Vector3<T>) -> T,
+    (f, w, h): (&Matrix3<T>, &Vector3<T>, T),
+) -> T {
+    let (J, half, one) = (J.map(convert::<f64, T>), convert::<f64, T>(0.5), T::one());
+    let skew = |x: &Matrix3<T>| Vector3::new(x.m32 - x.m23, x.m13 - x.m31, x.m21 - x.m12) * half;
+    let quadratic = |xi: &Vector3<T>| xi.dot(&(J * xi));
+    // tan(θ/2) and sin(θ/2) along the axis.
+    let tangent = skew(f) * (convert::<f64, T>(2.0) / (one + f.trace()));
+    let sine = skew(f) / (one + f.trace()).sqrt();
+    let (q, xi) = if rule.ends_with("(Cayley)") {
+        let xi = tangent * (convert::<f64, T>(2.0) / h);
+        (quadratic(&xi), xi)
+    } else if rule.ends_with("(exp)") {
+        let xi = sine * (arcsine_ratio(sine.dot(&sine)) * convert(2.0) / h);
+        (quadratic(&xi), xi)
+    } else {
+        let (x, nonstandard) = ((f - Matrix3::identity()) / h, Matrix3::identity() * (half * J.trace()) - J);
+        ((x * nonstandard * x.transpose()).trace(), skew(&x))
+    };
+    let next = f.transpose() * w;
+    if rule.starts_with("trapezoid") {
+        (l(q, &xi, w) + l(q, &xi, &next)) * half * h
+    } else if rule.starts_with("chord") {
+        l(q, &xi, &((w + next) * half)) * h
+    } else {
+        // exp(−hξ/2) w.
+        let (mut middle, mut term) = (*w, *w);
+        for n in 1..40 {
+            term = term.cross(&xi) * (half * h / convert(f64::from(n)));
+            middle += term;
+        }
+        l(q, &xi, &middle) * h
+    }
+}
+
+/// `arcsin(s)/s` of `s²`, by its series `Σ (2n)!/(4ⁿ n!² (2n + 1)) s²ⁿ`.
+fn arcsine_ratio<T: RealField + Copy>(square: T) -> T {
+    let (mut sum, mut term) = (T::one(), T::one());
+    for n in 1..300 {
+        let n = f64::from(n);
+        term *= square * convert((2.0 * n - 1.0) / (2.0 * n));
+        sum += term / convert(2.0 * n + 1.0);
+    }
+    sum
+}
