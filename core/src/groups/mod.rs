@@ -125,6 +125,7 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// `Ad_F` as a matrix, where it is to map many.
     #[inline(always)]
+    #[must_use]
     fn adjoint_matrix(&self) -> <Self::Vector as Coordinates<Self::Scalar>>::Square {
         Self::Vector::square(|k| self.adjoint(&Self::Vector::axis(k)))
     }
