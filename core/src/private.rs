@@ -16,13 +16,13 @@ pub use crate::mechanics::{
     ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
     Residual, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, Term, WithKinetic, WithoutKinetic,
 };
-pub use crate::numbers::{Blocks, InLanes, Lanes, Real, real};
+pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Real, real};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
 use crate::groups::{Advected, homogeneous};
 use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
-use crate::numbers::{Coordinates, Entries};
+use crate::numbers::Coordinates;
 
 /// `F⁻¹` of a group element.
 #[inline]

@@ -261,11 +261,15 @@ impl Entries<f64> for Backwards {
     }
 }
 
-/// A covector whose rate has the other sign.
+/// A covector with one thing wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct TurnedRate(Vector3<f64>);
+struct Covector<const WHAT: usize>(Vector3<f64>);
 
-impl Advected<SE2> for TurnedRate {
+const TURNED_RATE: usize = 0;
+const UNTRANSPOSED: usize = 1;
+const RIGHT_COVECTOR: usize = 2;
+
+impl<const WHAT: usize> Advected<SE2> for Covector<WHAT> {
     fn seen_from(&self, attitude: &SE2) -> Self {
         Self(attitude.matrix().transpose() * self.0)
     }
@@ -275,11 +279,15 @@ impl Advected<SE2> for TurnedRate {
     }
 
     fn rate(&self, velocity: &Matrix3<f64>) -> Self {
-        Self(-(velocity.transpose() * self.0))
+        Self(velocity.transpose() * self.0 * if WHAT == TURNED_RATE { -1.0 } else { 1.0 })
     }
 
     fn seen_through(&self, matrix: &Matrix3<f64>, _: &Matrix3<f64>) -> Self {
         Self(matrix.transpose() * self.0)
+    }
+
+    fn pulled_back(&self, attitude: &SE2) -> Self {
+        if WHAT == UNTRANSPOSED { self.seen_from(attitude) } else { Self(attitude.matrix() * self.0) }
     }
 
     fn is_finite(&self) -> bool {
@@ -287,7 +295,7 @@ impl Advected<SE2> for TurnedRate {
     }
 }
 
-impl Entries<f64> for TurnedRate {
+impl<const WHAT: usize> Entries<f64> for Covector<WHAT> {
     fn from_entries(next: &mut impl FnMut() -> f64) -> Self {
         Self(Entries::from_entries(next))
     }
@@ -303,7 +311,9 @@ impl Entries<f64> for TurnedRate {
 
 #[test]
 fn laws_of_advected_parameters() {
-    assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, TurnedRate, _, _>).is_err());
+    advected::parameter_is_acted_on::<SE2, Covector<RIGHT_COVECTOR>, _, _>();
+    assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Covector<TURNED_RATE>, _, _>).is_err());
+    assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Covector<UNTRANSPOSED>, _, _>).is_err());
     assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Backwards, _, _>).is_err());
     // With a wrong inverse the contravariant kinds are wrong; the group's own laws alone would blame `inverse`.
     assert!(catch_unwind(advected::kinds_move_as_declared::<Broken<INVERSE>, _, _>).is_err());

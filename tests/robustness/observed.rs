@@ -239,6 +239,19 @@ fn an_event_may_end_the_run() {
     let run = stepper.observed(&mut state).event(Event::rising(), |now| (0.055 - now.time()).sqrt(), |_| ());
     let error = run.until(1.0).unwrap_err();
     assert!(matches!(error, RunError::NotANumber { event: 0, time } if (0.055..0.061).contains(&time)), "{error}");
+    // Of a zero at a step nothing tells what comes behind it: without a sign there it is no crossing, and the error names
+    // what isn't a number, looked at closely or not.
+    for event in [Event::crossing(), Event::crossing().curvature(1.0)] {
+        let mut state = start.clone();
+        let seventh = stepper.step_size() * 7.0;
+        let run = stepper.observed(&mut state).event(
+            event,
+            |now| (seventh - now.time()).sqrt(),
+            |_| -> () { panic!("it isn't crossed") },
+        );
+        let error = run.until(1.0).unwrap_err();
+        assert!(matches!(error, RunError::NotANumber { event: 0, time } if (0.07..0.081).contains(&time)), "{error}");
+    }
     let flat = |bound| {
         let mut state = start.clone();
         stepper.observed(&mut state).event(Event::rising().curvature(bound), |_| 0.0, |_| ()).until(0.1)

@@ -5,17 +5,18 @@ use std::io::Write as _;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use liestep::Stepper;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
-use liestep::methods::{Split, SplittingScheme, SymmetricBody};
-use liestep::motion::{Batch, Integrator};
+use liestep::methods::{Processed, ProcessedScheme, Split, SplittingScheme, SymmetricBody};
+use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use simba::simd::AutoF64x8;
 
 type Failure = Box<dyn Error>;
-type Top = Stepper<Sum<PrincipalBody, Gravity>, Split<Sum<PrincipalBody, Gravity>, SymmetricBody>>;
-type State = <Top as Integrator>::State;
+type Scene = Sum<PrincipalBody, Gravity>;
+/// A stepper, and a state of it.
+type Top<I> = (I, <I as Integrator>::State);
 
 const TOPS: u32 = 64;
 const LANES: usize = 8;
@@ -54,24 +55,64 @@ fn body(number: u32) -> Body {
     }
 }
 
-fn tops(scheme: SplittingScheme, steps: u32) -> Result<Vec<(Top, State)>, Failure> {
-    let top = |number| -> Result<_, Failure> {
-        let Body { moments, rho, attitude, velocity } = body(number);
-        let scene = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments)? };
-        let scene = scene + Gravity { m: 1.0, g: 9.81, rho: Vector3::z() * rho, up: Vector3::z() };
-        let flow = SymmetricBody::new(&Inertia::from_principal_moments(moments)?)?;
-        let stepper = Stepper::split(scene, TIME / f64::from(steps), flow, scheme)?;
-        let state = stepper.start(attitude, velocity)?;
+/// The coefficients of a splitting, as they are or with a processor.
+trait Scheme: Copy {
+    type Stepper: Batchable<AutoF64x8> + Integrator<Group = SO3, Advected = ((), Vector3<f64>)>;
+
+    fn name(self) -> &'static str;
+
+    fn top(self, body: &Body, h: f64) -> Result<Top<Self::Stepper>, Failure>;
+}
+
+impl Scheme for SplittingScheme {
+    type Stepper = Stepper<Scene, Split<Scene, SymmetricBody>>;
+
+    fn name(self) -> &'static str {
+        SplittingScheme::name(&self)
+    }
+
+    fn top(self, body: &Body, h: f64) -> Result<Top<Self::Stepper>, Failure> {
+        let stepper = Stepper::split(body.scene()?, h, body.flow()?, self)?;
+        let state = stepper.start(body.attitude, body.velocity)?;
         Ok((stepper, state))
-    };
-    (0..TOPS).map(top).collect()
+    }
+}
+
+impl Scheme for ProcessedScheme {
+    type Stepper = Stepper<Scene, Processed<Scene, SymmetricBody>>;
+
+    fn name(self) -> &'static str {
+        ProcessedScheme::name(&self)
+    }
+
+    fn top(self, body: &Body, h: f64) -> Result<Top<Self::Stepper>, Failure> {
+        let stepper = Stepper::processed(body.scene()?, h, body.flow()?, self)?;
+        let state = stepper.start(body.attitude, body.velocity)?;
+        Ok((stepper, state))
+    }
+}
+
+impl Body {
+    fn scene(&self) -> Result<Scene, Failure> {
+        let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(self.moments)? };
+        Ok(body + Gravity { m: 1.0, g: 9.81, rho: Vector3::z() * self.rho, up: Vector3::z() })
+    }
+
+    fn flow(&self) -> Result<SymmetricBody, Failure> {
+        Ok(SymmetricBody::new(&Inertia::from_principal_moments(self.moments)?)?)
+    }
+}
+
+fn tops<S: Scheme>(scheme: S, steps: u32) -> Result<Vec<Top<S::Stepper>>, Failure> {
+    (0..TOPS).map(|number| scheme.top(&body(number), TIME / f64::from(steps))).collect()
 }
 
 /// The vertical and the velocity that a body sees.
 type End = [Vector3<f64>; 2];
 
 /// In lanes: all ends, and the time for a top, s.
-fn ends(tops: &[(Top, State)], steps: u32, repeated: usize) -> Result<(Vec<End>, f64), Failure> {
+fn ends<S: Scheme>(scheme: S, steps: u32, repeated: usize) -> Result<(Vec<End>, f64), Failure> {
+    let tops = tops(scheme, steps)?;
     let (mut ends, mut time) = (Vec::new(), 0.0);
     for eight in tops.chunks(LANES) {
         let mut fastest = f64::INFINITY;
@@ -109,12 +150,11 @@ fn cost(runs: &[(f64, f64)], wanted: f64) -> f64 {
     exact.chain(between).fold(f64::INFINITY, f64::min)
 }
 
-/// µs a top to each error, the best scheme for each.
-fn ours(exact: &[End]) -> Result<[(f64, &'static str); 2], Failure> {
-    let mut best = [(f64::INFINITY, ""); 2];
-    for scheme in SCHEMES {
+/// µs a top to each error by these schemes, where they are better than the best so far.
+fn compare<S: Scheme>(schemes: &[S], exact: &[End], best: &mut [(f64, &'static str); 2]) -> Result<(), Failure> {
+    for &scheme in schemes {
         let run = |steps| -> Result<_, Failure> {
-            let (ends, time) = ends(&tops(scheme, steps)?, steps, REPEATED)?;
+            let (ends, time) = ends(scheme, steps, REPEATED)?;
             Ok((error(&ends, exact), time * 1e6))
         };
         let runs = STEPS.into_iter().map(run).collect::<Result<Vec<_>, _>>()?;
@@ -125,7 +165,7 @@ fn ours(exact: &[End]) -> Result<[(f64, &'static str); 2], Failure> {
             }
         }
     }
-    Ok(best)
+    Ok(())
 }
 
 /// The same by `with_heyoka.py`, where Python has it.
@@ -154,17 +194,16 @@ fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
 
 pub(crate) fn splittings() -> Result<(), Failure> {
     const FINE: u32 = 2_000;
-    let (exact, _) = ends(&tops(SplittingScheme::NYSTROM_14, FINE)?, FINE, 1)?;
-    let (finer, _) = ends(&tops(SplittingScheme::NYSTROM_14, 2 * FINE)?, 2 * FINE, 1)?;
+    let (exact, _) = ends(SplittingScheme::NYSTROM_14, FINE, 1)?;
+    let (finer, _) = ends(SplittingScheme::NYSTROM_14, 2 * FINE, 1)?;
     println!(
         "{TOPS} symmetric tops, {TIME} s, one core; what they are compared with is off by {:.0e}",
         error(&exact, &finer)
     );
     let (mut own, mut others) = ([(f64::INFINITY, ""); 2], [f64::INFINITY; 2]);
     for _ in 0..TURNS {
-        for (own, found) in own.iter_mut().zip(ours(&exact)?) {
-            *own = if found.0 < own.0 { found } else { *own };
-        }
+        compare(&SCHEMES, &exact, &mut own)?;
+        compare(&ProcessedScheme::ALL, &exact, &mut own)?;
         if let Some(found) = theirs(&exact)? {
             others.iter_mut().zip(found).for_each(|(other, found)| *other = other.min(found));
         }

@@ -123,6 +123,13 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// `Ad_F ξ`.
     fn adjoint(&self, velocity: &Self::Vector) -> Self::Vector;
 
+    /// `Ad_F` as a matrix, where it is to map many.
+    #[inline(always)]
+    #[must_use]
+    fn adjoint_matrix(&self) -> <Self::Vector as Coordinates<Self::Scalar>>::Square {
+        Self::Vector::square(|k| self.adjoint(&Self::Vector::axis(k)))
+    }
+
     /// `Ad*_F μ`, the transpose of [`adjoint`](Self::adjoint) (not the inverse transpose).
     fn adjoint_transpose(&self, momentum: &Self::Vector) -> Self::Vector;
 

@@ -238,6 +238,11 @@ impl<T: Real> LieGroup for SO3<T> {
         self.0 * velocity
     }
 
+    #[inline(always)]
+    fn adjoint_matrix(&self) -> Matrix3<T> {
+        self.0
+    }
+
     #[inline]
     fn adjoint_transpose(&self, momentum: &Vector3<T>) -> Vector3<T> {
         transpose_mul(&self.0, momentum)

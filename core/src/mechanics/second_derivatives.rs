@@ -4,7 +4,7 @@ use core::ops::Add;
 
 use crate::mechanics::effect::{Effect, Matrix, Scalar, Square, Vector};
 use crate::mechanics::sum::Sum;
-use crate::numbers::Entries as _;
+use crate::numbers::{Entries, Real, zero};
 
 /// An effect with the derivatives of its shares in the momenta at both ends of a step: what the tangent map and the
 /// adjoint of a step are made of, see [`Stepper::linearised`](crate::Stepper::linearised).
@@ -66,7 +66,31 @@ pub trait SecondDerivatives: Effect {
 
     /// Visits each scalar of [`advected`](crate::mechanics::Term::advected) that is a parameter: its number there, and that among the
     /// parameters. A field that is advected under two names is visited for each.
-    fn carried_parameters(w: &Self::Advected, visit: &mut dyn FnMut(usize, usize));
+    fn carried_parameters(visit: &mut impl FnMut(usize, usize));
+
+    /// The share in the linear system of a step's adjoint: `∂μ/∂ε`, and `(∂μ⁺/∂ε)ᵀ p` for `p` at the end.
+    ///
+    /// This and [`adjoint_gradient`](Self::adjoint_gradient) go from the momenta back, so that they take a few times the
+    /// operations of the momenta themselves, and not as many as all derivatives.
+    fn adjoint_system(
+        &self,
+        increment: &Matrix<Self>,
+        w: &Self::Advected,
+        h: Scalar<Self>,
+        at_end: &Vector<Self>,
+    ) -> (Square<Self>, Vector<Self>);
+
+    /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, for `[u, p]` at the start and at the end: along displacements
+    /// of the body, and by the scalars of `w`; those by the parameters, at fixed `w`, are visited, as
+    /// [`by_parameters`](Self::by_parameters) does.
+    fn adjoint_gradient(
+        &self,
+        increment: &Matrix<Self>,
+        w: &Self::Advected,
+        h: Scalar<Self>,
+        ends: [&Vector<Self>; 2],
+        visit: &mut impl FnMut(usize, Scalar<Self>),
+    ) -> (Vector<Self>, Self::Advected);
 }
 
 /// The derivatives of the momenta `μ` and `μ⁺` along turns `ε` and displacements `ζ`: entry `(k, j)` of each is that of
@@ -136,16 +160,51 @@ where
         h: Scalar<Self>,
         visit: &mut impl FnMut(usize, Vector<Self>, Vector<Self>),
     ) {
-        let mut before = 0;
-        w.0.each(&mut |_| before += 1);
+        let before = scalars::<Scalar<Self>, A::Advected>();
         self.first.by_advected(increment, &w.0, h, visit);
         self.second.by_advected(increment, &w.1, h, &mut |number, start, end| visit(before + number, start, end));
     }
 
-    fn carried_parameters(w: &Self::Advected, visit: &mut dyn FnMut(usize, usize)) {
-        let mut before = 0;
-        w.0.each(&mut |_| before += 1);
-        A::carried_parameters(&w.0, visit);
-        B::carried_parameters(&w.1, &mut |place, number| visit(before + place, A::PARAMETERS + number));
+    #[inline(always)]
+    fn carried_parameters(visit: &mut impl FnMut(usize, usize)) {
+        let before = scalars::<Scalar<Self>, A::Advected>();
+        A::carried_parameters(visit);
+        B::carried_parameters(&mut |place, number| visit(before + place, A::PARAMETERS + number));
     }
+
+    #[inline(always)]
+    fn adjoint_system(
+        &self,
+        increment: &Matrix<Self>,
+        w: &Self::Advected,
+        h: Scalar<Self>,
+        at_end: &Vector<Self>,
+    ) -> (Square<Self>, Vector<Self>) {
+        let (first, right_side) = self.first.adjoint_system(increment, &w.0, h, at_end);
+        let (second, other) = self.second.adjoint_system(increment, &w.1, h, at_end);
+        (first + second, right_side + other)
+    }
+
+    #[inline(always)]
+    fn adjoint_gradient(
+        &self,
+        increment: &Matrix<Self>,
+        w: &Self::Advected,
+        h: Scalar<Self>,
+        ends: [&Vector<Self>; 2],
+        visit: &mut impl FnMut(usize, Scalar<Self>),
+    ) -> (Vector<Self>, Self::Advected) {
+        let (first, seen) = self.first.adjoint_gradient(increment, &w.0, h, ends, visit);
+        let behind = &mut |number, share| visit(A::PARAMETERS + number, share);
+        let (second, other) = self.second.adjoint_gradient(increment, &w.1, h, ends, behind);
+        (first + second, (seen, other))
+    }
+}
+
+/// How many there are.
+#[inline(always)]
+fn scalars<T: Real, A: Entries<T>>() -> usize {
+    let mut count = 0;
+    zero::<T, A>().each(&mut |_| count += 1);
+    count
 }

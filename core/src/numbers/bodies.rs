@@ -126,6 +126,14 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
 /// One block a body.
 const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
 
+/// How many components there are.
+#[inline(always)]
+fn dimension<T: Real, V: Coordinates<T>>() -> usize {
+    let mut dimension = 0;
+    V::zero().each(&mut |_| dimension += 1);
+    dimension
+}
+
 /// The lesser of two numbers; what isn't a number stays.
 #[inline(always)]
 pub(crate) fn least<T: Real>(a: T, b: T) -> T {
@@ -144,6 +152,27 @@ pub(crate) fn most<T: Real>() -> T {
 /// `a bᵀ` has none of the blocks that would join bodies, so it is that map only where the rest isn't asked for.
 impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N> {
     type Square = BlockDiagonal<V::Square, N>;
+    type Four = Bodies<V::Four, N>;
+
+    #[inline(always)]
+    fn beside(columns: &[Self; 4]) -> Self::Four {
+        Bodies(from_fn(|body| V::beside(&from_fn(|k| columns[k].0[body]))))
+    }
+
+    #[inline(always)]
+    fn of_four(four: &Self::Four, k: usize) -> Self {
+        Self(from_fn(|body| V::of_four(&four.0[body], k)))
+    }
+
+    #[inline(always)]
+    fn map_four(matrix: &Self::Square, four: &Self::Four) -> Self::Four {
+        Bodies(filled(four.0, |body| V::map_four(&matrix.0[body], &four.0[body])))
+    }
+
+    fn square(column: impl Fn(usize) -> Self) -> Self::Square {
+        let dimension = dimension::<T, V>();
+        BlockDiagonal(from_fn(|body| V::square(|k| column(body * dimension + k).0[body])))
+    }
 
     #[inline(always)]
     fn zero() -> Self {
@@ -151,8 +180,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
     }
 
     fn axis(k: usize) -> Self {
-        let mut dimension = 0;
-        V::zero().each(&mut |_| dimension += 1);
+        let dimension = dimension::<T, V>();
         let mut axis = Self::zero();
         axis.0[k / dimension] = V::axis(k % dimension);
         axis
@@ -200,6 +228,12 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
     #[inline(always)]
     fn solve_again_with(factors: &Self::Square, _: T, pattern: Pattern, right_side: &Self) -> Self {
         Self::solve_apart(factors, pattern, right_side)
+    }
+
+    #[inline(always)]
+    fn inverse_with(factors: &Self::Square, _: T, pattern: Pattern) -> Self::Square {
+        let of_body = |factors| V::square(|k| V::solve_apart(factors, pattern, &V::axis(k)));
+        BlockDiagonal(filled(factors.0, |body| of_body(&factors.0[body])))
     }
 
     /// The pattern is that of one body.

@@ -6,6 +6,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 use nalgebra::{SMatrix, SVector, SimdBool as _};
 
 use crate::numbers::blocks::{self, Blocks, Pattern};
+use crate::numbers::columns::FourVectors;
 use crate::numbers::entries::Entries;
 use crate::numbers::scalar::{Mask, Real, real};
 
@@ -20,6 +21,26 @@ pub trait Coordinates<T: Real>:
         + Add<Output = Self::Square>
         + Mul<T, Output = Self::Square>
         + Mul<Self, Output = Self>;
+
+    /// Four of them side by side.
+    type Four: Entries<T> + Debug + PartialEq + Add<Output = Self::Four> + Sub<Output = Self::Four>;
+
+    /// Put side by side.
+    fn beside(columns: &[Self; 4]) -> Self::Four;
+
+    /// The one at place `k` of four.
+    ///
+    /// # Panics
+    ///
+    /// Where `k` is above three.
+    #[must_use]
+    fn of_four(four: &Self::Four, k: usize) -> Self;
+
+    /// Four, each mapped by the matrix.
+    fn map_four(matrix: &Self::Square, four: &Self::Four) -> Self::Four;
+
+    /// The matrix with these columns, numbered from zero; of several bodies its blocks.
+    fn square(column: impl Fn(usize) -> Self) -> Self::Square;
 
     /// All components zero.
     fn zero() -> Self;
@@ -75,6 +96,9 @@ pub trait Coordinates<T: Real>:
     /// The solution from what [`factorise_with`](Self::factorise_with) has made.
     fn solve_again_with(factors: &Self::Square, det: T, pattern: Pattern, right_side: &Self) -> Self;
 
+    /// `A⁻¹` from what [`factorise_with`](Self::factorise_with) has made, where many right sides are to come.
+    fn inverse_with(factors: &Self::Square, det: T, pattern: Pattern) -> Self::Square;
+
     /// As [`factorise_with`](Self::factorise_with) of a product, where there may be one block: the determinant is relative
     /// to the product of the diagonal.
     fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T);
@@ -115,6 +139,34 @@ pub trait Coordinates<T: Real>:
 
 impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     type Square = SMatrix<T, D, D>;
+    type Four = FourVectors<T, D>;
+
+    #[inline(always)]
+    fn beside(columns: &[Self; 4]) -> FourVectors<T, D> {
+        FourVectors(core::array::from_fn(|row| core::array::from_fn(|k| columns[k][row])))
+    }
+
+    #[inline(always)]
+    fn of_four(four: &FourVectors<T, D>, k: usize) -> Self {
+        entries::<T, D>(|row| four.0[row][k])
+    }
+
+    #[inline(always)]
+    fn map_four(matrix: &SMatrix<T, D, D>, four: &FourVectors<T, D>) -> FourVectors<T, D> {
+        four.mapped(matrix)
+    }
+
+    #[inline(always)]
+    fn square(column: impl Fn(usize) -> Self) -> SMatrix<T, D, D> {
+        let mut square = SMatrix::<T, D, D>::zeros();
+        for k in 0..D {
+            let column = column(k);
+            for row in 0..D {
+                square[(row, k)] = column[row];
+            }
+        }
+        square
+    }
 
     #[inline(always)]
     fn zero() -> Self {
@@ -183,6 +235,15 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         } else {
             Self::solve_apart(factors, pattern, b)
         }
+    }
+
+    #[inline(always)]
+    fn inverse_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern) -> SMatrix<T, D, D> {
+        if pattern.factors.is_whole() && D <= 3 {
+            // The adjugate.
+            return factors * (T::one() / det);
+        }
+        Self::square(|k| Self::solve_again_with(factors, det, pattern, &Self::axis(k)))
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@
 
 mod blocks;
 mod bodies;
+mod columns;
 mod coordinates;
 mod entries;
 mod exact;
@@ -14,6 +15,7 @@ mod simd;
 pub use blocks::{Blocks, Join, Pattern};
 pub use bodies::{BlockDiagonal, Bodies};
 pub(crate) use bodies::{filled, least, most};
+pub use columns::FourVectors;
 pub use coordinates::Coordinates;
 pub(crate) use coordinates::adjugate_3;
 pub use entries::Entries;

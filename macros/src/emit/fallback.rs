@@ -147,10 +147,14 @@ fn gradients(header: &Header) -> TokenStream {
             const PARAMETERS: #core::primitive::usize = 0;
             fn step_derivatives(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #private::StepDerivatives<#square> { loop {} }
             #(#visits)*
-            fn carried_parameters(
-                _: &Self::Advected,
-                _: &mut dyn #core::ops::FnMut(#core::primitive::usize, #core::primitive::usize),
-            ) {}
+            fn carried_parameters(_: &mut impl #core::ops::FnMut(#core::primitive::usize, #core::primitive::usize)) {}
+            fn adjoint_system(&self, _: &#matrix, _: &Self::Advected, _: #scalar, _: &#vector) -> (#square, #vector) { loop {} }
+            fn adjoint_gradient(
+                &self, _: &#matrix, _: &Self::Advected, _: #scalar, _: [&#vector; 2],
+                _: &mut impl #core::ops::FnMut(#core::primitive::usize, #scalar),
+            ) -> (#vector, Self::Advected) {
+                loop {}
+            }
         }
     }
 }

@@ -4,12 +4,14 @@ use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote_spanned;
 
 use super::code::Form;
+use super::inputs::entry;
 use super::{Emitter, stages};
 use crate::declared::{FieldKind, Name};
-use crate::mathematics::symbolic::Rational;
+use crate::mathematics::symbolic::SymbolId;
 use crate::program::{Linearisation, Node, NodeId};
 
 /// One scalar of the parameters, by its number, with the entry that stands for it.
+#[derive(Clone, Copy)]
 struct Place {
     number: usize,
     row: usize,
@@ -26,6 +28,8 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
     let blocks = step_derivatives(emitter, &mut linearisation);
     let parameters = by_parameters(emitter, &mut linearisation);
     let advected = by_advected(emitter, &mut linearisation);
+    let system = adjoint_system(emitter, &mut linearisation);
+    let gradient = adjoint_gradient(emitter, &mut linearisation);
     let (usize, count) = (quote_spanned!(span=> #private::core::primitive::usize), parameter_count(emitter));
     let carried = carried_parameters(emitter);
     let (scalar, matrix, vector) = (&emitter.header.scalar, emitter.header.matrix(), emitter.header.vector());
@@ -53,11 +57,74 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
                 #advected
             }
 
-            fn carried_parameters(_: &Self::Advected, visit: &mut dyn #private::core::ops::FnMut(#usize, #usize)) {
+            #[inline(always)]
+            fn carried_parameters(visit: &mut impl #private::core::ops::FnMut(#usize, #usize)) {
                 #carried
+            }
+
+            #[inline(always)]
+            fn adjoint_system(
+                &self, increment: &#matrix, w: &Self::Advected, h: #scalar, at_end: &#vector,
+            ) -> (#square, #vector) {
+                #system
+            }
+
+            #[inline(always)]
+            fn adjoint_gradient(
+                &self, increment: &#matrix, w: &Self::Advected, h: #scalar, [at_start, at_end]: [&#vector; 2],
+                visit: &mut impl #private::core::ops::FnMut(#usize, #scalar),
+            ) -> (#vector, Self::Advected) {
+                #gradient
             }
         }
     })
+}
+
+/// `∂μ/∂ε`, and `(∂μ⁺/∂ε)ᵀ p`.
+fn adjoint_system(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
+    let [matrix, right_side] = linearisation.before_the_solve();
+    let (lets, values) = statements(emitter, linearisation, &[matrix.as_slice(), &right_side].concat());
+    let (matrix, right_side) = values.split_at(matrix.len());
+    let (matrix, right_side) = (emitter.assembled(Form::Square, matrix), emitter.assembled(Form::Vector, right_side));
+    quote_spanned!(Span::mixed_site()=> #lets (#matrix, #right_side))
+}
+
+/// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
+fn adjoint_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
+    let behind = linearisation.after_the_solve();
+    let by_place = linearisation.by_place(&behind);
+    let scalars = advected_scalars(emitter);
+    let count = (0..emitter.declaration.advected.len()).map(|index| numbers(emitter.declaration.advected_kind(index)));
+    let mut by_advected = vec![linearisation.graph.zero(); count.sum()];
+    for (symbol, place) in scalars {
+        by_advected[place.number] = linearisation.behind_entry(&behind, symbol, place.row, place.column);
+    }
+    let (mut by_parameters, mut numbers) = (Vec::new(), Vec::new());
+    for (symbol, place) in parameter_scalars(emitter) {
+        let derivative = linearisation.behind_entry(&behind, symbol, place.row, place.column);
+        let derivative = linearisation.halved(derivative, place.is_half);
+        if !linearisation.graph.is_zero(derivative) {
+            by_parameters.push(derivative);
+            numbers.push(Literal::usize_unsuffixed(place.number));
+        }
+    }
+    let outputs = [by_place.as_slice(), &by_advected, &by_parameters].concat();
+    let (lets, values) = statements(emitter, linearisation, &outputs);
+    let (by_place, values) = values.split_at(by_place.len());
+    let (by_advected, by_parameters) = values.split_at(by_advected.len());
+    let by_place = emitter.assembled(Form::Vector, by_place);
+    let (private, scalar, span) = (&emitter.header.private, &emitter.header.scalar, Span::mixed_site());
+    let count = Literal::usize_unsuffixed(by_advected.len());
+    quote_spanned! {span=>
+        #lets
+        #(visit(#numbers, #by_parameters);)*
+        let by_advected: [#scalar; #count] = [#(#by_advected),*];
+        let mut entries = #private::core::iter::IntoIterator::into_iter(by_advected);
+        let by_advected = <Self::Advected as #private::Entries<#scalar>>::from_entries(&mut || {
+            #private::core::iter::Iterator::next(&mut entries).unwrap_or(#private::real(0.0))
+        });
+        (#by_place, by_advected)
+    }
 }
 
 fn step_derivatives(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
@@ -78,8 +145,11 @@ fn step_derivatives(emitter: &Emitter, linearisation: &mut Linearisation) -> Tok
 /// The `let`s of these outputs, and what they are made of.
 fn statements(emitter: &Emitter, linearisation: &Linearisation, outputs: &[NodeId]) -> (TokenStream, Vec<TokenStream>) {
     let (span, private, graph) = (Span::mixed_site(), &emitter.header.private, &linearisation.graph);
+    let weights = [linearisation.weights_of_start(), linearisation.weights_of_end()];
     let given = |id: NodeId| match graph.node(id) {
-        Node::Input(entry) => Some(emitter.input_token(entry)),
+        Node::Input(input) if input.symbol == weights[0] => Some(entry(&quote_spanned!(span=> at_start), input)),
+        Node::Input(input) if input.symbol == weights[1] => Some(entry(&quote_spanned!(span=> at_end), input)),
+        Node::Input(input) => Some(emitter.input_token(input)),
         _ => None,
     };
     let (lets, values) = emitter.statements(graph, outputs, &given);
@@ -105,60 +175,64 @@ fn visits(emitter: &Emitter, linearisation: &Linearisation, found: &[(usize, Vec
 }
 
 fn by_parameters(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let (mut found, mut first) = (Vec::new(), 0);
-    for (index, field) in emitter.declaration.fields.iter().enumerate() {
-        let symbol = emitter.names.get(&Name::Field(index)).copied();
-        for place in places(field.kind) {
-            let Some(symbol) = symbol else { continue };
-            let mut derivative = linearisation.by_entry(symbol, place.row, place.column);
-            if linearisation.is_nothing(&derivative) {
-                continue;
-            }
-            if place.is_half {
-                let half = linearisation.graph.constant(Rational::new(1, 2));
-                for node in &mut derivative {
-                    *node = linearisation.graph.multiply(half, *node);
-                }
-            }
-            found.push((first + place.number, derivative));
+    let mut found = Vec::new();
+    for (symbol, place) in parameter_scalars(emitter) {
+        let derivative = linearisation.by_entry(symbol, place.row, place.column);
+        if !linearisation.is_nothing(&derivative) {
+            let halved = derivative.into_iter().map(|node| linearisation.halved(node, place.is_half)).collect();
+            found.push((place.number, halved));
         }
-        first += numbers(field.kind);
     }
     visits(emitter, linearisation, &found)
 }
 
 fn by_advected(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let (mut found, mut first) = (Vec::new(), 0);
-    for index in 0..emitter.declaration.advected.len() {
-        let kind = emitter.declaration.advected_kind(index);
-        let symbol = emitter.names.get(&Name::Advected(index)).copied();
-        for place in places(kind) {
-            let Some(symbol) = symbol else { continue };
-            let derivative = linearisation.by_entry(symbol, place.row, place.column);
-            if !linearisation.is_nothing(&derivative) {
-                found.push((first + place.number, derivative));
-            }
+    let mut found = Vec::new();
+    for (symbol, place) in advected_scalars(emitter) {
+        let derivative = linearisation.by_entry(symbol, place.row, place.column);
+        if !linearisation.is_nothing(&derivative) {
+            found.push((place.number, derivative));
         }
-        first += numbers(kind);
     }
     visits(emitter, linearisation, &found)
+}
+
+/// The scalars of the parameters that can change.
+fn parameter_scalars(emitter: &Emitter) -> Vec<(SymbolId, Place)> {
+    let fields = emitter.declaration.fields.iter().enumerate();
+    scalars(emitter, fields.map(|(index, field)| (Name::Field(index), field.kind)))
+}
+
+/// The same of what is advected.
+fn advected_scalars(emitter: &Emitter) -> Vec<(SymbolId, Place)> {
+    let indices = 0..emitter.declaration.advected.len();
+    scalars(emitter, indices.map(|index| (Name::Advected(index), emitter.declaration.advected_kind(index))))
+}
+
+/// The scalars of several things, numbered one after the other.
+fn scalars(emitter: &Emitter, each: impl Iterator<Item = (Name, FieldKind)>) -> Vec<(SymbolId, Place)> {
+    let (mut found, mut first) = (Vec::new(), 0);
+    for (name, kind) in each {
+        let of_one = places(kind).map(|place| Place { number: first + place.number, ..place });
+        found.extend(
+            emitter.names.get(&name).into_iter().flat_map(|&symbol| of_one.clone().map(move |place| (symbol, place))),
+        );
+        first += numbers(kind);
+    }
+    found
 }
 
 /// The numbers of the scalars of what is advected, with those that they have among the parameters.
 fn carried_parameters(emitter: &Emitter) -> TokenStream {
     let declaration = emitter.declaration;
-    let runs = declaration.advected.iter().enumerate().filter_map(|(index, w)| {
+    let visits = declaration.advected.iter().enumerate().filter_map(|(index, w)| {
         let field = declaration.fields.get(w.field?)?;
         let place: usize = (0..index).map(|index| numbers(declaration.advected_kind(index))).sum();
         let parameter: usize = declaration.fields.iter().take(w.field?).map(|field| numbers(field.kind)).sum();
-        let [place, parameter, count] = [place, parameter, numbers(field.kind)].map(Literal::usize_unsuffixed);
-        Some(quote_spanned!(Span::mixed_site()=> (0..#count).for_each(|k| visit(#place + k, #parameter + k));))
+        let pairs = (0..numbers(field.kind)).map(move |k| [place + k, parameter + k].map(Literal::usize_unsuffixed));
+        Some(pairs.map(|[place, parameter]| quote_spanned!(Span::mixed_site()=> visit(#place, #parameter);)))
     });
-    let private = &emitter.header.private;
-    let runs: Vec<TokenStream> = runs.collect();
-    let import =
-        (!runs.is_empty()).then(|| quote_spanned!(Span::mixed_site()=> use #private::core::iter::Iterator as _;));
-    quote_spanned!(Span::mixed_site()=> #import #(#runs)*)
+    visits.flatten().collect()
 }
 
 fn parameter_count(emitter: &Emitter) -> Literal {
@@ -185,7 +259,7 @@ fn shape(kind: FieldKind) -> (usize, usize) {
 }
 
 /// Of the scalars of a field those that can change.
-fn places(kind: FieldKind) -> impl Iterator<Item = Place> {
+fn places(kind: FieldKind) -> impl Iterator<Item = Place> + Clone {
     let (rows, columns) = shape(kind);
     let all = (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)));
     all.filter(move |(row, column)| kind != FieldKind::DiagonalInertia || row == column).map(move |(row, column)| {

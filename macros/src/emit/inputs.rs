@@ -122,7 +122,7 @@ impl Code<'_> {
 }
 
 /// Column-major storage: `[[_; rows]; columns]`.
-fn entry(value: &TokenStream, input: Input) -> TokenStream {
+pub(super) fn entry(value: &TokenStream, input: Input) -> TokenStream {
     entry_at(Span::mixed_site(), value, input)
 }
 

@@ -15,6 +15,7 @@
 use std::collections::BTreeMap;
 
 use super::closed::{Given, entries, with_lets};
+use super::gradient::{Gradient, gradient};
 use super::graph::{Graph, Input, Node, NodeId};
 use super::kernel::{by_increment, components, generator, with_inverse};
 use super::scalarise::Entries;
@@ -34,6 +35,9 @@ pub(crate) struct Linearisation<'a> {
 
 /// The change of each input that changes.
 type Changes = BTreeMap<NodeId, NodeId>;
+
+/// The gradient that is left behind the solve of a step's adjoint.
+pub(crate) struct Behind(Gradient);
 
 impl<'a> Linearisation<'a> {
     pub(crate) fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
@@ -66,11 +70,84 @@ impl<'a> Linearisation<'a> {
         })
     }
 
+    /// What the adjoint of a step begins with: `∂μ/∂ε`, row by row, and `(∂μ⁺/∂ε)ᵀ p` for the weights `p` of `μ⁺`.
+    pub(crate) fn before_the_solve(&mut self) -> [Vec<NodeId>; 2] {
+        let dimension = self.derived.group.dimension();
+        let end = self.weighted(1, self.weights_of_end());
+        let by = gradient(&mut self.graph, &end);
+        let (mut columns, mut by_turn) = (Vec::new(), Vec::new());
+        for j in 0..dimension {
+            let changes = self.turned(j);
+            let start = self.momenta.iter().take(dimension).copied().collect::<Vec<_>>();
+            columns.push(tangent(&mut self.graph, &start, &changes));
+            by_turn.push(along(&mut self.graph, &by, &changes));
+        }
+        let row = |k: usize| columns.iter().filter_map(move |column| column.get(k).copied());
+        [(0..dimension).flat_map(row).collect(), by_turn]
+    }
+
+    /// What it ends with: the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
+    pub(crate) fn after_the_solve(&mut self) -> Behind {
+        let mut weighted = self.weighted(0, self.weights_of_start());
+        for (_, weight) in &mut weighted {
+            *weight = self.graph.negate(*weight);
+        }
+        weighted.extend(self.weighted(1, self.weights_of_end()));
+        Behind(gradient(&mut self.graph, &weighted))
+    }
+
+    /// Along displacements `ζ = E_j`.
+    pub(crate) fn by_place(&mut self, behind: &Behind) -> Vec<NodeId> {
+        let dimension = self.derived.group.dimension();
+        let displaced = |j| {
+            let changes = self.displaced(j);
+            along(&mut self.graph, &behind.0, &changes)
+        };
+        (0..dimension).map(displaced).collect()
+    }
+
+    /// By an entry of a symbol.
+    pub(crate) fn behind_entry(&mut self, behind: &Behind, symbol: SymbolId, row: usize, column: usize) -> NodeId {
+        let entry = self.entry(symbol, row, column);
+        behind.0.get(&entry).copied().unwrap_or_else(|| self.graph.zero())
+    }
+
+    /// The weights `u` of `μ`: in a step's adjoint no other covector is needed, so that symbol is free.
+    pub(crate) fn weights_of_start(&self) -> SymbolId {
+        self.derived.directions.target
+    }
+
+    /// The weights `p` of `μ⁺`, an element of the algebra.
+    pub(crate) fn weights_of_end(&self) -> SymbolId {
+        self.derived.directions.along
+    }
+
+    /// The components of one of the momenta with their weights.
+    fn weighted(&mut self, momentum: usize, weights: SymbolId) -> Vec<(NodeId, NodeId)> {
+        let dimension = self.derived.group.dimension();
+        let components = self.momenta.iter().skip(momentum * dimension).take(dimension).copied().collect::<Vec<_>>();
+        let weight = |(row, component)| (component, self.entry(weights, row, 0));
+        components.into_iter().enumerate().map(weight).collect()
+    }
+
+    fn entry(&mut self, symbol: SymbolId, row: usize, column: usize) -> NodeId {
+        let stage = self.derived.symbols.get(symbol).stage;
+        self.graph.input(Input { symbol, row, column }, stage)
+    }
+
     /// The derivatives of `μ` and of `μ⁺` by an entry of a symbol.
     pub(crate) fn by_entry(&mut self, symbol: SymbolId, row: usize, column: usize) -> Vec<NodeId> {
-        let stage = self.derived.symbols.get(symbol).stage;
-        let (entry, one) = (self.graph.input(Input { symbol, row, column }, stage), self.graph.one());
+        let (entry, one) = (self.entry(symbol, row, column), self.graph.one());
         tangent(&mut self.graph, &self.momenta, &Changes::from([(entry, one)]))
+    }
+
+    /// Half of a derivative, where that is asked for.
+    pub(crate) fn halved(&mut self, derivative: NodeId, is_asked: bool) -> NodeId {
+        if !is_asked {
+            return derivative;
+        }
+        let half = self.graph.constant(Rational::new(1, 2));
+        self.graph.multiply(half, derivative)
     }
 
     /// Whether nothing of both momenta changes.
@@ -115,14 +192,20 @@ impl<'a> Linearisation<'a> {
     }
 
     fn collect(&mut self, symbol: SymbolId, moved: &Entries, changes: &mut Changes) {
-        let stage = self.derived.symbols.get(symbol).stage;
         for row in 0..moved.rows {
             for column in 0..moved.columns {
-                let entry = self.graph.input(Input { symbol, row, column }, stage);
+                let entry = self.entry(symbol, row, column);
                 changes.insert(entry, moved.at(row, column));
             }
         }
     }
+}
+
+/// The change along these changes of the inputs.
+fn along(graph: &mut Graph, gradient: &Gradient, changes: &Changes) -> NodeId {
+    let share = |(entry, &change): (&NodeId, &NodeId)| Some(graph.multiply(*gradient.get(entry)?, change));
+    let shares: Vec<NodeId> = changes.iter().filter_map(share).collect();
+    graph.sum(&shares)
 }
 
 fn negated(graph: &mut Graph, matrix: &Entries) -> Entries {
@@ -190,7 +273,7 @@ fn either(
 }
 
 /// `f'(a)`, where `f(a)` is a node already; the rules of [`variation`](crate::mathematics::symbolic::variation).
-fn slope(graph: &mut Graph, function: Function, a: NodeId, value: NodeId) -> NodeId {
+pub(super) fn slope(graph: &mut Graph, function: Function, a: NodeId, value: NodeId) -> NodeId {
     let half = graph.constant(Rational::new(1, 2));
     match function {
         Function::Sqrt => graph.divide(half, value),

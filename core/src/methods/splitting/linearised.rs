@@ -59,6 +59,7 @@ where
         self.scheme.shares().map(|(flow, _)| changes(flow)).sum()
     }
 
+    #[inline(always)]
     fn visit(
         &self,
         scene: &S,

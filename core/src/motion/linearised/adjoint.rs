@@ -3,16 +3,17 @@
 use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::RefCell;
+use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
-use crate::motion::linearised::stage::{Cotangent, GradientSum, Pass, Stage};
+use crate::motion::linearised::stage::{Cotangent, Pass, Stage};
 use crate::motion::linearised::{Linearisable, Linearised};
 use crate::motion::stepper::{StateOf, Stepper};
 use crate::motion::summation::Motion;
-use crate::numbers::{Coordinates as _, is_finite, real};
+use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// What an adjoint keeps of the way forwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,13 +39,14 @@ type GradientOf<S> = Gradient<Vector<S>, Scalar<S>>;
 /// The way back.
 struct Back<'a, G: LieGroup> {
     cotangent: Cotangent<G::Vector>,
-    gradient: GradientSum<'a, G::Scalar>,
+    /// By the parameters, so far.
+    gradient: &'a mut [G::Scalar],
 }
 
 impl<G: LieGroup> Pass<G> for Back<'_, G> {
     #[inline(always)]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
-        self.cotangent = stage.pull(&self.cotangent, &mut self.gradient);
+        self.cotangent = stage.pull(&self.cotangent, self.gradient);
     }
 }
 
@@ -56,13 +58,48 @@ impl<G: LieGroup> Back<'_, G> {
     }
 }
 
+/// Several steps, from the last to the first.
+struct Stretch<'a, 'b, S: Effect, P, C> {
+    stepper: &'a Stepper<S, P>,
+    steps: Range<u64>,
+    events: &'a [Change<Group<S>, S::Advected>],
+    back: &'a mut Back<'b, Group<S>>,
+    cost: &'a mut C,
+}
+
+impl<S, P, C> Kernel for Stretch<'_, '_, S, P, C>
+where
+    S: SecondDerivatives,
+    P: Linearisable<S>,
+    C: FnMut(u64, &Motion<Group<S>, S::Advected>) -> Cotangent<Vector<S>>,
+{
+    type Output = ();
+
+    /// For what comes with them: instructions that leave their operands as they are.
+    const VECTORS: Vectors = Vectors::Four;
+
+    #[inline(always)]
+    fn run(self) {
+        let Stepper { scene, plan } = self.stepper;
+        // As many of each step: all steps of a plan have the same stages.
+        for (n, step) in self.steps.rev().zip(self.events.chunks(plan.stages()).rev()) {
+            for (index, event) in step.iter().enumerate().rev() {
+                plan.visit(scene, index, event, self.back);
+            }
+            if let Some(event) = step.first() {
+                self.back.add(&(self.cost)(n, &event.before));
+            }
+        }
+    }
+}
+
 impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
     /// Makes so many steps, and returns the gradient of `Σ_n c_n(state_n)`, by the state before them and by all
     /// parameters; on an error the state is unchanged.
     ///
     /// `cost` is asked for the derivatives of `c_n` at each state, from `n = steps` to `n = 0`; what a cost takes from the
     /// parameters by itself is the caller's to add. A parameter more is a few operations more: for a heavy top the whole
-    /// gradient takes two and a half plain steps for each step.
+    /// gradient takes two plain steps for each step.
     ///
     /// # Errors
     ///
@@ -106,7 +143,11 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         };
         let length = length.max(1);
         let (mut end, mut starts) = (*state, Vec::new());
-        let events = RefCell::new(Vec::new());
+        let mut events = Vec::new();
+        // Where there is no memory for them, that is found out when they are made.
+        let _ = events
+            .try_reserve(usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(self.stepper.plan.stages()));
+        let events = RefCell::new(events);
         let mut made = 0;
         // All but the last stretch is only stepped through.
         while steps - made > length {
@@ -120,9 +161,8 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         for _ in made..steps {
             self.recorded(&mut end, &events)?;
         }
-        let (mut gradient, mut by_advected) = (self.no_gradient(), Vec::new());
-        let sum = GradientSum { parameters: &mut gradient, by_advected: &mut by_advected };
-        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: sum };
+        let mut gradient = self.no_gradient();
+        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient };
         let mut last = steps;
         while let Some((first, mut start)) = starts.pop() {
             if last < steps {
@@ -132,16 +172,13 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
                 }
             }
             let events = events.borrow();
-            // As many of each step: all steps of a plan have the same stages.
-            let stages = self.stepper.plan.stages();
-            for (n, step) in (first..last).rev().zip(events.chunks(stages).rev()) {
-                for (index, event) in step.iter().enumerate().rev() {
-                    self.stepper.plan.visit(&self.stepper.scene, index, event, &mut back);
-                }
-                if let Some(event) = step.first() {
-                    back.add(&cost(n, &event.before));
-                }
-            }
+            dispatch(Stretch {
+                stepper: self.stepper,
+                steps: first..last,
+                events: &events,
+                back: &mut back,
+                cost: &mut cost,
+            });
             last = first;
         }
         let start = back.cotangent;
@@ -211,9 +248,8 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         }
         let mut now = self.inverse.adopt(&end);
         let events = RefCell::new(Vec::new());
-        let (mut gradient, mut by_advected) = (forwards.no_gradient(), Vec::new());
-        let sum = GradientSum { parameters: &mut gradient, by_advected: &mut by_advected };
-        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: sum };
+        let mut gradient = forwards.no_gradient();
+        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient };
         for n in (0..steps).rev() {
             inverse.recorded(&mut now, &events)?;
             let mut made = events.borrow_mut();

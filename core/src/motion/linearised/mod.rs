@@ -91,6 +91,7 @@ use crate::motion::declared::Declared;
 use crate::motion::plan::Plan;
 use crate::motion::report::StepReport;
 use crate::motion::stepper::{StateOf, Stepper};
+use crate::numbers::{Kernel, Vectors, dispatch};
 use recorded::Recorded;
 
 /// A plan whose steps can be differentiated: some of the library's own plans.
@@ -237,20 +238,17 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
             let own = plan.parameters();
             assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
         }
-        let mut next = *state;
+        let before = *state;
         tangent.events.get_mut().clear();
-        let report = self.recorded(&mut next, &tangent.events)?;
+        let report = self.recorded(state, &tangent.events)?;
         let events = tangent.events.take();
-        tangent.keep();
-        for (index, event) in events.iter().enumerate() {
-            plan.visit(scene, index, event, tangent);
-        }
+        let is_finite = dispatch(Carry { plan, scene, events: &events, tangent: &mut *tangent });
         tangent.events.replace(events);
-        if !tangent.is_finite() {
+        if !is_finite {
             tangent.go_back();
+            *state = before;
             return Err(StepError::NonFinite { what: "derivative after the step" });
         }
-        *state = next;
         Ok(report)
     }
 
@@ -271,5 +269,29 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
             Err(error) if P::EXPLAINS => Err(plan.explained(error, scene, &state.motion, &state.kept)),
             Err(error) => Err(error),
         }
+    }
+}
+
+/// Carries a tangent over the stages of a step, and says whether all of it is numbers.
+struct Carry<'a, S: Effect, P> {
+    plan: &'a P,
+    scene: &'a S,
+    events: &'a [Change<Group<S>, S::Advected>],
+    tangent: &'a mut TangentOf<S>,
+}
+
+impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, S, P> {
+    type Output = bool;
+
+    /// As many as there are columns side by side.
+    const VECTORS: Vectors = Vectors::Four;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        self.tangent.keep();
+        for (index, event) in self.events.iter().enumerate() {
+            self.plan.visit(self.scene, index, event, self.tangent);
+        }
+        self.tangent.is_finite()
     }
 }

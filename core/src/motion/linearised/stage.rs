@@ -1,7 +1,5 @@
 //! The tangent map of one stage and its transpose.
 
-use alloc::vec::Vec;
-
 use crate::groups::{Advected as _, LieGroup, seen_of_unit};
 use crate::mechanics::pattern;
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
@@ -23,8 +21,9 @@ pub struct Stage<'a, E: Effect> {
     first: usize,
 }
 
+/// What was done. It is matched where its derivatives are used: the compiler vectorises badly what comes from several arms.
 #[derive(Clone, Copy, Debug)]
-enum Kind<T> {
+pub(super) enum Kind<T> {
     /// A step of this length, s.
     Step(T),
     /// The push of the effect's potential in this time, s.
@@ -49,22 +48,29 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         Self { first, ..self }
     }
 
-    /// Prepares the map along displacements.
+    /// What the stage does.
     #[inline(always)]
-    pub(super) fn map(&self) -> Map<E> {
-        match self.kind {
-            // Without a step nothing moves.
-            Kind::Step(h) if h == real(0.0) => Map::Nothing,
-            Kind::Step(h) => {
-                let blocks = self.effect.step_derivatives(&self.increment, &self.advected, h);
-                Map::Step(blocks, Group::<E>::from_increment(&self.increment).inverse())
-            }
-            Kind::Kick(time) => {
-                let blocks = self.effect.step_derivatives(&self.increment, &self.advected, real(1.0));
-                let slope = blocks.end_by_place + blocks.start_by_place * real::<Scalar<E>>(-1.0);
-                Map::Kick(slope * time)
-            }
-        }
+    pub(super) fn kind(&self) -> Kind<Scalar<E>> {
+        self.kind
+    }
+
+    /// The blocks of the tangent map of a step of this length.
+    #[inline(always)]
+    pub(super) fn blocks(&self, h: Scalar<E>) -> StepDerivatives<Square<E>> {
+        self.effect.step_derivatives(&self.increment, &self.advected, h)
+    }
+
+    /// `Ad_{F⁻¹}`.
+    #[inline(always)]
+    pub(super) fn turned_back(&self) -> Square<E> {
+        Group::<E>::from_increment(&self.increment).inverse().adjoint_matrix()
+    }
+
+    /// The slope `S` of a kick in this time, `δμ⁺ = δμ + S ζ`.
+    #[inline(always)]
+    pub(super) fn slope(&self, time: Scalar<E>) -> Square<E> {
+        let blocks = self.blocks(real(1.0));
+        (blocks.end_by_place + blocks.start_by_place * real::<Scalar<E>>(-1.0)) * time
     }
 
     /// The derivatives of `μ` and `μ⁺` by the parameters, those that are carried not among them.
@@ -94,7 +100,7 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// The derivatives of `μ` and `μ⁺` by all parameters; those of one that is visited again are added.
     pub(super) fn forwards(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
         self.by_parameters(visit);
-        E::carried_parameters(&self.advected, &mut |place, parameter| {
+        E::carried_parameters(&mut |place, parameter| {
             let seen: E::Advected = seen_of_unit(place, &self.attitude);
             let (mut start, mut end) = (Vector::<E>::zero(), Vector::<E>::zero());
             self.by_advected(&mut |number, by_start, by_end| {
@@ -105,54 +111,46 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         });
     }
 
-    /// Adds to the gradient by the parameters: `⟨at_end, ∂μ⁺⟩ − ⟨at_start, ∂μ⟩`.
+    /// Adds the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` by the parameters at a fixed increment, for `[u, p]`, and returns that along
+    /// displacements.
     #[inline(always)]
-    fn backwards(&self, at_start: &Vector<E>, at_end: &Vector<E>, gradient: &mut GradientSum<'_, Scalar<E>>) {
-        let paired = |start: Vector<E>, end: Vector<E>| at_end.dot(&end) - at_start.dot(&start);
-        self.by_parameters(&mut |number, start, end| gradient.add(number, paired(start, end)));
-        // The gradient by what the body sees, and from there by its value in space.
-        let by_advected = &mut *gradient.by_advected;
-        by_advected.clear();
-        self.advected.each(&mut |_| by_advected.push(real(0.0)));
-        self.by_advected(&mut |number, start, end| {
-            if let Some(entry) = by_advected.get_mut(number) {
-                *entry = paired(start, end);
+    fn fixed_increment(&self, ends: [&Vector<E>; 2], gradient: &mut [Scalar<E>]) -> Vector<E> {
+        // Of so many scalars none has to be looked for.
+        let Some(own) = gradient.get_mut(self.first..self.first + E::PARAMETERS) else { return Vector::<E>::zero() };
+        let mut add = |number: usize, share: Scalar<E>| {
+            if let Some(sum) = own.get_mut(number) {
+                *sum += share;
             }
-        });
-        let mut by_seen = by_advected.iter();
-        let by_seen = E::Advected::from_entries(&mut || by_seen.next().copied().unwrap_or_else(|| real(0.0)));
+        };
+        let (by_place, by_seen) =
+            self.effect.adjoint_gradient(&self.increment, &self.advected, self.length(), ends, &mut add);
         let mut by_carried = None;
-        E::carried_parameters(&self.advected, &mut |place, parameter| {
+        E::carried_parameters(&mut |place, parameter| {
             let by_carried = by_carried.get_or_insert_with(|| by_seen.pulled_back(&self.attitude));
-            gradient.add(self.first + parameter, entry(by_carried, place));
+            add(parameter, entry(by_carried, place));
         });
+        by_place
     }
 
     /// Takes the gradient at the end of the stage to its beginning, and adds the parameters' shares.
     #[inline(always)]
-    pub(super) fn pull(
-        &self,
-        end: &Cotangent<Vector<E>>,
-        gradient: &mut GradientSum<'_, Scalar<E>>,
-    ) -> Cotangent<Vector<E>> {
-        let transposed = |matrix: &Square<E>, v: &Vector<E>| Vector::<E>::transpose(matrix) * *v;
-        match self.map() {
-            Map::Nothing => *end,
-            Map::Step(blocks, inverse) => {
+    pub(super) fn pull(&self, end: &Cotangent<Vector<E>>, gradient: &mut [Scalar<E>]) -> Cotangent<Vector<E>> {
+        match self.kind {
+            // Without a step nothing moves.
+            Kind::Step(h) if h == real(0.0) => *end,
+            Kind::Step(h) => {
+                let (matrix, share) = self.effect.adjoint_system(&self.increment, &self.advected, h, &end.momentum);
+                let inverse = Group::<E>::from_increment(&self.increment).inverse();
                 let attitude = inverse.adjoint_transpose(&end.attitude);
-                let right = attitude + transposed(&blocks.end_by_turn, &end.momentum);
-                let (factors, det) =
-                    Vector::<E>::factorise_with(&Vector::<E>::transpose(&blocks.start_by_turn), pattern::<E>());
-                let at_start = Vector::<E>::solve_again_with(&factors, det, pattern::<E>(), &right);
-                self.backwards(&at_start, &end.momentum, gradient);
-                let attitude = attitude
-                    + (transposed(&blocks.end_by_place, &end.momentum) - transposed(&blocks.start_by_place, &at_start));
-                Cotangent { attitude, momentum: at_start }
+                let (factors, det) = Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern::<E>());
+                let start = Vector::<E>::solve_again_with(&factors, det, pattern::<E>(), &(attitude + share));
+                let by_place = self.fixed_increment([&start, &end.momentum], gradient);
+                Cotangent { attitude: attitude + by_place, momentum: start }
             }
-            Map::Kick(slope) => {
-                let paired = end.momentum * self.scale();
-                self.backwards(&paired, &paired, gradient);
-                Cotangent { attitude: end.attitude + transposed(&slope, &end.momentum), momentum: end.momentum }
+            Kind::Kick(time) => {
+                let paired = end.momentum * time;
+                let by_place = self.fixed_increment([&paired; 2], gradient);
+                Cotangent { attitude: end.attitude + by_place, momentum: end.momentum }
             }
         }
     }
@@ -162,31 +160,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
         match self.kind {
             Kind::Step(_) => real(1.0),
             Kind::Kick(time) => time,
-        }
-    }
-}
-
-/// The tangent map of a stage, prepared.
-pub(super) enum Map<E: Effect> {
-    Nothing,
-    /// `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`, with `F⁻¹`.
-    Step(StepDerivatives<Square<E>>, Group<E>),
-    /// `δμ⁺ = δμ + S ζ`.
-    Kick(Square<E>),
-}
-
-/// The gradient by the parameters so far.
-pub(super) struct GradientSum<'a, T> {
-    pub(super) parameters: &'a mut [T],
-    /// Of one stage, by what the body sees.
-    pub(super) by_advected: &'a mut Vec<T>,
-}
-
-impl<T: Real> GradientSum<'_, T> {
-    #[inline(always)]
-    fn add(&mut self, number: usize, share: T) {
-        if let Some(sum) = self.parameters.get_mut(number) {
-            *sum += share;
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::groups::LieGroup;
 use crate::mechanics::pattern;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
 use crate::motion::linearised::recorded::Change;
-use crate::motion::linearised::stage::{Map, Pass, Stage};
+use crate::motion::linearised::stage::{Kind, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
 use nalgebra::SimdComplexField as _;
 
@@ -19,35 +19,56 @@ use nalgebra::SimdComplexField as _;
 /// `μ_0`; together they are the state transition matrix. The others are those by parameters, at a fixed start.
 #[derive(Clone, Debug)]
 pub struct Tangent<G: LieGroup, A> {
-    columns: Vec<Column<G::Vector>>,
+    /// Four by four; what is left over of the last four is zero.
+    columns: Vec<FourColumns<Four<G>>>,
     /// As they were before a step.
-    kept: Vec<Column<G::Vector>>,
+    kept: Vec<FourColumns<Four<G>>>,
+    /// The parameters that the columns behind those of the start are the derivatives by, by their numbers.
+    numbers: Vec<usize>,
     /// The parameters' shares in a stage, by their numbers.
     shares: Vec<(G::Vector, G::Vector)>,
     /// The stages of the last step; the memory is used again.
     pub(super) events: RefCell<Vec<Change<G, A>>>,
 }
 
-/// A direction, and the parameter that moves with it.
+type Four<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Four;
+
+/// Four directions.
 #[derive(Clone, Copy, Debug)]
-struct Column<V> {
-    attitude: V,
-    momentum: V,
-    parameter: Option<usize>,
+struct FourColumns<F> {
+    attitude: F,
+    momentum: F,
 }
 
 impl<G: LieGroup, A> Tangent<G, A> {
     /// The identity, with a column for each of these of so many parameters.
     pub(super) fn new(parameters: usize, numbers: &[usize]) -> Self {
         let zero = G::Vector::zero();
-        let start = (0..G::DIMENSION)
-            .map(|k| Column { attitude: G::Vector::axis(k), momentum: zero, parameter: None })
-            .chain((0..G::DIMENSION).map(|k| Column { attitude: zero, momentum: G::Vector::axis(k), parameter: None }));
-        let by_parameters =
-            numbers.iter().map(|&number| Column { attitude: zero, momentum: zero, parameter: Some(number) });
-        let columns = start.chain(by_parameters).collect();
         let shares = if numbers.is_empty() { Vec::new() } else { vec![(zero, zero); parameters] };
-        Self { columns, kept: Vec::new(), shares, events: RefCell::default() }
+        let (kept, events) = (Vec::new(), RefCell::default());
+        let mut tangent = Self { columns: Vec::new(), kept, numbers: numbers.to_vec(), shares, events };
+        tangent.set_columns(&Self::identity());
+        tangent
+    }
+
+    /// The columns of the start.
+    fn identity() -> Vec<(G::Vector, G::Vector)> {
+        let zero = G::Vector::zero();
+        let axes = || (0..G::DIMENSION).map(G::Vector::axis);
+        axes().map(|axis| (axis, zero)).chain(axes().map(|axis| (zero, axis))).collect()
+    }
+
+    /// These, and zeros for the parameters.
+    fn set_columns(&mut self, start: &[(G::Vector, G::Vector)]) {
+        let zero = G::Vector::zero();
+        let count = start.len() + self.numbers.len();
+        let column = |k: usize| start.get(k).copied().unwrap_or((zero, zero));
+        let four = |first: usize| FourColumns {
+            attitude: G::Vector::beside(&[0, 1, 2, 3].map(|k| column(first + k).0)),
+            momentum: G::Vector::beside(&[0, 1, 2, 3].map(|k| column(first + k).1)),
+        };
+        self.columns = (0..count).step_by(4).map(four).collect();
+        self.kept.clone_from(&self.columns);
     }
 
     /// How many parameters its plan has; `None` without columns for them, where any plan of the scene will do.
@@ -58,7 +79,10 @@ impl<G: LieGroup, A> Tangent<G, A> {
 
     /// The columns: how the attitude moves, `g ← g exp ζ̂`, and the change `δμ` of the momentum, for each.
     pub fn columns(&self) -> impl ExactSizeIterator<Item = (G::Vector, G::Vector)> + '_ {
-        self.columns.iter().map(|column| (column.attitude, column.momentum))
+        (0..2 * G::DIMENSION + self.numbers.len()).map(|k| {
+            let FourColumns { attitude, momentum } = &self.columns[k / 4];
+            (G::Vector::of_four(attitude, k % 4), G::Vector::of_four(momentum, k % 4))
+        })
     }
 
     /// The columns of the parameters, in the order in which they were asked for.
@@ -69,12 +93,11 @@ impl<G: LieGroup, A> Tangent<G, A> {
     /// The state transition matrix `∂(ζ, μ)/∂(ζ_0, μ_0)`, by its four blocks: `[[∂ζ/∂ζ_0, ∂ζ/∂μ_0], [∂μ/∂ζ_0, ∂μ/∂μ_0]]`.
     #[must_use]
     pub fn transition(&self) -> [[<G::Vector as Coordinates<G::Scalar>>::Square; 2]; 2] {
+        let columns: Vec<_> = self.columns().collect();
         let block = |first: usize, is_attitude: bool| {
-            let columns = self.columns.iter().skip(first).take(G::DIMENSION);
-            let zero = G::Vector::zero();
-            columns.enumerate().fold(zero.outer(&zero), |block, (k, column)| {
-                let part = if is_attitude { column.attitude } else { column.momentum };
-                block + part.outer(&G::Vector::axis(k))
+            G::Vector::square(|k| {
+                let (attitude, momentum) = columns[first + k];
+                if is_attitude { attitude } else { momentum }
             })
         };
         [true, false].map(|is_attitude| [block(0, is_attitude), block(G::DIMENSION, is_attitude)])
@@ -83,31 +106,33 @@ impl<G: LieGroup, A> Tangent<G, A> {
     /// Makes the columns of the start orthonormal, from the first to the last, and returns what each was longer than
     /// one: the diagonal of `R` in `Φ = Q R`, of which Lyapunov exponents are made.
     pub(super) fn orthonormalise(&mut self) -> Vec<G::Scalar> {
-        self.columns.truncate(2 * G::DIMENSION);
-        let mut lengths = Vec::with_capacity(self.columns.len());
-        for at in 0..self.columns.len() {
-            let (known, rest) = self.columns.split_at_mut(at);
-            let Some(column) = rest.first_mut() else { break };
+        let mut columns: Vec<_> = self.columns().take(2 * G::DIMENSION).collect();
+        let mut lengths = Vec::with_capacity(columns.len());
+        for at in 0..columns.len() {
+            let (known, rest) = columns.split_at_mut(at);
+            let Some((attitude, momentum)) = rest.first_mut() else { break };
             // Once more, as the first time leaves what rounding makes of nearly parallel columns.
             for _ in 0..2 {
                 for other in &*known {
-                    let shadow = other.attitude.dot(&column.attitude) + other.momentum.dot(&column.momentum);
-                    column.attitude = column.attitude - other.attitude * shadow;
-                    column.momentum = column.momentum - other.momentum * shadow;
+                    let shadow = other.0.dot(attitude) + other.1.dot(momentum);
+                    (*attitude, *momentum) = (*attitude - other.0 * shadow, *momentum - other.1 * shadow);
                 }
             }
-            let length = (column.attitude.dot(&column.attitude) + column.momentum.dot(&column.momentum)).simd_sqrt();
+            let length = (attitude.dot(attitude) + momentum.dot(momentum)).simd_sqrt();
             let inverse = real::<G::Scalar>(1.0) / length;
-            (column.attitude, column.momentum) = (column.attitude * inverse, column.momentum * inverse);
+            (*attitude, *momentum) = (*attitude * inverse, *momentum * inverse);
             lengths.push(length);
         }
+        self.set_columns(&columns);
         lengths
     }
 
     /// Remembers the columns.
     #[inline(always)]
     pub(super) fn keep(&mut self) {
-        self.kept.clone_from(&self.columns);
+        for (kept, four) in self.kept.iter_mut().zip(&self.columns) {
+            *kept = *four;
+        }
     }
 
     /// To the columns that are remembered.
@@ -117,20 +142,38 @@ impl<G: LieGroup, A> Tangent<G, A> {
     }
 
     /// Whether all entries are numbers.
+    #[inline(always)]
     pub(super) fn is_finite(&self) -> bool {
-        let mut total = real::<G::Scalar>(0.0);
-        for column in &self.columns {
-            column.attitude.each(&mut |entry| total += entry);
-            column.momentum.each(&mut |entry| total += entry);
+        let zero = G::Vector::zero();
+        let mut sums = G::Vector::beside(&[zero; 4]);
+        for four in &self.columns {
+            sums = sums + (four.attitude + four.momentum);
         }
+        let mut total = real::<G::Scalar>(0.0);
+        sums.each(&mut |entry| total += entry);
         is_finite(total)
+    }
+
+    /// The shares of the parameters in four columns, at the start and at the end of the stage; nothing where there are
+    /// none.
+    #[inline(always)]
+    fn shares_of(&self, four: usize) -> Option<(Four<G>, Four<G>)> {
+        let (start, zero) = (2 * G::DIMENSION, G::Vector::zero());
+        if self.numbers.is_empty() || 4 * four + 4 <= start {
+            return None;
+        }
+        let of_column = |k: usize| {
+            let number = self.numbers.get((4 * four + k).checked_sub(start)?)?;
+            self.shares.get(*number).copied()
+        };
+        let shares = [0, 1, 2, 3].map(|k| of_column(k).unwrap_or((zero, zero)));
+        Some((G::Vector::beside(&shares.map(|share| share.0)), G::Vector::beside(&shares.map(|share| share.1))))
     }
 }
 
 impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     #[inline(always)]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
-        let map = stage.map();
         if !self.shares.is_empty() {
             let (zero, scale) = (G::Vector::zero(), stage.scale());
             self.shares.fill((zero, zero));
@@ -141,34 +184,40 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
                 }
             });
         }
-        let shares = &self.shares;
-        let share = |column: &Column<G::Vector>| column.parameter.and_then(|number| shares.get(number));
-        match map {
-            Map::Nothing => {}
-            Map::Step(blocks, inverse) => {
+        match stage.kind() {
+            // Without a step nothing moves.
+            Kind::Step(h) if h == real(0.0) => {}
+            // `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`, `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
+            Kind::Step(h) => {
+                let blocks = stage.blocks(h);
                 let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern::<E>());
-                for column in &mut self.columns {
-                    let mut target = column.momentum - blocks.start_by_place * column.attitude;
-                    let share = share(column);
-                    if let Some((start, _)) = share {
-                        target = target - *start;
+                let solution = Vector::<E>::inverse_with(&factors, determinant, pattern::<E>());
+                let turned = stage.turned_back();
+                for k in 0..self.columns.len() {
+                    let shares = self.shares_of(k);
+                    let FourColumns { attitude, momentum } = &mut self.columns[k];
+                    let mut right_side = *momentum - G::Vector::map_four(&blocks.start_by_place, attitude);
+                    if let Some((start, _)) = shares {
+                        right_side = right_side - start;
                     }
-                    let turn = Vector::<E>::solve_again_with(&factors, determinant, pattern::<E>(), &target);
-                    let mut momentum = blocks.end_by_turn * turn + blocks.end_by_place * column.attitude;
-                    if let Some((_, end)) = share {
-                        momentum = momentum + *end;
+                    let turn = G::Vector::map_four(&solution, &right_side);
+                    let by_turn = G::Vector::map_four(&blocks.end_by_turn, &turn);
+                    *momentum = by_turn + G::Vector::map_four(&blocks.end_by_place, attitude);
+                    if let Some((_, end)) = shares {
+                        *momentum = *momentum + end;
                     }
-                    column.attitude = inverse.adjoint(&(column.attitude + turn));
-                    column.momentum = momentum;
+                    *attitude = G::Vector::map_four(&turned, &(*attitude + turn));
                 }
             }
-            Map::Kick(slope) => {
-                for column in &mut self.columns {
-                    let mut momentum = column.momentum + slope * column.attitude;
-                    if let Some((start, end)) = share(column) {
-                        momentum = momentum + (*end - *start);
+            Kind::Kick(time) => {
+                let slope = stage.slope(time);
+                for k in 0..self.columns.len() {
+                    let shares = self.shares_of(k);
+                    let FourColumns { attitude, momentum } = &mut self.columns[k];
+                    *momentum = *momentum + G::Vector::map_four(&slope, attitude);
+                    if let Some((start, end)) = shares {
+                        *momentum = *momentum + (end - start);
                     }
-                    column.momentum = momentum;
                 }
             }
         }

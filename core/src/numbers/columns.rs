@@ -1,0 +1,68 @@
+//! Four vectors of components side by side, so that one vector instruction does the same to all of them.
+
+use core::ops::{Add, Sub};
+
+use nalgebra::SMatrix;
+
+use super::entries::Entries;
+use super::scalar::Real;
+
+/// Four vectors with `D` components: for each component the four numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FourVectors<T, const D: usize>(pub(super) [[T; 4]; D]);
+
+impl<T: Real, const D: usize> FourVectors<T, D> {
+    /// Each mapped by the matrix.
+    #[inline(always)]
+    pub(super) fn mapped(&self, matrix: &SMatrix<T, D, D>) -> Self {
+        let mut mapped = [[T::zero(); 4]; D];
+        for (i, sums) in mapped.iter_mut().enumerate() {
+            for (k, row) in self.0.iter().enumerate() {
+                let factor = matrix[(i, k)];
+                for (sum, entry) in sums.iter_mut().zip(row) {
+                    let product = factor * *entry;
+                    *sum = if k == 0 { product } else { *sum + product };
+                }
+            }
+        }
+        Self(mapped)
+    }
+}
+
+impl<T: Real, const D: usize> Add for FourVectors<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(&other, &mut |a, b| a + b)
+    }
+}
+
+impl<T: Real, const D: usize> Sub for FourVectors<T, D> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(&other, &mut |a, b| a - b)
+    }
+}
+
+impl<T: Real, const D: usize> Entries<T> for FourVectors<T, D> {
+    fn from_entries(next: &mut impl FnMut() -> T) -> Self {
+        Self(core::array::from_fn(|_| core::array::from_fn(|_| next())))
+    }
+
+    #[inline(always)]
+    fn each(&self, visit: &mut impl FnMut(T)) {
+        self.0.as_flattened().iter().for_each(|entry| visit(*entry));
+    }
+
+    #[inline(always)]
+    fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
+        let mut combined = *self;
+        for (entry, other) in combined.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
+            *entry = combine(*entry, *other);
+        }
+        combined
+    }
+}

@@ -1,0 +1,66 @@
+//! How a weighted sum of outputs changes with each input: the chain rule from the outputs back.
+//!
+//! It takes as many operations as the outputs, times some three, however many inputs there are.
+
+use std::collections::BTreeMap;
+
+use super::graph::{Graph, Node, NodeId};
+use super::tangent::slope;
+
+/// The derivative by each node that the sum depends on.
+pub(super) type Gradient = BTreeMap<NodeId, NodeId>;
+
+/// That of the sum of the outputs, each times its weight.
+pub(super) fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> Gradient {
+    let mut found = Gradient::new();
+    let outputs: Vec<NodeId> = weighted.iter().map(|(output, _)| *output).collect();
+    for &(output, weight) in weighted {
+        give(graph, &mut found, output, weight);
+    }
+    for id in graph.reachable(&outputs).into_iter().rev() {
+        let Some(&own) = found.get(&id) else { continue };
+        match graph.node(id) {
+            Node::Constant(_) | Node::Input(_) => {}
+            Node::Negate(a) => {
+                let minus = graph.negate(own);
+                give(graph, &mut found, a, minus);
+            }
+            Node::Add(a, b) => {
+                give(graph, &mut found, a, own);
+                give(graph, &mut found, b, own);
+            }
+            Node::Subtract(a, b) => {
+                let minus = graph.negate(own);
+                give(graph, &mut found, a, own);
+                give(graph, &mut found, b, minus);
+            }
+            Node::Multiply(a, b) => {
+                let [by_first, by_second] = [graph.multiply(own, b), graph.multiply(own, a)];
+                give(graph, &mut found, a, by_first);
+                give(graph, &mut found, b, by_second);
+            }
+            // d(a/b) = (da − (a/b) db)/b.
+            Node::Divide(a, b) => {
+                let by_dividend = graph.divide(own, b);
+                let by_divisor = graph.multiply(id, by_dividend);
+                let by_divisor = graph.negate(by_divisor);
+                give(graph, &mut found, a, by_dividend);
+                give(graph, &mut found, b, by_divisor);
+            }
+            Node::Apply(function, a) => {
+                let slope = slope(graph, function, a, id);
+                let by_argument = graph.multiply(own, slope);
+                give(graph, &mut found, a, by_argument);
+            }
+        }
+    }
+    found
+}
+
+/// Adds a share; what is constant has none.
+fn give(graph: &mut Graph, found: &mut Gradient, node: NodeId, share: NodeId) {
+    if graph.value(node).is_none() && !graph.is_zero(share) {
+        let sum = found.get(&node).map_or(share, |&sum| graph.add(sum, share));
+        found.insert(node, sum);
+    }
+}
