@@ -163,8 +163,8 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
         Ok(ExactDrift { frame: self.frame, scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared })
     }
 
-    /// What is decided, which axis is which and how long the drift is, is decided once: a straight line of code for each
-    /// case is faster than one that parts and meets again.
+    /// Which axis is which is decided once: a straight line of code for each case is faster than one that parts and meets
+    /// again twice.
     #[inline(always)]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
         use Axes::{Xyz, Yzx, Zxy};
@@ -214,13 +214,16 @@ impl<T: Real> ExactDrift<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
         let (is_short, is_long) = (size.simd_le(real(SHORT)), size.simd_le(real(LONG)));
-        if is_short.all() {
-            self.from_half(u, &invariants, &self.near(u, &short(&invariants))).of(frame, momentum)
+        let turned = if is_short.all() {
+            self.from_half(u, &invariants, &self.near(u, &short(&invariants)))
         } else if !is_short.any() && is_long.all() {
-            self.from_half(u, &invariants, &self.near(u, &long(&invariants))).of(frame, momentum)
+            self.from_half(u, &invariants, &self.near(u, &long(&invariants)))
         } else {
-            self.beyond(u, &invariants).of(frame, momentum)
-        }
+            self.beyond(u, &invariants)
+        };
+        let increment = scaled_increment(frame.back(turned.quaternion)) * turned.inverse_square;
+        let change = SO3::adjoint_transpose_increment(&increment, momentum);
+        Turn { increment, change, iterations: 0 }
     }
 
     /// Where the functions are those of half the drift.
@@ -373,14 +376,6 @@ impl<T: Real> Turned<T> {
         let length = (w * w + x * x) + (y * y + z * z);
         let square = (along_a * along_a + along_b * along_b) + real_part * real_part;
         Self { quaternion: product_across(about, across), inverse_square: T::one() / (square * length) }
-    }
-
-    /// What it does to the body, and to its momentum.
-    #[inline(always)]
-    fn of(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
-        let increment = scaled_increment(frame.back(self.quaternion)) * self.inverse_square;
-        let change = SO3::adjoint_transpose_increment(&increment, momentum);
-        Turn { increment, change, iterations: 0 }
     }
 
     fn select(&self, mask: Mask<T>, other: &Self) -> Self {
