@@ -33,7 +33,6 @@ fn processed_splittings_have_their_orders() {
     for (scheme, coarsest) in [
         (ProcessedScheme::SIX_A, 240),
         (ProcessedScheme::SIX_B, 160),
-        (ProcessedScheme::SIX_C, 160),
         (ProcessedScheme::FOUR_A, 500),
         (ProcessedScheme::FOUR_B, 500),
         (ProcessedScheme::FOUR_C, 500),

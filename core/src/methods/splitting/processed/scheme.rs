@@ -80,20 +80,6 @@ impl ProcessedScheme {
         0.326738727944971417247646984815,
     );
 
-    /// The same steps with a shorter processor.
-    pub const SIX_C: Self = Self::new(
-        "processed 3-6 c",
-        6,
-        THREE_DRIFTS,
-        &[
-            [0.0, 0.143006108467066184064675652084, 0.0152813923611015568986854396141],
-            [0.353057798217135906583091355701, 0.165779530858081404626065262767, -0.0624083612624959698362934442211],
-            [0.0645295548742796169264161823255, -0.0789626367524864443992019567111, 0.044308048465456777172951094241],
-            [-0.258730131956576334637692123569, -0.274392207520551623032905696578, 0.00215167228544339650698171864467],
-        ],
-        -0.203426426082729667613182152895,
-    );
-
     /// Order 4 with two drifts and two force gradients a step, for few digits.
     pub const FOUR_A: Self = Self::new(
         "processed 2-4 a",
@@ -134,7 +120,7 @@ impl ProcessedScheme {
     );
 
     /// All of these.
-    pub const ALL: [Self; 6] = [Self::SIX_A, Self::SIX_B, Self::SIX_C, Self::FOUR_A, Self::FOUR_B, Self::FOUR_C];
+    pub const ALL: [Self; 5] = [Self::SIX_A, Self::SIX_B, Self::FOUR_A, Self::FOUR_B, Self::FOUR_C];
 
     /// Other coefficients: of the processor `χ`, by which a run ends, drift, kick and force gradient by turns, and the
     /// last drift. The order is that of the whole.
