@@ -93,7 +93,7 @@ fn it_is_the_solution_to_the_last_digits() {
     for (name, moments) in SHAPES {
         let (exact, moments) = (exact(moments), Vector3::from(moments));
         let inverse = moments.map(|moment| long(1.0) / long(moment));
-        for angle in [1e-9, 1e-3, 0.1, 0.17, 0.3, 0.45, 0.6, 1.0, 4.0, 12.0] {
+        for angle in [1e-9, 1e-3, 0.1, 0.17, 0.3, 0.45, 0.6, 1.0, 2.0, 4.0, 12.0] {
             for p in starts(moments.into(), &mut random) {
                 for sign in [1.0, -1.0].into_iter().skip(usize::from(angle > 1.0)) {
                     let h = sign * angle / p.component_div(&moments).norm();

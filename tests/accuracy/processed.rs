@@ -35,6 +35,7 @@ fn processed_splittings_have_their_orders() {
         (ProcessedScheme::SIX_B, 160),
         (ProcessedScheme::FOUR_A, 500),
         (ProcessedScheme::FOUR_B, 500),
+        (ProcessedScheme::FOUR_C, 500),
     ] {
         for name in TOPS {
             let motion = Motion::read(name);

@@ -1,6 +1,6 @@
 //! Splittings in lanes: shares are gathered as they were folded for each body alone.
 
-use super::{KineticFlow, Share, Spin, Split};
+use super::{Kick, KineticFlow, Share, Spin, Split, Stage, Stages};
 use crate::mechanics::{Effect, Scalar};
 use crate::numbers::{InLanes, Lanes, Real, lanes_of_fields};
 use nalgebra::SimdValue;
@@ -31,6 +31,21 @@ lanes_of_fields!(
     impl[T: Real<Element: Real>] Spin<T> => Spin<T::Element>, as Spin { lanes: [], scalars: [angle], shared: [] }
 );
 
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] Kick<T> => Kick<T::Element>, as Kick
+    { lanes: [mobility], scalars: [time], shared: [] }
+);
+
+lanes_of_fields!(
+    impl[D: Lanes, T: Real<Element: Real>] Stage<D, T> => Stage<D::Lane, T::Element>, as Stage
+    { lanes: [drift, kick], scalars: [], shared: [] }
+);
+
+lanes_of_fields!(
+    impl[D: Lanes, T: Real<Element: Real>] Stages<D, T> => Stages<D::Lane, T::Element>, as Stages
+    { lanes: [lead, stages], scalars: [], shared: [] }
+);
+
 /// Of one kind in all lanes.
 impl<D: Lanes, T: Real<Element: Real>> Lanes for Share<D, T> {
     type Lane = Share<D::Lane, T::Element>;
@@ -38,30 +53,21 @@ impl<D: Lanes, T: Real<Element: Real>> Lanes for Share<D, T> {
     fn splat(lane: &Self::Lane) -> Self {
         match lane {
             Share::Drift(drift) => Self::Drift(D::splat(drift)),
-            Share::Kick(time) => Self::Kick(T::splat(*time)),
-            Share::GradientKick(time, mobility) => Self::GradientKick(T::splat(*time), Lanes::splat(mobility)),
+            Share::Kick(kick) => Self::Kick(Lanes::splat(kick)),
         }
     }
 
     fn lane(&self, k: usize) -> Self::Lane {
         match self {
             Self::Drift(drift) => Share::Drift(drift.lane(k)),
-            Self::Kick(time) => Share::Kick(time.extract(k)),
-            Self::GradientKick(time, mobility) => Share::GradientKick(time.extract(k), Lanes::lane(mobility, k)),
+            Self::Kick(kick) => Share::Kick(kick.lane(k)),
         }
     }
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
         match (self, lane) {
             (Self::Drift(own), Share::Drift(drift)) => own.set_lane(k, drift),
-            (Self::Kick(own), Share::Kick(time)) => {
-                own.replace(k, *time);
-                true
-            }
-            (Self::GradientKick(own, matrix), Share::GradientKick(time, mobility)) => {
-                own.replace(k, *time);
-                matrix.set_lane(k, mobility)
-            }
+            (Self::Kick(own), Share::Kick(kick)) => own.set_lane(k, kick),
             _ => false,
         }
     }

@@ -100,7 +100,7 @@ pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
     h: Scalar<S>,
     /// The first share of a step, which is the last one too.
     outer: Share<K::Drift, Scalar<S>>,
-    inner: Vec<Share<K::Drift, Scalar<S>>>,
+    inner: Stages<K::Drift, Scalar<S>>,
     /// The last share of a step and the first of the next.
     joint: Share<K::Drift, Scalar<S>>,
     /// What all the drifts of a step turn about the third body axis, in units of `p_3`, where that can be done at once.
@@ -117,10 +117,52 @@ struct Spin<T> {
 #[derive(Clone, Debug)]
 enum Share<D, T> {
     Drift(D),
-    /// The time that the torque acts, s.
-    Kick(T),
-    /// And the inverse inertia times the share of the force gradient, s³/(kg m²).
-    GradientKick(T, Matrix3<T>),
+    Kick(Kick<T>),
+}
+
+/// Shares by turns, in pairs: a kick is a straight line with the drift before it, so that the motion needn't be put away
+/// between the two.
+#[derive(Clone, Debug)]
+struct Stages<D, T> {
+    /// Before the first drift.
+    lead: Option<Kick<T>>,
+    stages: Vec<Stage<D, T>>,
+}
+
+/// A drift, and the kick after it, if that isn't the end.
+#[derive(Clone, Debug)]
+struct Stage<D, T> {
+    drift: D,
+    kick: Option<Kick<T>>,
+}
+
+impl<D, T> FromIterator<Share<D, T>> for Stages<D, T> {
+    fn from_iter<I: IntoIterator<Item = Share<D, T>>>(shares: I) -> Self {
+        let mut all = Self { lead: None, stages: Vec::new() };
+        shares.into_iter().for_each(|share| all.add(share));
+        all
+    }
+}
+
+impl<D, T> Stages<D, T> {
+    fn add(&mut self, share: Share<D, T>) {
+        match share {
+            Share::Drift(drift) => self.stages.push(Stage { drift, kick: None }),
+            Share::Kick(kick) => {
+                let place = self.stages.last_mut().map_or(&mut self.lead, |stage| &mut stage.kick);
+                debug_assert!(place.is_none(), "shares are drifts and kicks by turns");
+                *place = Some(kick);
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Kick<T> {
+    /// That the torque acts, s.
+    time: T,
+    /// The inverse inertia times the share of the force gradient, s³/(kg m²).
+    mobility: Option<Matrix3<T>>,
 }
 
 impl<S: Effect> Stepper<S> {
@@ -202,12 +244,13 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     fn take_spin(&mut self) {
         let (mut outer, mut joint, mut inner) = (self.outer.clone(), self.joint.clone(), self.inner.clone());
         let mut angle = real(0.0);
-        let shares = inner.iter_mut().map(|share| (share, 1.0));
-        for (share, times) in shares.chain([(&mut outer, 2.0), (&mut joint, 0.0)]) {
-            if let Share::Drift(drift) = share {
-                let Some(taken) = K::take_spin(drift) else { return };
-                angle += taken * real(times);
-            }
+        let ends = [(&mut outer, 2.0), (&mut joint, 0.0)].into_iter().filter_map(|(share, times)| match share {
+            Share::Drift(drift) => Some((drift, times)),
+            Share::Kick(_) => None,
+        });
+        for (drift, times) in inner.stages.iter_mut().map(|stage| (&mut stage.drift, 1.0)).chain(ends) {
+            let Some(taken) = K::take_spin(drift) else { return };
+            angle += taken * real(times);
         }
         (self.outer, self.joint, self.inner, self.spin) = (outer, joint, inner, Some(Spin { angle }));
     }
@@ -225,14 +268,13 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         StepError::NonFinite { what: "momentum after the step" }
     }
 
-    /// Of a share that is made for itself, besides its iterations.
-    fn operations(share: &Share<K::Drift, Scalar<S>>) -> f64 {
+    /// Of shares that are made for themselves, besides their iterations.
+    fn operations(shares: &Stages<K::Drift, Scalar<S>>) -> f64 {
         let kick = 0.5 * f64::from(S::OPERATIONS.step);
-        match share {
-            Share::Drift(_) => Cost::of_stages(K::OPERATIONS, 1).step,
-            Share::Kick(_) => kick,
-            Share::GradientKick(..) => 2.0 * kick + OF_A_FORCE_GRADIENT,
-        }
+        let kicks = shares.stages.iter().map(|stage| &stage.kick).chain([&shares.lead]).flatten();
+        let of_kicks = kicks.map(|made| kick + made.mobility.map_or(0.0, |_| kick + OF_A_FORCE_GRADIENT));
+        let drifts = count::<f64>(shares.stages.len());
+        drifts * Cost::of_stages(K::OPERATIONS, 1).step + of_kicks.sum::<f64>()
     }
 
     /// The coefficients.
@@ -250,13 +292,19 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     #[inline(always)]
     fn make_all<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
-        shares: &[Share<K::Drift, Scalar<S>>],
+        shares: &Stages<K::Drift, Scalar<S>>,
         motion: &mut M,
         iterations: &mut u32,
     ) -> Result<(), StepError> {
         // No closure: one wouldn't be compiled for the instructions of the machine.
-        for share in shares {
-            self.make(share, motion, iterations)?;
+        if let Some(kick) = &shares.lead {
+            self.kick(kick, motion);
+        }
+        for Stage { drift, kick } in &shares.stages {
+            Self::drift(drift, motion, iterations)?;
+            if let Some(kick) = kick {
+                self.kick(kick, motion);
+            }
         }
         Ok(())
     }
@@ -269,22 +317,39 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         iterations: &mut u32,
     ) -> Result<(), StepError> {
         match share {
-            Share::Kick(time) => motion.push(&(S::kick_before(&self.torque, &motion.now().advected) * *time)),
-            Share::GradientKick(time, mobility) => {
-                let advected = motion.now().advected;
-                let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, &advected);
-                let gradient = kick::force_gradient::<S>(&self.torque, mobility, &advected);
-                // That there is one was asked when the step was set up.
-                motion.push(&(torque * *time + gradient.unwrap_or_else(Vector3::zeros)));
-            }
-            Share::Drift(drift) => {
-                let turn = K::advance(drift, &motion.now().momentum)?;
-                motion.turn(&turn.increment);
-                motion.push(&turn.change);
-                *iterations += turn.iterations;
-            }
+            Share::Drift(drift) => Self::drift(drift, motion, iterations)?,
+            Share::Kick(kick) => self.kick(kick, motion),
         }
         Ok(())
+    }
+
+    #[inline(always)]
+    fn drift<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        drift: &K::Drift,
+        motion: &mut M,
+        iterations: &mut u32,
+    ) -> Result<(), StepError> {
+        let turn = K::advance(drift, &motion.now().momentum)?;
+        motion.turn(&turn.increment);
+        motion.push(&turn.change);
+        *iterations += turn.iterations;
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn kick<M: Summation<SO3<Scalar<S>>, S::Advected>>(&self, kick: &Kick<Scalar<S>>, motion: &mut M) {
+        let advected = motion.now().advected;
+        let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, &advected);
+        let of_torque = torque * kick.time;
+        // That there is a gradient was asked when the step was set up.
+        let change = match &kick.mobility {
+            Some(mobility) => {
+                let gradient = kick::force_gradient::<S>(&self.torque, mobility, &advected);
+                of_torque + gradient.unwrap_or_else(Vector3::zeros)
+            }
+            None => of_torque,
+        };
+        motion.push(&change);
     }
 }
 
@@ -298,10 +363,9 @@ fn share_of<T: Real, K: KineticFlow<T>>(
     time: T,
     gradient: Option<T>,
 ) -> Result<Share<K::Drift, T>, SetupError> {
-    Ok(match (flow, gradient) {
-        (Flow::Drift, _) => Share::Drift(kinetic.drift(time)?),
-        (Flow::Kick, None) => Share::Kick(time),
-        (Flow::Kick, Some(gradient)) => Share::GradientKick(time, inverse_inertia * gradient),
+    Ok(match flow {
+        Flow::Drift => Share::Drift(kinetic.drift(time)?),
+        Flow::Kick => Share::Kick(Kick { time, mobility: gradient.map(|gradient| inverse_inertia * gradient) }),
     })
 }
 
@@ -345,9 +409,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
             self.make(&self.outer, &mut next, &mut iterations)?;
         }
         for remaining in (0..steps).rev() {
-            for share in &self.inner {
-                self.make(share, &mut next, &mut iterations)?;
-            }
+            self.make_all(&self.inner, &mut next, &mut iterations)?;
             let last = if remaining == 0 { &self.outer } else { &self.joint };
             self.make(last, &mut next, &mut iterations)?;
             if let Some(Spin { angle }) = self.spin {

@@ -102,7 +102,7 @@ impl<T: Real> ExactDrift<T> {
         let across = [real_part, s * self.a * (a + a_end), s * self.b * (b + b_end)];
         let more = curve.bend * part * integral;
         let turn = rotor([a + a * more, b + b * more, c + c * more]);
-        Turned::of(product(turn, [about.w, about.f * a, about.f * b, about.f * c]), across)
+        Turned::by(product(turn, [about.w, about.f * a, about.f * b, about.f * c]), across)
     }
 
     fn curve(&self, u: [T; 3], invariants: &Invariants<T>) -> Curve<T> {

@@ -26,7 +26,8 @@
 //! All of it is even or polynomial in what may vanish: symmetric and spherical bodies, the separatrix and spins about an
 //! axis are no cases of their own, and with the middle moment third no sum but `A a² + B b²` has terms of two signs.
 //!
-//! [`series`] has the functions where the drift is short, [`doubling`] takes them to any length.
+//! [`series`] has the functions where the drift is short; up to four times that length they are doubled as points of the
+//! curve that `n` and `μ` are on, and [`doubling`] takes them to any length.
 
 mod doubling;
 mod frame;
@@ -36,6 +37,7 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use self::frame::Frame;
 use self::series::{Functions, Invariants, LONG, SHORT, long, short};
+use super::axes::Axes;
 use super::kinetic_flow::{KineticFlow, Turn};
 use super::quaternion::{Quaternion, product_across, scaled_increment};
 use crate::error::{SetupError, StepError};
@@ -161,22 +163,33 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
         Ok(ExactDrift { frame: self.frame, scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared })
     }
 
+    /// Which axis is which is decided once: a straight line of code for each case is faster than one that parts and meets
+    /// again twice.
     #[inline(always)]
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
-        let u = drift.frame.within(&(momentum * drift.scale));
-        let invariants = drift.invariants(u);
-        let size = invariants.size();
-        let is_short = size.simd_le(real(SHORT));
-        let turned = if is_short.all() {
-            drift.near(u, &invariants, &short(&invariants))
-        } else if !is_short.any() && size.simd_le(real(LONG)).all() {
-            drift.near(u, &invariants, &long(&invariants))
-        } else {
-            drift.beyond(u, &invariants)
-        };
-        let increment = scaled_increment(drift.frame.back(turned.quaternion)) * turned.inverse_square;
-        let change = SO3::adjoint_transpose_increment(&increment, momentum);
-        Ok(Turn { increment, change, iterations: 0 })
+        use Axes::{Xyz, Yzx, Zxy};
+        Ok(match &drift.frame {
+            Frame::Along(Xyz) => drift.turn(&Frame::Along(Xyz), momentum),
+            Frame::Along(Yzx) => drift.turn(&Frame::Along(Yzx), momentum),
+            Frame::Along(Zxy) => drift.turn(&Frame::Along(Zxy), momentum),
+            other => drift.turn(other, momentum),
+        })
+    }
+}
+
+/// What is known of half a drift.
+#[derive(Clone, Copy, Debug)]
+struct Half<T> {
+    n: T,
+    mu: T,
+    /// The turn about the momentum, of the whole drift and of any length.
+    about: Quaternion<T>,
+}
+
+impl<T: Real> Half<T> {
+    fn select(&self, mask: Mask<T>, other: &Self) -> Self {
+        let about = core::array::from_fn(|k| self.about[k].select(mask, other.about[k]));
+        Self { n: self.n.select(mask, other.n), mu: self.mu.select(mask, other.mu), about }
     }
 }
 
@@ -185,8 +198,8 @@ impl<T: Real> ExactDrift<T> {
     fn invariants(&self, [a, b, c]: [T; 3]) -> Invariants<T> {
         let (aa, bb, cc) = (a * a, b * b, c * c);
         let of_c = self.c_squared * cc;
-        let (kb, ka) = (of_c + self.a_squared * aa, of_c + self.b_squared * bb);
-        Invariants { kb, ka, pole: self.c_squared * (cc + (aa + bb)) }
+        let (of_a, of_b) = (self.a_squared * aa, self.b_squared * bb);
+        Invariants { kb: of_c + of_a, ka: of_c + of_b, apart: of_a - of_b, pole: self.c_squared * (cc + (aa + bb)) }
     }
 
     /// `A a² + B b²`: zero on the separatrix and for spherical bodies.
@@ -195,63 +208,153 @@ impl<T: Real> ExactDrift<T> {
         self.a * (a * a) + self.b * (b * b)
     }
 
-    /// Where the functions are those of half the drift.
-    ///
-    /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it.
     #[inline(always)]
-    fn near(&self, u: [T; 3], invariants: &Invariants<T>, functions: &Functions<T>) -> Turned<T> {
-        let [a, b, c] = u;
-        let Invariants { kb, ka, .. } = *invariants;
+    fn turn(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
+        let u = frame.within(&(momentum * self.scale));
+        let invariants = self.invariants(u);
+        let size = invariants.size();
+        let (is_short, is_long) = (size.simd_le(real(SHORT)), size.simd_le(real(LONG)));
+        let turned = if is_short.all() {
+            self.from_half(u, &invariants, &self.near(u, &short(&invariants)))
+        } else if !is_short.any() && is_long.all() {
+            self.from_half(u, &invariants, &self.near(u, &long(&invariants)))
+        } else {
+            self.beyond(u, &invariants)
+        };
+        let increment = scaled_increment(frame.back(turned.quaternion)) * turned.inverse_square;
+        let change = SO3::adjoint_transpose_increment(&increment, momentum);
+        Turn { increment, change, iterations: 0 }
+    }
+
+    /// Where the functions are those of half the drift.
+    #[inline(always)]
+    fn near(&self, u: [T; 3], functions: &Functions<T>) -> Half<T> {
         let Functions { n, mu, integral } = *functions;
-        let base = n * n - kb * ka;
-        let of_b = base - (kb + kb) * (n - ka);
-        let of_a = base - (ka + ka) * (n - kb);
-        let den = base * base - (self.c_squared * (c * c)) * (mu * mu);
-        let a_end = (a * of_a) * base - (self.b * (b * c)) * (mu * of_b);
-        let b_end = (b * of_b) * base + (self.a * (a * c)) * (mu * of_a);
-        let c_end = c * (of_a * of_b) + (self.b_less_a * (a * b)) * (mu * base);
-        let real_part = mu * (n * den + (self.c_squared * c) * c_end);
+        let more = -(self.c_squared * self.difference(u)) * integral;
+        Half { n, mu, about: rotor_and_more(u, more) }
+    }
+
+    /// The drift, by what is known of half of it.
+    ///
+    /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
+    /// and sums are ordered by what is there first.
+    #[inline(always)]
+    fn from_half(&self, [a, b, c]: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Turned<T> {
+        let Invariants { kb, ka, .. } = *invariants;
+        let Half { n, mu, about } = *half;
+        let (nn, kk) = (n * n, kb * ka);
+        let (base, sum) = (nn - kk, nn + kk);
+        let (of_b, of_a) = (sum - (kb + kb) * n, sum - (ka + ka) * n);
+        let (mu_c, mu_cc) = (mu * c, mu * (self.c_squared * (c * c)));
+        let den = base * base - mu_cc * mu;
+        let (by_a, by_b) = (a * of_a, b * of_b);
+        let a_end = by_a * base - (self.b * mu_c) * by_b;
+        let b_end = by_b * base + (self.a * mu_c) * by_a;
+        // With M c⁺ written out.
+        let of_all = ((self.c_squared * self.b_less_a) * (a * b)) * (mu_c * (mu * base));
+        let real_part = ((mu * n) * den + mu_cc * (of_a * of_b)) + of_all;
         let along_a = (self.a * base) * (a * den + a_end);
         let along_b = (self.b * base) * (b * den + b_end);
-        let more = -(self.c_squared * self.difference(u)) * integral;
-        Turned::of(rotor_and_more(u, more), [real_part, along_a, along_b])
+        Turned::by(about, [real_part, along_a, along_b])
+    }
+
+    /// What is known of half a drift that is so many times twice as long as the polynomials are for.
+    ///
+    /// By the points of the curve `μ² = 4 n (n − K_a)(n − K_b)`, whose doubling is rational. The turn about the momentum is
+    /// twice that of half the time and once more, by the tangent to the curve at the point; see [`doubling`].
+    #[inline(always)]
+    fn farther<const DOUBLINGS: usize>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
+        let k = real::<T>;
+        let (difference, q) = (self.difference(u), dot(u));
+        let bend = -(self.c_squared * difference);
+        let mut root = k([1.0, 0.5, 0.25][DOUBLINGS]);
+        let mut part = root * root;
+        let Functions { mut n, mut mu, integral } = long(&invariants.scaled(part));
+        let more = bend * part * integral;
+        // Quaternions (w, f u) along the momentum.
+        let (mut w, mut f) = (T::one(), T::zero());
+        for doubled in 0..DOUBLINGS {
+            let Invariants { kb, ka, pole, .. } = invariants.scaled(part);
+            let (past_b, past_a) = (n - kb, n - ka);
+            let towards = (self.b * past_b + self.a * past_a) * (difference * part);
+            let tangent = (past_b * past_a) * (n - pole) + n * towards;
+            let across = (bend * part * root) * mu;
+            (w, f) = if doubled == 0 {
+                (tangent, across)
+            } else {
+                let (twice, both) = (w * w - f * f * q, (w + w) * f);
+                (twice * tangent - both * across * q, twice * across + both * tangent)
+            };
+            let over = T::one() / mu;
+            let (nn, kk) = (n * n, kb * ka);
+            let (base, sum) = (nn - kk, nn + kk);
+            let (of_b, of_a) = (sum - (kb + kb) * n, sum - (ka + ka) * n);
+            mu = (k(16.0) * base) * (of_a * of_b) * (over * (over * over));
+            n = k(4.0) * ((base * over) * (base * over));
+            (root, part) = (root + root, part * k(4.0));
+        }
+        let [turn_w, turn_f] = turn_and_more(q, more);
+        let (w, f) = (turn_w * w - turn_f * f * q, turn_w * f + turn_f * w);
+        Half { n, mu, about: [w, f * u[0], f * u[1], f * u[2]] }
     }
 
     /// Where a lane is beyond the polynomials, or some need the longer ones and some don't.
-    #[cold]
     #[inline(never)]
     fn beyond(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
         let size = invariants.size();
-        let (is_short, is_long) = (size.simd_le(real(SHORT)), size.simd_le(real(LONG)));
-        let mut chosen = if is_long.all() { Turned::none() } else { self.doubled(u, invariants) };
-        if is_long.any() {
-            chosen = self.near(u, invariants, &long(invariants)).select(is_long, &chosen);
+        let [is_short, is_long, is_far, is_farther] =
+            [SHORT, LONG, FAR, FARTHER].map(|limit| size.simd_le(real(limit)));
+        let mut half = Half { n: T::one(), mu: T::one(), about: [T::one(); 4] };
+        if (is_farther & !is_far).any() {
+            half = self.farther::<2>(u, invariants);
+        }
+        if (is_far & !is_long).any() {
+            half = self.farther::<1>(u, invariants).select(is_far, &half);
+        }
+        if (is_long & !is_short).any() {
+            half = self.near(u, &long(invariants)).select(is_long, &half);
         }
         if is_short.any() {
-            chosen = self.near(u, invariants, &short(invariants)).select(is_short, &chosen);
+            half = self.near(u, &short(invariants)).select(is_short, &half);
         }
-        chosen
+        let turned = self.from_half(u, invariants, &half);
+        if is_farther.all() { turned } else { turned.select(is_farther, &self.doubled(u, invariants)) }
     }
 }
 
-/// `exp(2 (1 + I) û)` as a quaternion, where `I` is small: `I |u|` is less than a third of the invariants' size to the
-/// power of 3/2, so that few terms of its sine and cosine do, and those of `|u|` needn't wait for it.
+/// Up to here the drift is one doubling away from what the polynomials are for, and two.
+const FAR: f64 = 4.0 * LONG;
+const FARTHER: f64 = 16.0 * LONG;
+
+/// `exp(2 (1 + I) û)` as a quaternion.
 #[inline(always)]
-fn rotor_and_more<T: Real>([a, b, c]: [T; 3], more: T) -> Quaternion<T> {
-    let q = (a * a + b * b) + c * c;
+fn rotor_and_more<T: Real>(u: [T; 3], more: T) -> Quaternion<T> {
+    let [w, f] = turn_and_more(dot(u), more);
+    [w, f * u[0], f * u[1], f * u[2]]
+}
+
+/// `w` and `f` of the quaternion `(w, f u)` of `exp(2 (1 + I) û)` where `|u|² = q` and `I` is small: `I |u|` is less than
+/// 0.006, so that few terms of its sine and cosine do, and those of `|u|` needn't wait for it.
+#[inline(always)]
+fn turn_and_more<T: Real>(q: T, more: T) -> [T; 2] {
     let (sinc, versine) = rotation_coefficients(q);
     let cosine = T::one() - q * versine;
     let (sinc_q, square) = (sinc * q, (more * more) * q);
     let less = square * (real::<T>(0.5) - square * real(1.0 / 24.0));
-    let more = more - (more * square) * real(1.0 / 6.0);
-    let f = sinc + (cosine * more - sinc * less);
-    [cosine - (cosine * less + sinc_q * more), f * a, f * b, f * c]
+    let more = more - (more * square) * (real::<T>(1.0 / 6.0) - square * real(1.0 / 120.0));
+    [cosine - (cosine * less + sinc_q * more), sinc + (cosine * more - sinc * less)]
+}
+
+/// `|u|²`
+#[inline(always)]
+fn dot<T: Real>([a, b, c]: [T; 3]) -> T {
+    (a * a + b * b) + c * c
 }
 
 /// `exp(2v̂)` as a quaternion.
 #[inline(always)]
 fn rotor<T: Real>([x, y, z]: [T; 3]) -> Quaternion<T> {
-    let q = (x * x + y * y) + z * z;
+    let q = dot([x, y, z]);
     let (sinc, versine) = rotation_coefficients(q);
     [T::one() - q * versine, sinc * x, sinc * y, sinc * z]
 }
@@ -265,20 +368,14 @@ struct Turned<T> {
 }
 
 impl<T: Real> Turned<T> {
-    fn none() -> Self {
-        Self { quaternion: [T::one(), T::zero(), T::zero(), T::zero()], inverse_square: T::one() }
-    }
-
-    /// A rotation about the momentum, of length one to some roundings, after one across the middle axis, of any.
+    /// A rotation about the momentum after one across the middle axis, both of any length.
     #[inline(always)]
-    fn of(about: Quaternion<T>, across: [T; 3]) -> Self {
+    fn by(about: Quaternion<T>, across: [T; 3]) -> Self {
         let ([w, x, y, z], [real_part, along_a, along_b]) = (about, across);
         // What roundings do to the one is divided out, too: the rotation may be the same in each step.
-        let excess = ((w * w - T::one()) + x * x) + (y * y + z * z);
+        let length = (w * w + x * x) + (y * y + z * z);
         let square = (along_a * along_a + along_b * along_b) + real_part * real_part;
-        // The division needn't wait for the excess.
-        let inverse = T::one() / square;
-        Self { quaternion: product_across(about, across), inverse_square: inverse - inverse * excess }
+        Self { quaternion: product_across(about, across), inverse_square: T::one() / (square * length) }
     }
 
     fn select(&self, mask: Mask<T>, other: &Self) -> Self {

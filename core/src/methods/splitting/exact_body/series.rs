@@ -7,6 +7,8 @@ use crate::numbers::{Real, real};
 pub(super) struct Invariants<T> {
     pub(super) kb: T,
     pub(super) ka: T,
+    /// `K_b − K_a`
+    pub(super) apart: T,
     /// `ν = −AB |u|²`, where the integral has its pole; it lies between the two.
     pub(super) pole: T,
 }
@@ -20,7 +22,7 @@ impl<T: Real> Invariants<T> {
 
     /// Over another time, by the square of the ratio.
     pub(super) fn scaled(&self, part: T) -> Self {
-        Self { kb: self.kb * part, ka: self.ka * part, pole: self.pole * part }
+        Self { kb: self.kb * part, ka: self.ka * part, apart: self.apart * part, pole: self.pole * part }
     }
 }
 
@@ -102,10 +104,11 @@ struct Start<T> {
 
 #[inline(always)]
 fn start<T: Real>(invariants: &Invariants<T>) -> Start<T> {
-    let (k, first, second) = (real::<T>, invariants.kb, invariants.ka);
-    let e = (first + second) * k(1.0 / 3.0);
-    let apart = first - second;
-    let x = (apart * apart + first * second) * k(1.0 / 15.0);
-    let y = (e * k(-1.0 / 7.0)) * ((first - e) * (second - e));
-    Start { e, x, y, c: e - invariants.pole }
+    let Invariants { kb, ka, apart, pole } = *invariants;
+    let (k, sum) = (real::<T>, kb + ka);
+    let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);
+    // Three times K_b − e and K_a − e.
+    let y = (sum * k(-1.0 / 189.0)) * ((kb + apart) * (ka - apart));
+    let e = sum * k(1.0 / 3.0);
+    Start { e, x, y, c: e - pole }
 }

@@ -11,7 +11,7 @@ use alloc::vec::Vec;
 use inside::Stepped;
 
 use super::scheme::Flow;
-use super::{KineticFlow, Share, Split, has_force_gradient, share_of};
+use super::{KineticFlow, Split, Stages, has_force_gradient, share_of};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
@@ -70,12 +70,13 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 #[derive(Clone, Debug)]
 pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
     scheme: ProcessedScheme,
-    /// Its steps go from the end of a joint to the end of the next, so that they are all the same.
     kernel: Split<S, K>,
+    /// Its steps, from the end of a joint to the end of the next, so that they are all the same.
+    step: Stages<K::Drift, Scalar<S>>,
     /// From what is read to the end of a joint.
-    enter: Vec<Share<K::Drift, Scalar<S>>>,
+    enter: Stages<K::Drift, Scalar<S>>,
     /// From there to what is read.
-    leave: Vec<Share<K::Drift, Scalar<S>>>,
+    leave: Stages<K::Drift, Scalar<S>>,
 }
 
 lanes_of_fields!(
@@ -84,9 +85,9 @@ lanes_of_fields!(
         S: Effect + Lanes<Lane: Effect>,
         K: KineticFlow<Scalar<S>> + Lanes<Lane: KineticFlow<Scalar<S::Lane>>>,
         Split<S, K>: Lanes<Lane = Split<S::Lane, K::Lane>>,
-        Share<K::Drift, Scalar<S>>: Lanes<Lane = Share<<K::Lane as KineticFlow<Scalar<S::Lane>>>::Drift, Scalar<S::Lane>>>
+        Stages<K::Drift, Scalar<S>>: Lanes<Lane = Stages<<K::Lane as KineticFlow<Scalar<S::Lane>>>::Drift, Scalar<S::Lane>>>
     ]
-    { lanes: [kernel, enter, leave], scalars: [], shared: [scheme] }
+    { lanes: [kernel, step, enter, leave], scalars: [], shared: [scheme] }
 );
 
 impl<W, S, K> InLanes<W> for Processed<S, K>
@@ -179,7 +180,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
         };
         let leave = out.iter().map(|part| folded(part, 1.0)).collect::<Result<_, _>>()?;
         let enter = out.iter().rev().map(|part| folded(part, -1.0)).collect::<Result<_, _>>()?;
-        Ok(Self { scheme, kernel, enter, leave })
+        let mut step = kernel.inner.clone();
+        step.add(kernel.joint.clone());
+        Ok(Self { scheme, kernel, step, enter, leave })
     }
 
     /// The coefficients.
@@ -240,15 +243,22 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
             return Ok(0);
         }
         let (mut next, mut all, mut iterations) = (*motion, 0, 0);
-        match kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all()) {
-            Some(inside) => next.show(inside.after(next.now().steps)),
-            None => self.kernel.make_all(&self.enter, &mut next, &mut iterations)?,
+        let inside = kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all());
+        // One loop for the way in and for the steps, so that there is one copy of the code.
+        let mut is_entering = inside.is_none();
+        if let Some(inside) = inside {
+            next.show(inside.after(next.now().steps));
         }
-        for _ in 0..steps {
-            self.kernel.make_all(&self.kernel.inner, &mut next, &mut iterations)?;
-            self.kernel.make(&self.kernel.joint, &mut next, &mut iterations)?;
+        let mut made = 0;
+        while made < steps {
+            let shares = if is_entering { &self.enter } else { &self.step };
+            self.kernel.make_all(shares, &mut next, &mut iterations)?;
+            if core::mem::take(&mut is_entering) {
+                continue;
+            }
             next.finish(|| scene.advected());
             all += u64::from(core::mem::take(&mut iterations));
+            made += 1;
         }
         // A copy, without what is carried: that is of the sums inside.
         let inside = *next.now();
@@ -291,8 +301,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     }
 
     fn cost(&self) -> Cost {
-        let [enter, leave] =
-            [&self.enter, &self.leave].map(|way| way.iter().map(Split::<S, K>::operations).sum::<f64>());
+        let [enter, leave] = [&self.enter, &self.leave].map(Split::<S, K>::operations);
         Cost { once: enter + leave, ..self.kernel.cost() }
     }
 }
