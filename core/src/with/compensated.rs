@@ -165,6 +165,10 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         Carried { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
     }
 
+    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
+        self.0.admits(scene, motion)
+    }
+
     fn is_in_step(&self, kept: &Self::Kept) -> bool {
         self.0.is_in_step(&kept.kept)
     }
