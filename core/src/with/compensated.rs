@@ -8,7 +8,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::methods::{Composed, KineticFlow, Preprocessed, Processed, Split};
+use crate::methods::{Composed, Jointed, KineticFlow, Preprocessed, Processed, Split};
 use crate::motion::{
     Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
 };
@@ -79,6 +79,10 @@ pub trait Compensable {}
 
 impl<S: Effect> Compensable for Declared<S> {}
 impl<S: Effect> Compensable for Composed<S> {}
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compensable for Jointed<S, C, K, N, T, L> where
+    S: Effect
+{
+}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
 impl<T: Real> Compensable for Preprocessed<T> {}

@@ -2,10 +2,15 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
 
+use super::Constraint;
 use super::elimination::{Body, Closing, Unknowns, factorise, solve};
 use super::graph::{Joints, Tree};
 use super::places::{Held, Places, Slopes, Tangent, after, before, each_slope};
-use super::Constraint;
+
+/// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of a zero
+/// is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3 µrad from
+/// there.
+const REDUNDANT: f64 = 1e-11;
 
 /// Matrices, slopes and right sides; solved, the unknowns.
 pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usize, const L: usize> {
@@ -16,7 +21,9 @@ pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usiz
     pub(super) unknowns: Unknowns<K, N, L>,
 }
 
-impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize> Equations<'a, C, K, N, T, L> {
+impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>
+    Equations<'a, C, K, N, T, L>
+{
     /// With `E` of these places.
     pub(super) fn at(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>, places: &Places<N>) -> Self {
         let loops = joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above]));
@@ -124,7 +131,9 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
 
     /// The first body whose part of the matrix has a determinant of the wrong sign, and that.
     pub(super) fn wrong_body(&self) -> Option<(usize, f64)> {
-        let wrong = self.bodies.iter().position(|body| !(body.determinant > 0.0))?;
+        // What isn't a number is wrong, too.
+        let is_right = |body: &Body<K>| body.determinant > 0.0;
+        let wrong = self.bodies.iter().position(|body| !is_right(body))?;
         Some((wrong, self.bodies[wrong].determinant))
     }
 
@@ -132,11 +141,12 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         self.bodies[body].determinant
     }
 
-    /// The joint that the others leave least to do, by its number, and the pivot relative to that of free bodies.
-    pub(super) fn least_pivot(&self) -> Option<(usize, f64)> {
-        let pivots = self.loops.iter().enumerate().map(|(k, closing)| (T + k, closing.pivot));
-        // NaN is the least.
-        pivots.min_by(|a, b| if a.1.is_nan() { core::cmp::Ordering::Less } else { a.1.total_cmp(&b.1) })
+    /// The first joint that the others leave nothing to do, by its number, and its pivot relative to that between free
+    /// bodies.
+    pub(super) fn redundant(&self) -> Option<(usize, f64)> {
+        let has_something = |closing: &Closing<K, N, L>| closing.pivot > REDUNDANT;
+        let joint = self.loops.iter().position(|closing| !has_something(closing))?;
+        Some((T + joint, self.loops[joint].pivot))
     }
 }
 

@@ -76,11 +76,6 @@ impl<C, const T: usize, const L: usize> Joints<C, T, L> {
         self.tree.iter().chain(&self.loops).enumerate()
     }
 
-    /// The joint with this number.
-    pub(super) fn get(&self, joint: usize) -> Option<&Joined<C>> {
-        self.tree.get(joint).or_else(|| self.loops.get(joint.checked_sub(T)?))
-    }
-
     /// Checks the bodies and the parameters, and plants the tree.
     pub(super) fn planted<const K: usize, const N: usize>(&self) -> Result<Tree<N>, SetupError>
     where
@@ -169,13 +164,7 @@ mod tests {
     #[test]
     fn trees_are_planted_whatever_the_order_and_the_direction_of_their_joints() {
         // 2 hangs on space, 0 and 4 on 2, 1 on 4; 3 floats, with 5 on it.
-        let ends = [
-            [Some(1), Some(4)],
-            [Some(0), Some(2)],
-            [Some(2), Some(4)],
-            [None, Some(2)],
-            [Some(3), Some(5)],
-        ];
+        let ends = [[Some(1), Some(4)], [Some(0), Some(2)], [Some(2), Some(4)], [None, Some(2)], [Some(3), Some(5)]];
         let tree = Tree::<6>::planted(&ends).unwrap();
         let of = |body: usize| (tree.members[body].joint, tree.members[body].parent, tree.members[body].is_below);
         assert_eq!(of(2), (Some(3), None, true));

@@ -6,29 +6,26 @@ use nalgebra::{Matrix3, Matrix4, Vector6};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
+use super::Constraint;
 use super::equations::{Equations, of_halves};
 use super::graph::{Joints, Tree};
 use super::places::{Places, parts};
-use super::Constraint;
+use crate::Stepper;
 use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, LieGroup, R3, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Proceeded, StepReport, Steerable, Summation, half_coordinates, is_due};
+use crate::motion::{Cost, Motion, Plan, Proceeded, Steerable, StepReport, Summation, half_coordinates, is_due};
 use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _, Vectors};
 use crate::solving::{
     Continued, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, Warm, has_sufficed, may_suffice,
     newton_system, step_terms,
 };
-use crate::Stepper;
 
 /// What a body is on: turned, and translated in the axes of space.
 pub(super) type Body = (SO3, R3);
 type Matrices<const N: usize> = [(Matrix3<f64>, Matrix4<f64>); N];
 type Components<const N: usize> = Bodies<Vector6<f64>, N>;
 
-/// The least pivot of a joint that closes a loop, relative to that between free bodies. What rounding leaves of a zero is
-/// some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3 µrad from there.
-const SINGULAR: f64 = 1e-11;
 /// The update that roundings of places and of opposed forces leave, in them.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
@@ -138,7 +135,10 @@ where
 {
     fn new(scene: &S, joints: Joints<C, T, L>, h: f64) -> Result<Self, SetupError> {
         const {
-            assert!(S::DENOMINATORS == 0, "a term with cleared denominators has another residual than joints are added to");
+            assert!(
+                S::DENOMINATORS == 0,
+                "a term with cleared denominators has another residual than joints are added to"
+            );
             assert!(S::IS_QUADRATIC, "joints hold bodies whose continuous limit is quadratic in the velocity");
         }
         // The scene without joints has to be one that can be stepped.
@@ -188,12 +188,9 @@ where
 
     /// One of Newton's iterations.
     fn newton(&mut self, longest: f64) -> Updated {
-        let (residuals, BlockDiagonal(matrices)) =
-            newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
+        let (residuals, BlockDiagonal(matrices)) = newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
         let (_, next) = self.moved();
-        let tangent = |k: usize| {
-            <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0)
-        };
+        let tangent = |k: usize| <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
         let tangents = of_halves(&self.places, tangent);
         self.equations.set_after(&next, &tangents);
         self.equations.factorise(&matrices);
@@ -251,30 +248,32 @@ where
     }
 
     fn turned_too_far(&self) -> Option<usize> {
-        self.half.0.iter().position(|half| !(parts(half).0.norm_squared() < 1.0))
+        let is_near = |half: &Vector6<f64>| parts(half).0.norm_squared() < 1.0;
+        self.half.0.iter().position(|half| !is_near(half))
     }
 
     fn singular_joint(&self) -> Option<(usize, f64)> {
-        self.equations.least_pivot().filter(|(_, pivot)| !(*pivot > SINGULAR))
+        self.equations.redundant()
     }
 
     /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
-    fn solve(&mut self, guess: &Components<N>, slow: &Components<N>) -> Result<u32, StepError> {
-        let mut spent = 0;
-        let starts = [
-            (guess, MAX_ITERATIONS, f64::INFINITY),
-            (slow, MAX_ITERATIONS, f64::INFINITY),
-            (&Bodies([Vector6::zeros(); N]), MAX_DAMPED_ITERATIONS, LONGEST_DAMPED),
-        ];
-        for (start, most, longest) in starts {
-            self.half = *start;
+    fn solve(&mut self, guess: Components<N>, slow: impl Fn() -> Components<N>) -> Result<u32, StepError> {
+        self.half = guess;
+        let (mut spent, is_solved) = self.attempt(MAX_ITERATIONS, f64::INFINITY);
+        if is_solved {
+            return Ok(spent);
+        }
+        let slow = slow();
+        let at_rest = (Bodies::zero(), MAX_DAMPED_ITERATIONS, LONGEST_DAMPED);
+        for (start, most, longest) in [(slow, MAX_ITERATIONS, f64::INFINITY), at_rest] {
+            self.half = start;
             let (made, is_solved) = self.attempt(most, longest);
             spent += made;
             if is_solved {
                 return Ok(spent);
             }
         }
-        Err(self.reason(slow, spent))
+        Err(self.reason(&slow, spent))
     }
 
     /// Which joint or which body is to blame, by where the iteration has ended.
@@ -365,8 +364,8 @@ where
             places,
             half: Bodies::zero(),
         };
-        let slow = half_coordinates(scene, &now, self.h);
-        let iterations = problem.solve(&kept.guess(<[Body; N]>::DIMENSION), &slow)?;
+        let slow = || half_coordinates(scene, &now, self.h);
+        let iterations = problem.solve(kept.guess(<[Body; N]>::DIMENSION), slow)?;
         let (increment, places) = problem.moved();
         let impulse = Bodies(problem.equations.reactions()) * (-2.0 / self.h);
         let advected = next.turned(&increment);

@@ -23,8 +23,6 @@ use crate::solving::{MAX_DAMPED_ITERATIONS, Warm};
 const PRINTED: f64 = f64::EPSILON * 1e4;
 /// How far joints of a start that is sought may be open to be closed: roundings, as steps leave them.
 const CLOSED: f64 = 2.0 * f64::EPSILON;
-/// The least pivot of a joint that has something to do, relative to that between free bodies.
-const REDUNDANT: f64 = 1e-11;
 /// The longest turn in one update of a start that is sought, rad.
 const LONGEST: f64 = 0.5;
 
@@ -44,12 +42,7 @@ where
     }
 
     /// Of velocities at these places.
-    fn of_velocities(
-        &self,
-        scene: &S,
-        places: &Places<N>,
-        advected: &S::Advected,
-    ) -> Equations<'_, C, K, N, T, L> {
+    fn of_velocities(&self, scene: &S, places: &Places<N>, advected: &S::Advected) -> Equations<'_, C, K, N, T, L> {
         let mut equations = Equations::at(&self.joints, &self.tree, places);
         equations.set_symmetric();
         equations.factorise(&scene.inertia(advected).0);
@@ -75,19 +68,19 @@ where
     pub(super) fn check_start(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {
         let places = Places::of(&motion.attitude);
         let (joint, by) = self.widest(&places);
-        if !(by <= PRINTED * places.extent(&self.joints).sqrt()) {
+        // What isn't a number isn't closed either.
+        let is_closed = by <= PRINTED * places.extent(&self.joints).sqrt();
+        if !is_closed {
             return Err(SetupError::OffConstraint { joint, by });
         }
         let equations = self.of_velocities(scene, &places, &motion.advected);
-        check_pivots(&equations)?;
+        check_redundance(&equations)?;
         let momentum = motion.momentum - scene.momentum_bias(&motion.advected);
         let velocities = Bodies::solve(&scene.inertia(&motion.advected), &momentum).0;
         let (mut widest, mut all) = ((0, 0.0), 0.0);
         equations.parting(&velocities.0, |joint, by, size| {
             all += size * size;
-            if !(by <= widest.1) {
-                widest = (joint, by);
-            }
+            widest = if by <= widest.1 { widest } else { (joint, by) };
         });
         let (joint, by) = widest;
         if by <= PRINTED * all.sqrt() { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
@@ -106,7 +99,7 @@ where
             }
             last = by;
             let mut equations = self.of_velocities(scene, &places, &scene.advected().seen_from(&attitude));
-            check_pivots(&equations)?;
+            check_redundance(&equations)?;
             equations.solve(&[Vector6::zeros(); N], &places, 1.0);
             let updates = equations.unknowns.bodies;
             let largest = updates.iter().fold(0.0_f64, |most, update| most.max(update.fixed_rows::<3>(0).norm()));
@@ -119,12 +112,12 @@ where
     }
 }
 
-fn check_pivots<C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>(
+fn check_redundance<C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>(
     equations: &Equations<'_, C, K, N, T, L>,
 ) -> Result<(), SetupError> {
-    match equations.least_pivot() {
-        Some((joint, pivot)) if !(pivot > REDUNDANT) => Err(SetupError::RedundantJoint { joint, pivot }),
-        _ => Ok(()),
+    match equations.redundant() {
+        Some((joint, pivot)) => Err(SetupError::RedundantJoint { joint, pivot }),
+        None => Ok(()),
     }
 }
 
