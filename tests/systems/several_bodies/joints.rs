@@ -9,7 +9,7 @@ use core::array::from_fn;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::{Random, derivative};
-use liestep::mechanics::{Each, Placed, Sum};
+use liestep::mechanics::{Each, Placed};
 use liestep::methods::{
     BallJoint, Chain, ChainStepper, Constraint, Joined, Joint, Jointed, Joints, Link, PinJoint, Place,
 };
@@ -19,32 +19,40 @@ use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper, lagrangia
 use nalgebra::{Matrix3, Vector3, Vector6};
 use serde_json::Value;
 
-use super::translated::Free;
-use super::{all, apart, attitudes_of, order, tenths};
+use super::{all, apart, order, tenths};
 
-/// What pulls a body down at its centre of mass.
+/// A body that is pulled down.
 #[lagrangian(
     group(F = SO3, d = R3),
     advected(x = d.seen_from(space)),
-    l_d = -0.5 * h * m * g * (x + x + d).dot(&up),
+    l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+        - 0.5 * h * m * g * (x + x + d).dot(&up),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Weight {
+struct Heavy {
     m: f64,
+    K: NonstandardInertia,
     g: f64,
     up: Vector3<f64>,
 }
 
 type Body = (SO3, R3);
-type Scene<const N: usize> = Sum<Placed<Each<N>, Free, N>, Placed<Each<N>, Weight, N>>;
+type Scene<const N: usize> = Placed<Each<N>, Heavy, N>;
 type Held<C, const K: usize, const N: usize, const T: usize, const L: usize> =
     Stepper<Scene<N>, Jointed<Scene<N>, C, K, N, T, L>>;
 type Components<const N: usize> = Bodies<Vector6<f64>, N>;
 
 const EPSILON: f64 = f64::EPSILON;
 
+/// Mass and inertia of a body.
+#[derive(Clone, Copy, Debug)]
+struct Free {
+    m: f64,
+    K: NonstandardInertia,
+}
+
 fn scene<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> Scene<N> {
-    Each::<N>::of(bodies) + Each::<N>::of(bodies.map(|body| Weight { m: body.m, g, up }))
+    Each::<N>::of(bodies.map(|Free { m, K }| Heavy { m, K, g, up }))
 }
 
 fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {
@@ -192,7 +200,7 @@ fn a_chain_moves_as_in_its_minimal_form() {
             let other = minimal.velocity(&expected);
             let slower = (0..N).map(|k| (halves(&velocity.0[k])[0] - other.0[k]).amax()).fold(0.0, f64::max);
             let errors = [apart(&found, &expected.attitude()), slower, stepper.widest_gap(&state)];
-            println!("{h}: {errors:.1e?}");
+            println!("{h}: {errors:?}");
             assert!(errors[0] < 1e-12 && errors[1] < 1e-11 && errors[2] < 4.0 * EPSILON * 5.0, "{errors:?}");
         }
         println!("iterations: {iterations:?}");
@@ -274,7 +282,7 @@ fn energy_of_a_closed_loop() {
     });
     let [first, second] = [&means[..5], &means[5..]].map(|half| half.iter().sum::<f64>() / 5.0);
     println!("energy {energy:.4}: within {most:.4}, means {means:.5?}; gap {gap:.1e}");
-    assert!(most < 0.05 && (first - second).abs() < 2e-3 && gap < 4.0 * EPSILON * 2.0);
+    assert!(most < 0.004 && (first - second).abs() < 2e-4 && gap < 4.0 * EPSILON * 2.0);
     assert!(state.orthogonality_defect() < 1e-12);
 
     let mut there = stepper.start(start, velocity).unwrap();
@@ -398,7 +406,7 @@ fn a_pendulum_on_a_pin() {
         (stepper.velocity(&state).0[0].z - momentum / inertia).abs(),
         stepper.widest_gap(&state),
     ];
-    println!("{errors:.1e?}");
+    println!("{errors:?}");
     assert!(errors[..3].iter().all(|&error| error < 1e-11) && errors[3] < 4.0 * EPSILON * 2.0, "{errors:?}");
 }
 
@@ -441,28 +449,40 @@ fn a_hundred_links_let_go_horizontally() {
     }
 }
 
-/// A loop whose bodies differ by ten thousand in mass: energy and joints as ever.
+/// Links of one metre in a row from the origin, each turned about the y axis by so much, and where the last ends.
+fn row<const N: usize>(tilts: [f64; N]) -> ([Body; N], Vector3<f64>) {
+    let mut corner = Vector3::zeros();
+    let places = tilts.map(|tilt| {
+        let attitude = SO3::exp(Vector3::y() * tilt);
+        let along = attitude.as_matrix() * Vector3::x();
+        corner += along;
+        (attitude, R3::from(corner - along * 0.5))
+    });
+    (places, corner)
+}
+
+/// Three links of one metre with these masses between pivots so far apart, under gravity.
+fn garland(masses: [f64; 3], apart: f64) -> Held<BallJoint, 3, 3, 3, 1> {
+    let bodies = masses
+        .map(|m| Free { m, K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap() });
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
+    let joints = Joints::tree([
+        Joined::to_space(pivot(0.0, left), 0),
+        Joined::between(BallJoint { above: right, below: left }, 0, 1),
+        Joined::between(BallJoint { above: right, below: left }, 1, 2),
+    ]);
+    let joints = joints.closed_by([Joined::to_space(pivot(apart, right), 2)]);
+    Stepper::jointed(scene(bodies, 9.81, Vector3::z()), joints, 0.002).unwrap()
+}
+
+/// A loop whose bodies differ by ten thousand in mass: energy and joints as ever. It can't be stretched.
 #[test]
 fn a_loop_of_unlike_masses() {
     for masses in [[1e4, 1.0, 1.0], [1.0, 1e4, 1.0], [1.0, 1e-4, 1.0]] {
-        let bodies = masses.map(|m| Free {
-            m,
-            K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap(),
-        });
-        let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
-        let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
-        let joints = Joints::tree([
-            Joined::to_space(pivot(0.0, left), 0),
-            Joined::between(BallJoint { above: right, below: left }, 0, 1),
-            Joined::between(BallJoint { above: right, below: left }, 1, 2),
-        ]);
-        let joints = joints.closed_by([Joined::to_space(pivot(2.0, right), 2)]);
-        let stepper = Stepper::jointed(scene(bodies, 9.81, Vector3::z()), joints, 0.002).unwrap();
-        let about = from_fn(|k| {
-            let (tilt, x, z) = [(0.9, 0.3, -0.4), (0.0, 1.0, -0.7), (-0.9, 1.7, -0.4)][k];
-            (SO3::exp(Vector3::y() * tilt), R3::from(Vector3::new(x, 0.1, z)))
-        });
-        let mut state = stepper.start_nearest(about, Bodies([Vector6::from_element(0.5); 3])).unwrap();
+        let stepper = garland(masses, 0.9);
+        let about = row([1.6, 0.3, -1.5]).0;
+        let mut state = stepper.start_nearest(about, Bodies([Vector6::from_element(0.2); 3])).unwrap();
         let (before, mut most, mut gap) = (stepper.energy(&state), 0.0_f64, 0.0_f64);
         for _ in 0..2000 {
             stepper.step(&mut state).unwrap();
@@ -473,6 +493,27 @@ fn a_loop_of_unlike_masses() {
         println!("{masses:?}: energy {:.1e}, gap {gap:.1e}", most / scale);
         assert!(most < 1e-3 * scale && gap < 4.0 * EPSILON * 2.0);
     }
+}
+
+/// A heavy body stretches the light ones that hold it until the loop is at its singular position, like a blow: up to there
+/// energy and joints are kept, and then the joint is named, and the state stays.
+#[test]
+fn a_loop_that_is_stretched_names_the_joint() {
+    let stepper = garland([1e4, 1.0, 1.0], 2.0);
+    let mut state = stepper.start_nearest(row([0.9, 0.0, -0.9]).0, Bodies([Vector6::from_element(0.5); 3])).unwrap();
+    let (energy, mut gap) = (stepper.energy(&state), 0.0_f64);
+    for step in 0..2000 {
+        let before = state;
+        if let Err(error) = stepper.step(&mut state) {
+            let off = (stepper.energy(&state) - energy) / energy;
+            println!("after {step} steps: {error}; energy {off:.1e}, gap {gap:.1e}");
+            assert!(matches!(error, StepError::SingularJoint { joint: 3, .. }) && state == before);
+            assert!(step > 100 && off.abs() < 1e-2 && gap < 4.0 * EPSILON * 2.0);
+            return;
+        }
+        gap = gap.max(stepper.widest_gap(&state));
+    }
+    panic!("it is never stretched");
 }
 
 /// Two links between pivots so far apart that they are stretched: the joint that closes the loop is named, and the state
@@ -519,14 +560,7 @@ fn redundant_pins_are_named() {
     let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
     let pin = |above, below| PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() };
     let ball = |above, below| BallJoint { above, below };
-    let attitudes = [0.9, 0.0, -0.9].map(|tilt| SO3::exp(Vector3::y() * tilt));
-    let mut corner = Vector3::zeros();
-    let places = attitudes.map(|attitude| {
-        let along = attitude.as_matrix() * Vector3::x();
-        let centre = corner + along * 0.5;
-        corner += along;
-        (attitude, R3::from(centre))
-    });
+    let (places, corner) = row([0.9, 0.0, -0.9]);
     let tree = Joints::tree([
         Joined::to_space(Joint::Pin(pin(Vector3::zeros(), left)), 0),
         Joined::between(Joint::Pin(pin(right, left)), 0, 1),

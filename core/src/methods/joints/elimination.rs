@@ -276,9 +276,9 @@ fn inverted<const K: usize>(matrix: &SMatrix<f64, K, K>, sizes: &SVector<f64, K>
             continue;
         }
         let pivot = a[(k, k)];
-        // What isn't a number stays.
+        // Behind a pivot that isn't positive the others tell nothing.
         let relative = pivot / sizes[k];
-        least = if relative < least || relative.is_nan() { relative } else { least };
+        least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
         let inverse = 1.0 / pivot;
         a[(k, k)] = 1.0;
         for j in 0..K {

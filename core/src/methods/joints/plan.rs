@@ -68,7 +68,7 @@ impl<S: Effect> Stepper<S> {
     ///
     /// ```
     /// use core::array::from_fn;
-    /// use liestep::groups::{LieGroup as _, R3};
+    /// use liestep::groups::R3;
     /// use liestep::mechanics::Each;
     /// use liestep::methods::{BallJoint, Joined, Joints};
     /// use liestep::numbers::Bodies;

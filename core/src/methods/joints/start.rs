@@ -94,12 +94,12 @@ where
             let places = Places::of(&attitude);
             let (_, by) = self.widest(&places);
             let size = places.extent(&self.joints).sqrt();
+            let mut equations = self.of_velocities(scene, &places, &scene.advected().seen_from(&attitude));
+            check_redundance(&equations)?;
             if by <= CLOSED * size || by <= PRINTED * size && by >= last {
                 return Ok(attitude);
             }
             last = by;
-            let mut equations = self.of_velocities(scene, &places, &scene.advected().seen_from(&attitude));
-            check_redundance(&equations)?;
             equations.solve(&[Vector6::zeros(); N], &places, 1.0);
             let updates = equations.unknowns.bodies;
             let largest = updates.iter().fold(0.0_f64, |most, update| most.max(update.fixed_rows::<3>(0).norm()));
