@@ -267,8 +267,8 @@ pub enum StepError {
     },
     /// The Jacobian is singular at an iterate.
     Singular,
-    /// A joint that closes a loop is at a singular position, or very near one: the others leave it nothing to do along one
-    /// direction, and its force isn't determined.
+    /// A joint that closes a loop is at a singular position, or the step meets one: the others leave the joint nothing to do
+    /// along one direction, and its force isn't determined.
     SingularJoint {
         /// The joint, from zero: those of trees first, then those that close loops.
         joint: usize,
@@ -318,7 +318,7 @@ impl fmt::Display for StepError {
             Self::Singular => write!(f, "the Newton Jacobian is singular; try a smaller step"),
             Self::SingularJoint { joint, pivot } => write!(
                 f,
-                "the joint {joint} (from zero) is at a singular position (pivot {pivot:e}): its force isn't determined; take a joint with fewer functions, or keep away from there"
+                "the joint {joint} (from zero) comes to a singular position (pivot {pivot:e}), where its force isn't determined; take a joint with fewer functions, smaller steps, or another way"
             ),
             Self::UnsolvedBody { body, turn, determinant } => write!(
                 f,

@@ -1,5 +1,7 @@
 //! The plan of a system of joined bodies.
 
+use core::f64::consts::FRAC_PI_2;
+
 use nalgebra::{Matrix3, Matrix4, Vector6};
 
 // Roots and powers without a standard library.
@@ -164,6 +166,8 @@ struct Problem<'a, S: Effect, C, const K: usize, const N: usize, const T: usize,
     /// The square of what roundings of places are units in the last place of.
     extent: f64,
     half: Components<N>,
+    /// The last joint that an iteration has found with nothing to do, and its pivot.
+    met: Option<(usize, f64)>,
 }
 
 /// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of what
@@ -194,6 +198,7 @@ where
         let tangents = of_halves(&self.places, tangent);
         self.equations.set_after(&next, &tangents);
         self.equations.factorise(&matrices);
+        self.met = self.equations.redundant().or(self.met);
         self.update(&residuals, &next, longest)
     }
 
@@ -244,16 +249,12 @@ where
     }
 
     fn is_wanted(&self) -> bool {
-        self.turned_too_far().is_none() && self.equations.wrong_body().is_none() && self.singular_joint().is_none()
+        self.turned_too_far().is_none() && self.equations.wrong_body().is_none() && self.equations.redundant().is_none()
     }
 
     fn turned_too_far(&self) -> Option<usize> {
         let is_near = |half: &Vector6<f64>| parts(half).0.norm_squared() < 1.0;
         self.half.0.iter().position(|half| !is_near(half))
-    }
-
-    fn singular_joint(&self) -> Option<(usize, f64)> {
-        self.equations.redundant()
     }
 
     /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
@@ -276,7 +277,8 @@ where
         Err(self.reason(&slow, spent))
     }
 
-    /// Which joint or which body is to blame, by where the iteration has ended.
+    /// Which joint or which body is to blame: a body that is too fast, a joint whose singular position the iteration has
+    /// met, or a body by where it has ended.
     #[cold]
     fn reason(&self, slow: &Components<N>, iterations: u32) -> StepError {
         let turn = |body: usize| 2.0 * parts(&slow.0[body]).0.norm();
@@ -285,12 +287,15 @@ where
             turn: turn(body),
             determinant: self.equations.determinant(body),
         };
-        if let Some((joint, pivot)) = self.singular_joint() {
+        let fastest = (0..N).max_by(|&a, &b| turn(a).total_cmp(&turn(b))).unwrap_or(0);
+        if turn(fastest) > FRAC_PI_2 {
+            return blamed(fastest);
+        }
+        if let Some((joint, pivot)) = self.met {
             return StepError::SingularJoint { joint, pivot };
         }
         if !self.half.is_finite() {
-            let farthest = (0..N).max_by(|&a, &b| turn(a).total_cmp(&turn(b)));
-            return blamed(farthest.unwrap_or(0));
+            return blamed(fastest);
         }
         if let Some(body) = self.turned_too_far().or(self.equations.wrong_body().map(|(body, _)| body)) {
             return blamed(body);
@@ -363,6 +368,7 @@ where
             extent: places.extent(&self.joints),
             places,
             half: Bodies::zero(),
+            met: None,
         };
         let slow = || half_coordinates(scene, &now, self.h);
         let iterations = problem.solve(kept.guess(<[Body; N]>::DIMENSION), slow)?;

@@ -143,9 +143,13 @@ where
         }
         let attitude = self.plan.closed(&self.scene, &attitude)?;
         let advected = self.scene.advected().seen_from(&attitude);
-        let momentum = self.scene.inertia(&advected) * velocity + self.scene.momentum_bias(&advected);
-        let reactions = self.plan.reactions(&self.scene, &Places::of(&attitude), &advected, &momentum);
-        self.start_with_momentum(attitude, momentum - reactions)
+        let mut momentum = self.scene.inertia(&advected) * velocity + self.scene.momentum_bias(&advected);
+        let places = Places::of(&attitude);
+        // The second time for what roundings of the first leave, where bodies are of unlike masses.
+        for _ in 0..2 {
+            momentum = momentum - self.plan.reactions(&self.scene, &places, &advected, &momentum);
+        }
+        self.start_with_momentum(attitude, momentum)
     }
 
     /// How far the joint that is open farthest is open, m; of a [`PinJoint`](super::PinJoint) with the cosines of its axes.
