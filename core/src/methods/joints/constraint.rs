@@ -4,10 +4,6 @@ use core::fmt::Debug;
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
-
 use crate::error::SetupError;
 
 /// Where a body is; of space itself the identity and the origin.
@@ -62,6 +58,7 @@ pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
     fn validate(&self) -> Result<(), SetupError>;
 
     /// How many of the functions there are; those behind them are zero everywhere.
+    #[must_use]
     fn rows(&self) -> usize {
         K
     }

@@ -191,23 +191,23 @@ pub(super) fn solve<const K: usize, const N: usize, const L: usize>(
     unknowns: &mut Unknowns<K, N, L>,
 ) -> f64 {
     let size = substitute(tree, bodies, &mut unknowns.bodies, &mut unknowns.joints);
-    for k in 0..L {
+    for (k, closing) in loops.iter().enumerate() {
         // `C_L x + g`, and then the rows above.
         let mut right = unknowns.loops[k];
-        for (body, ends) in loops[k].ends() {
+        for (body, ends) in closing.ends() {
             right += ends.after * unknowns.bodies[body];
         }
-        for (factor, above) in loops[k].row.iter().zip(&unknowns.loops).take(k) {
+        for (factor, above) in closing.row.iter().zip(&unknowns.loops).take(k) {
             right -= factor * above;
         }
         unknowns.loops[k] = right;
     }
-    for k in (0..L).rev() {
+    for (k, closing) in loops.iter().enumerate().rev() {
         let mut right = unknowns.loops[k];
-        for (entry, below) in loops[k].row.iter().zip(&unknowns.loops).skip(k + 1) {
+        for (entry, below) in closing.row.iter().zip(&unknowns.loops).skip(k + 1) {
             right -= entry * below;
         }
-        unknowns.loops[k] = loops[k].row[k] * right;
+        unknowns.loops[k] = closing.row[k] * right;
     }
     for (closing, multiplier) in loops.iter().zip(&unknowns.loops) {
         for k in 0..N {

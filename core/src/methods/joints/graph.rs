@@ -16,11 +16,13 @@ pub struct Joined<C> {
 
 impl<C> Joined<C> {
     /// Between two bodies.
+    #[must_use]
     pub const fn between(joint: C, above: usize, below: usize) -> Self {
         Self { joint, above: Some(above), below }
     }
 
     /// Between space and a body: a pivot.
+    #[must_use]
     pub const fn to_space(joint: C, below: usize) -> Self {
         Self { joint, above: None, below }
     }
@@ -60,11 +62,13 @@ pub struct Joints<C, const T: usize, const L: usize> {
 
 impl<C, const T: usize> Joints<C, T, 0> {
     /// Without loops.
+    #[must_use]
     pub const fn tree(tree: [Joined<C>; T]) -> Self {
         Self { tree, loops: [] }
     }
 
     /// With joints that close a loop each.
+    #[must_use]
     pub fn closed_by<const L: usize>(self, loops: [Joined<C>; L]) -> Joints<C, T, L> {
         Joints { tree: self.tree, loops }
     }

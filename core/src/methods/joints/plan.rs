@@ -1,22 +1,24 @@
 //! The plan of a system of joined bodies.
 
+use core::array::from_fn;
 use core::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Matrix3, Matrix4, Vector6};
+use nalgebra::Vector6;
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-use super::Constraint;
 use super::equations::{Equations, of_halves};
 use super::graph::{Joints, Tree};
 use super::places::{Places, parts};
-use crate::Stepper;
+use super::{Constraint, Place};
 use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, LieGroup, R3, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Proceeded, Steerable, StepReport, Summation, half_coordinates, is_due};
+use crate::motion::{
+    Cost, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due,
+};
 use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _, Vectors};
 use crate::solving::{
     Continued, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, Warm, has_sufficed, may_suffice,
@@ -25,7 +27,6 @@ use crate::solving::{
 
 /// What a body is on: turned, and translated in the axes of space.
 pub(super) type Body = (SO3, R3);
-type Matrices<const N: usize> = [(Matrix3<f64>, Matrix4<f64>); N];
 type Components<const N: usize> = Bodies<Vector6<f64>, N>;
 
 /// The update that roundings of places and of opposed forces leave, in them.
@@ -184,16 +185,20 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// The increments, and the places behind them.
-    fn moved(&self) -> (Matrices<N>, Places<N>) {
-        let increments = <CayleyRetraction as Retraction<[Body; N]>>::increment_of_half(&self.half);
-        (increments, Places::of(&self.attitude.advance(&increments)))
+    /// Where the increments lead, to the bit.
+    fn next(&self) -> Places<N> {
+        Places(from_fn(|k| {
+            let (turn, shift) = parts(&self.half.0[k]);
+            let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&turn);
+            let attitude = *self.attitude[k].0.advance(&increment).as_matrix();
+            Place { attitude, position: self.places.0[k].position + shift * 2.0 }
+        }))
     }
 
     /// One of Newton's iterations.
     fn newton(&mut self, longest: f64) -> Updated {
         let (residuals, BlockDiagonal(matrices)) = newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
-        let (_, next) = self.moved();
+        let next = self.next();
         let tangent = |k: usize| <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
         let tangents = of_halves(&self.places, tangent);
         self.equations.set_after(&next, &tangents);
@@ -205,7 +210,7 @@ where
     /// Another with the matrix of the last.
     fn simplified(&mut self) -> Updated {
         let residuals = S::newton_residual(&self.plan.constants, &self.terms, &self.half).momentum_defect;
-        let (_, next) = self.moved();
+        let next = self.next();
         self.update(&residuals, &next, f64::INFINITY)
     }
 
@@ -372,7 +377,8 @@ where
         };
         let slow = || half_coordinates(scene, &now, self.h);
         let iterations = problem.solve(kept.guess(<[Body; N]>::DIMENSION), slow)?;
-        let (increment, places) = problem.moved();
+        let increment = <CayleyRetraction as Retraction<[Body; N]>>::increment_of_half(&problem.half);
+        let places = problem.next();
         let impulse = Bodies(problem.equations.reactions()) * (-2.0 / self.h);
         let advected = next.turned(&increment);
         let mut change = <[Body; N]>::adjoint_transpose_increment(&increment, &(a + impulse)) + (kick + impulse);

@@ -10,11 +10,10 @@ use super::Constraint;
 use super::equations::Equations;
 use super::places::Places;
 use super::plan::{Body, Jointed};
-use crate::Stepper;
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
 use crate::mechanics::Effect;
-use crate::motion::{Motion, State};
+use crate::motion::{Motion, State, Stepper};
 use crate::numbers::{Bodies, Coordinates as _};
 use crate::solving::{MAX_DAMPED_ITERATIONS, Warm};
 
