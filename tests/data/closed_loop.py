@@ -4,7 +4,7 @@
 
 Newton's and Euler's equations of each body in inertial coordinates with quaternions. The forces of the joints are found from the
 second derivatives of what they hold together, and nothing pulls the solution back: how far the joints have opened at the end
-is an error estimate. Extrapolated midpoint steps of two sizes, by mpmath with 40 digits; some minutes.
+is an error estimate. Extrapolated midpoint steps of two sizes, by mpmath with 40 digits; a minute.
 """
 
 import json

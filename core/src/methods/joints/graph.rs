@@ -134,9 +134,9 @@ impl<const N: usize> Tree<N> {
             // The joints of a body that is known: they lead to another that isn't, or close a loop.
             let mut has_grown = false;
             for (joint, &[above, below]) in ends.iter().enumerate() {
-                let (body, parent, is_below) = match (is_there(&is_known, above), is_there(&is_known, below), above) {
-                    (true, false, _) => (below, above, true),
-                    (false, true, _) => (above, below, false),
+                let (body, parent, is_below) = match (is_there(&is_known, above), is_there(&is_known, below)) {
+                    (true, false) => (below, above, true),
+                    (false, true) => (above, below, false),
                     _ => continue,
                 };
                 let Some(body) = body else { continue };
