@@ -212,22 +212,23 @@ fn plain(value: &Value) -> Vector3<f64> {
     Vector3::from_fn(|k, _| number(&value[k]))
 }
 
-/// Of the reference.
-fn closed_loop(h: f64) -> Held<BallJoint, 3, 3, 3, 1> {
+/// Of the reference, with this joint as the one that closes the loop.
+fn closed_loop(h: f64, cut: usize) -> Held<BallJoint, 3, 3, 3, 1> {
     let data = &read("closed loop")["parameters"];
     let bodies = all(&data["bodies"], |body| Free {
         m: number(&body["m"]),
         K: NonstandardInertia::from_principal_moments(plain(&body["J"])).unwrap(),
     });
     let end = |body: usize, side: &str| plain(&data["bodies"][body][side]);
-    let joints = Joints::tree([
+    let joints = [
         Joined::to_space(BallJoint { above: Vector3::zeros(), below: end(0, "left") }, 0),
         Joined::between(BallJoint { above: end(0, "right"), below: end(1, "left") }, 0, 1),
         Joined::between(BallJoint { above: end(1, "right"), below: end(2, "left") }, 1, 2),
-    ]);
-    let pivot = Joined::to_space(BallJoint { above: plain(&data["pivot"]), below: end(2, "right") }, 2);
+        Joined::to_space(BallJoint { above: plain(&data["pivot"]), below: end(2, "right") }, 2),
+    ];
+    let tree = from_fn(|k| joints[if k < cut { k } else { k + 1 }]);
     let scene = scene(bodies.try_into().unwrap(), number(&data["g"]), Vector3::z());
-    Stepper::jointed(scene, joints.closed_by([pivot]), h).unwrap()
+    Stepper::jointed(scene, Joints::tree(tree).closed_by([joints[cut]]), h).unwrap()
 }
 
 fn state_of(value: &Value) -> ([Body; 3], Components<3>) {
@@ -246,7 +247,7 @@ fn a_closed_loop() {
     let states = &read("closed loop")["states"];
     let ((start, velocity), (end, expected)) = (state_of(&states[0]), state_of(&states[1]));
     let errors = [(0.01, 100), (0.005, 200), (0.0025, 400)].map(|(h, steps)| {
-        let stepper = closed_loop(h);
+        let stepper = closed_loop(h, 3);
         let mut state = stepper.start(start, velocity).unwrap();
         assert!((stepper.energy(&state) - number(&states[0]["energy"])).abs() < 1e-13);
         let mut gap = 0.0_f64;
@@ -267,12 +268,83 @@ fn a_closed_loop() {
     }
 }
 
+/// Whichever joint of the loop is given apart, and in whichever direction the others are gone through, the motion is the
+/// same; with its sums compensated, too.
+#[test]
+fn a_loop_may_be_cut_anywhere() {
+    let (start, velocity) = state_of(&read("closed loop")["states"][0]);
+    let moved = [0, 1, 2, 3].map(|cut| {
+        let stepper = closed_loop(0.01, cut);
+        let mut state = stepper.start(start, velocity).unwrap();
+        stepper.run(&mut state, 100).unwrap();
+        assert!(stepper.widest_gap(&state) < 4.0 * EPSILON * 2.0);
+        state.attitude().map(|body| body.0)
+    });
+    for other in &moved[1..] {
+        assert!(apart(&moved[0], other) < 1e-12, "{:e}", apart(&moved[0], other));
+    }
+    let compensated = closed_loop(0.01, 3).compensated();
+    let mut state = compensated.start(start, velocity).unwrap();
+    compensated.run(&mut state, 100).unwrap();
+    assert!(apart(&state.attitude().map(|body| body.0), &moved[0]) < 1e-12);
+    assert!(closed_loop(0.01, 3).widest_gap(&state) < 6.0 * EPSILON * 2.0);
+}
+
+/// A body on a pivot with three on it, one of which carries another: energy, the momentum about the vertical, and the joints.
+/// The order of the joints and which of its bodies a joint calls the one above make no difference.
+#[test]
+fn a_tree() {
+    const N: usize = 5;
+    let mut random = Random::new(3);
+    let mut next = |size: f64| -> Vector3<f64> {
+        let vector: Vector3<f64> = random.sample();
+        vector * size
+    };
+    let bodies: [Free; N] = from_fn(|_| Free {
+        m: 0.5 + next(1.0).x.abs(),
+        K: NonstandardInertia::from_principal_moments(Vector3::new(0.05, 0.06, 0.07) + next(0.01)).unwrap(),
+    });
+    let joints: [BallJoint; N] = from_fn(|_| BallJoint { above: next(0.5), below: next(0.5) });
+    let parents = [None, Some(0), Some(0), Some(0), Some(2)];
+    let straight: [Joined<BallJoint>; N] = from_fn(|k| Joined { joint: joints[k], above: parents[k], below: k });
+    let turned: [Joined<BallJoint>; N] = from_fn(|k| {
+        let Joined { joint, above, below } = straight[N - 1 - k];
+        let back = BallJoint { above: joint.below, below: joint.above };
+        above.map_or(straight[N - 1 - k], |above| Joined::between(back, below, above))
+    });
+    let about = from_fn(|_| {
+        let turn: SO3 = <CayleyRetraction as Retraction<SO3>>::retract(&next(1.0));
+        (turn, R3::from(next(1.0)))
+    });
+    let moving = Bodies(from_fn(|_| six(&next(1.0), &next(1.0))));
+    let pivot = joints[0].above;
+    let about_pivot = |[p, l]: [Vector3<f64>; 2]| (l - pivot.cross(&p)).z;
+    let ends = [straight, turned].map(|tree| {
+        let stepper = Stepper::jointed(scene(bodies, 9.81, Vector3::z()), Joints::tree(tree), 0.005).unwrap();
+        let mut state = stepper.start_nearest(about, moving).unwrap();
+        let (energy, vertical) = (stepper.energy(&state), about_pivot(whole(&state)));
+        stepper.run(&mut state, 200).unwrap();
+        let middle = state.attitude().map(|body| body.0);
+        let (mut gap, mut off) = (0.0_f64, 0.0_f64);
+        for _ in 0..2000 {
+            stepper.step(&mut state).unwrap();
+            gap = gap.max(stepper.widest_gap(&state));
+            off = off.max((stepper.energy(&state) - energy).abs());
+        }
+        let moved = about_pivot(whole(&state)) - vertical;
+        println!("energy {energy:.3} within {off:.1e}, momentum {moved:.1e}, gap {gap:.1e}");
+        assert!(off < 0.02 && moved.abs() < 1e-11 && gap < 4.0 * EPSILON * 2.0);
+        middle
+    });
+    assert!(apart(&ends[0], &ends[1]) < 1e-11, "{:e}", apart(&ends[0], &ends[1]));
+}
+
 /// The energy of a loop is bounded over a hundred thousand steps, its joints stay closed, and what is put around steps goes
 /// around these.
 #[test]
 fn energy_of_a_closed_loop() {
     let (start, velocity) = state_of(&read("closed loop")["states"][0]);
-    let stepper = closed_loop(0.01);
+    let stepper = closed_loop(0.01, 3);
     let mut state = stepper.start(start, velocity).unwrap();
     let (energy, mut gap) = (stepper.energy(&state), 0.0_f64);
     let (means, most) = tenths(|| {
