@@ -1,9 +1,10 @@
-//! A ring of rods on ball joints, hung up at one joint and let go: a closed loop; and what a step of joined bodies takes.
+//! A ring of rods on ball joints, hung up at one joint and let go: a closed loop; and what a step of joined bodies
+//! takes.
 //!
 //! ```text
 //! cargo run --release --example ring-of-links
-//! cargo run --release --example ring-of-links -- times        µs a step of chains with joints, and in their minimal form
-//! cargo run --release --example ring-of-links -- count 100 50 fifty steps of a chain of a hundred, to count instructions
+//! cargo run --release --example ring-of-links -- times          µs a step of chains with joints, and in their minimal form
+//! cargo run --release --example ring-of-links -- count 100 50   steps of a chain of a hundred, to count instructions
 //! ```
 
 // The letters of the field.

@@ -2,9 +2,9 @@
 
     python tests/data/closed_loop.py > tests/data/closed_loop.json
 
-Newton's and Euler's equations of each body in inertial coordinates with quaternions. The forces of the joints are found from the
-second derivatives of what they hold together, and nothing pulls the solution back: how far the joints have opened at the end
-is an error estimate. Extrapolated midpoint steps of two sizes, by mpmath with 40 digits; a minute.
+Newton's and Euler's equations of each body in inertial coordinates with quaternions. The forces of the joints are found
+from the second derivatives of what they hold together, and nothing pulls the solution back: how far the joints have
+opened at the end is an error estimate. Extrapolated midpoint steps of two sizes, by mpmath with 40 digits; a minute.
 """
 
 import json

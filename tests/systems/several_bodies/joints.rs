@@ -1,5 +1,5 @@
-//! Bodies held together by joints: chains against the minimal form, a closed loop against Newton's and Euler's equations, a
-//! pendulum on a pin against its recursion; what is conserved, and what can go wrong.
+//! Bodies held together by joints: chains against the minimal form, a closed loop against Newton's and Euler's
+//! equations, a pendulum on a pin against its recursion; what is conserved, and what can go wrong.
 
 // The letters of the field.
 #![allow(non_snake_case)]
@@ -240,8 +240,8 @@ fn state_of(value: &Value) -> ([Body; 3], Components<3>) {
     (from_fn(of), Bodies(from_fn(|k| six(&vector(&bodies[k]["Omega_body"]), &vector(&bodies[k]["v"])))))
 }
 
-/// Against Newton's and Euler's equations in inertial coordinates, which share nothing with reduced equations: order 2, in
-/// attitudes, places and velocities.
+/// Against Newton's and Euler's equations in inertial coordinates, which share nothing with reduced equations: order
+/// 2, in attitudes, places and velocities.
 #[test]
 fn a_closed_loop() {
     let states = &read("closed loop")["states"];
@@ -268,8 +268,8 @@ fn a_closed_loop() {
     }
 }
 
-/// Whichever joint of the loop is given apart, and in whichever direction the others are gone through, the motion is the
-/// same; with its sums compensated, too.
+/// Whichever joint of the loop is given apart, and in whichever direction the others are gone through, the motion is
+/// the same; with its sums compensated, too.
 #[test]
 fn a_loop_may_be_cut_anywhere() {
     let (start, velocity) = state_of(&read("closed loop")["states"][0]);
@@ -290,8 +290,8 @@ fn a_loop_may_be_cut_anywhere() {
     assert!(closed_loop(0.01, 3).widest_gap(&state) < 6.0 * EPSILON * 2.0);
 }
 
-/// A body on a pivot with three on it, one of which carries another: energy, the momentum about the vertical, and the joints.
-/// The order of the joints and which of its bodies a joint calls the one above make no difference.
+/// A body on a pivot with three on it, one of which carries another: energy, the momentum about the vertical, and the
+/// joints. The order of the joints and which of its bodies a joint calls the one above make no difference.
 #[test]
 fn a_tree() {
     const N: usize = 5;
@@ -339,8 +339,8 @@ fn a_tree() {
     assert!(apart(&ends[0], &ends[1]) < 1e-11, "{:e}", apart(&ends[0], &ends[1]));
 }
 
-/// The energy of a loop is bounded over a hundred thousand steps, its joints stay closed, and what is put around steps goes
-/// around these.
+/// The energy of a loop is bounded over a hundred thousand steps, its joints stay closed, and what is put around steps
+/// goes around these.
 #[test]
 fn energy_of_a_closed_loop() {
     let (start, velocity) = state_of(&read("closed loop")["states"][0]);
@@ -376,8 +376,8 @@ fn energy_of_a_closed_loop() {
     assert_eq!(resumed, there);
 }
 
-/// A ring of six that nothing pulls keeps its momentum and its angular momentum; hung up at one point and pulled down, the
-/// part of the latter about the vertical.
+/// A ring of six that nothing pulls keeps its momentum and its angular momentum; hung up at one point and pulled down,
+/// the part of the latter about the vertical.
 #[test]
 fn momenta_of_a_ring() {
     const N: usize = 6;
@@ -436,7 +436,8 @@ fn momenta_of_a_ring() {
     assert!((whole(&state)[1].z - vertical).abs() < 1e-11 && (hanging.energy(&state) - energy).abs() < 0.1);
 }
 
-/// On a pin a body is a pendulum of one angle: `I (sin δ_k − sin δ_{k−1}) = −h² V'(θ_k)`, with the moment about the pin.
+/// On a pin a body is a pendulum of one angle: `I (sin δ_k − sin δ_{k−1}) = −h² V'(θ_k)`, with the moment about the
+/// pin.
 #[test]
 fn a_pendulum_on_a_pin() {
     let (h, m, reach) = (0.01, 1.3, 0.7);
@@ -495,8 +496,8 @@ fn rods<const N: usize>(last: f64) -> Chain<N> {
     Chain { links, g: 9.81, up: e }
 }
 
-/// A hundred links are let go horizontally, and the last has up to ten thousand times the mass of the others: as in their
-/// minimal form, and with the energy that they had.
+/// A hundred links are let go horizontally, and the last has up to ten thousand times the mass of the others: as in
+/// their minimal form, and with the energy that they had.
 #[test]
 fn a_hundred_links_let_go_horizontally() {
     for (last, h, steps, allowed) in [(1.0, 0.005, 200, 1e-9), (1e4, 0.002, 100, 1e-8), (1e-4, 0.002, 100, 1e-8)] {
@@ -567,8 +568,8 @@ fn a_loop_of_unlike_masses() {
     }
 }
 
-/// A heavy body stretches the light ones that hold it until the loop is at its singular position, like a blow: up to there
-/// energy and joints are kept, and then the joint is named, and the state stays.
+/// A heavy body stretches the light ones that hold it until the loop is at its singular position, like a blow: up to
+/// there energy and joints are kept, and then the joint is named, and the state stays.
 #[test]
 fn a_loop_that_is_stretched_names_the_joint() {
     let stepper = garland([1e4, 1.0, 1.0], 2.0);
@@ -588,8 +589,8 @@ fn a_loop_that_is_stretched_names_the_joint() {
     panic!("it is never stretched");
 }
 
-/// Two links between pivots so far apart that they are stretched: the joint that closes the loop is named, and the state
-/// stays.
+/// Two links between pivots so far apart that they are stretched: the joint that closes the loop is named, and the
+/// state stays.
 #[test]
 fn a_singular_position_names_the_joint() {
     let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();

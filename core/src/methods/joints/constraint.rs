@@ -42,8 +42,8 @@ pub struct Slope<const K: usize> {
 /// A holonomic constraint on two bodies, or on a body and space: `K` functions of where they are, which are zero.
 ///
 /// [`BallJoint`], [`PinJoint`] and [`Joint`] are such. One of your own is held by the same
-/// [stepper](crate::Stepper::jointed); that its [`slope`](Self::slope) is the derivative of its [`gap`](Self::gap) is up to
-/// you.
+/// [stepper](crate::Stepper::jointed); that its [`slope`](Self::slope) is the derivative of its [`gap`](Self::gap) is
+/// up to you.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constraint on two bodies",
     label = "not a joint",
@@ -98,8 +98,8 @@ pub struct BallJoint {
 /// x_b + R_b ρ_b − x_a − R_a ρ_a = 0          R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0
 /// ```
 ///
-/// with `e_1` and `e_2` at right angles to the axis `n_a`. Which of its two ways an axis points doesn't matter: it stays as
-/// it starts.
+/// with `e_1` and `e_2` at right angles to the axis `n_a`. Which of its two ways an axis points doesn't matter: it
+/// stays as it starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinJoint {
     /// `ρ_a`, in the axes of the body above, m; of a pivot in space.

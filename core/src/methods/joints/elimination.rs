@@ -6,8 +6,9 @@
 //! A_b y_b + Σ_j E_jbᵀ p_j = −r_b           Σ_b C_jb y_b = −g_j
 //! ```
 //!
-//! with the sums over the joints of a body, and over the two bodies of a joint. A body at an end of a tree, child `c` of `b` by the joint
-//! `j`, is eliminated, and then its joint; what is left is an addition to the matrix of its parent:
+//! with the sums over the joints of a body, and over the two bodies of a joint. A body at an end of a tree, child `c`
+//! of `b` by the joint `j`, is eliminated, and then its joint; what is left is an addition to the matrix of its
+//! parent:
 //!
 //! ```text
 //! X = A_c⁻¹ E_jcᵀ      S = C_jc X      P = S⁻¹ C_jb      A_b ← A_b + E_jbᵀ P
@@ -15,9 +16,10 @@
 //! p_j = s + P y_b      y_c = −w − X p_j
 //! ```
 //!
-//! So nothing fills in, and the time is proportional to the number of bodies. At rest `A` is the inertia and `C = E`: then
-//! the matrix of the parent is its own with the articulated inertia of all that hangs on it. Joints that close loops are a
-//! border: with the solution `Y` for their columns `Eᵀ`, `S_L = −C_L Y` are the equations of their multipliers.
+//! So nothing fills in, and the time is proportional to the number of bodies. At rest `A` is the inertia and `C = E`:
+//! then the matrix of the parent is its own with the articulated inertia of all that hangs on it. Joints that close
+//! loops are a border: with the solution `Y` for their columns `Eᵀ`, `S_L = −C_L Y` are the equations of their
+//! multipliers.
 
 use nalgebra::{SMatrix, SVector, Vector6};
 
@@ -266,8 +268,8 @@ fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMat
     solved
 }
 
-/// The inverse, by elimination in the order of the rows, and the least pivot relative to `sizes`. Rows that are zero and
-/// have no size are of functions that there aren't.
+/// The inverse, by elimination in the order of the rows, and the least pivot relative to `sizes`. Rows that are zero
+/// and have no size are of functions that there aren't.
 #[inline(always)]
 fn inverted<const K: usize>(matrix: &SMatrix<f64, K, K>, sizes: &SVector<f64, K>) -> (SMatrix<f64, K, K>, f64) {
     let (mut a, mut least) = (*matrix, f64::INFINITY);

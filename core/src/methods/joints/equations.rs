@@ -5,11 +5,11 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
 use super::Constraint;
 use super::elimination::{Body, Closing, Unknowns, factorise, solve};
 use super::graph::{Joints, Tree};
-use super::places::{Held, Places, Slopes, Tangent, after, before, each_slope};
+use super::places::{Held, Places, Slopes, after, before, each_slope};
 
-/// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of a zero
-/// is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3 µrad from
-/// there.
+/// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of
+/// a zero is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3
+/// µrad from there.
 const REDUNDANT: f64 = 1e-11;
 
 /// Matrices, slopes and right sides; solved, the unknowns.
@@ -45,9 +45,9 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         });
     }
 
-    /// `C` of these places, for unknowns that move the bodies by these tangents.
-    pub(super) fn set_after(&mut self, places: &Places<N>, tangents: &[Tangent; N]) {
-        self.each(places, |slopes, side, body, slope| slopes.0[side].after = after(slope, &tangents[body]));
+    /// `C` of these places, for unknowns that turn the bodies by these maps.
+    pub(super) fn set_after(&mut self, places: &Places<N>, turns: &[Matrix3<f64>; N]) {
+        self.each(places, |slopes, side, body, slope| slopes.0[side].after = after(slope, &turns[body]));
     }
 
     /// `C = E`: for velocities.
@@ -148,9 +148,4 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         let joint = self.loops.iter().position(|closing| !has_something(closing))?;
         Some((T + joint, self.loops[joint].pivot))
     }
-}
-
-/// The tangents of bodies with these attitudes, for half the coordinates of increments and half of a gap.
-pub(super) fn of_halves<const N: usize>(places: &Places<N>, tangents: impl Fn(usize) -> Matrix3<f64>) -> [Tangent; N] {
-    core::array::from_fn(|k| Tangent { turn: places.0[k].attitude * tangents(k) * 0.5, shift: 1.0 })
 }

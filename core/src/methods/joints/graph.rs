@@ -31,8 +31,8 @@ impl<C> Joined<C> {
 /// The joints of a system: `T` without loops, and `L` that close one each.
 ///
 /// A chain, a tree or several of them have no loop, whether they are joined to space or not. Of each loop one joint is
-/// given apart; which one doesn't matter to the motion. An error counts the joints of the tree first and then those that
-/// close loops, from zero.
+/// given apart; which one doesn't matter to the motion. An error counts the joints of the tree first and then those
+/// that close loops, from zero.
 ///
 /// # Examples
 ///

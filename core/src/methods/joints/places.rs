@@ -15,8 +15,8 @@ pub(super) struct Ends<const K: usize> {
     pub(super) after: SMatrix<f64, K, 6>,
 }
 
-/// Of both ends: of a tree's joint that of the body and that of its parent, of one that closes a loop that of the body below
-/// and that of the body above.
+/// Of both ends: of a tree's joint that of the body and that of its parent, of one that closes a loop that of the body
+/// below and that of the body above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Slopes<const K: usize>(pub(super) [Ends<K>; 2]);
 
@@ -59,13 +59,6 @@ impl<const N: usize> Places<N> {
     }
 }
 
-/// How the body's unknowns turn and shift it, in the axes of space.
-#[derive(Clone, Copy)]
-pub(super) struct Tangent {
-    pub(super) turn: Matrix3<f64>,
-    pub(super) shift: f64,
-}
-
 /// The slopes of all joints, those of the trees by the bodies that hang on them: what `of` makes of each.
 pub(super) fn each_slope<C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>(
     places: &Places<N>,
@@ -104,11 +97,11 @@ pub(super) fn before<const K: usize>(slope: &Slope<K>, attitude: &Matrix3<f64>) 
     before
 }
 
-/// `C` for these tangents.
-pub(super) fn after<const K: usize>(slope: &Slope<K>, tangent: &Tangent) -> SMatrix<f64, K, 6> {
+/// `C` of a body whose unknowns turn it by this map, in the axes of space, and shift it by themselves.
+pub(super) fn after<const K: usize>(slope: &Slope<K>, turn: &Matrix3<f64>) -> SMatrix<f64, K, 6> {
     let mut after = SMatrix::<f64, K, 6>::zeros();
-    after.fixed_columns_mut::<3>(0).copy_from(&(slope.turn * tangent.turn));
-    after.fixed_columns_mut::<3>(3).copy_from(&(slope.shift * tangent.shift));
+    after.fixed_columns_mut::<3>(0).copy_from(&(slope.turn * turn));
+    after.fixed_columns_mut::<3>(3).copy_from(&slope.shift);
     after
 }
 

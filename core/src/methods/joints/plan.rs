@@ -9,7 +9,7 @@ use nalgebra::Vector6;
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-use super::equations::{Equations, of_halves};
+use super::equations::Equations;
 use super::graph::{Joints, Tree};
 use super::places::{Places, parts};
 use super::{Constraint, Place};
@@ -38,7 +38,8 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 ///
 /// - Gaps of joints are those of rounding, some units in the last place of the distances from the origin.
 /// - Velocities keep to the joints as well: energies and momenta of a state are those of the joined system.
-/// - A step satisfies its equations to rounding, or is an error that names a body or a joint and leaves the state as it was.
+/// - A step satisfies its equations to rounding, or is an error, mostly of a body or a joint, and leaves the state as it
+///   was.
 /// - Nothing is allocated. A body takes about 3 kB of stack, and 300 bytes more for each loop.
 ///
 /// # Source
@@ -55,15 +56,16 @@ pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize,
 impl<S: Effect> Stepper<S> {
     /// Bodies that are held together by joints; the scene is that of the bodies without them.
     ///
-    /// Each body is translated too: `(SO3, R3)`, with its centre of mass as origin, or any other point. Of joints that form
-    /// loops one of each loop is [given apart](Joints::closed_by). [`Jointed`] says how steps are made, and what they cost.
+    /// Each body is translated too: `(SO3, R3)`, with its centre of mass as origin, or any other point. Of joints that
+    /// form loops one of each loop is [given apart](Joints::closed_by). [`Jointed`] says how steps are made, and what
+    /// they cost.
     ///
     /// # Errors
     ///
     /// As [`Stepper::new`]; [`SetupError::Joint`] and [`SetupError::JointParameter`] name a joint that can't be.
-    /// [`Stepper::start`] has [`SetupError::OffConstraint`] where a joint is open, [`SetupError::OffVelocity`] where the
-    /// velocities would open it, and [`SetupError::RedundantJoint`] where the others leave it nothing to do, be it only at
-    /// this place; [`start_nearest`](Stepper::start_nearest) closes joints.
+    /// [`Stepper::start`] has [`SetupError::OffConstraint`] where a joint is open, [`SetupError::OffVelocity`] where
+    /// the velocities would open it, and [`SetupError::RedundantJoint`] where the others leave it nothing to do, be it
+    /// only at this place; [`start_nearest`](Stepper::start_nearest) closes joints.
     ///
     /// # Examples
     ///
@@ -171,8 +173,8 @@ struct Problem<'a, S: Effect, C, const K: usize, const N: usize, const T: usize,
     met: Option<(usize, f64)>,
 }
 
-/// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of what
-/// rounding leaves of it.
+/// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of
+/// what rounding leaves of it.
 struct Updated {
     update: f64,
     size: f64,
@@ -199,9 +201,12 @@ where
     fn newton(&mut self, longest: f64) -> Updated {
         let (residuals, BlockDiagonal(matrices)) = newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
         let next = self.next();
-        let tangent = |k: usize| <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
-        let tangents = of_halves(&self.places, tangent);
-        self.equations.set_after(&next, &tangents);
+        // With half of each gap, as with half the coordinates a shift is twice its unknown.
+        let turns = from_fn(|k| {
+            let tangent = <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
+            self.places.0[k].attitude * tangent * 0.5
+        });
+        self.equations.set_after(&next, &turns);
         self.equations.factorise(&matrices);
         self.met = self.equations.redundant().or(self.met);
         self.update(&residuals, &next, longest)
@@ -282,8 +287,8 @@ where
         Err(self.reason(&slow, spent))
     }
 
-    /// Which joint or which body is to blame: a body that is too fast, a joint whose singular position the iteration has
-    /// met, or a body by where it has ended.
+    /// Which joint or which body is to blame: a body that is too fast, a joint whose singular position the iteration
+    /// has met, or a body by where it has ended.
     #[cold]
     fn reason(&self, slow: &Components<N>, iterations: u32) -> StepError {
         let turn = |body: usize| 2.0 * parts(&slow.0[body]).0.norm();

@@ -48,8 +48,8 @@ where
         equations
     }
 
-    /// What joints take from momenta whose velocities would part them: of bodies that turn at `J⁻¹(μ − s)` the impulses
-    /// that leave those nearest to it.
+    /// What joints take from momenta whose velocities would part them: of bodies that turn at `J⁻¹(μ − s)` the
+    /// impulses that leave those nearest to it.
     pub(super) fn reactions(
         &self,
         scene: &S,
@@ -125,13 +125,13 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// A motion from where joints are closed next to these places, with the velocities next to these that keep them closed;
-    /// both as the inertia measures it.
+    /// A motion from where joints are closed next to these places, with the velocities next to these that keep them
+    /// closed; both as the inertia measures it.
     ///
     /// # Errors
     ///
-    /// [`SetupError::OffConstraint`] where no such place is found, [`SetupError::RedundantJoint`] where a joint has nothing to
-    /// do on the way to it; otherwise as [`start`](Stepper::start).
+    /// [`SetupError::OffConstraint`] where no such place is found, [`SetupError::RedundantJoint`] where a joint has
+    /// nothing to do on the way to it; otherwise as [`start`](Stepper::start).
     pub fn start_nearest(
         &self,
         attitude: [Body; N],
@@ -151,7 +151,8 @@ where
         self.start_with_momentum(attitude, momentum)
     }
 
-    /// How far the joint that is open farthest is open, m; of a [`PinJoint`](super::PinJoint) with the cosines of its axes.
+    /// How far the joint that is open farthest is open, m; of a [`PinJoint`](super::PinJoint) with the cosines of its
+    /// axes.
     #[must_use]
     pub fn widest_gap(&self, motion: &Motion<[Body; N], S::Advected>) -> f64 {
         self.plan.widest(&Places::of(&motion.attitude)).1
