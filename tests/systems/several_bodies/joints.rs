@@ -87,7 +87,7 @@ fn check_slopes<C: Constraint<K>, const K: usize>(joint: &C, random: &mut Random
         (<CayleyRetraction as Retraction<SO3>>::retract(&xi), R3::from(x))
     });
     let slopes = joint.slope(&place(&places[0]), &place(&places[1]));
-    for body in 0..2 {
+    for (body, slope) in slopes.iter().enumerate() {
         for k in 0..6 {
             let moved = |s: f64| {
                 let mut moved = places.map(|body| place(&body));
@@ -100,7 +100,7 @@ fn check_slopes<C: Constraint<K>, const K: usize>(joint: &C, random: &mut Random
                 }
                 joint.gap(&moved[0], &moved[1])
             };
-            let slope = if k < 3 { slopes[body].turn } else { slopes[body].shift };
+            let slope = if k < 3 { slope.turn } else { slope.shift };
             for row in 0..K {
                 let expected = derivative(|s| moved(s)[row]);
                 assert!((slope[(row, k % 3)] - expected).abs() < 1e-9, "{joint:?}: {body} {k} {row} {expected}");
