@@ -22,6 +22,44 @@ pub enum SetupError {
         /// What is wrong with it.
         cause: &'static str,
     },
+    /// A joint can't be where it was put.
+    Joint {
+        /// The joint, from zero: those of trees first, then those that close loops.
+        joint: usize,
+        /// What is wrong with it.
+        cause: &'static str,
+    },
+    /// A parameter of a joint has a value that can't be used.
+    JointParameter {
+        /// The joint, from zero.
+        joint: usize,
+        /// The field of it.
+        field: &'static str,
+        /// What is wrong with it.
+        cause: &'static str,
+    },
+    /// A joint is open where the motion is to start, and of all it is open farthest.
+    OffConstraint {
+        /// The joint, from zero.
+        joint: usize,
+        /// By how much, m.
+        by: f64,
+    },
+    /// The initial velocities would open a joint, and this one the fastest.
+    OffVelocity {
+        /// The joint, from zero.
+        joint: usize,
+        /// How fast, m/s.
+        by: f64,
+    },
+    /// A joint has nothing to do that the others don't, at least along one direction, and at least where the motion is to
+    /// start: its force isn't determined.
+    RedundantJoint {
+        /// The joint, from zero.
+        joint: usize,
+        /// What the others leave it to do, relative to what it would have to between free bodies.
+        pivot: f64,
+    },
     /// The step is NaN or infinite, or so small or large that the constants of the step leave the scalar's range.
     InvalidStep {
         /// The step, s.
@@ -93,6 +131,24 @@ impl fmt::Display for SetupError {
             Self::BodyParameter { body, field, cause } => {
                 write!(f, "parameter `{field}` of the body {body} (from zero) {cause}; give it another value")
             }
+            Self::Joint { joint, cause } => {
+                write!(f, "the joint {joint} (from zero) {cause}; check the bodies that it joins")
+            }
+            Self::JointParameter { joint, field, cause } => {
+                write!(f, "parameter `{field}` of the joint {joint} (from zero) {cause}; give it another value")
+            }
+            Self::OffConstraint { joint, by } => write!(
+                f,
+                "the joint {joint} (from zero) is open by {by:e} m; give other places, or let `start_nearest` close the joints"
+            ),
+            Self::OffVelocity { joint, by } => write!(
+                f,
+                "the initial velocities open the joint {joint} (from zero) by {by:e} m/s; give others, or let `start_nearest` find those next to them"
+            ),
+            Self::RedundantJoint { joint, pivot } => write!(
+                f,
+                "the others do what the joint {joint} (from zero) is to do (pivot {pivot:e}), at least where the motion starts; take one with fewer functions, or start elsewhere"
+            ),
             Self::InvalidStep { step } => {
                 write!(
                     f,
@@ -211,6 +267,14 @@ pub enum StepError {
     },
     /// The Jacobian is singular at an iterate.
     Singular,
+    /// A joint that closes a loop is at a singular position, or the step meets one: the others leave the joint nothing to do
+    /// along one direction, and its force isn't determined.
+    SingularJoint {
+        /// The joint, from zero: those of trees first, then those that close loops.
+        joint: usize,
+        /// What the others leave it to do, relative to what it would have to between free bodies.
+        pivot: f64,
+    },
     /// One of several bodies that move each other has no increment that continues the identity at this step.
     UnsolvedBody {
         /// The body, from zero: the first that turns too far where the iteration has ended, or whose part of the Jacobian
@@ -252,6 +316,10 @@ impl fmt::Display for StepError {
                 "the solution found doesn't continue the identity (Jacobian determinant {determinant:e}: its sign or that of the trace is wrong); try a smaller step"
             ),
             Self::Singular => write!(f, "the Newton Jacobian is singular; try a smaller step"),
+            Self::SingularJoint { joint, pivot } => write!(
+                f,
+                "the joint {joint} (from zero) comes to a singular position (pivot {pivot:e}), where its force isn't determined; take a joint with fewer functions, smaller steps, or another way"
+            ),
             Self::UnsolvedBody { body, turn, determinant } => write!(
                 f,
                 "no increment of the body {body} (from zero) that continues the identity: it would turn by {turn:.2e} rad, and its part of the Jacobian has the determinant {determinant:e}; take smaller steps"

@@ -90,6 +90,13 @@ impl Failure {
         Some(match name {
             "setup.parameter" => SetupError::Parameter { field: text()?, cause: text()? }.into(),
             "setup.body" => SetupError::BodyParameter { body: whole(number()?), field: text()?, cause: text()? }.into(),
+            "setup.joint" => SetupError::Joint { joint: whole(number()?), cause: text()? }.into(),
+            "setup.joint-field" => {
+                SetupError::JointParameter { joint: whole(number()?), field: text()?, cause: text()? }.into()
+            }
+            "setup.open" => SetupError::OffConstraint { joint: whole(number()?), by: number()? }.into(),
+            "setup.opening" => SetupError::OffVelocity { joint: whole(number()?), by: number()? }.into(),
+            "setup.redundant" => SetupError::RedundantJoint { joint: whole(number()?), pivot: number()? }.into(),
             "setup.step" => SetupError::InvalidStep { step: number()? }.into(),
             "setup.singular" => SetupError::SingularKinetic { determinant: number()? }.into(),
             "setup.negative" => SetupError::NegativeKinetic { pivot: number()? }.into(),
@@ -117,6 +124,7 @@ impl Failure {
             "step.body" => {
                 StepError::UnsolvedBody { body: whole(number()?), turn: number()?, determinant: number()? }.into()
             }
+            "step.joint" => StepError::SingularJoint { joint: whole(number()?), pivot: number()? }.into(),
             "step.converged" => {
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it was a `u32`
                 let iterations = number()? as u32;
@@ -130,7 +138,7 @@ impl Failure {
     }
 }
 
-/// The number of a body.
+/// The number of a body or a joint.
 #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
 fn count(body: usize) -> f64 {
     body as f64
@@ -147,6 +155,13 @@ fn of_setup(error: &SetupError) -> Parts<'_> {
     match error {
         SetupError::Parameter { field, cause } => ("setup.parameter", vec![], vec![field, cause]),
         SetupError::BodyParameter { body, field, cause } => ("setup.body", vec![count(*body)], vec![field, cause]),
+        SetupError::Joint { joint, cause } => ("setup.joint", vec![count(*joint)], vec![cause]),
+        SetupError::JointParameter { joint, field, cause } => {
+            ("setup.joint-field", vec![count(*joint)], vec![field, cause])
+        }
+        SetupError::OffConstraint { joint, by } => ("setup.open", vec![count(*joint), *by], vec![]),
+        SetupError::OffVelocity { joint, by } => ("setup.opening", vec![count(*joint), *by], vec![]),
+        SetupError::RedundantJoint { joint, pivot } => ("setup.redundant", vec![count(*joint), *pivot], vec![]),
         SetupError::InvalidStep { step } => ("setup.step", vec![*step], vec![]),
         SetupError::SingularKinetic { determinant } => ("setup.singular", vec![*determinant], vec![]),
         SetupError::NegativeKinetic { pivot } => ("setup.negative", vec![*pivot], vec![]),
@@ -186,6 +201,7 @@ fn of_step(error: &StepError) -> Parts<'_> {
         }
         StepError::WrongBranch { determinant } => ("step.branch", vec![*determinant], vec![]),
         StepError::Singular => ("step.singular", vec![], vec![]),
+        StepError::SingularJoint { joint, pivot } => ("step.joint", vec![count(*joint), *pivot], vec![]),
         StepError::UnsolvedBody { body, turn, determinant } => {
             ("step.body", vec![count(*body), *turn, *determinant], vec![])
         }
@@ -214,9 +230,14 @@ mod tests {
 
     #[test]
     fn a_failure_is_read_as_it_was_written() {
-        let failures: [Failure; 30] = [
+        let failures: [Failure; 36] = [
             SetupError::Parameter { field: "rho", cause: "is not finite" }.into(),
             SetupError::BodyParameter { body: 99, field: "m", cause: "is not a mass" }.into(),
+            SetupError::Joint { joint: 2, cause: "closes a loop" }.into(),
+            SetupError::JointParameter { joint: 2, field: "above", cause: "is not finite" }.into(),
+            SetupError::OffConstraint { joint: 99, by: 0.1 }.into(),
+            SetupError::OffVelocity { joint: 0, by: 0.1 }.into(),
+            SetupError::RedundantJoint { joint: 3, pivot: 1e-17 }.into(),
             SetupError::InvalidStep { step: f64::INFINITY }.into(),
             SetupError::SingularKinetic { determinant: 1e-300 }.into(),
             SetupError::NegativeKinetic { pivot: -0.1 }.into(),
@@ -243,6 +264,7 @@ mod tests {
             StepError::WrongBranch { determinant: -1.0 }.into(),
             StepError::Singular.into(),
             StepError::UnsolvedBody { body: 3, turn: 2.0, determinant: -1.0 }.into(),
+            StepError::SingularJoint { joint: 3, pivot: -1e-12 }.into(),
             Failure::Other("no such column".to_owned()),
             Failure::Other(String::new()),
         ];

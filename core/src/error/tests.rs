@@ -30,6 +30,11 @@ fn setup_errors() {
     let errors = [
         SetupError::Parameter { field: "rho", cause: "is not finite" },
         SetupError::BodyParameter { body: 7, field: "m", cause: "isn't a mass" },
+        SetupError::Joint { joint: 7, cause: "closes a loop" },
+        SetupError::JointParameter { joint: 7, field: "above", cause: "is not finite" },
+        SetupError::OffConstraint { joint: 7, by: 0.5 },
+        SetupError::OffVelocity { joint: 7, by: 0.5 },
+        SetupError::RedundantJoint { joint: 7, pivot: 0.0 },
         SetupError::InvalidStep { step: 1e-300 },
         SetupError::SingularKinetic { determinant: 1e-30 },
         SetupError::NegativeKinetic { pivot: -0.5 },
@@ -52,6 +57,11 @@ fn setup_errors() {
         let parts: &[&str] = match error {
             SetupError::Parameter { .. } => &["`rho`", "is not finite"],
             SetupError::BodyParameter { .. } => &["`m`", "the body 7", "isn't a mass"],
+            SetupError::Joint { .. } => &["the joint 7", "closes a loop"],
+            SetupError::JointParameter { .. } => &["`above`", "the joint 7", "is not finite"],
+            SetupError::OffConstraint { .. } => &["the joint 7", "open by 5e-1 m", "`start_nearest`"],
+            SetupError::OffVelocity { .. } => &["the joint 7", "5e-1 m/s", "`start_nearest`"],
+            SetupError::RedundantJoint { .. } => &["the joint 7", "0e0"],
             SetupError::InvalidStep { .. } => &["the step", "1e-300 s"],
             SetupError::SingularKinetic { .. } => &["kinetic part", "singular", "1e-30"],
             SetupError::NegativeKinetic { .. } => &["kinetic part", "negative", "-5e-1", "`.transpose()`"],
@@ -84,6 +94,7 @@ fn step_errors() {
         StepError::NotConverged { iterations: 60, residual: 0.5 },
         StepError::WrongBranch { determinant: -0.25 },
         StepError::Singular,
+        StepError::SingularJoint { joint: 7, pivot: 1e-12 },
         StepError::UnsolvedBody { body: 7, turn: 2.5, determinant: -0.25 },
     ];
     for error in errors {
@@ -105,6 +116,7 @@ fn step_errors() {
             StepError::NotConverged { .. } => &["the iteration", "60 iterations", "5e-1"],
             StepError::WrongBranch { .. } => &["continue the identity", "-2.5e-1", "sign"],
             StepError::Singular => &["Jacobian", "singular"],
+            StepError::SingularJoint { .. } => &["the joint 7", "singular", "1e-12"],
             StepError::UnsolvedBody { .. } => &["the body 7", "2.50e0 rad", "-2.5e-1", "smaller steps"],
         };
         assert_says(&error.to_string(), parts);

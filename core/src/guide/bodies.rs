@@ -81,7 +81,8 @@
 //! | the effects of the library | not in such a declaration, as they are of one body; in a system they are put on bodies |
 //! | forces, splittings | no: those are of one body |
 //! | `l = …`, the continuous Lagrangian | no |
-//! | contact, impacts, closed loops of joints | no |
+//! | joints, and loops of them | [of a system](#joints), not of such a declaration |
+//! | contact, impacts | no |
 //!
 //! `tests/systems/several_bodies` has chains, coupled attitudes and a spherical double pendulum, with references of 25
 //! digits. By hand any tuple of groups up to four can be written a Lagrangian for:
@@ -102,6 +103,27 @@
 //! are possible, so that each body is solved by itself. A term that couples velocities doesn't compile there. Links on ball joints
 //! couple them, and have a stepper of their own, whose step takes a time proportional to their number:
 //! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
+//!
+//! # Joints
+//!
+//! Bodies `(SO3, R3)`, declared by `group(F = SO3, d = R3)` and put at places as any, are held together by joints:
+//! [`Stepper::jointed`](crate::Stepper::jointed) has a garland between two pivots as a listing, and
+//! `examples/ring-of-links.rs` a ring.
+//!
+//! | | |
+//! |---|---|
+//! | [`BallJoint`](crate::methods::BallJoint) | a point of one body is a point of another, or of space |
+//! | [`PinJoint`](crate::methods::PinJoint) | so is an axis, about which they turn |
+//! | [`Joint`](crate::methods::Joint) | either, where a system has both |
+//! | [`Constraint`](crate::methods::Constraint) | functions of the places of two bodies that are zero: a joint of your own |
+//!
+//! [`Joints`](crate::methods::Joints) takes those of trees and, apart, one of each loop. A motion starts where joints
+//! are closed and with velocities that keep them so; [`start_nearest`](crate::Stepper::start_nearest) finds such from
+//! others next to them. What can't be is an error that names the joint: one that is open, one that has nothing to do
+//! (the fourth pin of a planar linkage: in space three do), a loop that has come to a singular position.
+//!
+//! The step is that of the minimal form, so momenta and energy are kept as ever. A chain of links is faster in
+//! coordinates of its own, by [`ChainStepper`](crate::methods::ChainStepper).
 //!
 //! # Bodies that don't see each other
 //!

@@ -48,6 +48,15 @@ pub trait Plan<S: Effect> {
     /// What is kept at the beginning of a motion.
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept;
 
+    /// Whether a motion may start here. Of a method that holds bodies in joints: whether these are closed.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] where it may not.
+    fn admits(&self, _scene: &S, _motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
+        Ok(())
+    }
+
     /// Whether the lanes of what is kept go on in one way. A body alone has no other beside it.
     fn is_in_step(&self, _kept: &Self::Kept) -> bool {
         true

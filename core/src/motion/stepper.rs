@@ -147,7 +147,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
                 return Err(SetupError::NoVelocity);
             }
         }
-        Ok(self.begin(attitude, momentum))
+        let state = self.begin(attitude, momentum);
+        self.plan.admits(&self.scene, &state.motion)?;
+        Ok(state)
     }
 
     /// One step. On an error the state is unchanged.

@@ -8,7 +8,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::methods::{Composed, KineticFlow, Preprocessed, Processed, Split};
+use crate::methods::{Composed, Jointed, KineticFlow, Preprocessed, Processed, Split};
 use crate::motion::{
     Cost, Declared, Kept, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, restored,
 };
@@ -79,6 +79,10 @@ pub trait Compensable {}
 
 impl<S: Effect> Compensable for Declared<S> {}
 impl<S: Effect> Compensable for Composed<S> {}
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compensable for Jointed<S, C, K, N, T, L> where
+    S: Effect
+{
+}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Split<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Processed<S, K> {}
 impl<T: Real> Compensable for Preprocessed<T> {}
@@ -163,6 +167,10 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
 
     fn keep(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Self::Kept {
         Carried { kept: self.0.keep(scene, motion), carry: Carry::nothing() }
+    }
+
+    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
+        self.0.admits(scene, motion)
     }
 
     fn is_in_step(&self, kept: &Self::Kept) -> bool {

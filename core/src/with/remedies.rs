@@ -127,6 +127,10 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         self.plan.keep(scene, motion)
     }
 
+    fn admits(&self, scene: &S, motion: &Motion<Group<S>, S::Advected>) -> Result<(), SetupError> {
+        self.plan.admits(scene, motion)
+    }
+
     fn is_in_step(&self, kept: &Self::Kept) -> bool {
         self.plan.is_in_step(kept)
     }

@@ -1,10 +1,11 @@
 //! Several bodies on a product of groups: by hand a chain of links, all of which feel each other's velocities, and bodies
 //! that feel each other's attitudes alone; a double pendulum, these bodies, and others that are translated too, as declared;
-//! systems of many, and chains of many links.
+//! systems of many, chains of many links, and bodies held together by joints.
 
 mod attitudes;
 mod chain;
 mod declared;
+mod joints;
 mod links;
 mod many;
 mod translated;

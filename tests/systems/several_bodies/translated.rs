@@ -214,9 +214,9 @@ fn two_bodies_that_attract_each_other() {
     l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Free {
-    m: f64,
-    K: NonstandardInertia,
+pub(super) struct Free {
+    pub(super) m: f64,
+    pub(super) K: NonstandardInertia,
 }
 
 /// A spring between points of two bodies.

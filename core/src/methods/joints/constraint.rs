@@ -1,0 +1,278 @@
+//! Holonomic constraints on two bodies, and those of joints.
+
+use core::fmt::Debug;
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+
+use crate::error::SetupError;
+
+/// Where a body is; of space itself the identity and the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// From the body's axes to those of space.
+    pub attitude: Matrix3<f64>,
+    /// The origin of the body's axes in space, m.
+    pub position: Vector3<f64>,
+}
+
+impl Place {
+    /// Of space.
+    pub const SPACE: Self = Self {
+        attitude: Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0),
+        position: Vector3::new(0.0, 0.0, 0.0),
+    };
+
+    /// A point of the body, in space.
+    #[must_use]
+    pub fn of(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.position + self.attitude * point
+    }
+}
+
+/// The derivatives of a constraint by the place of one body, in the axes of space: row by row along `δR = η̂ R` and
+/// `δx = ξ`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slope<const K: usize> {
+    /// By `η`.
+    pub turn: SMatrix<f64, K, 3>,
+    /// By `ξ`.
+    pub shift: SMatrix<f64, K, 3>,
+}
+
+/// A holonomic constraint on two bodies, or on a body and space: `K` functions of where they are, which are zero.
+///
+/// [`BallJoint`], [`PinJoint`] and [`Joint`] are such. One of your own is held by the same
+/// [stepper](crate::Stepper::jointed); that its [`slope`](Self::slope) is the derivative of its [`gap`](Self::gap) is
+/// up to you.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no constraint on two bodies",
+    label = "not a joint",
+    note = "joints are `BallJoint`, `PinJoint` and `Joint`, which is either; see `liestep::methods::Constraint`"
+)]
+pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Parameter`] naming the first field whose value can't be used.
+    fn validate(&self) -> Result<(), SetupError>;
+
+    /// How many of the functions there are; those behind them are zero everywhere.
+    #[must_use]
+    fn rows(&self) -> usize {
+        K
+    }
+
+    /// The functions.
+    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, K>;
+
+    /// Their derivatives by the place of the body above, and of that below.
+    fn slope(&self, above: &Place, below: &Place) -> [Slope<K>; 2];
+
+    /// How far from the origins of the bodies its points are, m: with the bodies' distances it is what
+    /// gaps are compared with.
+    fn reach(&self) -> f64;
+
+    /// Shows its parameters.
+    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64));
+}
+
+/// A point of one body is a point of another: three functions, m.
+///
+/// ```text
+/// x_b + R_b ρ_b − x_a − R_a ρ_a = 0
+/// ```
+///
+/// A pivot is the same with space as the body above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallJoint {
+    /// `ρ_a`, in the axes of the body above, m; of a pivot in space.
+    pub above: Vector3<f64>,
+    /// `ρ_b`, in the axes of the body below, m.
+    pub below: Vector3<f64>,
+}
+
+/// A [`BallJoint`] whose bodies turn against each other about one axis alone: five functions.
+///
+/// ```text
+/// x_b + R_b ρ_b − x_a − R_a ρ_a = 0          R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0
+/// ```
+///
+/// with `e_1` and `e_2` at right angles to the axis `n_a`. Which of its two ways an axis points doesn't matter: it
+/// stays as it starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PinJoint {
+    /// `ρ_a`, in the axes of the body above, m; of a pivot in space.
+    pub above: Vector3<f64>,
+    /// `ρ_b`, in the axes of the body below, m.
+    pub below: Vector3<f64>,
+    /// `n_a`, the axis in the axes of the body above, of any length.
+    pub axis_above: Vector3<f64>,
+    /// `n_b`, the axis in the axes of the body below, of any length.
+    pub axis_below: Vector3<f64>,
+}
+
+/// Where joints of one system aren't of one kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Joint {
+    /// Three functions.
+    Ball(BallJoint),
+    /// Five.
+    Pin(PinJoint),
+}
+
+/// Whether these are numbers.
+fn check<const C: usize>(fields: [(&'static str, &Vector3<f64>); C]) -> Result<(), SetupError> {
+    match fields.iter().find(|(_, vector)| !vector.iter().all(|entry| entry.is_finite())) {
+        Some((field, _)) => Err(SetupError::Parameter { field, cause: "is not finite" }),
+        None => Ok(()),
+    }
+}
+
+fn describe<const C: usize>(fields: [(&'static str, &Vector3<f64>); C], visit: &mut dyn FnMut(&'static str, f64)) {
+    for (field, vector) in fields {
+        vector.iter().for_each(|&entry| visit(field, entry));
+    }
+}
+
+impl Constraint<3> for BallJoint {
+    fn validate(&self) -> Result<(), SetupError> {
+        check([("above", &self.above), ("below", &self.below)])
+    }
+
+    #[inline(always)]
+    fn gap(&self, above: &Place, below: &Place) -> Vector3<f64> {
+        below.of(&self.below) - above.of(&self.above)
+    }
+
+    #[inline(always)]
+    fn slope(&self, above: &Place, below: &Place) -> [Slope<3>; 2] {
+        let arm = |place: &Place, point: &Vector3<f64>| (place.attitude * point).cross_matrix();
+        [
+            Slope { turn: arm(above, &self.above), shift: -Matrix3::identity() },
+            Slope { turn: -arm(below, &self.below), shift: Matrix3::identity() },
+        ]
+    }
+
+    fn reach(&self) -> f64 {
+        self.above.norm().max(self.below.norm())
+    }
+
+    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        describe([("above", &self.above), ("below", &self.below)], visit);
+    }
+}
+
+impl PinJoint {
+    fn ball(&self) -> BallJoint {
+        BallJoint { above: self.above, below: self.below }
+    }
+
+    /// `R_a e_1`, `R_a e_2` and `R_b n_b`, of length one.
+    fn directions(&self, above: &Place, below: &Place) -> ([Vector3<f64>; 2], Vector3<f64>) {
+        let axis = self.axis_above.normalize();
+        // The one of the three axes that is farthest from it.
+        let far = Vector3::ith(axis.iamin(), 1.0);
+        let first = axis.cross(&far).normalize();
+        let normals = [first, axis.cross(&first)].map(|normal| above.attitude * normal);
+        (normals, below.attitude * self.axis_below.normalize())
+    }
+}
+
+impl Constraint<5> for PinJoint {
+    fn validate(&self) -> Result<(), SetupError> {
+        self.ball().validate()?;
+        for (field, axis) in [("axis_above", &self.axis_above), ("axis_below", &self.axis_below)] {
+            check([(field, axis)])?;
+            let size = axis.norm_squared();
+            if !(size > 0.0 && size.is_finite() && (1.0 / size).is_finite()) {
+                return Err(SetupError::Parameter { field, cause: "has no direction" });
+            }
+        }
+        Ok(())
+    }
+
+    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, 5> {
+        let ball = self.ball().gap(above, below);
+        let ([first, second], axis) = self.directions(above, below);
+        SVector::from([ball.x, ball.y, ball.z, first.dot(&axis), second.dot(&axis)])
+    }
+
+    fn slope(&self, above: &Place, below: &Place) -> [Slope<5>; 2] {
+        let ball = self.ball().slope(above, below).map(|slope| lengthened(&slope));
+        let (normals, axis) = self.directions(above, below);
+        let [mut above, mut below] = ball;
+        for (row, normal) in normals.iter().enumerate() {
+            // η_a × e · n = η_a · (e × n), and with the body below the other way round.
+            let turn = normal.cross(&axis);
+            above.turn.set_row(3 + row, &turn.transpose());
+            below.turn.set_row(3 + row, &-turn.transpose());
+        }
+        [above, below]
+    }
+
+    fn reach(&self) -> f64 {
+        self.ball().reach()
+    }
+
+    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        self.ball().describe(visit);
+        describe([("axis_above", &self.axis_above), ("axis_below", &self.axis_below)], visit);
+    }
+}
+
+/// With rows of zeros.
+fn lengthened(slope: &Slope<3>) -> Slope<5> {
+    let zero = SMatrix::<f64, 5, 3>::zeros();
+    let mut all = Slope { turn: zero, shift: zero };
+    all.turn.fixed_rows_mut::<3>(0).copy_from(&slope.turn);
+    all.shift.fixed_rows_mut::<3>(0).copy_from(&slope.shift);
+    all
+}
+
+impl Constraint<5> for Joint {
+    fn validate(&self) -> Result<(), SetupError> {
+        match self {
+            Self::Ball(joint) => joint.validate(),
+            Self::Pin(joint) => joint.validate(),
+        }
+    }
+
+    fn rows(&self) -> usize {
+        match self {
+            Self::Ball(joint) => joint.rows(),
+            Self::Pin(joint) => joint.rows(),
+        }
+    }
+
+    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, 5> {
+        match self {
+            Self::Ball(joint) => {
+                let gap = joint.gap(above, below);
+                SVector::from([gap.x, gap.y, gap.z, 0.0, 0.0])
+            }
+            Self::Pin(joint) => joint.gap(above, below),
+        }
+    }
+
+    fn slope(&self, above: &Place, below: &Place) -> [Slope<5>; 2] {
+        match self {
+            Self::Ball(joint) => joint.slope(above, below).map(|slope| lengthened(&slope)),
+            Self::Pin(joint) => joint.slope(above, below),
+        }
+    }
+
+    fn reach(&self) -> f64 {
+        match self {
+            Self::Ball(joint) => joint.reach(),
+            Self::Pin(joint) => joint.reach(),
+        }
+    }
+
+    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        match self {
+            Self::Ball(joint) => joint.describe(visit),
+            Self::Pin(joint) => joint.describe(visit),
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! The linear equations of bodies and multipliers, solved from the ends of the trees to their roots.
+//!
+//! Each body `b` has six unknowns `y_b`, each joint `j` has `K` multipliers `p_j`:
+//!
+//! ```text
+//! A_b y_b + Σ_j E_jbᵀ p_j = −r_b           Σ_b C_jb y_b = −g_j
+//! ```
+//!
+//! with the sums over the joints of a body, and over the two bodies of a joint. A body at an end of a tree, child `c`
+//! of `b` by the joint `j`, is eliminated, and then its joint; what is left is an addition to the matrix of its
+//! parent:
+//!
+//! ```text
+//! X = A_c⁻¹ E_jcᵀ      S = C_jc X      P = S⁻¹ C_jb      A_b ← A_b + E_jbᵀ P
+//! w = A_c⁻¹ r_c        s = S⁻¹ (g_j − C_jc w)            r_b ← r_b + E_jbᵀ s
+//! p_j = s + P y_b      y_c = −w − X p_j
+//! ```
+//!
+//! So nothing fills in, and the time is proportional to the number of bodies. At rest `A` is the inertia and `C = E`:
+//! then the matrix of the parent is its own with the articulated inertia of all that hangs on it. Joints that close
+//! loops are a border: with the solution `Y` for their columns `Eᵀ`, `S_L = −C_L Y` are the equations of their
+//! multipliers.
+
+use nalgebra::{SMatrix, SVector, Vector6};
+
+use super::graph::Tree;
+use super::places::{Ends, Slopes};
+use crate::numbers::{Blocks, Coordinates as _, Pattern};
+
+/// A body's equations are solved together.
+const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
+
+type Matrix6 = SMatrix<f64, 6, 6>;
+
+/// The equations of a body, and what elimination makes of them.
+#[derive(Clone, Copy)]
+pub(super) struct Body<const K: usize> {
+    /// `A_b`; eliminated, its factors.
+    pub(super) matrix: Matrix6,
+    /// The determinant, relative to the product of the diagonal, once all that hangs on the body is eliminated.
+    pub(super) determinant: f64,
+    /// `E` and `C` of the joint towards the root, with this body and with its parent.
+    pub(super) slopes: Slopes<K>,
+    x: SMatrix<f64, 6, K>,
+    inverse: SMatrix<f64, K, K>,
+    p: SMatrix<f64, K, 6>,
+}
+
+impl<const K: usize> Body<K> {
+    pub(super) fn new() -> Self {
+        Self {
+            matrix: SMatrix::zeros(),
+            determinant: 1.0,
+            slopes: Slopes::new(),
+            x: SMatrix::zeros(),
+            inverse: SMatrix::zeros(),
+            p: SMatrix::zeros(),
+        }
+    }
+}
+
+/// The equations of a joint that closes a loop, and what elimination makes of them.
+#[derive(Clone, Copy)]
+pub(super) struct Closing<const K: usize, const N: usize, const L: usize> {
+    /// The bodies below and above; `None` is space.
+    pub(super) bodies: [Option<usize>; 2],
+    pub(super) slopes: Slopes<K>,
+    /// `Y`, and its multipliers of the trees' joints.
+    columns: [SMatrix<f64, 6, K>; N],
+    multipliers: [SMatrix<f64, K, K>; N],
+    /// A row of `S_L` in factors: on the diagonal the inverses of what is left there.
+    row: [SMatrix<f64, K, K>; L],
+    /// What the diagonal of `S_L` would be if both bodies were free.
+    free: SVector<f64, K>,
+    /// The least pivot, relative to that.
+    pub(super) pivot: f64,
+}
+
+impl<const K: usize, const N: usize, const L: usize> Closing<K, N, L> {
+    pub(super) fn new(bodies: [Option<usize>; 2]) -> Self {
+        Self {
+            bodies,
+            slopes: Slopes::new(),
+            columns: [SMatrix::zeros(); N],
+            multipliers: [SMatrix::zeros(); N],
+            row: [SMatrix::zeros(); L],
+            free: SVector::zeros(),
+            pivot: 1.0,
+        }
+    }
+
+    /// Its ends at bodies.
+    fn ends(&self) -> impl Iterator<Item = (usize, &Ends<K>)> {
+        let both = self.bodies.into_iter().zip(&self.slopes.0);
+        both.filter_map(|(body, ends)| Some((body?, ends)))
+    }
+}
+
+/// Unknowns: in the place of the right sides `r` and `g` the solution `y` and `p`.
+#[derive(Clone, Copy)]
+pub(super) struct Unknowns<const K: usize, const N: usize, const L: usize> {
+    pub(super) bodies: [Vector6<f64>; N],
+    /// Of the joint of each body towards the root.
+    pub(super) joints: [SVector<f64, K>; N],
+    pub(super) loops: [SVector<f64, K>; L],
+}
+
+impl<const K: usize, const N: usize, const L: usize> Unknowns<K, N, L> {
+    pub(super) fn new() -> Self {
+        Self { bodies: [Vector6::zeros(); N], joints: [SVector::zeros(); N], loops: [SVector::zeros(); L] }
+    }
+}
+
+/// Makes factors of all matrices.
+pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
+    tree: &Tree<N>,
+    bodies: &mut [Body<K>; N],
+    loops: &mut [Closing<K, N, L>; L],
+) {
+    for closing in loops.iter_mut() {
+        closing.free = SVector::zeros();
+        for side in 0..2 {
+            let Some(body) = closing.bodies[side] else { continue };
+            let Ends { before, after } = &closing.slopes.0[side];
+            let factors = Vector6::factorise_apart(&bodies[body].matrix, WHOLE).0;
+            let own = *after * solved(&factors, before);
+            closing.free += own.diagonal();
+        }
+    }
+    for &k in tree.order.iter().rev() {
+        let member = tree.members[k];
+        let body = &mut bodies[k];
+        (body.matrix, body.determinant) = Vector6::factorise_apart(&body.matrix, WHOLE);
+        if member.joint.is_none() {
+            continue;
+        }
+        let [own, of_parent] = body.slopes.0;
+        body.x = solved(&body.matrix, &own.before);
+        let s = own.after * body.x;
+        (body.inverse, _) = inverted(&s, &s.diagonal());
+        let Some(parent) = member.parent else { continue };
+        body.p = body.inverse * of_parent.after;
+        let added = of_parent.before * body.p;
+        bodies[parent].matrix += added;
+    }
+    if L > 0 {
+        close(tree, bodies, loops);
+    }
+}
+
+/// The columns of the border, and the factors of their equations.
+fn close<const K: usize, const N: usize, const L: usize>(
+    tree: &Tree<N>,
+    bodies: &[Body<K>; N],
+    loops: &mut [Closing<K, N, L>; L],
+) {
+    for closing in loops.iter_mut() {
+        closing.columns = [SMatrix::zeros(); N];
+        closing.multipliers = [SMatrix::zeros(); N];
+        for (side, body) in closing.bodies.into_iter().enumerate() {
+            if let Some(body) = body {
+                closing.columns[body] += closing.slopes.0[side].before;
+            }
+        }
+        substitute(tree, bodies, &mut closing.columns, &mut closing.multipliers);
+    }
+    for i in 0..L {
+        for j in 0..L {
+            let columns = &loops[j].columns;
+            let entry = loops[i].ends().fold(SMatrix::zeros(), |sum, (body, ends)| sum - ends.after * columns[body]);
+            loops[i].row[j] = entry;
+        }
+    }
+    for k in 0..L {
+        (loops[k].row[k], loops[k].pivot) = inverted(&loops[k].row[k], &loops[k].free);
+        let pivot_row = loops[k].row;
+        for closing in &mut loops[k + 1..] {
+            let factor = closing.row[k] * pivot_row[k];
+            closing.row[k] = factor;
+            for (entry, above) in closing.row.iter_mut().zip(&pivot_row).skip(k + 1) {
+                *entry -= factor * above;
+            }
+        }
+    }
+}
+
+/// Solves for right sides by the factors; returns the sum of the squares of the `w`, of which the solution is a small
+/// difference where joints hold bodies fast.
+pub(super) fn solve<const K: usize, const N: usize, const L: usize>(
+    tree: &Tree<N>,
+    bodies: &[Body<K>; N],
+    loops: &[Closing<K, N, L>; L],
+    unknowns: &mut Unknowns<K, N, L>,
+) -> f64 {
+    let size = substitute(tree, bodies, &mut unknowns.bodies, &mut unknowns.joints);
+    for (k, closing) in loops.iter().enumerate() {
+        // `C_L x + g`, and then the rows above.
+        let mut right = unknowns.loops[k];
+        for (body, ends) in closing.ends() {
+            right += ends.after * unknowns.bodies[body];
+        }
+        for (factor, above) in closing.row.iter().zip(&unknowns.loops).take(k) {
+            right -= factor * above;
+        }
+        unknowns.loops[k] = right;
+    }
+    for (k, closing) in loops.iter().enumerate().rev() {
+        let mut right = unknowns.loops[k];
+        for (entry, below) in closing.row.iter().zip(&unknowns.loops).skip(k + 1) {
+            right -= entry * below;
+        }
+        unknowns.loops[k] = closing.row[k] * right;
+    }
+    for (closing, multiplier) in loops.iter().zip(&unknowns.loops) {
+        for k in 0..N {
+            unknowns.bodies[k] += closing.columns[k] * multiplier;
+            unknowns.joints[k] += closing.multipliers[k] * multiplier;
+        }
+    }
+    size
+}
+
+/// Without loops: for each column of the right sides.
+fn substitute<const K: usize, const N: usize, const C: usize>(
+    tree: &Tree<N>,
+    bodies: &[Body<K>; N],
+    of_bodies: &mut [SMatrix<f64, 6, C>; N],
+    of_joints: &mut [SMatrix<f64, K, C>; N],
+) -> f64 {
+    let mut size = 0.0;
+    for &k in tree.order.iter().rev() {
+        let (body, member) = (&bodies[k], tree.members[k]);
+        let w = solved(&body.matrix, &of_bodies[k]);
+        of_bodies[k] = w;
+        size += w.norm_squared();
+        if member.joint.is_none() {
+            continue;
+        }
+        let [own, of_parent] = &body.slopes.0;
+        let s = body.inverse * (of_joints[k] - own.after * w);
+        of_joints[k] = s;
+        if let Some(parent) = member.parent {
+            of_bodies[parent] += of_parent.before * s;
+        }
+    }
+    for &k in &tree.order {
+        let (body, member) = (&bodies[k], tree.members[k]);
+        of_bodies[k] = -of_bodies[k];
+        if member.joint.is_none() {
+            continue;
+        }
+        if let Some(parent) = member.parent {
+            of_joints[k] += body.p * of_bodies[parent];
+        }
+        of_bodies[k] -= body.x * of_joints[k];
+    }
+    size
+}
+
+/// By the factors of a body's matrix, column by column.
+#[inline(always)]
+fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMatrix<f64, 6, C> {
+    let mut solved = *right;
+    for mut column in solved.column_iter_mut() {
+        let solution = Vector6::solve_apart(factors, WHOLE, &column.clone_owned());
+        column.copy_from(&solution);
+    }
+    solved
+}
+
+/// The inverse, by elimination in the order of the rows, and the least pivot relative to `sizes`. Rows that are zero
+/// and have no size are of functions that there aren't.
+#[inline(always)]
+fn inverted<const K: usize>(matrix: &SMatrix<f64, K, K>, sizes: &SVector<f64, K>) -> (SMatrix<f64, K, K>, f64) {
+    let (mut a, mut least) = (*matrix, f64::INFINITY);
+    for k in 0..K {
+        if sizes[k] == 0.0 {
+            continue;
+        }
+        let pivot = a[(k, k)];
+        // Behind a pivot that isn't positive the others tell nothing.
+        let relative = pivot / sizes[k];
+        least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
+        let inverse = 1.0 / pivot;
+        a[(k, k)] = 1.0;
+        for j in 0..K {
+            a[(k, j)] *= inverse;
+        }
+        for i in 0..K {
+            if i == k {
+                continue;
+            }
+            let factor = a[(i, k)];
+            a[(i, k)] = 0.0;
+            for j in 0..K {
+                let change = factor * a[(k, j)];
+                a[(i, j)] -= change;
+            }
+        }
+    }
+    (a, least)
+}

@@ -1,0 +1,151 @@
+//! The equations of a system whose bodies are joined, at one place.
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
+
+use super::Constraint;
+use super::elimination::{Body, Closing, Unknowns, factorise, solve};
+use super::graph::{Joints, Tree};
+use super::places::{Held, Places, Slopes, after, before, each_slope};
+
+/// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of
+/// a zero is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3
+/// µrad from there.
+const REDUNDANT: f64 = 1e-11;
+
+/// Matrices, slopes and right sides; solved, the unknowns.
+pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usize, const L: usize> {
+    joints: &'a Joints<C, T, L>,
+    tree: &'a Tree<N>,
+    bodies: [Body<K>; N],
+    loops: [Closing<K, N, L>; L],
+    pub(super) unknowns: Unknowns<K, N, L>,
+}
+
+impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>
+    Equations<'a, C, K, N, T, L>
+{
+    /// With `E` of these places.
+    pub(super) fn at(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>, places: &Places<N>) -> Self {
+        let loops = joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above]));
+        let mut equations = Self { joints, tree, bodies: [Body::new(); N], loops, unknowns: Unknowns::new() };
+        equations.each(places, |slopes, side, body, slope| {
+            slopes.0[side].before = before(slope, &places.0[body].attitude);
+        });
+        equations
+    }
+
+    fn each(&mut self, places: &Places<N>, set: impl Fn(&mut Slopes<K>, usize, usize, &super::Slope<K>)) {
+        let (bodies, loops) = (&mut self.bodies, &mut self.loops);
+        each_slope(places, self.joints, self.tree, |held, side, body, slope| {
+            let slopes = match held {
+                Held::Body(k) => &mut bodies[k].slopes,
+                Held::Loop(k) => &mut loops[k].slopes,
+            };
+            set(slopes, side, body, slope);
+        });
+    }
+
+    /// `C` of these places, for unknowns that turn the bodies by these maps.
+    pub(super) fn set_after(&mut self, places: &Places<N>, turns: &[Matrix3<f64>; N]) {
+        self.each(places, |slopes, side, body, slope| slopes.0[side].after = after(slope, &turns[body]));
+    }
+
+    /// `C = E`: for velocities.
+    pub(super) fn set_symmetric(&mut self) {
+        let of_bodies = self.bodies.iter_mut().map(|body| &mut body.slopes);
+        for slopes in of_bodies.chain(self.loops.iter_mut().map(|closing| &mut closing.slopes)) {
+            for ends in &mut slopes.0 {
+                ends.after = ends.before.transpose();
+            }
+        }
+    }
+
+    /// Makes factors of these matrices of the bodies.
+    pub(super) fn factorise(&mut self, matrices: &[SMatrix<f64, 6, 6>; N]) {
+        for (body, matrix) in self.bodies.iter_mut().zip(matrices) {
+            body.matrix = *matrix;
+        }
+        factorise(self.tree, &mut self.bodies, &mut self.loops);
+    }
+
+    /// Solves with these residuals of the bodies, and gaps of the joints times `scale`; the sum of the squares that
+    /// [`solve`] returns.
+    pub(super) fn solve(&mut self, residuals: &[Vector6<f64>; N], places: &Places<N>, scale: f64) -> f64 {
+        self.unknowns.bodies = *residuals;
+        for (unknown, member) in self.unknowns.joints.iter_mut().zip(&self.tree.members) {
+            let joined = member.joint.and_then(|joint| self.joints.tree.get(joint));
+            *unknown = joined.map_or_else(SVector::zeros, |joined| places.gap(joined) * scale);
+        }
+        for (unknown, joined) in self.unknowns.loops.iter_mut().zip(&self.joints.loops) {
+            *unknown = places.gap(joined) * scale;
+        }
+        solve(self.tree, &self.bodies, &self.loops, &mut self.unknowns)
+    }
+
+    /// `Σ Eᵀ p` of each body: what the multipliers take from its momentum.
+    pub(super) fn reactions(&self) -> [Vector6<f64>; N] {
+        let mut reactions = [Vector6::zeros(); N];
+        for (k, (body, member)) in self.bodies.iter().zip(&self.tree.members).enumerate() {
+            if member.joint.is_none() {
+                continue;
+            }
+            let [own, of_parent] = &body.slopes.0;
+            reactions[k] += own.before * self.unknowns.joints[k];
+            if let Some(parent) = member.parent {
+                reactions[parent] += of_parent.before * self.unknowns.joints[k];
+            }
+        }
+        for (closing, multiplier) in self.loops.iter().zip(&self.unknowns.loops) {
+            for (body, ends) in closing.bodies.into_iter().zip(&closing.slopes.0) {
+                if let Some(body) = body {
+                    reactions[body] += ends.before * multiplier;
+                }
+            }
+        }
+        reactions
+    }
+
+    /// `E y` for velocities `y`, and how large its terms are, of each joint by its number.
+    pub(super) fn parting(&self, velocities: &[Vector6<f64>; N], mut visit: impl FnMut(usize, f64, f64)) {
+        let mut of = |joint: usize, bodies: [Option<usize>; 2], slopes: &Slopes<K>| {
+            let (mut sum, mut size) = (SVector::<f64, K>::zeros(), 0.0);
+            for (body, ends) in bodies.into_iter().zip(&slopes.0) {
+                if let Some(body) = body {
+                    let part = ends.before.tr_mul(&velocities[body]);
+                    sum += part;
+                    // What cancels within a part counts, too.
+                    size += ends.before.abs().tr_mul(&velocities[body].abs()).norm();
+                }
+            }
+            visit(joint, sum.norm(), size);
+        };
+        for (k, (body, member)) in self.bodies.iter().zip(&self.tree.members).enumerate() {
+            if let Some(joint) = member.joint {
+                of(joint, [Some(k), member.parent], &body.slopes);
+            }
+        }
+        for (k, closing) in self.loops.iter().enumerate() {
+            of(T + k, closing.bodies, &closing.slopes);
+        }
+    }
+
+    /// The first body whose part of the matrix has a determinant of the wrong sign, and that.
+    pub(super) fn wrong_body(&self) -> Option<(usize, f64)> {
+        // What isn't a number is wrong, too.
+        let is_right = |body: &Body<K>| body.determinant > 0.0;
+        let wrong = self.bodies.iter().position(|body| !is_right(body))?;
+        Some((wrong, self.bodies[wrong].determinant))
+    }
+
+    pub(super) fn determinant(&self, body: usize) -> f64 {
+        self.bodies[body].determinant
+    }
+
+    /// The first joint that the others leave nothing to do, by its number, and its pivot relative to that between free
+    /// bodies.
+    pub(super) fn redundant(&self) -> Option<(usize, f64)> {
+        let has_something = |closing: &Closing<K, N, L>| closing.pivot > REDUNDANT;
+        let joint = self.loops.iter().position(|closing| !has_something(closing))?;
+        Some((T + joint, self.loops[joint].pivot))
+    }
+}

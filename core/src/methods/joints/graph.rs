@@ -1,0 +1,190 @@
+//! Which bodies are joined, and the order in which they are eliminated.
+
+use super::Constraint;
+use crate::error::SetupError;
+
+/// A joint between two bodies, or between space and a body. Bodies are counted from zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joined<C> {
+    /// The joint.
+    pub joint: C,
+    /// The body above; `None` is space.
+    pub above: Option<usize>,
+    /// The body below.
+    pub below: usize,
+}
+
+impl<C> Joined<C> {
+    /// Between two bodies.
+    #[must_use]
+    pub const fn between(joint: C, above: usize, below: usize) -> Self {
+        Self { joint, above: Some(above), below }
+    }
+
+    /// Between space and a body: a pivot.
+    #[must_use]
+    pub const fn to_space(joint: C, below: usize) -> Self {
+        Self { joint, above: None, below }
+    }
+}
+
+/// The joints of a system: `T` without loops, and `L` that close one each.
+///
+/// A chain, a tree or several of them have no loop, whether they are joined to space or not. Of each loop one joint is
+/// given apart; which one doesn't matter to the motion. An error counts the joints of the tree first and then those
+/// that close loops, from zero.
+///
+/// # Examples
+///
+/// Ten links in a row on a pivot, and the same with its end on a pivot, too.
+///
+/// ```
+/// use core::array::from_fn;
+/// use liestep::methods::{BallJoint, Joined, Joints};
+/// use nalgebra::Vector3;
+///
+/// // From the centre of mass of each link.
+/// let (upper, lower) = (Vector3::z() * 0.5, Vector3::z() * -0.5);
+/// let pivot = |x: f64, below| BallJoint { above: Vector3::new(x, 0.0, 0.0), below };
+/// let link = BallJoint { above: lower, below: upper };
+/// let chain = Joints::tree(from_fn::<_, 10, _>(|k| match k {
+///     0 => Joined::to_space(pivot(0.0, upper), 0),
+///     _ => Joined::between(link, k - 1, k),
+/// }));
+/// let garland = chain.closed_by([Joined::to_space(pivot(8.0, lower), 9)]);
+/// # let _ = garland;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joints<C, const T: usize, const L: usize> {
+    pub(super) tree: [Joined<C>; T],
+    pub(super) loops: [Joined<C>; L],
+}
+
+impl<C, const T: usize> Joints<C, T, 0> {
+    /// Without loops.
+    #[must_use]
+    pub const fn tree(tree: [Joined<C>; T]) -> Self {
+        Self { tree, loops: [] }
+    }
+
+    /// With joints that close a loop each.
+    #[must_use]
+    pub fn closed_by<const L: usize>(self, loops: [Joined<C>; L]) -> Joints<C, T, L> {
+        Joints { tree: self.tree, loops }
+    }
+}
+
+impl<C, const T: usize, const L: usize> Joints<C, T, L> {
+    /// Each with its number, those of the tree first.
+    pub(super) fn all(&self) -> impl Iterator<Item = (usize, &Joined<C>)> {
+        self.tree.iter().chain(&self.loops).enumerate()
+    }
+
+    /// Checks the bodies and the parameters, and plants the tree.
+    pub(super) fn planted<const K: usize, const N: usize>(&self) -> Result<Tree<N>, SetupError>
+    where
+        C: Constraint<K>,
+    {
+        for (joint, joined) in self.all() {
+            let refused = |cause| Err(SetupError::Joint { joint, cause });
+            if joined.below >= N || joined.above.is_some_and(|above| above >= N) {
+                return refused("is at a body that there isn't; they are counted from zero");
+            }
+            if joined.above == Some(joined.below) {
+                return refused("joins a body to itself");
+            }
+            if let Err(error) = joined.joint.validate() {
+                return match error {
+                    SetupError::Parameter { field, cause } => Err(SetupError::JointParameter { joint, field, cause }),
+                    error => Err(error),
+                };
+            }
+        }
+        Tree::planted(&self.tree.each_ref().map(|joined| [joined.above, Some(joined.below)]))
+    }
+}
+
+/// How a body hangs on the one before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Member {
+    /// The joint towards space, or towards the root of its tree; a root has none.
+    pub(super) joint: Option<usize>,
+    /// The body at its other end; `None` where that is space.
+    pub(super) parent: Option<usize>,
+    /// Whether the joint calls this body that below.
+    pub(super) is_below: bool,
+}
+
+/// The trees of all bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tree<const N: usize> {
+    /// From the roots on: each behind its parent.
+    pub(super) order: [usize; N],
+    pub(super) members: [Member; N],
+}
+
+impl<const N: usize> Tree<N> {
+    /// From the ends of the joints.
+    fn planted(ends: &[[Option<usize>; 2]]) -> Result<Self, SetupError> {
+        let root = Member { joint: None, parent: None, is_below: false };
+        let (mut order, mut members) = ([0; N], [root; N]);
+        let (mut is_known, mut known) = ([false; N], 0);
+        let is_there = |is_known: &[bool; N], end: Option<usize>| end.is_none_or(|body| is_known[body]);
+        loop {
+            // The joints of a body that is known: they lead to another that isn't, or close a loop.
+            let mut has_grown = false;
+            for (joint, &[above, below]) in ends.iter().enumerate() {
+                let (body, parent, is_below) = match (is_there(&is_known, above), is_there(&is_known, below)) {
+                    (true, false) => (below, above, true),
+                    (false, true) => (above, below, false),
+                    _ => continue,
+                };
+                let Some(body) = body else { continue };
+                members[body] = Member { joint: Some(joint), parent, is_below };
+                (is_known[body], order[known]) = (true, body);
+                (known, has_grown) = (known + 1, true);
+            }
+            if has_grown {
+                continue;
+            }
+            // A body that floats is the root of a tree of its own.
+            let Some(body) = is_known.iter().position(|is_known| !is_known) else { break };
+            (is_known[body], order[known]) = (true, body);
+            known += 1;
+        }
+        let in_tree = |joint: usize| members.iter().any(|member| member.joint == Some(joint));
+        match (0..ends.len()).find(|&joint| !in_tree(joint)) {
+            Some(joint) => Err(SetupError::Joint { joint, cause: "closes a loop: it belongs into `closed_by`" }),
+            None => Ok(Self { order, members }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Tree;
+    use crate::error::SetupError;
+
+    #[test]
+    fn trees_are_planted_whatever_the_order_and_the_direction_of_their_joints() {
+        // 2 hangs on space, 0 and 4 on 2, 1 on 4; 3 floats, with 5 on it.
+        let ends = [[Some(1), Some(4)], [Some(0), Some(2)], [Some(2), Some(4)], [None, Some(2)], [Some(3), Some(5)]];
+        let tree = Tree::<6>::planted(&ends).unwrap();
+        let of = |body: usize| (tree.members[body].joint, tree.members[body].parent, tree.members[body].is_below);
+        assert_eq!(of(2), (Some(3), None, true));
+        assert_eq!(of(0), (Some(1), Some(2), false));
+        assert_eq!(of(4), (Some(2), Some(2), true));
+        assert_eq!(of(1), (Some(0), Some(4), false));
+        assert_eq!((of(3), of(5)), ((None, None, false), (Some(4), Some(3), true)));
+        for (place, &body) in tree.order.iter().enumerate() {
+            assert!(tree.members[body].parent.is_none_or(|parent| tree.order[..place].contains(&parent)));
+        }
+    }
+
+    #[test]
+    fn a_joint_that_closes_a_loop_is_named() {
+        let ends = [[None, Some(0)], [Some(0), Some(1)], [None, Some(1)]];
+        let error = Tree::<2>::planted(&ends).unwrap_err();
+        assert!(matches!(error, SetupError::Joint { joint: 1 | 2, .. }), "{error}");
+    }
+}

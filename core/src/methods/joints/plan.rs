@@ -1,0 +1,431 @@
+//! The plan of a system of joined bodies.
+
+use core::array::from_fn;
+use core::f64::consts::FRAC_PI_2;
+
+use nalgebra::Vector6;
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
+use super::equations::Equations;
+use super::graph::{Joints, Tree};
+use super::places::{Places, parts};
+use super::{Constraint, Place};
+use crate::error::{SetupError, StepError};
+use crate::groups::{CayleyRetraction, LieGroup, R3, Retraction, SO3};
+use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
+use crate::motion::{
+    Cost, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due,
+};
+use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _, Vectors};
+use crate::solving::{
+    Continued, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, Warm, has_sufficed, may_suffice,
+    newton_system, step_terms,
+};
+
+/// What a body is on: turned, and translated in the axes of space.
+pub(super) type Body = (SO3, R3);
+type Components<const N: usize> = Bodies<Vector6<f64>, N>;
+
+/// The update that roundings of places and of opposed forces leave, in them.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// A system of rigid bodies held together by joints: the plan of [`Stepper::jointed`].
+///
+/// # Contract
+///
+/// - Gaps of joints are those of rounding, some units in the last place of the distances from the origin.
+/// - Velocities keep to the joints as well: energies and momenta of a state are those of the joined system.
+/// - A step satisfies its equations to rounding, or is an error, mostly of a body or a joint, and leaves the state as it
+///   was.
+/// - Nothing is allocated. A body takes about 3 kB of stack, and 300 bytes more for each loop.
+///
+/// # Source
+///
+/// SHAKE and RATTLE of the step (2.7) of \[RDAE\], in the momenta of the bodies.
+#[derive(Clone, Debug)]
+pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
+    h: f64,
+    constants: S::Constants,
+    pub(super) joints: Joints<C, T, L>,
+    pub(super) tree: Tree<N>,
+}
+
+impl<S: Effect> Stepper<S> {
+    /// Bodies that are held together by joints; the scene is that of the bodies without them.
+    ///
+    /// Each body is translated too: `(SO3, R3)`, with its centre of mass as origin, or any other point. Of joints that
+    /// form loops one of each loop is [given apart](Joints::closed_by). [`Jointed`] says how steps are made, and what
+    /// they cost.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stepper::new`]; [`SetupError::Joint`] and [`SetupError::JointParameter`] name a joint that can't be.
+    /// [`Stepper::start`] has [`SetupError::OffConstraint`] where a joint is open, [`SetupError::OffVelocity`] where
+    /// the velocities would open it, and [`SetupError::RedundantJoint`] where the others leave it nothing to do, be it
+    /// only at this place; [`start_nearest`](Stepper::start_nearest) closes joints.
+    ///
+    /// # Examples
+    ///
+    /// Four rods of 1 m on ball joints, both ends on pivots: a swing.
+    ///
+    /// ```
+    /// use core::array::from_fn;
+    /// use liestep::groups::R3;
+    /// use liestep::mechanics::Each;
+    /// use liestep::methods::{BallJoint, Joined, Joints};
+    /// use liestep::numbers::Bodies;
+    /// use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+    /// use nalgebra::{Vector3, Vector6};
+    ///
+    /// /// A body and its weight.
+    /// #[lagrangian(
+    ///     group(F = SO3, d = R3),
+    ///     advected(x = d.seen_from(space)),
+    ///     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+    ///         - 0.5 * h * m * g * (x + x + d).dot(&up),
+    /// )]
+    /// #[derive(Clone, Copy, Debug, PartialEq)]
+    /// struct Rod {
+    ///     J_d: NonstandardInertia, // about the centre of mass
+    ///     m: f64,
+    ///     g: f64,
+    ///     up: Vector3<f64>,
+    /// }
+    ///
+    /// let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3))?;
+    /// let rods = Each::<4>::of([Rod { J_d, m: 1.0, g: 9.81, up: Vector3::z() }]);
+    /// let (left, right) = (Vector3::x() * -0.5, Vector3::x() * 0.5);
+    /// let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
+    /// let joints = Joints::tree(from_fn::<_, 4, _>(|k| match k {
+    ///     0 => Joined::to_space(pivot(0.0, left), 0),
+    ///     _ => Joined::between(BallJoint { above: right, below: left }, k - 1, k),
+    /// }));
+    /// let swing = joints.closed_by([Joined::to_space(pivot(3.0, right), 3)]);
+    /// let stepper = Stepper::jointed(rods, swing, 0.01)?;
+    ///
+    /// // About a garland; the joints are closed by the least motion.
+    /// let about = from_fn(|k| {
+    ///     let tilt = [0.8, 0.3, -0.3, -0.8][k];
+    ///     let place = [[0.3, -0.4], [1.1, -0.9], [1.9, -0.9], [2.7, -0.4]][k];
+    ///     (SO3::exp(Vector3::y() * tilt), R3::from(Vector3::new(place[0], 0.0, place[1])))
+    /// });
+    /// let mut state = stepper.start_nearest(about, Bodies([Vector6::y() * 0.3; 4]))?;
+    /// let energy = stepper.energy(&state);
+    /// stepper.run(&mut state, 1000)?;
+    /// assert!(stepper.widest_gap(&state) < 1e-14);
+    /// assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn jointed<C, const K: usize, const N: usize, const T: usize, const L: usize>(
+        scene: S,
+        joints: Joints<C, T, L>,
+        h: f64,
+    ) -> Result<Stepper<S, Jointed<S, C, K, N, T, L>>, SetupError>
+    where
+        S: Regular + Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
+        C: Constraint<K>,
+    {
+        let plan = Jointed::new(&scene, joints, h)?;
+        Ok(Stepper { scene, plan })
+    }
+}
+
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Jointed<S, C, K, N, T, L>
+where
+    S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
+    C: Constraint<K>,
+{
+    fn new(scene: &S, joints: Joints<C, T, L>, h: f64) -> Result<Self, SetupError> {
+        const {
+            assert!(
+                S::DENOMINATORS == 0,
+                "a term with cleared denominators has another residual than joints are added to"
+            );
+            assert!(S::IS_QUADRATIC, "joints hold bodies whose continuous limit is quadratic in the velocity");
+        }
+        // The scene without joints has to be one that can be stepped.
+        crate::motion::Declared::<S>::folded(scene, h)?;
+        let tree = joints.planted()?;
+        Ok(Self { h, constants: scene.constants(h), joints, tree })
+    }
+
+    /// The joints.
+    #[must_use]
+    pub fn joints(&self) -> &Joints<C, T, L> {
+        &self.joints
+    }
+}
+
+/// What is solved for a step.
+struct Problem<'a, S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
+    plan: &'a Jointed<S, C, K, N, T, L>,
+    terms: S::StepTerms,
+    attitude: &'a [Body; N],
+    places: Places<N>,
+    equations: Equations<'a, C, K, N, T, L>,
+    /// The square of what roundings of places are units in the last place of.
+    extent: f64,
+    half: Components<N>,
+    /// The last joint that an iteration has found with nothing to do, and its pivot.
+    met: Option<(usize, f64)>,
+}
+
+/// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of
+/// what rounding leaves of it.
+struct Updated {
+    update: f64,
+    size: f64,
+    largest: f64,
+    rounded: f64,
+}
+
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Problem<'_, S, C, K, N, T, L>
+where
+    S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
+    C: Constraint<K>,
+{
+    /// Where the increments lead, to the bit.
+    fn next(&self) -> Places<N> {
+        Places(from_fn(|k| {
+            let (turn, shift) = parts(&self.half.0[k]);
+            let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&turn);
+            let attitude = *self.attitude[k].0.advance(&increment).as_matrix();
+            Place { attitude, position: self.places.0[k].position + shift * 2.0 }
+        }))
+    }
+
+    /// One of Newton's iterations.
+    fn newton(&mut self, longest: f64) -> Updated {
+        let (residuals, BlockDiagonal(matrices)) = newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
+        let next = self.next();
+        // With half of each gap, as with half the coordinates a shift is twice its unknown.
+        let turns = from_fn(|k| {
+            let tangent = <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
+            self.places.0[k].attitude * tangent * 0.5
+        });
+        self.equations.set_after(&next, &turns);
+        self.equations.factorise(&matrices);
+        self.met = self.equations.redundant().or(self.met);
+        self.update(&residuals, &next, longest)
+    }
+
+    /// Another with the matrix of the last.
+    fn simplified(&mut self) -> Updated {
+        let residuals = S::newton_residual(&self.plan.constants, &self.terms, &self.half).momentum_defect;
+        let next = self.next();
+        self.update(&residuals, &next, f64::INFINITY)
+    }
+
+    /// Where a body would turn by more than `longest`, all updates are shortened.
+    fn update(&mut self, residuals: &Components<N>, next: &Places<N>, longest: f64) -> Updated {
+        let opposed = self.equations.solve(&residuals.0, next, 0.5);
+        let (mut update, mut largest, mut size) = (0.0, 0.0_f64, 0.0);
+        for part in &self.equations.unknowns.bodies {
+            update += part.norm_squared();
+            largest = largest.max(parts(part).0.norm_squared());
+        }
+        let part = if largest > longest * longest { longest / largest.sqrt() } else { 1.0 };
+        for (half, update) in self.half.0.iter_mut().zip(&self.equations.unknowns.bodies) {
+            *half += update * part;
+            size += half.norm_squared();
+        }
+        Updated { update, size, largest, rounded: (opposed + self.extent) * (ROUNDED * ROUNDED) }
+    }
+
+    /// How many iterations were made, and whether they have settled near the identity, with all determinants positive.
+    fn attempt(&mut self, most: u32, longest: f64) -> (u32, bool) {
+        let mut made = 0;
+        for _ in 0..most {
+            made += 1;
+            let Updated { update, size, largest, rounded } = self.newton(longest);
+            if !size.is_finite() {
+                return (made, false);
+            }
+            if update <= (size * (f64::EPSILON * SETTLED)).max(rounded) {
+                return (made, self.is_wanted());
+            }
+            if largest <= longest * longest && may_suffice(update, size) {
+                let second = self.simplified();
+                made += 1;
+                if second.update <= second.rounded || has_sufficed(update, second.update, second.size) {
+                    return (made, self.is_wanted());
+                }
+            }
+        }
+        (made, false)
+    }
+
+    fn is_wanted(&self) -> bool {
+        self.turned_too_far().is_none() && self.equations.wrong_body().is_none() && self.equations.redundant().is_none()
+    }
+
+    fn turned_too_far(&self) -> Option<usize> {
+        let is_near = |half: &Vector6<f64>| parts(half).0.norm_squared() < 1.0;
+        self.half.0.iter().position(|half| !is_near(half))
+    }
+
+    /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
+    fn solve(&mut self, guess: Components<N>, slow: impl Fn() -> Components<N>) -> Result<u32, StepError> {
+        self.half = guess;
+        let (mut spent, is_solved) = self.attempt(MAX_ITERATIONS, f64::INFINITY);
+        if is_solved {
+            return Ok(spent);
+        }
+        let slow = slow();
+        let at_rest = (Bodies::zero(), MAX_DAMPED_ITERATIONS, LONGEST_DAMPED);
+        for (start, most, longest) in [(slow, MAX_ITERATIONS, f64::INFINITY), at_rest] {
+            self.half = start;
+            let (made, is_solved) = self.attempt(most, longest);
+            spent += made;
+            if is_solved {
+                return Ok(spent);
+            }
+        }
+        Err(self.reason(&slow, spent))
+    }
+
+    /// Which joint or which body is to blame: a body that is too fast, a joint whose singular position the iteration
+    /// has met, or a body by where it has ended.
+    #[cold]
+    fn reason(&self, slow: &Components<N>, iterations: u32) -> StepError {
+        let turn = |body: usize| 2.0 * parts(&slow.0[body]).0.norm();
+        let blamed = |body: usize| StepError::UnsolvedBody {
+            body,
+            turn: turn(body),
+            determinant: self.equations.determinant(body),
+        };
+        let fastest = (0..N).max_by(|&a, &b| turn(a).total_cmp(&turn(b))).unwrap_or(0);
+        if turn(fastest) > FRAC_PI_2 {
+            return blamed(fastest);
+        }
+        if let Some((joint, pivot)) = self.met {
+            return StepError::SingularJoint { joint, pivot };
+        }
+        if !self.half.is_finite() {
+            return blamed(fastest);
+        }
+        if let Some(body) = self.turned_too_far().or(self.equations.wrong_body().map(|(body, _)| body)) {
+            return blamed(body);
+        }
+        let (update, size) = (Bodies(self.equations.unknowns.bodies), self.half);
+        StepError::NotConverged { iterations, residual: (update.dot(&update) / size.dot(&size)).sqrt() }
+    }
+}
+
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Steerable for Jointed<S, C, K, N, T, L> where
+    S: Effect
+{
+}
+
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Plan<S> for Jointed<S, C, K, N, T, L>
+where
+    S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
+    C: Constraint<K>,
+{
+    type Kept = Warm<Components<N>>;
+
+    // Most of a step is called, so that it is compiled once.
+    const VECTORS: Vectors = Vectors::AsCompiled;
+    const RUNS_BY_STEPS: bool = true;
+
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
+        Self::new(scene, self.joints, h)
+    }
+
+    fn keep(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Self::Kept {
+        Warm::of(half_coordinates(scene, motion, self.h))
+    }
+
+    fn admits(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {
+        self.check_start(scene, motion)
+    }
+
+    fn step<M: Summation<[Body; N], S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        // A copy: after an error the motion has to be where it was.
+        let mut next = *motion;
+        if self.h == 0.0 {
+            motion.count();
+            return Ok(StepReport::of(0));
+        }
+        // Before the step, so that joints are closed behind it.
+        if is_due(next.now().steps) {
+            next.restore(&scene.advected());
+        }
+        let now = *next.now();
+        if !now.momentum.is_finite() {
+            return Err(StepError::NonFinite { what: "momentum" });
+        }
+        let kick = if S::PARTS.kick_before { S::kick_before(&self.constants, &now.advected) } else { Bodies::zero() };
+        let a = now.momentum + kick;
+        let places = Places::of(&now.attitude);
+        let mut problem = Problem {
+            plan: self,
+            terms: step_terms::<S>(&self.constants, &a, &now.advected),
+            attitude: &now.attitude,
+            equations: Equations::at(&self.joints, &self.tree, &places),
+            extent: places.extent(&self.joints),
+            places,
+            half: Bodies::zero(),
+            met: None,
+        };
+        let slow = || half_coordinates(scene, &now, self.h);
+        let iterations = problem.solve(kept.guess(<[Body; N]>::DIMENSION), slow)?;
+        let increment = <CayleyRetraction as Retraction<[Body; N]>>::increment_of_half(&problem.half);
+        let places = problem.next();
+        let impulse = Bodies(problem.equations.reactions()) * (-2.0 / self.h);
+        let advected = next.turned(&increment);
+        let mut change = <[Body; N]>::adjoint_transpose_increment(&increment, &(a + impulse)) + (kick + impulse);
+        if S::PARTS.kick_after {
+            change = change + S::kick_after(&self.constants, &increment, &advected);
+        }
+        change = change - self.reactions(scene, &places, &advected, &(now.momentum + change));
+        let momentum = now.momentum + change;
+        if !momentum.is_finite() || !problem.half.is_finite() {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        next.proceed(&Proceeded { increment, change, momentum, advected });
+        let half = problem.half;
+        let far = !<CayleyRetraction as Retraction<[Body; N]>>::is_half_well_near_identity(&half);
+        kept.follow(half, far, Continued::Parabola);
+        if next.now().steps == 0 {
+            kept.forget_the_estimate(Continued::Parabola);
+        }
+        next.count();
+        *motion = next;
+        Ok(StepReport::of(iterations))
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        visitor.term("its own step, with joints");
+        for (_, joined) in self.joints.all() {
+            visitor.term("a joint");
+            #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
+            let number = |body: Option<usize>| body.map_or(-1.0, |body| body as f64);
+            visitor.parameter("above", number(joined.above));
+            visitor.parameter("below", number(Some(joined.below)));
+            joined.joint.describe(&mut |name, value| visitor.parameter(name, value));
+        }
+    }
+
+    #[allow(clippy::cast_possible_truncation)] // far fewer
+    fn cost(&self) -> Cost {
+        let joined = Operations { step: N as u32 * OF_A_BODY, iteration: N as u32 * OF_A_BODY };
+        let Operations { step, iteration } = S::OPERATIONS;
+        Cost::of_stages(Operations { step: step + joined.step, iteration: iteration + joined.iteration }, 1)
+    }
+}
+
+/// Operations of the elimination of a body, about.
+const OF_A_BODY: u32 = 1000;

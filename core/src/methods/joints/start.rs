@@ -1,0 +1,160 @@
+//! Motions start where joints are closed, with velocities that keep them so.
+
+use nalgebra::Vector6;
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
+use super::Constraint;
+use super::equations::Equations;
+use super::places::Places;
+use super::plan::{Body, Jointed};
+use crate::error::SetupError;
+use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
+use crate::mechanics::Effect;
+use crate::motion::{Motion, State, Stepper};
+use crate::numbers::{Bodies, Coordinates as _};
+use crate::solving::{MAX_DAMPED_ITERATIONS, Warm};
+
+/// How far joints may be open, relative to the distances from the origin, and velocities may part them, relative to
+/// theirs: what is left of values that are printed to a dozen digits.
+const PRINTED: f64 = f64::EPSILON * 1e4;
+/// How far joints of a start that is sought may be open to be closed: roundings, as steps leave them.
+const CLOSED: f64 = 2.0 * f64::EPSILON;
+/// The longest turn in one update of a start that is sought, rad.
+const LONGEST: f64 = 0.5;
+
+/// What a state of joined bodies is.
+type StateOf<A, const N: usize> = State<[Body; N], A, Warm<Bodies<Vector6<f64>, N>>>;
+
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Jointed<S, C, K, N, T, L>
+where
+    S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
+    C: Constraint<K>,
+{
+    /// The joint that is open farthest, and by how much.
+    fn widest(&self, places: &Places<N>) -> (usize, f64) {
+        let gaps = self.joints.all().map(|(joint, joined)| (joint, places.gap(joined).norm()));
+        // What isn't a number is the widest.
+        gaps.fold((0, 0.0), |widest, gap| if gap.1 <= widest.1 { widest } else { gap })
+    }
+
+    /// Of velocities at these places.
+    fn of_velocities(&self, scene: &S, places: &Places<N>, advected: &S::Advected) -> Equations<'_, C, K, N, T, L> {
+        let mut equations = Equations::at(&self.joints, &self.tree, places);
+        equations.set_symmetric();
+        equations.factorise(&scene.inertia(advected).0);
+        equations
+    }
+
+    /// What joints take from momenta whose velocities would part them: of bodies that turn at `J⁻¹(μ − s)` the
+    /// impulses that leave those nearest to it.
+    pub(super) fn reactions(
+        &self,
+        scene: &S,
+        places: &Places<N>,
+        advected: &S::Advected,
+        momentum: &Bodies<Vector6<f64>, N>,
+    ) -> Bodies<Vector6<f64>, N> {
+        let mut equations = self.of_velocities(scene, places, advected);
+        let residual = scene.momentum_bias(advected) - *momentum;
+        equations.solve(&residual.0, places, 0.0);
+        Bodies(equations.reactions())
+    }
+
+    /// Whether joints are closed, velocities keep them so, and each of them has something to do.
+    pub(super) fn check_start(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {
+        let places = Places::of(&motion.attitude);
+        let (joint, by) = self.widest(&places);
+        // What isn't a number isn't closed either.
+        let is_closed = by <= PRINTED * places.extent(&self.joints).sqrt();
+        if !is_closed {
+            return Err(SetupError::OffConstraint { joint, by });
+        }
+        let equations = self.of_velocities(scene, &places, &motion.advected);
+        check_redundance(&equations)?;
+        let momentum = motion.momentum - scene.momentum_bias(&motion.advected);
+        let velocities = Bodies::solve(&scene.inertia(&motion.advected), &momentum).0;
+        let (mut widest, mut all) = ((0, 0.0), 0.0);
+        equations.parting(&velocities.0, |joint, by, size| {
+            all += size * size;
+            widest = if by <= widest.1 { widest } else { (joint, by) };
+        });
+        let (joint, by) = widest;
+        if by <= PRINTED * all.sqrt() { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
+    }
+
+    /// The places nearest to these, as the inertia measures it, where joints are closed.
+    fn closed(&self, scene: &S, attitude: &[Body; N]) -> Result<[Body; N], SetupError> {
+        let mut attitude = *attitude;
+        let mut last = f64::INFINITY;
+        for _ in 0..MAX_DAMPED_ITERATIONS {
+            let places = Places::of(&attitude);
+            let (_, by) = self.widest(&places);
+            let size = places.extent(&self.joints).sqrt();
+            let mut equations = self.of_velocities(scene, &places, &scene.advected().seen_from(&attitude));
+            check_redundance(&equations)?;
+            if by <= CLOSED * size || by <= PRINTED * size && by >= last {
+                return Ok(attitude);
+            }
+            last = by;
+            equations.solve(&[Vector6::zeros(); N], &places, 1.0);
+            let updates = equations.unknowns.bodies;
+            let largest = updates.iter().fold(0.0_f64, |most, update| most.max(update.fixed_rows::<3>(0).norm()));
+            let part = if largest > LONGEST { LONGEST / largest } else { 1.0 };
+            let increment = <CayleyRetraction as Retraction<[Body; N]>>::increment(&Bodies(updates.map(|u| u * part)));
+            attitude = attitude.advance(&increment);
+        }
+        let (joint, by) = self.widest(&Places::of(&attitude));
+        Err(SetupError::OffConstraint { joint, by })
+    }
+}
+
+fn check_redundance<C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>(
+    equations: &Equations<'_, C, K, N, T, L>,
+) -> Result<(), SetupError> {
+    match equations.redundant() {
+        Some((joint, pivot)) => Err(SetupError::RedundantJoint { joint, pivot }),
+        None => Ok(()),
+    }
+}
+
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Stepper<S, Jointed<S, C, K, N, T, L>>
+where
+    S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
+    C: Constraint<K>,
+{
+    /// A motion from where joints are closed next to these places, with the velocities next to these that keep them
+    /// closed; both as the inertia measures it.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::OffConstraint`] where no such place is found, [`SetupError::RedundantJoint`] where a joint has
+    /// nothing to do on the way to it; otherwise as [`start`](Stepper::start).
+    pub fn start_nearest(
+        &self,
+        attitude: [Body; N],
+        velocity: Bodies<Vector6<f64>, N>,
+    ) -> Result<StateOf<S::Advected, N>, SetupError> {
+        if !velocity.is_finite() {
+            return Err(SetupError::NonFinite { what: "velocity" });
+        }
+        let attitude = self.plan.closed(&self.scene, &attitude)?;
+        let advected = self.scene.advected().seen_from(&attitude);
+        let mut momentum = self.scene.inertia(&advected) * velocity + self.scene.momentum_bias(&advected);
+        let places = Places::of(&attitude);
+        // The second time for what roundings of the first leave, where bodies are of unlike masses.
+        for _ in 0..2 {
+            momentum = momentum - self.plan.reactions(&self.scene, &places, &advected, &momentum);
+        }
+        self.start_with_momentum(attitude, momentum)
+    }
+
+    /// How far the joint that is open farthest is open, m; of a [`PinJoint`](super::PinJoint) with the cosines of its
+    /// axes.
+    #[must_use]
+    pub fn widest_gap(&self, motion: &Motion<[Body; N], S::Advected>) -> f64 {
+        self.plan.widest(&Places::of(&motion.attitude)).1
+    }
+}
