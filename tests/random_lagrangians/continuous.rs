@@ -15,8 +15,7 @@ use nalgebra::{SMatrix, SVector};
 use num_dual::{Dual64, HyperDual64};
 use workbench::runge_kutta;
 
-/// Some dozens of roundings, relative to the size of the terms. Of 4400 Lagrangians, 400 on each group, the worst is off
-/// by 3e-16.
+/// Some dozens of roundings, relative to the size of the terms.
 const BOUND: f64 = 1e-14;
 
 fn assert_near<const D: usize>(found: &SVector<f64, D>, expected: &SVector<f64, D>, scale: f64, what: &str) {
