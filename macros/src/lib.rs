@@ -85,8 +85,10 @@ mod program;
 /// All are self-adjoint, of order two; one that isn't for this `l` on this group is refused. Where `l` isn't quadratic in
 /// the velocity, a stepper finds the velocity of a momentum by Newton's iteration, and what has the motion of one free body
 /// in it, like a splitting, is refused when it is set up. For the matrix `(F − I)/h` the velocity stands as
-/// `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. A logarithm is known on SO(3) and where
-/// all generators are strictly triangular. A declared `l_d` has the continuous equations of its limit.
+/// `hat(Omega)`, on SO(3) also in `Omega.dot(&(J * Omega))` and `s.dot(&Omega)`. In a power of the first of these, terms
+/// cancel that are much larger than `l_d`: those of `k (Ω·JΩ)²` are as large as `4 k tr(J_d)²/h³`, and each is rounded, so
+/// that a short step loses digits which `trapezoid(Cayley)` keeps. A logarithm is known on SO(3) and where all generators
+/// are strictly triangular. A declared `l_d` has the continuous equations of its limit.
 ///
 /// # The parameters
 ///

@@ -1,22 +1,26 @@
 //! The derived terms of a discrete Lagrangian against hyper-dual numbers of it, on any matrix group; and what the rules of
-//! `discretise` make on SO(3), by hand.
+//! `discretise` make, by hand.
+
+use std::collections::BTreeMap;
 
 use checks::structure::numbers::{lifted, varied};
 use checks::structure::{System, axis, random_advected};
 use liestep::groups::{Advected as _, LieGroup as _};
 use liestep::laws::samples::{Random, along};
 use liestep::numbers::Entries;
-use nalgebra::{Matrix3, RealField, SMatrix, Vector3, convert};
+use nalgebra::{Matrix3, RealField, SMatrix, SVector, Vector3, convert};
 use num_dual::HyperDual64;
 
-/// Of terms that cancel, relative to the largest.
-const ROUNDING: f64 = 1e-13;
+/// Some dozens of roundings of what is compared, and of what a rounding of the increment changes in it.
+const ROUNDING: f64 = 1e-14;
 
 /// `l_d` itself and every derived term, at the identity, next to it and at random increments; and what hangs together of
 /// the momenta, `(L_F)* δl_d/δF = Ad*_F (R_F)* δl_d/δF` and `μ⁺ = Ad*_F (μ + δl_d/δw ⋄ w)`.
+///
+/// Each is compared relative to its own size, and to that of terms of `l_d` that cancel, `cancelling`, J s.
 pub(crate) fn assert_terms<L, W, const N: usize, const D: usize>(
     name: &str,
-    (system, h): (&L, f64),
+    (system, h, cancelling): (&L, f64, f64),
     l_d: impl Fn(&SMatrix<HyperDual64, N, N>, &W, HyperDual64) -> HyperDual64,
     seed: u64,
 ) where
@@ -29,7 +33,7 @@ pub(crate) fn assert_terms<L, W, const N: usize, const D: usize>(
     let lift = |matrix: &SMatrix<f64, N, N>| matrix.map(HyperDual64::from);
     // exp(ε E_k), as ε² = 0.
     let turned = |k: usize, unit: HyperDual64| SMatrix::identity() + lift(&L::Group::hat(&axis(k, 1.0))) * unit;
-    let mut worst = 0.0_f64;
+    let mut worst = BTreeMap::<&str, f64>::new();
     for size in [0.0, 1e-8, 0.1, 0.5, 0.5] {
         let element = along::<L::Group, N, D>(&random.sample(), size);
         let (f, w) = (element.matrix(), random_advected(system, &mut random));
@@ -37,32 +41,61 @@ pub(crate) fn assert_terms<L, W, const N: usize, const D: usize>(
         let (right, left) = (system.right_momentum(&f, &w, h), system.left_momentum(&f, &w, h));
         let (diamond, momentum) = (system.diamond(&f, &w, h), system.legendre_minus(&f, &w, h));
         let (value, jacobian) = (system.l_d(&f, &w, h), system.momentum_jacobian(&f, &w, h));
-        let scale = value.abs() + right.norm() + left.norm() + diamond.norm() + jacobian.norm();
-        let mut close = |what: &str, found: f64, expected: f64, scale: f64| {
-            let error = (found - expected).abs() / scale;
-            worst = worst.max(error);
-            assert!(error <= ROUNDING, "{name}, {what}: {found} and {expected} of {scale:e} at {size}");
+        let mut close = |what: &'static str, found: f64, expected: f64, scale: f64, cancelling: f64| {
+            let error = (found - expected).abs();
+            let most = worst.entry(what).or_default();
+            *most = most.max(error / (scale + f64::MIN_POSITIVE));
+            assert!(
+                error <= ROUNDING * (scale + cancelling),
+                "{name}, {what}: {found} and {expected}, {error:e} of {scale:e} and {cancelling:e}, at {size}"
+            );
         };
-        close("l_d", value, l_d(&long, &still, step).re, scale);
+        let of_value = value.abs() + h * right.norm();
+        let of_momenta = right.norm() + left.norm() + jacobian.norm();
+        let of_diamond = diamond.norm() + of_value;
+        close("l_d", value, l_d(&long, &still, step).re, of_value, cancelling);
         for k in 0..D {
             let turn = turned(k, units[0]);
             let carried = varied(&w, &w.rate(&L::Group::hat(&axis(k, -1.0))), units[0]);
-            close("right momentum", right[k], l_d(&(turn * long), &still, step).eps1, scale);
-            close("left momentum", left[k], l_d(&(long * turn), &still, step).eps1, scale);
-            close("diamond", diamond[k], -l_d(&long, &carried, step).eps1, scale);
-            close("momentum", momentum[k], l_d(&(turn * long), &carried, step).eps1, scale);
+            close("right momentum", right[k], l_d(&(turn * long), &still, step).eps1, of_momenta, cancelling);
+            close("left momentum", left[k], l_d(&(long * turn), &still, step).eps1, of_momenta, cancelling);
+            close("diamond", diamond[k], -l_d(&long, &carried, step).eps1, of_diamond, cancelling);
+            close("momentum", momentum[k], l_d(&(turn * long), &carried, step).eps1, of_momenta, cancelling);
             for j in 0..D {
                 let second = l_d(&(turn * turned(j, units[1]) * long), &carried, step).eps1eps2;
-                close("Jacobian", jacobian[(k, j)], second, scale);
+                close("Jacobian", jacobian[(k, j)], second, of_momenta, cancelling);
             }
         }
         let energy = -l_d(&long, &still, step + units[0]).eps1;
-        close("energy", system.discrete_energy(&f, &w, h), energy, energy.abs() + scale);
+        // The terms that cancel have at most h³ in the denominator.
+        let of_energy = energy.abs() + of_value / h;
+        close("energy", system.discrete_energy(&f, &w, h), energy, of_energy, 3.0 * cancelling / h);
         let moved = element.adjoint_transpose(&(momentum + diamond));
-        close("left = Ad* right", (left - element.adjoint_transpose(&right)).norm(), 0.0, scale);
-        close("μ⁺ = Ad* (μ + diamond)", (system.legendre_plus(&f, &w, h) - moved).norm(), 0.0, scale);
+        let apart = (left - element.adjoint_transpose(&right)).norm();
+        close("left = Ad* right", apart, 0.0, of_momenta, cancelling);
+        let apart = (system.legendre_plus(&f, &w, h) - moved).norm();
+        close("μ⁺ = Ad* (μ + diamond)", apart, 0.0, of_momenta, cancelling);
     }
-    println!("{name}: derived terms to {worst:.1e}");
+    let worst: Vec<String> = worst.iter().map(|(what, error)| format!("{what} {error:.1e}")).collect();
+    println!("{name}, h = {h}: off by at most {}", worst.join(", "));
+}
+
+/// What `trapezoid(Cayley)` and `chord(Cayley)` make of an `l` on any group of matrices, as a function of `ξ̂` and of a
+/// covector.
+pub(crate) fn by_cayley<T: RealField + Copy, const N: usize>(
+    rule: &str,
+    l: impl Fn(&SMatrix<T, N, N>, &SVector<T, N>) -> T,
+    (f, w, h): (&SMatrix<T, N, N>, &SVector<T, N>, T),
+) -> T {
+    let (half, one) = (convert::<f64, T>(0.5), SMatrix::identity());
+    let inverse = (f + one).try_inverse().expect("an increment that isn't large");
+    let x = (f - one) * inverse * (convert::<f64, T>(2.0) / h);
+    let next = f.transpose() * w;
+    match rule {
+        "trapezoid(Cayley)" => (l(&x, w) + l(&x, &next)) * half * h,
+        "chord(Cayley)" => l(&x, &((w + next) * half)) * h,
+        _ => panic!("{rule} isn't a rule with Cayley's transform"),
+    }
 }
 
 /// What a rule of `discretise` makes of an `l` on SO(3), as a function of `ξ·Jξ`, `ξ` and `w`.

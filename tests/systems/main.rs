@@ -5,6 +5,7 @@
 mod composition;
 mod continuous;
 mod energy;
+mod flows;
 mod limit;
 mod momenta;
 mod one_sided;

@@ -36,7 +36,7 @@
 //! | (1.21), property 2 | the momentum map, conserved | [`spatial_momentum`], [`momentum_along`] | `tests/systems/unreduced.rs` `assert_variational`; `tests/common/structure/symmetry.rs` `drift` |
 //! | property 3 | an exact `L_d` gives `q_d(k) = q(kh)` | | `tests/derivation/exact_lagrangian.rs` `a_free_sphere_turns_exactly` |
 //! | theorem 1.4.1, (1.22) | `l_d(f) = L_d(g_1, g_2)` | [`l_d`] | `tests/systems/unreduced.rs` `assert_variational` |
-//! | (1.23), (1.25) | discrete Euler–Poincaré flow | [`DiscreteEulerPoincare`] with nothing advected | `tests/hard_cases/rows.rs` `p5_two_flows`; `tests/common/structure/two_flows.rs` `parting` |
+//! | (1.23), (1.25) | discrete Euler–Poincaré flow | [`DiscreteEulerPoincare`] with nothing advected | `tests/hard_cases/rows.rs` `p5_two_flows`; `tests/systems/flows.rs` `p5` |
 //! | (1.24), (1.30) | reconstruction `g_{i+1} = g_i f_i` | [`reconstruct`], [`LieGroup::advance`], [`Stepper::step`] | `tests/common/structure/two_flows.rs` `parting`; `core/src/laws/group.rs` `increments` |
 //! | (1.26), (1.27) | reduced Legendre transforms, momentum | [`legendre_minus`], [`legendre_plus`] | `tests/common/structure/momenta.rs` `assert_momenta` |
 //! | (1.28) | discrete Lie–Poisson flow | [`DiscreteLiePoisson`] | `tests/common/structure/stages.rs` `assert_step` |
@@ -54,12 +54,12 @@
 //! | example 3, (2.3) | continuous Lagrangian of a top | [`l`], and [`inertia`], [`momentum_bias`], [`potential`] of a limit | `tests/systems/limit.rs` `assert_limit`; `tests/hard_cases/rows.rs` `t1_orders_of_the_tops_of_the_thesis` |
 //! | theorem 2.2.1 | reduced and unreduced paths are one | | `tests/systems/unreduced.rs` `assert_variational` |
 //! | (2.4), first line | `w_{i+1} = f_i⁻¹ w_i` | [`Advected::advect`] | `core/src/laws/advected.rs` `kinds_move_as_declared` |
-//! | (2.4), second line; (2.5) | discrete advected Euler–Poincaré flow | [`DiscreteEulerPoincare::step`] | `tests/common/structure/two_flows.rs` `parting` |
+//! | (2.4), second line; (2.5) | discrete advected Euler–Poincaré flow | [`DiscreteEulerPoincare::step`] | `tests/systems/flows.rs` `p5` |
 //! | (2.6) | `𝔽l_d⁻`, `𝔽l_d⁺` | [`legendre_minus`], [`legendre_plus`] | `tests/common/structure/momenta.rs` `assert_momenta` |
 //! | (2.7) | the momentum equation | [`legendre_minus`]; solved by [`invert_legendre_minus`] | `tests/common/structure/stages.rs` `assert_step` |
 //! | (2.8) | discrete advected Lie–Poisson flow | [`DiscreteLiePoisson`] | `tests/common/structure/stages.rs` `assert_step` |
 //! | (2.9) | its three equations | [`DiscreteLiePoisson::step`] | `tests/common/structure/stages.rs` `assert_stages` `assert_step` |
-//! | (2.10) | `g_{i+1} = g_i f_i` | [`LieGroup::advance`], [`reconstruct`] | `tests/common/structure/two_flows.rs` `parting` |
+//! | (2.10) | `g_{i+1} = g_i f_i` | [`LieGroup::advance`], [`reconstruct`] | `tests/systems/flows.rs` `p5` |
 //!
 //! The second line of (2.9) is computed in its transport form `μ_{i+1} = Ad*_F (μ_i + δl_d/δw ⋄ w)`. It equals the
 //! printed one where (2.7) holds, and keeps `μ·w` to rounding even where (2.7) has been solved to fewer digits.

@@ -449,9 +449,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// Where the continuous limit isn't quadratic in the velocity, a discrete momentum may be one that no velocity has,
     /// though the next step has a solution: the velocity is NaN then, of several lanes in those alone.
-    /// [`ContinuousLagrangian::velocity`](crate::mechanics::ContinuousLagrangian::velocity) of the [scene](Self::scene) says
-    /// why, as an error. The number enters no state: a [control force](Self::step_forced), an event and a refinement
-    /// that are made of it are refused.
+    /// Where the [scene](Self::scene) is a [`ContinuousLagrangian`](crate::mechanics::ContinuousLagrangian), its `velocity`
+    /// says why, as an error. A [control force](Self::step_forced) and an event that are made of NaN are refused.
     #[must_use]
     pub fn velocity(&self, motion: &Motion<Group<S>, S::Advected>) -> Vector<S> {
         velocity_of_momentum(&self.scene, &motion.momentum, &motion.advected)

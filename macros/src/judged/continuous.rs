@@ -17,8 +17,6 @@ pub(crate) struct Equations {
     pub(crate) derived: Continuous,
     /// A basis of the directions along which the body momentum is conserved for all values of the parameters.
     pub(crate) right_symmetries: Vec<Vec<Rational>>,
-    /// Whether what was made of a declared `l` was seen to have it for its limit; no point may tell.
-    pub(crate) is_limit_confirmed: bool,
 }
 
 impl Equations {
@@ -53,13 +51,11 @@ pub(crate) fn continuous(
     chosen: &Chosen,
     errors: &mut Errors,
 ) -> Option<Equations> {
-    let Some(mut equations) = declared else { return of_limit(declaration, chosen, errors) };
+    let Some(equations) = declared else { return of_limit(declaration, chosen, errors) };
     let disagrees = match equations.derived.inverse {
         Inverse::Nonlinear => {
-            let found = verify::has_limit(declaration, tree, discrete);
-            equations.is_limit_confirmed = found.is_some();
             let [here, there] = [&equations.names, &chosen.lowered.names];
-            found == Some(false)
+            !verify::has_limit(declaration, tree, discrete)
                 || verify::rest_disagrees(declaration, (here, &equations.derived), (there, &chosen.derived))
         }
         Inverse::Constant | Inverse::Varying => {
@@ -96,5 +92,5 @@ fn checked(
         return None;
     }
     let right_symmetries = verify::right_symmetries(declaration, &names, &derived);
-    Some(Equations { names, derived, right_symmetries, is_limit_confirmed: true })
+    Some(Equations { names, derived, right_symmetries })
 }

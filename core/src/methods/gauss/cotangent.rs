@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 use super::coefficients::Coefficients;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
-use crate::mechanics::{ContinuousLagrangian, Legendre, Term, check_inertia, check_velocity};
+use crate::mechanics::{ContinuousLagrangian, Legendre, Matrix, Term, Vector, check_inertia, check_velocity};
 use crate::motion::{Integrator, Motion, State, StepReport};
 use crate::numbers::{Coordinates, carried_sum};
 
@@ -30,7 +30,8 @@ use nalgebra::ComplexField as _;
 /// commute, so the step, which is symplectic and maps the group to itself, maps the leaves of what differs in the
 /// momentum off the group to such leaves: what it makes of `(g, μ)` doesn't depend on them, and is symplectic on `T*G`.
 /// As it commutes with multiplications from the left, it is a Poisson map of `(μ, w)`. Momentum maps are quadratic, hence
-/// kept to rounding, which a run adds up with compensation; a step of `−h` undoes one of `h`. The energy's error is of the order of the method, and doesn't drift.
+/// kept to rounding, which a run adds up with compensation; a step of `−h` undoes one of `h`. The energy's error is of the
+/// order of the method, and doesn't drift.
 ///
 /// # What it costs
 ///
@@ -123,11 +124,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Where each iteration takes at least a factor of two, which is at the edge of convergence, they are enough.
 const MOST_ITERATIONS: u32 = 60;
 
-impl<L, const PAIRS: usize, const N: usize, const D: usize> CotangentGauss<L, PAIRS, N>
-where
-    L: ContinuousLagrangian<Scalar = f64>,
-    L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
-{
+// Apart, so that what has no continuous limit gets one message, not another about its matrices.
+impl<L: ContinuousLagrangian<Scalar = f64>, const PAIRS: usize, const N: usize> CotangentGauss<L, PAIRS, N> {
     /// Checks the parameters and the step.
     ///
     /// # Errors
@@ -141,6 +139,7 @@ where
                 PAIRS > 0 && PAIRS <= 8,
                 "collocation needs a pair of stages, and doubles have no use for more than 8"
             );
+            assert!(size_of::<Matrix<L>>() == size_of::<SMatrix<f64, N, N>>(), "N is the size of the group's matrices");
         }
         lagrangian.validate()?;
         let spatial = lagrangian.advected();
@@ -150,10 +149,16 @@ where
         if !h.is_finite() {
             return Err(SetupError::InvalidStep { step: h });
         }
-        check_inertia::<f64, SVector<f64, D>>(&lagrangian.velocity_hessian(&SVector::zeros(), &spatial))?;
+        check_inertia::<f64, Vector<L>>(&lagrangian.velocity_hessian(&Vector::<L>::zero(), &spatial))?;
         Ok(Self { lagrangian, spatial, h, coefficients: Coefficients::new() })
     }
+}
 
+impl<L, const PAIRS: usize, const N: usize, const D: usize> CotangentGauss<L, PAIRS, N>
+where
+    L: ContinuousLagrangian<Scalar = f64>,
+    L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
+{
     /// The Lagrangian.
     pub const fn lagrangian(&self) -> &L {
         &self.lagrangian

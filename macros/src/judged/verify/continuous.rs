@@ -362,9 +362,12 @@ pub(crate) fn limit_disagrees(
     })
 }
 
-/// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`; `None` where no point tells.
-pub(crate) fn has_limit(declaration: &Declaration, l: &Rc<Tree>, discrete: &Rc<Tree>) -> Option<bool> {
-    let told = (1..=POINTS).filter_map(|seed| {
+/// Whether the discrete Lagrangian is `h l(ξ, w) + O(h²)` along `F = exp(h ξ̂)`, at all points that tell, and at one at
+/// least.
+///
+/// The field has roots of all numbers, so this says nothing of where `l` has a value.
+pub(crate) fn has_limit(declaration: &Declaration, l: &Rc<Tree>, discrete: &Rc<Tree>) -> bool {
+    let mut told = (1..=POINTS).filter_map(|seed| {
         let values = Point::new(declaration, Residue::stream(seed)).moving();
         let along = Evaluation::new(&values).of(discrete).first();
         let rest = along - PowerSeries::STEP * Evaluation::new(&values).of(l).first();
@@ -376,7 +379,7 @@ pub(crate) fn has_limit(declaration: &Declaration, l: &Rc<Tree>, discrete: &Rc<T
             None => rest.is_known_below(2).then_some(true),
         }
     });
-    told.reduce(|all, one| all && one)
+    told.next().is_some_and(|first| first && told.all(|one| one))
 }
 
 /// A basis of the directions `ζ` with `⟨μ̇, ζ⟩ = 0` for all values of the parameters: `⟨μ, ζ⟩` is conserved.

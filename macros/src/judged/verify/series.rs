@@ -22,8 +22,8 @@ pub(super) trait Coefficient: Number + PartialEq {
     /// `x + y`, zero where only rounding is left.
     fn sum(self, other: Self) -> Self;
 
-    /// Whether a root is real.
-    fn is_positive(self) -> bool;
+    /// Whether it has a root, and isn't zero.
+    fn has_root(self) -> bool;
 
     /// `Σ_{i ≥ n} C(i, n) (−1)ⁱ a^(i − n)/(2i + k)!` of `a`.
     fn stumpff(self, k: u8, n: usize) -> Self;
@@ -39,7 +39,7 @@ impl Coefficient for f64 {
         if sum.abs() <= ROUNDING * (self.abs() + other.abs()) { 0.0 } else { sum }
     }
 
-    fn is_positive(self) -> bool {
+    fn has_root(self) -> bool {
         self > 0.0
     }
 
@@ -65,8 +65,8 @@ impl Coefficient for Residue {
     }
 
     /// The stand-in for roots has a value everywhere.
-    fn is_positive(self) -> bool {
-        self != Self::ZERO
+    fn has_root(self) -> bool {
+        Self::is_defined(self) && self != Self::ZERO
     }
 
     /// At zero; elsewhere the field has no such sums.
@@ -166,15 +166,14 @@ impl<T: Coefficient> PowerSeries<T> {
         sum
     }
 
-    /// Of an even power of `h` times a positive number.
+    /// Of an even power of `h` times a number that has a root.
     fn root(self) -> Self {
-        let positive = self.coefficients[0].is_positive();
         if self.is_zero() {
             // The root of O(hᵉ) is O(h^(e/2)), that of an exact zero exactly zero.
             let end = if self.end >= NEVER { self.end } else { self.end / 2 };
             return Self { first: end, end, ..self };
         }
-        if !positive || self.first % 2 != 0 {
+        if !self.coefficients[0].has_root() || self.first % 2 != 0 {
             return Self::UNDEFINED;
         }
         let half = self.first / 2;
@@ -313,9 +312,10 @@ impl<T: Coefficient> Number for PowerSeries<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{LENGTH_I32, Series};
+    use super::{Coefficient as _, LENGTH_I32, PowerSeries, Series, small};
     use crate::judged::verify::number::Number as _;
-    use crate::mathematics::symbolic::Function;
+    use crate::judged::verify::residue::Residue;
+    use crate::mathematics::symbolic::{Function, Rational};
 
     const H: f64 = 1e-2;
 
@@ -360,5 +360,82 @@ mod tests {
             assert!(!undefined.is_defined() && !(undefined * zero + h).is_defined(), "{undefined:?}");
         }
         assert!(!(Series::ONE / h).apply(Function::Exp).is_defined());
+    }
+
+    /// That two are the same as far as both are known, which is up to a power at least.
+    fn assert_equal(found: PowerSeries<Residue>, expected: PowerSeries<Residue>, known: i32) {
+        let rest = found - expected;
+        assert!(rest.is_defined() && rest.is_zero() && rest.is_known_below(known), "{found:?} and {expected:?}");
+    }
+
+    /// `a + b h + c h²` of numbers of the field.
+    fn quadratic(next: &mut impl FnMut() -> Residue) -> PowerSeries<Residue> {
+        let h = PowerSeries::STEP;
+        let [a, b, c] = [next(), next(), next()].map(PowerSeries::constant);
+        a + h * (b + h * c)
+    }
+
+    /// `y' = y/(2x)` for a root, whatever stands in for it, so that `y²/x` stays what it is at the first coefficient.
+    #[test]
+    fn roots_in_the_field() {
+        let (mut next, h) = (Residue::stream(3), PowerSeries::STEP);
+        for half in [0, 1, 2] {
+            let x = quadratic(&mut next);
+            let root = (x * h.power(2 * half)).apply(Function::Sqrt);
+            let [first, of_first] = [x.at(0), x.at(0).apply(Function::Sqrt)].map(PowerSeries::constant);
+            assert_eq!(root.order(), Some(half));
+            assert_eq!(root.at(half), of_first.at(0));
+            assert_equal(root * root * first, x * h.power(2 * half) * of_first * of_first, LENGTH_I32);
+        }
+        for undefined in [h, h.power(3), PowerSeries::UNDEFINED] {
+            assert!(!undefined.apply(Function::Sqrt).is_defined(), "{undefined:?}");
+        }
+        assert!(!Residue::ZERO.has_root() && !Residue::UNDEFINED.has_root());
+    }
+
+    /// Against the chain rule, `f(x(h))' = f'(x) x'`, and `1/(1 − h) = Σ hⁿ`.
+    #[test]
+    fn functions_in_the_field() {
+        let (mut next, h, one) = (Residue::stream(4), PowerSeries::<Residue>::STEP, PowerSeries::<Residue>::ONE);
+        let slope = |y: PowerSeries<Residue>| {
+            let terms = (1..LENGTH_I32).map(|n| {
+                let factor = Residue::of(Rational::integer(n.into()));
+                PowerSeries::constant(y.at(n) * factor) * h.power(n - 1)
+            });
+            terms.fold(PowerSeries::ZERO, |sum, term| sum + term)
+        };
+        // The slope is known below the power that the series of seven coefficients ends at.
+        let assert_slope = |y, expected: PowerSeries<Residue>| {
+            for power in 0..LENGTH_I32 - 1 {
+                assert_eq!(slope(y).at(power), expected.at(power), "{y:?}");
+            }
+        };
+        for _ in 0..3 {
+            let x = quadratic(&mut next);
+            assert_slope(x.apply(Function::Ln), slope(x) / x);
+            assert_slope(x.apply(Function::Exp), x.apply(Function::Exp) * slope(x));
+            assert_slope(x.apply(Function::Sin), x.apply(Function::Cos) * slope(x));
+            assert_slope(x.apply(Function::Cos), -x.apply(Function::Sin) * slope(x));
+            assert_eq!(x.apply(Function::Ln).at(0), x.at(0).apply(Function::Ln));
+            assert_equal(x * x.power(-1), one, LENGTH_I32);
+        }
+        let geometric = one / (one - h);
+        assert!((0..LENGTH_I32).all(|n| geometric.at(n) == Residue::ONE));
+    }
+
+    /// `Σ (−x)ⁱ/(2i + k)!` about zero; the field has no such sums elsewhere.
+    #[test]
+    fn stumpff_in_the_field() {
+        let (h, one) = (PowerSeries::<Residue>::STEP, PowerSeries::<Residue>::ONE);
+        for k in 0..4_u8 {
+            let series = h.apply(Function::Stumpff(k));
+            let mut expected = (1..=k).fold(Residue::ONE, |product, n| product / small(n.into()));
+            for power in 0..LENGTH_I32 {
+                assert_eq!(series.at(power), expected, "{k}");
+                let next = usize::try_from(2 * power).expect("positive") + usize::from(k);
+                expected = -expected / (small::<Residue>(next + 1) * small(next + 2));
+            }
+            assert!(!(one + h).apply(Function::Stumpff(k)).is_defined());
+        }
     }
 }
