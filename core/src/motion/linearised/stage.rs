@@ -115,8 +115,9 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// displacements.
     #[inline(always)]
     fn fixed_increment(&self, ends: [&Vector<E>; 2], gradient: &mut [Scalar<E>]) -> Vector<E> {
-        // Of so many scalars none has to be looked for.
-        let Some(own) = gradient.get_mut(self.first..self.first + E::PARAMETERS) else { return Vector::<E>::zero() };
+        // One check of the range, not one for each scalar.
+        let own = gradient.get_mut(self.first..self.first + E::PARAMETERS).unwrap_or_default();
+        debug_assert_eq!(own.len(), E::PARAMETERS, "a plan counts the parameters of its stages");
         let mut add = |number: usize, share: Scalar<E>| {
             if let Some(sum) = own.get_mut(number) {
                 *sum += share;
