@@ -75,7 +75,7 @@ where
 {
     type Output = ();
 
-    /// For what comes with them: instructions that leave their operands as they are.
+    /// For AVX's three-operand instructions; there is nothing to do four at a time.
     const VECTORS: Vectors = Vectors::Four;
 
     #[inline(always)]

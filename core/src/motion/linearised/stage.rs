@@ -21,7 +21,8 @@ pub struct Stage<'a, E: Effect> {
     first: usize,
 }
 
-/// What was done. It is matched where its derivatives are used: the compiler vectorises badly what comes from several arms.
+/// What was done. It is matched where its derivatives are used, so that each arm is straight-line code with its own
+/// values.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind<T> {
     /// A step of this length, s.
