@@ -57,7 +57,8 @@ pub trait Plan<S: Effect> {
     ///
     /// # Errors
     ///
-    /// [`StepError`] where there is no such step, or a value isn't finite.
+    /// [`StepError`] where there is no such step, or a value isn't finite. `motion` and `kept` are then as before: callers
+    /// make no copy of `kept` to go back to.
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
