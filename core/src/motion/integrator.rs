@@ -113,17 +113,24 @@ pub trait Integrator {
     /// The energy, J; NaN where a momentum has none.
     fn energy(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self>;
 
-    /// What the velocities of many motions may share, if anything.
+    /// The inertia in factors, on SO(3) of kg m², where it is the same for all motions, so that
+    /// [`velocity_and_energy`](Self::velocity_and_energy) of many needn't factorise it again; `None` where it isn't, or
+    /// isn't known.
     fn factored_inertia(&self) -> Option<FactoredInertia<Self::Group>> {
         None
     }
 
-    /// Both, to the bit, with what they and others share computed once.
+    /// The [velocity](Self::velocity), on SO(3) in rad/s, and the [energy](Self::energy), J, to the bit, with what they
+    /// share computed once.
+    ///
+    /// `inertia` is this integrator's own [`factored_inertia`](Self::factored_inertia), which may be made once for many
+    /// motions; that of another gives the numbers of neither. With `None` it is looked for at each motion.
     fn velocity_and_energy(
         &self,
         motion: &Motion<Self::Group, Self::Advected>,
-        _inertia: Option<&FactoredInertia<Self::Group>>,
+        inertia: Option<&FactoredInertia<Self::Group>>,
     ) -> (<Self::Group as LieGroup>::Vector, ScalarIn<Self>) {
+        let _ = inertia;
         (self.velocity(motion), self.energy(motion))
     }
 
