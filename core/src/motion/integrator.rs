@@ -62,8 +62,8 @@ pub trait Integrator {
         self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
     }
 
-    /// So many steps, one at least, and then as many as `next` says of the motion after the last, until it says none;
-    /// returns all iterations.
+    /// So many steps, and then as many as `next` says of the motion after the last, until it says none; returns all
+    /// iterations. Where the first number is zero, nothing is made and `next` isn't asked.
     ///
     /// # Errors
     ///

@@ -186,13 +186,11 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     fn run(self) -> Self::Output {
         let Self(plan, scene, motion, kept, (mut steps, mut next)) = self;
         let mut iterations = 0;
-        loop {
+        while steps > 0 {
             iterations += plan.run(scene, motion, kept, steps)?;
             steps = next.as_mut().map_or(0, |next| next(motion));
-            if steps == 0 {
-                return Ok(iterations);
-            }
         }
+        Ok(iterations)
     }
 }
 
