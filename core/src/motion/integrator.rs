@@ -124,7 +124,7 @@ pub trait Integrator {
     /// share computed once.
     ///
     /// `inertia` is this integrator's own [`factored_inertia`](Self::factored_inertia), which may be made once for many
-    /// motions; that of another gives the numbers of neither. With `None` it is looked for at each motion.
+    /// motions; that of another gives the numbers of neither. With `None` it is solved for each motion anew.
     fn velocity_and_energy(
         &self,
         motion: &Motion<Self::Group, Self::Advected>,
@@ -307,6 +307,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         AnyStepper::run(self, state, steps)
     }
 
+    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
+        AnyStepper::run_shown(self, state, steps, next)
+    }
+
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
         self.fraction_of_a_step(state, fraction)
     }
@@ -325,6 +329,18 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
 
     fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
         AnyStepper::energy(self, motion)
+    }
+
+    fn factored_inertia(&self) -> Option<FactoredInertia<G>> {
+        AnyStepper::factored_inertia(self)
+    }
+
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<G, A>,
+        inertia: Option<&FactoredInertia<G>>,
+    ) -> (G::Vector, G::Scalar) {
+        AnyStepper::velocity_and_energy(self, motion, inertia)
     }
 }
 
