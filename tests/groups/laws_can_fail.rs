@@ -2,7 +2,7 @@
 
 use liestep::groups::{Advected, CayleyRetraction, ExponentialRetraction, LieGroup, Retraction, SE2};
 use liestep::laws::{advected, group, retraction};
-use liestep::numbers::Entries;
+use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{Matrix3, Vector3};
 use std::panic::catch_unwind;
 
@@ -25,6 +25,7 @@ const NOTHING: usize = 11;
 const BRACKET_SCALE: usize = 12;
 const POISSON: usize = 13;
 const INVERSE_INCREMENT: usize = 14;
+const ADJOINT_MATRIX: usize = 15;
 
 /// Another sign of the last component, for one of the defects.
 fn turned<const WHAT: usize>(v: Vector3<f64>, what: usize) -> Vector3<f64> {
@@ -68,6 +69,11 @@ impl<const WHAT: usize> LieGroup for Broken<WHAT> {
 
     fn adjoint(&self, velocity: &Vector3<f64>) -> Vector3<f64> {
         turned::<WHAT>(self.0.adjoint(velocity), ADJOINT)
+    }
+
+    fn adjoint_matrix(&self) -> Matrix3<f64> {
+        let matrix = <Vector3<f64> as Coordinates<f64>>::square(|k| self.adjoint(&Coordinates::<f64>::axis(k)));
+        if WHAT == ADJOINT_MATRIX { matrix.transpose() } else { matrix }
     }
 
     fn adjoint_transpose(&self, momentum: &Vector3<f64>) -> Vector3<f64> {
@@ -150,6 +156,7 @@ fn laws_of_groups() {
     }
     assert!(refused::<ADJOINT>().contains(&"adjoint_action"));
     assert!(refused::<ADJOINT>().contains(&"pairings"));
+    assert_eq!(refused::<ADJOINT_MATRIX>(), ["adjoint_action"]);
     assert!(refused::<ADJOINT_TRANSPOSE>().contains(&"pairings"));
     assert!(refused::<BRACKET_TRANSPOSE>().contains(&"brackets_are_derivatives"));
     assert_eq!(refused::<POISSON>(), ["lie_poisson_brackets"]);

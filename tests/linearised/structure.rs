@@ -4,7 +4,7 @@ use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
 use liestep::methods::CompositionScheme;
 use liestep::motion::linearised::{Cotangent, Gradient, Linearisable, Tape};
-use liestep::{SO3, Stepper};
+use liestep::{SO3, StepError, Stepper};
 use nalgebra::{SMatrix, Vector3};
 
 type Matrix6 = SMatrix<f64, 6, 6>;
@@ -90,4 +90,28 @@ fn steps_back_give_the_gradient_of_the_tape() {
 fn steps_back_of_a_composition() {
     let stepper = Stepper::composed(top(), 0.01, CompositionScheme::SUZUKI_4).expect("a stepper");
     assert!(parting(&stepper, 1_000) < 1e-12);
+}
+
+/// Good steps, the last of them with a push after which the next has no solution: state, what is kept, and tangent are as
+/// they were, though of a composition the first stages could be made.
+#[test]
+fn a_step_without_a_solution_changes_nothing() {
+    assert_unchanged(&Stepper::new(top(), 0.05).expect("a stepper"), 150.0);
+    assert_unchanged(&Stepper::composed(top(), 0.05, CompositionScheme::SUZUKI_4).expect("a stepper"), 175.0);
+}
+
+fn assert_unchanged<P: Linearisable<Top>>(stepper: &Stepper<Top, P>, impulse: f64) {
+    let linear = stepper.linearised().expect("derivatives");
+    let mut state = stepper.start_with_momentum(start().0, Vector3::new(0.1, 0.2, 3.0)).expect("a start");
+    let mut tangent = linear.tangent(&[0]);
+    for _ in 0..3 {
+        linear.step(&mut state, &mut tangent).expect("a step");
+    }
+    // Half of it comes before the step.
+    stepper.step_forced(&mut state, &(Vector3::z() * (impulse / stepper.step_size()))).expect("a step");
+    let (before, columns) = (state, tangent.columns().collect::<Vec<_>>());
+    let error = linear.step(&mut state, &mut tangent).expect_err("it is too fast");
+    assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error}");
+    assert_eq!(state, before);
+    assert_eq!(tangent.columns().collect::<Vec<_>>(), columns);
 }

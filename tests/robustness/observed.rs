@@ -5,11 +5,13 @@ use std::io::{self, Write};
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
-use declarations::HeavyTop;
+use declarations::{HeavyTop, SlidingTop, TetheredPlate};
 use liestep::effects::{Drag, RigidBody};
+use liestep::groups::{LieGroup, SE2};
 use liestep::mechanics::Sum;
 use liestep::methods::CotangentGauss;
-use liestep::motion::{AnyStepper, Integrator, Moment};
+use liestep::motion::{AnyStepper, Integrator, Moment, Motion, ScalarIn, StepReport};
+use liestep::numbers::Entries as _;
 use liestep::prelude::*;
 use liestep::with::{
     Background, Column, Csv, Ended, Event, Reason, RecordError, Recorder, RunError, Sink, SinkError, Table, sections,
@@ -555,4 +557,135 @@ fn whatever_steps_is_recorded() {
     let apart = (state.attitude().matrix() - attitude.matrix()).norm();
     assert!(apart < 1e-14 && (state.momentum() - momentum).norm() < 1e-13, "{apart:e}");
     assert!(gauss.start(SO3::from_matrix_unchecked(nalgebra::Matrix3::zeros()), VELOCITY).is_err());
+}
+
+/// An integrator of which only the methods are known that each has to have.
+struct Bare<'a, I>(&'a I);
+
+impl<I: Integrator> Integrator for Bare<'_, I> {
+    type Group = I::Group;
+    type Advected = I::Advected;
+    type State = I::State;
+
+    fn step(&self, state: &mut I::State) -> Result<StepReport, StepError> {
+        self.0.step(state)
+    }
+
+    fn run(&self, state: &mut I::State, steps: u64) -> Result<u64, StepError> {
+        self.0.run(state, steps)
+    }
+
+    fn part(&self, state: &I::State, fraction: ScalarIn<I>) -> Result<Motion<I::Group, I::Advected>, StepError> {
+        self.0.part(state, fraction)
+    }
+
+    fn adopt(&self, motion: &Motion<I::Group, I::Advected>) -> I::State {
+        self.0.adopt(motion)
+    }
+
+    fn step_size(&self) -> ScalarIn<I> {
+        self.0.step_size()
+    }
+
+    fn velocity(&self, motion: &Motion<I::Group, I::Advected>) -> <I::Group as LieGroup>::Vector {
+        self.0.velocity(motion)
+    }
+
+    fn energy(&self, motion: &Motion<I::Group, I::Advected>) -> ScalarIn<I> {
+        self.0.energy(motion)
+    }
+}
+
+/// The end of a run that is shown, its iterations or its error, and at which steps it was.
+fn shown<I: Integrator>(
+    integrator: &I,
+    start: &I::State,
+    plan: &[u64],
+) -> (Motion<I::Group, I::Advected>, Result<u64, StepError>, Vec<u64>) {
+    let (mut state, mut calls) = (start.clone(), Vec::new());
+    let (first, mut rest) = (plan[0], plan[1..].iter().copied());
+    let made = integrator.run_shown(&mut state, first, &mut |motion| {
+        calls.push(motion.steps());
+        rest.next().unwrap_or(0)
+    });
+    (*state, made, calls)
+}
+
+/// Shown from within or call by call: the same bits, iterations, errors and calls, and none where there is nothing to do.
+#[test]
+fn runs_are_shown_alike_whatever_steps() {
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(1e-3, 0.0, 0.0));
+    for h in [0.01, 0.35] {
+        let (any, _) = top(h);
+        let stepper = Stepper::new(HeavyTop::thesis(), h).unwrap();
+        // At the longer step it falls until it is too fast.
+        let velocity = if h < 0.1 { VELOCITY } else { Vector3::zeros() };
+        let start = stepper.start(attitude, velocity).unwrap();
+        let any_start = any.start(attitude, velocity).unwrap();
+        let hiding = any.clone().hiding_advected();
+        let hiding_start = hiding.start(attitude, velocity).unwrap();
+        for plan in [[0_u64, 5].as_slice(), &[1], &[4, 4, 1, 3], &[0], &[5, 100, 7]] {
+            let (end, made, calls) = shown(&stepper, &start, plan);
+            assert_eq!(shown(&Bare(&stepper), &start, plan), (end, made.clone(), calls.clone()), "{plan:?}");
+            assert_eq!(shown(&any, &any_start, plan), (end, made.clone(), calls.clone()), "{plan:?}");
+            assert_eq!(shown(&Bare(&any), &any_start, plan), (end, made.clone(), calls.clone()), "{plan:?}");
+            let (hidden_end, hidden_made, hidden_calls) = shown(&hiding, &hiding_start, plan);
+            assert_eq!((hidden_made, hidden_calls), (made.clone(), calls.clone()), "{plan:?}");
+            let is_same = hidden_end.attitude() == end.attitude() && hidden_end.momentum() == end.momentum();
+            assert!(is_same && hidden_end.steps() == end.steps(), "{plan:?}");
+            assert_eq!(calls.is_empty(), plan[0] == 0 || (h > 0.1 && plan[0] > end.steps()), "{plan:?}");
+            assert_eq!(made.is_err(), h > 0.1 && plan.contains(&100), "{plan:?}");
+        }
+    }
+}
+
+/// Rows have the same bits with an inertia in factors and without.
+fn assert_row_is_both<I>(integrator: &I, motion: &Motion<I::Group, I::Advected>)
+where
+    I: Integrator<Group: LieGroup<Scalar = f64>>,
+{
+    let bits = |vector: &<I::Group as LieGroup>::Vector, energy: f64| {
+        let mut bits = vec![energy.to_bits()];
+        vector.each(&mut |entry: f64| bits.push(entry.to_bits()));
+        bits
+    };
+    let expected = bits(&integrator.velocity(motion), integrator.energy(motion));
+    for inertia in [None, integrator.factored_inertia()] {
+        let (velocity, energy) = integrator.velocity_and_energy(motion, inertia.as_ref());
+        assert!(expected.iter().any(|bits| f64::from_bits(*bits) != 0.0));
+        assert_eq!(bits(&velocity, energy), expected, "{inertia:?}");
+    }
+}
+
+#[test]
+fn a_row_has_the_bits_of_velocity_and_energy() {
+    let mut random = checks::random::Random::new(61);
+    let J = Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    let J_d = J.to_nonstandard();
+    let whole = Inertia::new(nalgebra::Matrix3::new(2.0, 0.3, 0.1, 0.3, 1.7, 0.2, 0.1, 0.2, 1.5)).unwrap();
+    let tilted = Stepper::new(RigidBody { J_d: whole.to_nonstandard() } + Drag { c: 0.1, J: whole }, 0.01).unwrap();
+    let rotor = liestep::effects::Rotor { spin: Vector3::new(0.3, -0.2, 0.5) };
+    let gyrostat = Stepper::new(RigidBody { J_d } + rotor, 0.01).unwrap();
+    // Of an inertia that varies there are no factors.
+    let sliding = SlidingTop { J_d, m: 1.2, g: 9.81, rho: Vector3::new(0.3, 0.2, 0.9), up: Vector3::z() };
+    let sliding = Stepper::new(sliding, 0.01).unwrap();
+    assert!(sliding.factored_inertia().is_none() && tilted.factored_inertia().is_some());
+    let J = nalgebra::Matrix3::new(2.0, 0.3, 0.2, 0.3, 1.5, 0.1, 0.2, 0.1, 1.2);
+    let (p, anchor) = (nalgebra::Point2::new(0.3, 0.1), nalgebra::Point2::new(2.0, -1.0));
+    let plate = Stepper::new(TetheredPlate { J, k: 3.0, length: 0.5, p, anchor }, 0.01).unwrap();
+    let (any, _) = top(0.01);
+    let hiding = any.clone().hiding_advected();
+    let gauss = CotangentGauss::<_, 2, 3>::new(HeavyTop::thesis(), 0.05).unwrap();
+    let composed = Stepper::composed(HeavyTop::thesis(), 0.01, liestep::methods::CompositionScheme::SUZUKI_4).unwrap();
+    for _ in 0..50 {
+        let (attitude, velocity) = (random.rotation(), random.direction() * 3.0);
+        assert_row_is_both(&tilted, &tilted.start(attitude, velocity).unwrap());
+        assert_row_is_both(&gyrostat, &gyrostat.start(attitude, velocity).unwrap());
+        assert_row_is_both(&sliding, &sliding.start(attitude, velocity).unwrap());
+        assert_row_is_both(&plate, &plate.start(SE2::identity(), velocity).unwrap());
+        assert_row_is_both(&any, &any.start(attitude, velocity).unwrap());
+        assert_row_is_both(&hiding, &hiding.start(attitude, velocity).unwrap());
+        assert_row_is_both(&gauss, &gauss.start(attitude, velocity).unwrap());
+        assert_row_is_both(&composed, &composed.start(attitude, velocity).unwrap());
+    }
 }

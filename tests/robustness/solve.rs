@@ -2,7 +2,7 @@
 //! gives.
 
 use liestep::laws::samples::Random;
-use liestep::numbers::Coordinates;
+use liestep::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Pattern};
 use nalgebra::{SMatrix, SVector};
 
 /// A symmetric positive definite matrix and a smaller one without symmetry, like a Jacobian at a finite step.
@@ -55,6 +55,48 @@ fn assert_determinant<const D: usize>() {
     assert!((det / expected - 1.0).abs() < 1e-12, "{D}: {det} against {expected}");
 }
 
+/// With factors that end at each choice of places, solved apart or together: the inverse maps a right side to its solution,
+/// and isn't finite where the matrix is singular.
+fn assert_inverse_solves<const D: usize>() {
+    type V<const D: usize> = SVector<f64, D>;
+    let mut random = Random::new(44);
+    for ends in 0..1_u32 << (D - 1) {
+        let is_end = |k: usize| ends >> (k - 1) & 1 == 1;
+        let factors = (1..D).filter(|&k| is_end(k)).fold(Blocks::WHOLE, |blocks, k| blocks.then(k, Blocks::WHOLE));
+        for is_apart in [false, true] {
+            let pattern = Pattern { factors, apart: if is_apart { factors } else { Blocks::WHOLE } };
+            let (mut a, b): (SMatrix<f64, D, D>, V<D>) = (jacobian(&mut random), random.sample());
+            for (row, column) in (0..D).flat_map(|row| (0..D).map(move |column| (row, column))) {
+                let is_between = (row.min(column) + 1..=row.max(column)).any(is_end);
+                a[(row, column)] *= if is_apart && is_between { 0.0 } else { 1.0 };
+            }
+            let inverse_of = |a: &SMatrix<f64, D, D>| {
+                let (made, det) = V::<D>::factorise_with(a, pattern);
+                (V::<D>::inverse_with(&made, det, pattern), V::<D>::solve_again_with(&made, det, pattern, &b))
+            };
+            let (inverse, solution) = inverse_of(&a);
+            assert!((inverse * b - solution).norm() <= 1e-13 * inverse.norm() * b.norm(), "{pattern:?}");
+            let residual = (a * (inverse * b) - b).norm();
+            assert!(residual <= 1e-13 * a.norm() * inverse.norm() * b.norm(), "{pattern:?}: {residual:e}");
+            a.fill_row(D - 1, 0.0);
+            assert!(inverse_of(&a).0.iter().any(|entry| !entry.is_finite()), "{pattern:?}");
+        }
+    }
+    type Three<const D: usize> = Bodies<SVector<f64, D>, 3>;
+    let pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
+    let a = BlockDiagonal([(); 3].map(|()| jacobian::<D>(&mut random)));
+    let b = Bodies([(); 3].map(|()| random.sample::<SVector<f64, D>>()));
+    let (made, det) = Three::<D>::factorise_with(&a, pattern);
+    let inverse = Three::<D>::inverse_with(&made, det, pattern);
+    let solution = Three::<D>::solve_again_with(&made, det, pattern, &b);
+    for body in 0..3 {
+        let difference = ((inverse * b).0[body] - solution.0[body]).norm();
+        assert!(difference <= 1e-13 * inverse.0[body].norm() * b.0[body].norm(), "{D}: {difference:e}");
+        let residual = (a.0[body] * solution.0[body] - b.0[body]).norm();
+        assert!(residual <= 1e-13 * a.0[body].norm() * inverse.0[body].norm() * b.0[body].norm(), "{D}: {residual:e}");
+    }
+}
+
 macro_rules! dimensions {
     ($($name:ident $dimension:literal)+) => {$(
         #[test]
@@ -62,6 +104,7 @@ macro_rules! dimensions {
             assert_solves::<$dimension>();
             assert_refuses::<$dimension>();
             assert_determinant::<$dimension>();
+            assert_inverse_solves::<$dimension>();
         }
     )+};
 }

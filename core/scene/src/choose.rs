@@ -14,7 +14,7 @@ use crate::body::Distribution;
 use crate::effects::Table as _;
 use crate::ensemble::Started;
 use crate::file::{Pace, SceneFile};
-use crate::kinetic::OtherBody;
+use crate::kinetic::ChosenBody;
 use crate::method::{Method, Stages};
 use crate::run::{Run, Stopped, Told, make};
 use crate::switched::Switched;
@@ -105,7 +105,7 @@ fn stepped(file: &SceneFile, h: f64, wanted: Wanted<'_, '_>) -> Result<(), Stopp
             if file.force().is_some() { step!(only damped) } else { step!(with_rotor) }
         }};
     }
-    match (OtherBody::of(file.body.kinetic, file.body.inertia()), file.body.mass) {
+    match (ChosenBody::of(file.body.kinetic, file.body.inertia()), file.body.mass) {
         (Some(body), _) => with_effects!(body),
         // The kinetic term that most files have is there in four sums, not two.
         (None, Distribution::Principal(J_d)) => {

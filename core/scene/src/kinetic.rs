@@ -7,7 +7,7 @@ use std::ops::Add;
 
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, SixthOrderBody};
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Inertia, Limit, Matrix, Parts, SceneVisitor, Sum, Term, WithKinetic,
+    DiscreteLagrangian, Effect, Inertia, Limit, Matrix, Operations, Parts, SceneVisitor, Sum, Term, WithKinetic,
 };
 use liestep::numbers::Coordinates as _;
 use liestep::{SO3, SetupError};
@@ -25,7 +25,7 @@ pub(crate) enum OneOf<C, G, F, S> {
 }
 
 /// A body with one of them.
-pub(crate) type OtherBody = OneOf<CayleyBody, GeodesicBody, FourthOrderBody, SixthOrderBody>;
+pub(crate) type ChosenBody = OneOf<CayleyBody, GeodesicBody, FourthOrderBody, SixthOrderBody>;
 
 /// What the parameters and `h` determine of such a body.
 type Constants = OneOf<
@@ -53,22 +53,16 @@ macro_rules! whichever {
             OneOf::SixthOrder($one) => $result,
         }
     };
-    // The same of a function of its type.
+}
+
+/// A function of the type of whichever body these constants belong to.
+macro_rules! of_its_type {
     ($constants:expr, $function:ident($($argument:expr),*)) => {
         match $constants {
             OneOf::Cayley(constants) => $function::<CayleyBody>(constants, $($argument),*),
             OneOf::Geodesic(constants) => $function::<GeodesicBody>(constants, $($argument),*),
             OneOf::FourthOrder(constants) => $function::<FourthOrderBody>(constants, $($argument),*),
             OneOf::SixthOrder(constants) => $function::<SixthOrderBody>(constants, $($argument),*),
-        }
-    };
-    // Or in the same place.
-    ($value:expr, $one:ident => in place $result:expr) => {
-        match $value {
-            OneOf::Cayley($one) => OneOf::Cayley($result),
-            OneOf::Geodesic($one) => OneOf::Geodesic($result),
-            OneOf::FourthOrder($one) => OneOf::FourthOrder($result),
-            OneOf::SixthOrder($one) => OneOf::SixthOrder($result),
         }
     };
 }
@@ -91,7 +85,11 @@ const fn both(a: bool, b: bool) -> bool {
     a && b
 }
 
-impl OtherBody {
+const fn most(a: Operations, b: Operations) -> Operations {
+    Operations { step: greater(a.step, b.step), iteration: greater(a.iteration, b.iteration) }
+}
+
+impl ChosenBody {
     /// The body of this kinetic term and inertia; nothing where the term is (3.13).
     pub(crate) fn of(kinetic: Kinetic, J: Inertia) -> Option<Self> {
         Some(match kinetic {
@@ -123,7 +121,7 @@ fn system<E: Body>(
     half: &Vector3<f64>,
 ) -> (Vector3<f64>, Matrix3<f64>) {
     let (residual, jacobian) = E::newton_system(constants, terms, half);
-    Vector3::raised(&residual, &jacobian, OtherBody::DENOMINATORS - E::DENOMINATORS, half)
+    Vector3::raised(&residual, &jacobian, ChosenBody::DENOMINATORS - E::DENOMINATORS, half)
 }
 
 fn before<E: Body>(constants: &E::Constants) -> Vector3<f64> {
@@ -138,7 +136,7 @@ fn finite<E: Body>(constants: &E::Constants) -> bool {
     E::are_finite(constants)
 }
 
-impl Term for OtherBody {
+impl Term for ChosenBody {
     type Scalar = f64;
     type Group = SO3;
     type Advected = ();
@@ -150,7 +148,7 @@ impl Term for OtherBody {
     fn advected(&self) {}
 }
 
-impl<E: Term<Scalar = f64, Group = SO3>> Add<E> for OtherBody {
+impl<E: Term<Scalar = f64, Group = SO3>> Add<E> for ChosenBody {
     type Output = Sum<Self, E>;
 
     fn add(self, other: E) -> Sum<Self, E> {
@@ -158,7 +156,7 @@ impl<E: Term<Scalar = f64, Group = SO3>> Add<E> for OtherBody {
     }
 }
 
-impl Effect for OtherBody {
+impl Effect for ChosenBody {
     type Retraction = <CayleyBody as Effect>::Retraction;
     type Kinetic = WithKinetic;
     type Constants = Constants;
@@ -168,7 +166,11 @@ impl Effect for OtherBody {
     const DENOMINATORS: u32 = of_all!(greater, DENOMINATORS);
     const INERTIA_IS_CONSTANT: bool = of_all!(both, INERTIA_IS_CONSTANT);
     const IS_QUADRATIC: bool = of_all!(both, IS_QUADRATIC);
-    const DERIVATION: &'static str = "one of four kinetic terms, which is asked at run time; see DERIVATION of each\n";
+    // It asks that there be no `DENOMINATORS`, so it can't be true where it isn't of all.
+    const JACOBIAN_IS_EXPENSIVE: bool = of_all!(both, JACOBIAN_IS_EXPENSIVE);
+    const OPERATIONS: Operations = of_all!(most, OPERATIONS);
+    const DERIVATION: &'static str = "one of four kinetic terms, which is asked at run time: `liestep derive cayley-body`, \
+                                      `geodesic-body`, `fourth-order-body` and `sixth-order-body` show them\n";
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         whichever!(self, body => body.describe(visitor));
@@ -198,15 +200,20 @@ impl Effect for OtherBody {
     }
 
     fn constants(&self, h: f64) -> Constants {
-        whichever!(self, body => in place body.constants(h))
+        match self {
+            Self::Cayley(body) => OneOf::Cayley(body.constants(h)),
+            Self::Geodesic(body) => OneOf::Geodesic(body.constants(h)),
+            Self::FourthOrder(body) => OneOf::FourthOrder(body.constants(h)),
+            Self::SixthOrder(body) => OneOf::SixthOrder(body.constants(h)),
+        }
     }
 
     fn are_finite(constants: &Constants) -> bool {
-        whichever!(constants, finite())
+        of_its_type!(constants, finite())
     }
 
     fn kick_before(constants: &Constants, (): &()) -> Vector3<f64> {
-        whichever!(constants, before())
+        of_its_type!(constants, before())
     }
 
     #[inline(always)]
@@ -231,16 +238,19 @@ impl Effect for OtherBody {
             (OneOf::SixthOrder(constants), OneOf::SixthOrder(terms)) => {
                 system::<SixthOrderBody>(constants, terms, half)
             }
-            _ => (Vector3::from_element(f64::NAN), Matrix3::zeros()),
+            _ => {
+                debug_assert!(false, "the terms are those of another body than the constants");
+                (Vector3::from_element(f64::NAN), Matrix3::zeros())
+            }
         }
     }
 
     fn kick_after(constants: &Constants, increment: &Matrix3<f64>, (): &()) -> Vector3<f64> {
-        whichever!(constants, after(increment))
+        of_its_type!(constants, after(increment))
     }
 }
 
-impl DiscreteLagrangian for OtherBody {
+impl DiscreteLagrangian for ChosenBody {
     const SELF_ADJOINT: bool = CayleyBody::<f64>::SELF_ADJOINT
         && GeodesicBody::<f64>::SELF_ADJOINT
         && FourthOrderBody::<f64>::SELF_ADJOINT

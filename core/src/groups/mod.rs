@@ -123,7 +123,8 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     /// `Ad_F ξ`.
     fn adjoint(&self, velocity: &Self::Vector) -> Self::Vector;
 
-    /// `Ad_F` as a matrix, where it is to map many.
+    /// `Ad_F` as a matrix, where it is to map many: `D × D` for the `D` components of the algebra, column `k` being
+    /// `Ad_F E_k`; for several equal bodies its blocks on the diagonal, one of each body.
     #[inline(always)]
     #[must_use]
     fn adjoint_matrix(&self) -> <Self::Vector as Coordinates<Self::Scalar>>::Square {

@@ -57,9 +57,8 @@
 //! The closure is asked for the derivative of what is added up at each step, so sums along the motion (a fit, a running
 //! cost) are as simple as a number at the end. A whole gradient takes two plain steps for each step of a heavy top
 //! (`cargo bench --bench gradients`): beside the step itself one linear system, and the chain rule from both momenta back,
-//! which costs a few times what they cost themselves, however many parameters there are. It needs the states on the way: a
-//! [`Tape`](crate::motion::linearised::Tape)
-//! keeps all or checkpoints, and where `l_d` is self-adjoint
+//! which costs a few times what they cost themselves; a parameter more is a few operations more. It needs the states on the
+//! way: a [`Tape`](crate::motion::linearised::Tape) keeps all or checkpoints, and where `l_d` is self-adjoint
 //! [`backwards`](crate::motion::linearised::Linearised::backwards) keeps nothing and goes back by steps of `−h`.
 //!
 //! # The transition matrix and chaos
@@ -89,8 +88,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A step of the matrix takes 2.8 plain ones: the second derivatives, and for each of six columns five products by a 3 × 3
-//! matrix, of four columns at once where the machine has vectors of four.
+//! A step of the matrix takes 2.8 plain ones (`cargo bench --bench gradients`): the second derivatives, and for each of six
+//! columns five products by a 3 × 3 matrix, of four columns at once where the machine has vectors of four.
 //!
 //! After a time of `10/λ` derivatives tell nothing of a motion that isn't known to `e⁻¹⁰`; that isn't a fault of the
 //! derivatives.

@@ -68,6 +68,7 @@ pub fn adjoint_action<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>()
         let allowed = ROUNDING * condition(&f) * condition(&g);
         let conjugated = f.matrix() * G::hat(&xi) * eliminated_inverse(&f);
         assert_close(&G::hat(&f.adjoint(&xi)), &conjugated, allowed, "(Ad_F ξ)^ = F ξ̂ F⁻¹");
+        assert_close(&(f.adjoint_matrix() * xi), &f.adjoint(&xi), allowed, "the matrix of Ad_F maps ξ to Ad_F ξ");
         let twice = f.adjoint(&g.adjoint(&xi));
         assert_close(&f.compose(&g).adjoint(&xi), &twice, allowed, "Ad_FG = Ad_F Ad_G");
         let moved = G::lie_bracket(&f.adjoint(&xi), &f.adjoint(&eta));

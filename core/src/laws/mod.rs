@@ -17,7 +17,7 @@ pub use crate::{advected_laws, lie_group_laws, retraction_laws};
 /// | `group_axioms` | products and inverses are in the group, `(FG)H = F(GH)`, `F F⁻¹ = F⁻¹F = I` |
 /// | `hat_and_vee` | `ξ̂^∨ = ξ`, linear |
 /// | `brackets` | `ad_ξ η = (ξ̂η̂ − η̂ξ̂)^∨`, antisymmetry, Jacobi |
-/// | `adjoint_action` | `Ad_F ξ = (F ξ̂ F⁻¹)^∨`, `Ad_{FG} = Ad_F Ad_G`, an automorphism of the bracket |
+/// | `adjoint_action` | `Ad_F ξ = (F ξ̂ F⁻¹)^∨`, `Ad_{FG} = Ad_F Ad_G`, an automorphism of the bracket; its matrix |
 /// | `pairings` | `⟨Ad*_F μ, ξ⟩ = ⟨μ, Ad_F ξ⟩`, `⟨ad*_ξ μ, η⟩ = ⟨μ, ad_ξ η⟩` |
 /// | `brackets_are_derivatives` | `ad` and `ad*` are the derivatives of `Ad` and `Ad*` at the identity |
 /// | `variations` | `δξ = η' + ad_ξ η` for `g exp(εη)` |

@@ -68,7 +68,16 @@ pub trait SecondDerivatives: Effect {
     /// parameters. A field that is advected under two names is visited for each.
     fn carried_parameters(visit: &mut impl FnMut(usize, usize));
 
-    /// The share in the linear system of a step's adjoint: `∂μ/∂ε`, and `(∂μ⁺/∂ε)ᵀ p` for `p` at the end.
+    /// The share in the linear system of a step's adjoint: `∂μ/∂ε`, entry `(k, j)` that of component `k` along `E_j`, and
+    /// the covector `(∂μ⁺/∂ε)ᵀ p`. With `at_end`, the derivative `p` of a number by `μ⁺`, and that by the place after the
+    /// step, the covector `a`, the system is
+    ///
+    /// ```text
+    /// (∂μ/∂ε)ᵀ u = Ad*_{F⁻¹} a + (∂μ⁺/∂ε)ᵀ p
+    /// ```
+    ///
+    /// Its solution `u` is the derivative of that number by `μ`. Both `u` and `p` are in the algebra: of a number without a
+    /// unit, on SO(3) in 1/(kg m²/s). The matrix is in units of a momentum for each of `ε`, on SO(3) kg m²/s per rad.
     ///
     /// This and [`adjoint_gradient`](Self::adjoint_gradient) go from the momenta back, so that they take a few times the
     /// operations of the momenta themselves, and not as many as all derivatives.
@@ -80,9 +89,13 @@ pub trait SecondDerivatives: Effect {
         at_end: &Vector<Self>,
     ) -> (Square<Self>, Vector<Self>);
 
-    /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, for `[u, p]` at the start and at the end: along displacements
-    /// of the body, and by the scalars of `w`; those by the parameters, at fixed `w`, are visited, as
-    /// [`by_parameters`](Self::by_parameters) does.
+    /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, for `ends = [u, p]`: `u` pairs with the momentum `μ` at the
+    /// start and solves the system of [`adjoint_system`](Self::adjoint_system), `p` pairs with `μ⁺` at the end.
+    ///
+    /// Returned are the covector along displacements `ζ` of the body before the step, by component `k` along `E_k`, and the
+    /// derivatives by the scalars of `w`, each in the place of its scalar. Those by the parameters, at fixed `w`, are
+    /// visited by their numbers, as [`by_parameters`](Self::by_parameters) does; a number that is visited twice is added.
+    /// Each is in the unit of the number per that of what it is by.
     fn adjoint_gradient(
         &self,
         increment: &Matrix<Self>,

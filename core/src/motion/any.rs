@@ -7,8 +7,9 @@ use core::fmt::{self, Debug};
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, Group, Scalar, Vector};
-use crate::motion::plan::{Cost, Plan};
+use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector};
+use crate::motion::integrator::Integrator;
+use crate::motion::plan::{Cost, NextSteps, Plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::stepper::{StateOf, Stepper};
@@ -84,11 +85,24 @@ trait Erased<G: LieGroup, A> {
     fn start(&self, attitude: G, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError>;
     fn step(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept) -> Result<StepReport, StepError>;
     fn run(&self, motion: &mut Motion<G, A>, kept: &mut AnyKept, run: (u64, bool)) -> Result<u64, StepError>;
+    fn run_shown(
+        &self,
+        motion: &mut Motion<G, A>,
+        kept: &mut AnyKept,
+        steps: u64,
+        next: &mut NextSteps<'_, G, A>,
+    ) -> Result<u64, StepError>;
     fn part(&self, motion: &Motion<G, A>, kept: &AnyKept, fraction: G::Scalar) -> Result<Motion<G, A>, StepError>;
     fn adopt(&self, motion: &Motion<G, A>) -> AnyState<G, A>;
     fn step_size(&self) -> G::Scalar;
     fn velocity(&self, motion: &Motion<G, A>) -> G::Vector;
     fn energy(&self, motion: &Motion<G, A>) -> G::Scalar;
+    fn factored_inertia(&self) -> Option<FactoredInertia<G>>;
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<G, A>,
+        inertia: Option<&FactoredInertia<G>>,
+    ) -> (G::Vector, G::Scalar);
     fn cost(&self) -> Cost;
 }
 
@@ -144,6 +158,22 @@ where
         Ok(iterations)
     }
 
+    fn run_shown(
+        &self,
+        motion: &mut Motion<Group<S>, S::Advected>,
+        kept: &mut AnyKept,
+        steps: u64,
+        next: &mut NextSteps<'_, Group<S>, S::Advected>,
+    ) -> Result<u64, StepError> {
+        let mut state = own(self, motion, kept);
+        let made = Integrator::run_shown(self, &mut state, steps, next);
+        // After an error, too, there are the steps before it.
+        if state.steps != motion.steps {
+            back(state, motion, kept);
+        }
+        made
+    }
+
     fn part(
         &self,
         motion: &Motion<Group<S>, S::Advected>,
@@ -168,6 +198,18 @@ where
 
     fn energy(&self, motion: &Motion<Group<S>, S::Advected>) -> Scalar<S> {
         self.energy(motion)
+    }
+
+    fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
+        Integrator::factored_inertia(self)
+    }
+
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<Group<S>, S::Advected>,
+        inertia: Option<&FactoredInertia<Group<S>>>,
+    ) -> (Vector<S>, Scalar<S>) {
+        Integrator::velocity_and_energy(self, motion, inertia)
     }
 
     fn cost(&self) -> Cost {
@@ -216,7 +258,17 @@ impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
         self.0.run(&mut state.motion, &mut state.kept, (steps, false))
     }
 
-    /// As [`Integrator::part`](crate::motion::Integrator::part).
+    /// As [`Integrator::run_shown`].
+    pub(crate) fn run_shown(
+        &self,
+        state: &mut AnyState<G, A>,
+        steps: u64,
+        next: &mut NextSteps<'_, G, A>,
+    ) -> Result<u64, StepError> {
+        self.0.run_shown(&mut state.motion, &mut state.kept, steps, next)
+    }
+
+    /// As [`Integrator::part`].
     pub(crate) fn fraction_of_a_step(
         &self,
         state: &AnyState<G, A>,
@@ -254,6 +306,20 @@ impl<G: LieGroup, A: Copy> AnyStepper<G, A> {
     #[must_use]
     pub fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
         self.0.energy(motion)
+    }
+
+    /// As [`Integrator::factored_inertia`].
+    pub(crate) fn factored_inertia(&self) -> Option<FactoredInertia<G>> {
+        self.0.factored_inertia()
+    }
+
+    /// As [`Integrator::velocity_and_energy`].
+    pub(crate) fn velocity_and_energy(
+        &self,
+        motion: &Motion<G, A>,
+        inertia: Option<&FactoredInertia<G>>,
+    ) -> (G::Vector, G::Scalar) {
+        self.0.velocity_and_energy(motion, inertia)
     }
 
     /// As [`Plan::cost`].
@@ -329,6 +395,21 @@ impl<G: LieGroup, A: Advected<G> + 'static> Erased<G, ()> for Hiding<G, A> {
         Ok(iterations)
     }
 
+    fn run_shown(
+        &self,
+        motion: &mut Motion<G, ()>,
+        kept: &mut AnyKept,
+        steps: u64,
+        next: &mut NextSteps<'_, G, ()>,
+    ) -> Result<u64, StepError> {
+        let mut state = self.own(motion, kept);
+        let made = self.0.run_shown(&mut state, steps, &mut |shown| next(&seeing(shown, ())));
+        if state.steps != motion.steps {
+            (*motion, *kept) = taken_apart(hidden(state));
+        }
+        made
+    }
+
     fn part(&self, motion: &Motion<G, ()>, kept: &AnyKept, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
         let part = self.0.fraction_of_a_step(&self.own(motion, kept), fraction)?;
         Ok(seeing(&part, ()))
@@ -350,6 +431,18 @@ impl<G: LieGroup, A: Advected<G> + 'static> Erased<G, ()> for Hiding<G, A> {
 
     fn energy(&self, motion: &Motion<G, ()>) -> G::Scalar {
         self.0.energy(&self.anew(motion))
+    }
+
+    fn factored_inertia(&self) -> Option<FactoredInertia<G>> {
+        self.0.factored_inertia()
+    }
+
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<G, ()>,
+        inertia: Option<&FactoredInertia<G>>,
+    ) -> (G::Vector, G::Scalar) {
+        self.0.velocity_and_energy(&self.anew(motion), inertia)
     }
 
     fn cost(&self) -> Cost {

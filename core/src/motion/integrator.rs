@@ -62,8 +62,8 @@ pub trait Integrator {
         self.run(state, steps).or_else(|_| step_by_step(self, state, steps))
     }
 
-    /// So many steps, one at least, and then as many as `next` says of the motion after the last, until it says none;
-    /// returns all iterations.
+    /// So many steps, and then as many as `next` says of the motion after the last, until it says none; returns all
+    /// iterations. Where the first number is zero, nothing is made and `next` isn't asked.
     ///
     /// # Errors
     ///
@@ -113,17 +113,24 @@ pub trait Integrator {
     /// The energy, J; NaN where a momentum has none.
     fn energy(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self>;
 
-    /// What the velocities of many motions may share, if anything.
+    /// The inertia in factors, on SO(3) of kg m², where it is the same for all motions, so that
+    /// [`velocity_and_energy`](Self::velocity_and_energy) of many needn't factorise it again; `None` where it isn't, or
+    /// isn't known.
     fn factored_inertia(&self) -> Option<FactoredInertia<Self::Group>> {
         None
     }
 
-    /// Both, to the bit, with what they and others share computed once.
+    /// The [velocity](Self::velocity), on SO(3) in rad/s, and the [energy](Self::energy), J, to the bit, with what they
+    /// share computed once.
+    ///
+    /// `inertia` is this integrator's own [`factored_inertia`](Self::factored_inertia), which may be made once for many
+    /// motions; that of another gives the numbers of neither. With `None` it is solved for each motion anew.
     fn velocity_and_energy(
         &self,
         motion: &Motion<Self::Group, Self::Advected>,
-        _inertia: Option<&FactoredInertia<Self::Group>>,
+        inertia: Option<&FactoredInertia<Self::Group>>,
     ) -> (<Self::Group as LieGroup>::Vector, ScalarIn<Self>) {
+        let _ = inertia;
         (self.velocity(motion), self.energy(motion))
     }
 
@@ -300,6 +307,10 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
         AnyStepper::run(self, state, steps)
     }
 
+    fn run_shown(&self, state: &mut Self::State, steps: u64, next: &mut NextSteps<'_, G, A>) -> Result<u64, StepError> {
+        AnyStepper::run_shown(self, state, steps, next)
+    }
+
     fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
         self.fraction_of_a_step(state, fraction)
     }
@@ -318,6 +329,18 @@ impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
 
     fn energy(&self, motion: &Motion<G, A>) -> G::Scalar {
         AnyStepper::energy(self, motion)
+    }
+
+    fn factored_inertia(&self) -> Option<FactoredInertia<G>> {
+        AnyStepper::factored_inertia(self)
+    }
+
+    fn velocity_and_energy(
+        &self,
+        motion: &Motion<G, A>,
+        inertia: Option<&FactoredInertia<G>>,
+    ) -> (G::Vector, G::Scalar) {
+        AnyStepper::velocity_and_energy(self, motion, inertia)
     }
 }
 

@@ -66,7 +66,8 @@ pub trait Plan<S: Effect> {
     ///
     /// # Errors
     ///
-    /// [`StepError`] where there is no such step, or a value isn't finite.
+    /// [`StepError`] where there is no such step, or a value isn't finite. `motion` and `kept` are then as before: callers
+    /// make no copy of `kept` to go back to.
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -194,13 +195,11 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     fn run(self) -> Self::Output {
         let Self(plan, scene, motion, kept, (mut steps, mut next)) = self;
         let mut iterations = 0;
-        loop {
+        while steps > 0 {
             iterations += plan.run(scene, motion, kept, steps)?;
             steps = next.as_mut().map_or(0, |next| next(motion));
-            if steps == 0 {
-                return Ok(iterations);
-            }
         }
+        Ok(iterations)
     }
 }
 

@@ -96,7 +96,9 @@ pub trait Coordinates<T: Real>:
     /// The solution from what [`factorise_with`](Self::factorise_with) has made.
     fn solve_again_with(factors: &Self::Square, det: T, pattern: Pattern, right_side: &Self) -> Self;
 
-    /// `A⁻¹` from what [`factorise_with`](Self::factorise_with) has made, where many right sides are to come.
+    /// `A⁻¹` from what [`factorise_with`](Self::factorise_with) has made, where many right sides are to come; mapped by it,
+    /// they are the solutions of [`solve_again_with`](Self::solve_again_with) to rounding. Of several bodies it has a block
+    /// for each. Where `A` is singular, not all entries are finite.
     fn inverse_with(factors: &Self::Square, det: T, pattern: Pattern) -> Self::Square;
 
     /// As [`factorise_with`](Self::factorise_with) of a product, where there may be one block: the determinant is relative
@@ -240,7 +242,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     #[inline(always)]
     fn inverse_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern) -> SMatrix<T, D, D> {
         if pattern.factors.is_whole() && D <= 3 {
-            // The adjugate.
+            // For these the factors are the adjugate.
             return factors * (T::one() / det);
         }
         Self::square(|k| Self::solve_again_with(factors, det, pattern, &Self::axis(k)))

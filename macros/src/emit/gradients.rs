@@ -82,7 +82,7 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
 
 /// `∂μ/∂ε`, and `(∂μ⁺/∂ε)ᵀ p`.
 fn adjoint_system(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let [matrix, right_side] = linearisation.before_the_solve();
+    let [matrix, right_side] = linearisation.adjoint_system();
     let (lets, values) = statements(emitter, linearisation, &[matrix.as_slice(), &right_side].concat());
     let (matrix, right_side) = values.split_at(matrix.len());
     let (matrix, right_side) = (emitter.assembled(Form::Square, matrix), emitter.assembled(Form::Vector, right_side));
@@ -91,18 +91,20 @@ fn adjoint_system(emitter: &Emitter, linearisation: &mut Linearisation) -> Token
 
 /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
 fn adjoint_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
-    let behind = linearisation.after_the_solve();
-    let by_place = linearisation.by_place(&behind);
+    let gradient = linearisation.adjoint_gradient();
+    let by_place = linearisation.by_place(&gradient);
     let scalars = advected_scalars(emitter);
     let count = (0..emitter.declaration.advected.len()).map(|index| numbers(emitter.declaration.advected_kind(index)));
     let mut by_advected = vec![linearisation.graph.zero(); count.sum()];
     for (symbol, place) in scalars {
-        by_advected[place.number] = linearisation.behind_entry(&behind, symbol, place.row, place.column);
+        by_advected[place.number] = linearisation.gradient_by_entry(&gradient, symbol, place.row, place.column);
     }
     let (mut by_parameters, mut numbers) = (Vec::new(), Vec::new());
     for (symbol, place) in parameter_scalars(emitter) {
-        let derivative = linearisation.behind_entry(&behind, symbol, place.row, place.column);
-        let derivative = linearisation.halved(derivative, place.is_half);
+        let mut derivative = linearisation.gradient_by_entry(&gradient, symbol, place.row, place.column);
+        if place.is_half {
+            derivative = linearisation.halved(derivative);
+        }
         if !linearisation.graph.is_zero(derivative) {
             by_parameters.push(derivative);
             numbers.push(Literal::usize_unsuffixed(place.number));
@@ -177,10 +179,12 @@ fn visits(emitter: &Emitter, linearisation: &Linearisation, found: &[(usize, Vec
 fn by_parameters(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
     let mut found = Vec::new();
     for (symbol, place) in parameter_scalars(emitter) {
-        let derivative = linearisation.by_entry(symbol, place.row, place.column);
+        let mut derivative = linearisation.by_entry(symbol, place.row, place.column);
         if !linearisation.is_nothing(&derivative) {
-            let halved = derivative.into_iter().map(|node| linearisation.halved(node, place.is_half)).collect();
-            found.push((place.number, halved));
+            if place.is_half {
+                derivative = derivative.into_iter().map(|node| linearisation.halved(node)).collect();
+            }
+            found.push((place.number, derivative));
         }
     }
     visits(emitter, linearisation, &found)

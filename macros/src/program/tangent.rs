@@ -34,10 +34,10 @@ pub(crate) struct Linearisation<'a> {
 }
 
 /// The change of each input that changes.
-type Changes = BTreeMap<NodeId, NodeId>;
+pub(super) type Changes = BTreeMap<NodeId, NodeId>;
 
-/// The gradient that is left behind the solve of a step's adjoint.
-pub(crate) struct Behind(Gradient);
+/// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment: what a step's adjoint ends with.
+pub(crate) struct AdjointGradient(Gradient);
 
 impl<'a> Linearisation<'a> {
     pub(crate) fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
@@ -49,7 +49,16 @@ impl<'a> Linearisation<'a> {
         let given = with_lets(&mut graph, derived, increments.clone());
         let [start, end] = &ends.momenta;
         let momenta = [start, end].map(|momentum| components(&mut graph, derived, &given, momentum)).concat();
-        Self { derived, ends, graph, momenta, increments }
+        let linearisation = Self { derived, ends, graph, momenta, increments };
+        debug_assert!(linearisation.weights_are_free(), "the weights of an adjoint are symbols of the momenta");
+        linearisation
+    }
+
+    /// Whether no momentum depends on the symbols that stand for weights.
+    fn weights_are_free(&self) -> bool {
+        let weights = [self.weights_of_start(), self.weights_of_end()];
+        let is_weight = |id| matches!(self.graph.node(id), Node::Input(input) if weights.contains(&input.symbol));
+        !self.graph.reachable(&self.momenta).into_iter().any(is_weight)
     }
 
     /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then those along each `ζ = E_j`; matrices row by row.
@@ -71,7 +80,7 @@ impl<'a> Linearisation<'a> {
     }
 
     /// What the adjoint of a step begins with: `∂μ/∂ε`, row by row, and `(∂μ⁺/∂ε)ᵀ p` for the weights `p` of `μ⁺`.
-    pub(crate) fn before_the_solve(&mut self) -> [Vec<NodeId>; 2] {
+    pub(crate) fn adjoint_system(&mut self) -> [Vec<NodeId>; 2] {
         let dimension = self.derived.group.dimension();
         let end = self.weighted(1, self.weights_of_end());
         let by = gradient(&mut self.graph, &end);
@@ -87,37 +96,43 @@ impl<'a> Linearisation<'a> {
     }
 
     /// What it ends with: the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
-    pub(crate) fn after_the_solve(&mut self) -> Behind {
+    pub(crate) fn adjoint_gradient(&mut self) -> AdjointGradient {
         let mut weighted = self.weighted(0, self.weights_of_start());
         for (_, weight) in &mut weighted {
             *weight = self.graph.negate(*weight);
         }
         weighted.extend(self.weighted(1, self.weights_of_end()));
-        Behind(gradient(&mut self.graph, &weighted))
+        AdjointGradient(gradient(&mut self.graph, &weighted))
     }
 
     /// Along displacements `ζ = E_j`.
-    pub(crate) fn by_place(&mut self, behind: &Behind) -> Vec<NodeId> {
+    pub(crate) fn by_place(&mut self, gradient: &AdjointGradient) -> Vec<NodeId> {
         let dimension = self.derived.group.dimension();
         let displaced = |j| {
             let changes = self.displaced(j);
-            along(&mut self.graph, &behind.0, &changes)
+            along(&mut self.graph, &gradient.0, &changes)
         };
         (0..dimension).map(displaced).collect()
     }
 
     /// By an entry of a symbol.
-    pub(crate) fn behind_entry(&mut self, behind: &Behind, symbol: SymbolId, row: usize, column: usize) -> NodeId {
+    pub(crate) fn gradient_by_entry(
+        &mut self,
+        gradient: &AdjointGradient,
+        symbol: SymbolId,
+        row: usize,
+        column: usize,
+    ) -> NodeId {
         let entry = self.entry(symbol, row, column);
-        behind.0.get(&entry).copied().unwrap_or_else(|| self.graph.zero())
+        gradient.0.get(&entry).copied().unwrap_or_else(|| self.graph.zero())
     }
 
-    /// The weights `u` of `μ`: in a step's adjoint no other covector is needed, so that symbol is free.
+    /// The weights `u` of `μ`. The momenta don't depend on this symbol, which is asserted where they are made.
     pub(crate) fn weights_of_start(&self) -> SymbolId {
         self.derived.directions.target
     }
 
-    /// The weights `p` of `μ⁺`, an element of the algebra.
+    /// The weights `p` of `μ⁺`, an element of the algebra; as those of `μ`, a symbol that is free here.
     pub(crate) fn weights_of_end(&self) -> SymbolId {
         self.derived.directions.along
     }
@@ -141,11 +156,8 @@ impl<'a> Linearisation<'a> {
         tangent(&mut self.graph, &self.momenta, &Changes::from([(entry, one)]))
     }
 
-    /// Half of a derivative, where that is asked for.
-    pub(crate) fn halved(&mut self, derivative: NodeId, is_asked: bool) -> NodeId {
-        if !is_asked {
-            return derivative;
-        }
+    /// Half of a derivative.
+    pub(crate) fn halved(&mut self, derivative: NodeId) -> NodeId {
         let half = self.graph.constant(Rational::new(1, 2));
         self.graph.multiply(half, derivative)
     }
@@ -221,7 +233,7 @@ fn product(graph: &mut Graph, left: &Entries, right: &Entries) -> Entries {
 }
 
 /// How the outputs change with the inputs.
-fn tangent(graph: &mut Graph, outputs: &[NodeId], changes: &Changes) -> Vec<NodeId> {
+pub(super) fn tangent(graph: &mut Graph, outputs: &[NodeId], changes: &Changes) -> Vec<NodeId> {
     // What isn't here doesn't change.
     let mut known = changes.clone();
     known.retain(|_, change| !graph.is_zero(*change));

@@ -37,14 +37,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
         between: u64,
     ) -> Result<Vec<Scalar<S>>, StepError> {
         let mut next = *state;
-        let mut tangent = self.tangent(&[]);
+        let (mut tangent, mut columns) = (self.tangent(&[]), Vec::new());
         let mut sums = vec![real::<Scalar<S>>(0.0); 2 * Group::<S>::DIMENSION];
         for n in 1..=steps {
             self.step(&mut next, &mut tangent)?;
             if n.is_multiple_of(between.max(1)) || n == steps {
-                for (sum, length) in sums.iter_mut().zip(tangent.orthonormalise()) {
-                    *sum += length.simd_ln();
-                }
+                tangent.orthonormalise(&mut columns, |k, length| sums[k] += length.simd_ln());
             }
         }
         let time = self.stepper.step_size() * real(steps.max(1) as f64);

@@ -21,7 +21,8 @@ pub struct Stage<'a, E: Effect> {
     first: usize,
 }
 
-/// What was done. It is matched where its derivatives are used: the compiler vectorises badly what comes from several arms.
+/// What was done. It is matched where its derivatives are used, so that each arm is straight-line code with its own
+/// values.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Kind<T> {
     /// A step of this length, s.
@@ -115,8 +116,9 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// displacements.
     #[inline(always)]
     fn fixed_increment(&self, ends: [&Vector<E>; 2], gradient: &mut [Scalar<E>]) -> Vector<E> {
-        // Of so many scalars none has to be looked for.
-        let Some(own) = gradient.get_mut(self.first..self.first + E::PARAMETERS) else { return Vector::<E>::zero() };
+        // One check of the range, not one for each scalar.
+        let own = gradient.get_mut(self.first..self.first + E::PARAMETERS).unwrap_or_default();
+        debug_assert_eq!(own.len(), E::PARAMETERS, "a plan counts the parameters of its stages");
         let mut add = |number: usize, share: Scalar<E>| {
             if let Some(sum) = own.get_mut(number) {
                 *sum += share;

@@ -67,7 +67,8 @@ impl<G: LieGroup, A> Tangent<G, A> {
             attitude: G::Vector::beside(&[0, 1, 2, 3].map(|k| column(first + k).0)),
             momentum: G::Vector::beside(&[0, 1, 2, 3].map(|k| column(first + k).1)),
         };
-        self.columns = (0..count).step_by(4).map(four).collect();
+        self.columns.clear();
+        self.columns.extend((0..count).step_by(4).map(four));
         self.kept.clone_from(&self.columns);
     }
 
@@ -103,11 +104,20 @@ impl<G: LieGroup, A> Tangent<G, A> {
         [true, false].map(|is_attitude| [block(0, is_attitude), block(G::DIMENSION, is_attitude)])
     }
 
-    /// Makes the columns of the start orthonormal, from the first to the last, and returns what each was longer than
-    /// one: the diagonal of `R` in `Φ = Q R`, of which Lyapunov exponents are made.
-    pub(super) fn orthonormalise(&mut self) -> Vec<G::Scalar> {
-        let mut columns: Vec<_> = self.columns().take(2 * G::DIMENSION).collect();
-        let mut lengths = Vec::with_capacity(columns.len());
+    /// Makes the columns of the start orthonormal, from the first to the last, and shows how long each was: the diagonal of
+    /// `R` in `Φ = Q R`, of which Lyapunov exponents are made. Columns by parameters are dropped, as they would be
+    /// derivatives along no parameter.
+    ///
+    /// The vector is only memory that is used again.
+    pub(super) fn orthonormalise(
+        &mut self,
+        columns: &mut Vec<(G::Vector, G::Vector)>,
+        mut visit: impl FnMut(usize, G::Scalar),
+    ) {
+        self.numbers.clear();
+        self.shares.clear();
+        columns.clear();
+        columns.extend(self.columns());
         for at in 0..columns.len() {
             let (known, rest) = columns.split_at_mut(at);
             let Some((attitude, momentum)) = rest.first_mut() else { break };
@@ -121,10 +131,9 @@ impl<G: LieGroup, A> Tangent<G, A> {
             let length = (attitude.dot(attitude) + momentum.dot(momentum)).simd_sqrt();
             let inverse = real::<G::Scalar>(1.0) / length;
             (*attitude, *momentum) = (*attitude * inverse, *momentum * inverse);
-            lengths.push(length);
+            visit(at, length);
         }
-        self.set_columns(&columns);
-        lengths
+        self.set_columns(columns);
     }
 
     /// Remembers the columns.

@@ -63,9 +63,9 @@ type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 ///
 /// # Contract
 ///
-/// - The steps between two that are observed are made by [`Stepper::run`], so nothing is copied for them. A run with a
-///   condition, with events or with given times makes each step by itself. Only of splittings does that change digits,
-///   which `run` says.
+/// - The steps between two that are observed are made in place, without a copy; of a splitting as [`Stepper::run`] makes
+///   them. A run with a condition, with events or with given times makes each step by itself. Only of splittings does
+///   that change digits, which `run` says.
 /// - Observers change nothing: for other methods the steps are those of an unobserved run, bit for bit.
 /// - Memory doesn't grow with the run.
 /// - After an error, and when an observer stops the run, the state is that of the last step that was made.
@@ -316,7 +316,7 @@ impl<I: Integrator> Observers<'_, I> {
             self.told = made.saturating_add((self.end - self.start).div_ceil(100).max(1));
         }
         self.seldom = if !self.conditions.is_empty() {
-            self.end.min(made + 1)
+            self.end.min(made.saturating_add(1))
         } else if self.progress.is_some() {
             self.end.min(self.told)
         } else {
