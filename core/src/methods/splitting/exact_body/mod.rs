@@ -215,9 +215,9 @@ impl<T: Real> ExactDrift<T> {
         let size = invariants.size();
         let (is_short, is_long) = (size.simd_le(real(SHORT)), size.simd_le(real(LONG)));
         let turned = if is_short.all() {
-            self.from_half(u, &invariants, &self.near(u, &short(&invariants)))
+            self.whole(u, &invariants, &self.near(u, &short(&invariants)))
         } else if !is_short.any() && is_long.all() {
-            self.from_half(u, &invariants, &self.near(u, &long(&invariants)))
+            self.whole(u, &invariants, &self.near(u, &long(&invariants)))
         } else {
             self.beyond(u, &invariants)
         };
@@ -239,7 +239,7 @@ impl<T: Real> ExactDrift<T> {
     /// What takes the time is the chain from the momentum to the increment, so nothing is divided before the end of it,
     /// and sums are ordered by what is there first.
     #[inline(always)]
-    fn from_half(&self, [a, b, c]: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Turned<T> {
+    fn whole(&self, [a, b, c]: [T; 3], invariants: &Invariants<T>, half: &Half<T>) -> Turned<T> {
         let Invariants { kb, ka, .. } = *invariants;
         let Half { n, mu, about } = *half;
         let (nn, kk) = (n * n, kb * ka);
@@ -317,7 +317,7 @@ impl<T: Real> ExactDrift<T> {
         if is_short.any() {
             half = self.near(u, &short(invariants)).select(is_short, &half);
         }
-        let turned = self.from_half(u, invariants, &half);
+        let turned = self.whole(u, invariants, &half);
         if is_farther.all() { turned } else { turned.select(is_farther, &self.doubled(u, invariants)) }
     }
 }
