@@ -726,3 +726,61 @@ fn with_joints_checked(chain: &Chain<4>, h: f64) -> Result<(), SetupError> {
     let stepper = with_joints(chain, 0.01);
     Stepper::jointed(*stepper.scene(), *stepper.plan().joints(), h).map(|_| ())
 }
+
+/// A wheel that is pinned at its centre, at the origin and far from it: cosines are compared with one, and places with
+/// what the wheel and its place are long.
+#[test]
+fn a_wheel_on_its_axle() {
+    let moments = Vector3::new(0.1, 0.1, 0.2);
+    let K = NonstandardInertia::from_principal_moments(moments).unwrap();
+    let axis = Vector3::new(0.3, -0.7, 0.2);
+    for centre in [Vector3::zeros(), Vector3::new(1e6, 0.0, 0.0)] {
+        let pin = PinJoint { above: centre, below: Vector3::zeros(), axis_above: axis, axis_below: Vector3::z() };
+        let joints = Joints::tree([Joined::to_space(pin, 0)]);
+        let stepper = Stepper::jointed(scene([Free { m: 5.0, K }], 0.0, Vector3::z()), joints, 0.01).unwrap();
+        let attitude = nalgebra::Rotation3::rotation_between(&Vector3::z(), &axis).unwrap();
+        let about = [(SO3::try_from(*attitude.matrix()).unwrap(), R3::from(centre))];
+        for rate in [0.0, 1e-7, 3.0] {
+            let turning = Bodies([six(&(Vector3::z() * rate), &Vector3::zeros())]);
+            let mut state = stepper.start(about, turning).unwrap();
+            stepper.run(&mut state, 1000).unwrap();
+            let moved = stepper.velocity(&state).0[0] - turning.0[0];
+            assert!(moved.amax() < 1e-12 * rate && stepper.widest_gap(&state) < 4.0 * EPSILON * centre.norm().max(1.0));
+            // What steps leave may be started from.
+            stepper.start_with_momentum(*state.attitude(), *state.momentum()).unwrap();
+        }
+        // It is open by more than roundings.
+        let mut open = about;
+        open[0].1 = R3::from(centre + Vector3::y() * 1e-11 * centre.norm().max(1.0));
+        let error = stepper.start(open, Bodies([Vector6::zeros()])).unwrap_err();
+        assert!(matches!(error, SetupError::OffConstraint { joint: 0, .. }), "{error}");
+        let closed = stepper.start_nearest(open, Bodies([Vector6::zeros()])).unwrap();
+        assert!(stepper.widest_gap(&closed) < 4.0 * EPSILON * centre.norm().max(1.0));
+    }
+}
+
+/// Systems of any size, at rest and as good as at rest: what roundings leave is compared with what there is.
+#[test]
+fn small_and_slow() {
+    for size in [1.0, 1e-3, 1e-6] {
+        let (e, mass) = (Vector3::x() * (0.5 * size), size * size * size);
+        let moments = Vector3::new(0.02, 0.1, 0.1) * (mass * size * size);
+        let K = NonstandardInertia::from_principal_moments(moments).unwrap();
+        let link = BallJoint { above: e, below: -e };
+        let joints = Joints::tree([Joined::between(link, 0, 1), Joined::between(link, 1, 2)]);
+        let scene = scene([Free { m: mass, K }; 3], 0.0, Vector3::z());
+        let stepper = Stepper::jointed(scene, joints, 0.01).unwrap();
+        let about = row([0.9, 0.2, -0.5]).0.map(|(turn, place)| (turn, R3::from(place.translation() * size)));
+        for rate in [0.0, 1e-7, 1.0] {
+            let moving = Bodies([six(&(Vector3::new(0.3, 1.0, -0.2) * rate), &Vector3::zeros()); 3]);
+            let mut state = stepper.start_nearest(about, moving).unwrap();
+            let [p, l] = whole(&state);
+            stepper.run(&mut state, 500).unwrap();
+            let after = whole(&state);
+            let off = [(after[0] - p).norm() / (mass * size), (after[1] - l).norm() / (mass * size * size)];
+            println!("{size:e} {rate:e}: {off:?}, gap {:e}", stepper.widest_gap(&state) / size);
+            assert!(stepper.widest_gap(&state) < 8.0 * EPSILON * size);
+            assert!(off.iter().all(|&off| off <= 1e-12 * rate), "{off:?}");
+        }
+    }
+}

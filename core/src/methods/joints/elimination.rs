@@ -21,7 +21,7 @@
 //! loops are a border: with the solution `Y` for their columns `Eᵀ`, `S_L = −C_L Y` are the equations of their
 //! multipliers.
 
-use nalgebra::{SMatrix, SVector, Vector6};
+use nalgebra::{SMatrix, SVector, Vector2, Vector6};
 
 use super::graph::Tree;
 use super::places::{Ends, Slopes};
@@ -184,14 +184,14 @@ fn close<const K: usize, const N: usize, const L: usize>(
     }
 }
 
-/// Solves for right sides by the factors; returns the sum of the squares of the `w`, of which the solution is a small
-/// difference where joints hold bodies fast.
+/// Solves for right sides by the factors; returns the sums of the squares of the `w`, of turns and of shifts: the
+/// solution is a small difference of these where joints hold bodies fast.
 pub(super) fn solve<const K: usize, const N: usize, const L: usize>(
     tree: &Tree<N>,
     bodies: &[Body<K>; N],
     loops: &[Closing<K, N, L>; L],
     unknowns: &mut Unknowns<K, N, L>,
-) -> f64 {
+) -> Vector2<f64> {
     let size = substitute(tree, bodies, &mut unknowns.bodies, &mut unknowns.joints);
     for (k, closing) in loops.iter().enumerate() {
         // `C_L x + g`, and then the rows above.
@@ -226,13 +226,13 @@ fn substitute<const K: usize, const N: usize, const C: usize>(
     bodies: &[Body<K>; N],
     of_bodies: &mut [SMatrix<f64, 6, C>; N],
     of_joints: &mut [SMatrix<f64, K, C>; N],
-) -> f64 {
-    let mut size = 0.0;
+) -> Vector2<f64> {
+    let mut size = Vector2::zeros();
     for &k in tree.order.iter().rev() {
         let (body, member) = (&bodies[k], tree.members[k]);
         let w = solved(&body.matrix, &of_bodies[k]);
         of_bodies[k] = w;
-        size += w.norm_squared();
+        size += Vector2::new(w.fixed_rows::<3>(0).norm_squared(), w.fixed_rows::<3>(3).norm_squared());
         if member.joint.is_none() {
             continue;
         }

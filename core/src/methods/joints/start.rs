@@ -1,13 +1,13 @@
 //! Motions start where joints are closed, with velocities that keep them so.
 
-use nalgebra::Vector6;
+use nalgebra::{SVector, Vector6};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
 use super::Constraint;
-use super::equations::Equations;
+use super::equations::{Equations, Widest};
 use super::places::Places;
 use super::plan::{Body, Jointed};
 use crate::error::SetupError;
@@ -17,8 +17,8 @@ use crate::motion::{Motion, State, Stepper};
 use crate::numbers::{Bodies, Coordinates as _};
 use crate::solving::{MAX_DAMPED_ITERATIONS, Warm};
 
-/// How far joints may be open, relative to the distances from the origin, and velocities may part them, relative to
-/// theirs: what is left of values that are printed to a dozen digits.
+/// How far joints may be open, relative to the terms of their functions, and velocities may part them, relative to
+/// theirs: what is left of values that are printed to thirteen digits.
 const PRINTED: f64 = f64::EPSILON * 1e4;
 /// How far joints of a start that is sought may be open to be closed: roundings, as steps leave them.
 const CLOSED: f64 = 2.0 * f64::EPSILON;
@@ -33,8 +33,8 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// The joint that is open farthest, and by how much.
-    fn widest(&self, places: &Places<N>) -> (usize, f64) {
+    /// The joint with the largest gap, in the units of its functions.
+    fn largest_gap(&self, places: &Places<N>) -> (usize, f64) {
         let gaps = self.joints.all().map(|(joint, joined)| (joint, places.gap(joined).norm()));
         // What isn't a number is the widest.
         gaps.fold((0, 0.0), |widest, gap| if gap.1 <= widest.1 { widest } else { gap })
@@ -59,30 +59,25 @@ where
     ) -> Bodies<Vector6<f64>, N> {
         let mut equations = self.of_velocities(scene, places, advected);
         let residual = scene.momentum_bias(advected) - *momentum;
-        equations.solve(&residual.0, places, 0.0);
+        equations.solve(&residual.0, |_| SVector::zeros());
         Bodies(equations.reactions())
     }
 
     /// Whether joints are closed, velocities keep them so, and each of them has something to do.
     pub(super) fn check_start(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {
         let places = Places::of(&motion.attitude);
-        let (joint, by) = self.widest(&places);
+        let equations = self.of_velocities(scene, &places, &motion.advected);
+        let Widest { joint, by, relative } = equations.widest_gap(&places, &self.lengths);
         // What isn't a number isn't closed either.
-        let is_closed = by <= PRINTED * places.extent(&self.joints).sqrt();
+        let is_closed = relative <= PRINTED;
         if !is_closed {
             return Err(SetupError::OffConstraint { joint, by });
         }
-        let equations = self.of_velocities(scene, &places, &motion.advected);
         check_redundance(&equations)?;
         let momentum = motion.momentum - scene.momentum_bias(&motion.advected);
         let velocities = Bodies::solve(&scene.inertia(&motion.advected), &momentum).0;
-        let (mut widest, mut all) = ((0, 0.0), 0.0);
-        equations.parting(&velocities.0, |joint, by, size| {
-            all += size * size;
-            widest = if by <= widest.1 { widest } else { (joint, by) };
-        });
-        let (joint, by) = widest;
-        if by <= PRINTED * all.sqrt() { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
+        let Widest { joint, by, relative } = equations.widest_parting(&velocities.0, &self.lengths);
+        if relative <= PRINTED { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
     }
 
     /// The places nearest to these, as the inertia measures it, where joints are closed.
@@ -91,22 +86,21 @@ where
         let mut last = f64::INFINITY;
         for _ in 0..MAX_DAMPED_ITERATIONS {
             let places = Places::of(&attitude);
-            let (_, by) = self.widest(&places);
-            let size = places.extent(&self.joints).sqrt();
             let mut equations = self.of_velocities(scene, &places, &scene.advected().seen_from(&attitude));
             check_redundance(&equations)?;
-            if by <= CLOSED * size || by <= PRINTED * size && by >= last {
+            let Widest { relative, .. } = equations.widest_gap(&places, &self.lengths);
+            if relative <= CLOSED || relative <= PRINTED && relative >= last {
                 return Ok(attitude);
             }
-            last = by;
-            equations.solve(&[Vector6::zeros(); N], &places, 1.0);
+            last = relative;
+            equations.solve(&[Vector6::zeros(); N], |joined| places.gap(joined));
             let updates = equations.unknowns.bodies;
             let largest = updates.iter().fold(0.0_f64, |most, update| most.max(update.fixed_rows::<3>(0).norm()));
             let part = if largest > LONGEST { LONGEST / largest } else { 1.0 };
             let increment = <CayleyRetraction as Retraction<[Body; N]>>::increment(&Bodies(updates.map(|u| u * part)));
             attitude = attitude.advance(&increment);
         }
-        let (joint, by) = self.widest(&Places::of(&attitude));
+        let (joint, by) = self.largest_gap(&Places::of(&attitude));
         Err(SetupError::OffConstraint { joint, by })
     }
 }
@@ -155,6 +149,6 @@ where
     /// axes.
     #[must_use]
     pub fn widest_gap(&self, motion: &Motion<[Body; N], S::Advected>) -> f64 {
-        self.plan.widest(&Places::of(&motion.attitude)).1
+        self.plan.largest_gap(&Places::of(&motion.attitude)).1
     }
 }
