@@ -9,7 +9,7 @@ use super::places::{Ends, Held, Places, Slopes, after, before, each_slope, parts
 
 /// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of
 /// a zero is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3
-/// µrad from there.
+/// µrad from there. It goes as the ratio of the bodies' masses, too: ratios of 1e11 are refused.
 const REDUNDANT: f64 = 1e-11;
 
 /// The joint that is open farthest, or opens fastest.
@@ -20,6 +20,10 @@ pub(super) struct Widest {
     /// Of the function that is it most, relative to the size of its terms.
     pub(super) relative: f64,
 }
+
+/// The least pivot of a joint whose functions don't depend on each other: what rounding leaves of a zero in a tree,
+/// where a joint's pivots are relative to its own matrix. A point mass on an arm of ten million radii is at it.
+const DEPENDENT: f64 = 1e-14;
 
 /// Matrices, slopes and right sides; solved, the unknowns.
 pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usize, const L: usize> {
@@ -35,8 +39,13 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
 {
     /// With `E` of these places.
     pub(super) fn at(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>, places: &Places<N>) -> Self {
-        let loops = joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above]));
+        let loops =
+            joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above], joined.joint.rows()));
         let mut equations = Self { joints, tree, bodies: [Body::new(); N], loops, unknowns: Unknowns::new() };
+        for (body, member) in equations.bodies.iter_mut().zip(&tree.members) {
+            let joined = member.joint.and_then(|joint| joints.tree.get(joint));
+            body.rows = joined.map_or(0, |joined| joined.joint.rows());
+        }
         equations.each(places, |slopes, side, body, slope| {
             slopes.0[side].before = before(slope, &places.0[body].attitude);
         });
@@ -131,9 +140,13 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         let largest = |of: fn(&Vector6<f64>) -> f64| velocities.iter().map(of).fold(0.0, f64::max);
         let turn = largest(|velocity| parts(velocity).0.norm());
         let speed = largest(|velocity| parts(velocity).1.norm());
-        self.widest(turn, |body| speed.max(lengths[body] * turn), |_, ends| {
-            ends.iter().fold(SVector::zeros(), |sum, &(body, ends)| sum + ends.before.tr_mul(&velocities[body]))
-        })
+        self.widest(
+            turn,
+            |body| speed.max(lengths[body] * turn),
+            |_, ends| {
+                ends.iter().fold(SVector::zeros(), |sum, &(body, ends)| sum + ends.before.tr_mul(&velocities[body]))
+            },
+        )
     }
 
     /// Of these values of the functions, each compared with the sizes of its own terms.
@@ -148,9 +161,9 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
             let [own, other] = [0, 1].map(|side| bodies[side].map(|body| (body, &slopes.0[side])));
             let both = [own.or(other), own.and(other)];
             let of = |ends: &[(usize, &Ends<K>)]| {
-                let sizes = ends.iter().fold(SVector::<f64, K>::zeros(), |sum, &(body, ends)| {
-                    sum + ends.sizes(turn, shift(body))
-                });
+                let sizes = ends
+                    .iter()
+                    .fold(SVector::<f64, K>::zeros(), |sum, &(body, ends)| sum + ends.sizes(turn, shift(body)));
                 (values(joint, ends), sizes)
             };
             let (values, sizes) = match both {
@@ -198,9 +211,17 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         self.bodies[body].determinant
     }
 
-    /// The first joint that the others leave nothing to do, by its number, and its pivot relative to that between free
-    /// bodies.
+    /// The first joint that leaves itself or that the others leave nothing to do, by its number, and its pivot relative
+    /// to that between free bodies.
     pub(super) fn redundant(&self) -> Option<(usize, f64)> {
+        // Far from rest a pivot of the tree may be negative, as the matrix isn't symmetric; what isn't a number is as
+        // good as zero.
+        let has_rank = |body: &Body<K>| body.pivot.abs() > DEPENDENT;
+        for (body, member) in self.bodies.iter().zip(&self.tree.members) {
+            if let (Some(joint), false) = (member.joint, has_rank(body)) {
+                return Some((joint, body.pivot));
+            }
+        }
         let has_something = |closing: &Closing<K, N, L>| closing.pivot > REDUNDANT;
         let joint = self.loops.iter().position(|closing| !has_something(closing))?;
         Some((T + joint, self.loops[joint].pivot))
