@@ -13,17 +13,17 @@ use super::plan::{Body, Jointed};
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
 use crate::mechanics::Effect;
-use crate::motion::{Motion, State, Stepper};
+use crate::motion::{Motion, State, Stepper, check_attitude};
 use crate::numbers::{Bodies, Coordinates as _};
-use crate::solving::{MAX_DAMPED_ITERATIONS, Warm};
+use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, Warm};
 
 /// How far joints may be open, relative to the terms of their functions, and velocities may part them, relative to
 /// theirs: what is left of values that are printed to thirteen digits.
 const PRINTED: f64 = f64::EPSILON * 1e4;
 /// How far joints of a start that is sought may be open to be closed: roundings, as steps leave them.
 const CLOSED: f64 = 2.0 * f64::EPSILON;
-/// The longest turn in one update of a start that is sought, rad.
-const LONGEST: f64 = 0.5;
+/// The longest turn in one update of a start that is sought, rad: that of half coordinates.
+const LONGEST: f64 = 2.0 * LONGEST_DAMPED;
 
 /// What a state of joined bodies is.
 type StateOf<A, const N: usize> = State<[Body; N], A, Warm<Bodies<Vector6<f64>, N>>>;
@@ -48,19 +48,22 @@ where
         equations
     }
 
-    /// What joints take from momenta whose velocities would part them: of bodies that turn at `J⁻¹(μ − s)` the
-    /// impulses that leave those nearest to it.
-    pub(super) fn reactions(
+    /// What joints take from momenta whose velocities `J⁻¹(μ − s)` would part them: the impulses that leave the
+    /// velocities nearest to these. Where these aren't determined, a joint to blame and its pivot.
+    pub(super) fn projection(
         &self,
         scene: &S,
         places: &Places<N>,
         advected: &S::Advected,
         momentum: &Bodies<Vector6<f64>, N>,
-    ) -> Bodies<Vector6<f64>, N> {
+    ) -> Result<Bodies<Vector6<f64>, N>, (usize, f64)> {
         let mut equations = self.of_velocities(scene, places, advected);
+        if let Some(redundant) = equations.redundant() {
+            return Err(redundant);
+        }
         let residual = scene.momentum_bias(advected) - *momentum;
         equations.solve(&residual.0, |_| SVector::zeros());
-        Bodies(equations.reactions())
+        Ok(Bodies(equations.reactions()))
     }
 
     /// Whether joints are closed, velocities keep them so, and each of them has something to do.
@@ -80,7 +83,7 @@ where
         if relative <= PRINTED { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
     }
 
-    /// The places nearest to these, as the inertia measures it, where joints are closed.
+    /// Places next to these where joints are closed, by corrections that are least as the inertia measures it.
     fn closed(&self, scene: &S, attitude: &[Body; N]) -> Result<[Body; N], SetupError> {
         let mut attitude = *attitude;
         let mut last = f64::INFINITY;
@@ -119,8 +122,8 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// A motion from where joints are closed next to these places, with the velocities next to these that keep them
-    /// closed; both as the inertia measures it.
+    /// A motion from a place next to these where joints are closed, by corrections that are least as the inertia measures
+    /// it, with those velocities nearest to these, measured so, that keep them closed.
     ///
     /// # Errors
     ///
@@ -134,13 +137,15 @@ where
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
+        check_attitude(&attitude)?;
         let attitude = self.plan.closed(&self.scene, &attitude)?;
         let advected = self.scene.advected().seen_from(&attitude);
         let mut momentum = self.scene.inertia(&advected) * velocity + self.scene.momentum_bias(&advected);
         let places = Places::of(&attitude);
         // The second time for what roundings of the first leave, where bodies are of unlike masses.
         for _ in 0..2 {
-            momentum = momentum - self.plan.reactions(&self.scene, &places, &advected, &momentum);
+            let taken = self.plan.projection(&self.scene, &places, &advected, &momentum);
+            momentum = momentum - taken.map_err(|(joint, pivot)| SetupError::RedundantJoint { joint, pivot })?;
         }
         self.start_with_momentum(attitude, momentum)
     }
