@@ -135,10 +135,10 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         })
     }
 
-    /// The joint that these velocities open fastest, by `E y`.
-    pub(super) fn widest_parting(&self, velocities: &[Vector6<f64>; N], lengths: &[f64; N]) -> Widest {
+    /// The joint that these velocities open fastest, by `E y`; turns slower than `least`, rad/s, are as good as none.
+    pub(super) fn widest_parting(&self, velocities: &[Vector6<f64>; N], lengths: &[f64; N], least: f64) -> Widest {
         let largest = |of: fn(&Vector6<f64>) -> f64| velocities.iter().map(of).fold(0.0, f64::max);
-        let turn = largest(|velocity| parts(velocity).0.norm());
+        let turn = largest(|velocity| parts(velocity).0.norm()).max(least);
         let speed = largest(|velocity| parts(velocity).1.norm());
         self.widest(
             turn,

@@ -14,7 +14,7 @@ use super::graph::{Joints, Tree};
 use super::places::{Places, parts};
 use super::{Constraint, Place};
 use crate::error::{SetupError, StepError};
-use crate::groups::{CayleyRetraction, LieGroup, R3, Retraction, SO3};
+use crate::groups::{Advected as _, CayleyRetraction, LieGroup, R3, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
 use crate::motion::{
     Cost, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due,
@@ -47,7 +47,7 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// SHAKE and RATTLE of the step (2.7) of \[RDAE\], in the momenta of the bodies.
 #[derive(Clone, Debug)]
 pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
-    h: f64,
+    pub(super) h: f64,
     constants: S::Constants,
     pub(super) joints: Joints<C, T, L>,
     pub(super) tree: Tree<N>,
@@ -381,9 +381,13 @@ where
             motion.count();
             return Ok(StepReport::of(0));
         }
-        // Before the step, so that joints are closed behind it.
+        // Before the step, so that joints are closed behind it. What the step has been given stays until then.
+        let mut is_restored = false;
         if is_due(next.now().steps) {
             next.restore(&scene.advected());
+            is_restored = next.now().attitude != motion.now().attitude;
+            let given = Motion { advected: motion.now().advected, ..*next.now() };
+            next.show(given);
         }
         let now = *next.now();
         if !now.momentum.is_finite() {
@@ -425,6 +429,10 @@ where
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
         next.proceed(&Proceeded { increment, change, momentum, advected });
+        if is_restored {
+            let seen = Motion { advected: scene.advected().seen_from(&next.now().attitude), ..*next.now() };
+            next.show(seen);
+        }
         let half = problem.half;
         let far = !<CayleyRetraction as Retraction<[Body; N]>>::is_half_well_near_identity(&half);
         kept.follow(half, far, Continued::Parabola);

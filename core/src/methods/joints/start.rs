@@ -18,8 +18,8 @@ use crate::numbers::{Bodies, Coordinates as _};
 use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, Warm};
 
 /// How far joints may be open, relative to the terms of their functions, and velocities may part them, relative to
-/// theirs: what is left of values that are printed to thirteen digits.
-const PRINTED: f64 = f64::EPSILON * 1e4;
+/// theirs: what is left of values that are printed to a dozen digits.
+const PRINTED: f64 = f64::EPSILON * 1e5;
 /// How far joints of a start that is sought may be open to be closed: roundings, as steps leave them.
 const CLOSED: f64 = 2.0 * f64::EPSILON;
 /// The longest turn in one update of a start that is sought, rad: that of half coordinates.
@@ -79,7 +79,9 @@ where
         check_redundance(&equations)?;
         let momentum = motion.momentum - scene.momentum_bias(&motion.advected);
         let velocities = Bodies::solve(&scene.inertia(&motion.advected), &momentum).0;
-        let Widest { joint, by, relative } = equations.widest_parting(&velocities.0, &self.lengths);
+        // What roundings of attitudes in a step leave of rest.
+        let least = if self.h == 0.0 { 0.0 } else { CLOSED / (PRINTED * self.h.abs()) };
+        let Widest { joint, by, relative } = equations.widest_parting(&velocities.0, &self.lengths, least);
         if relative <= PRINTED { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
     }
 
