@@ -2,10 +2,6 @@
 
 use nalgebra::{SVector, Vector6};
 
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
-
 use super::Constraint;
 use super::equations::{Equations, Widest};
 use super::places::Places;
