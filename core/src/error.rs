@@ -42,17 +42,17 @@ pub enum SetupError {
     OffConstraint {
         /// The joint, from zero.
         joint: usize,
-        /// By how much, m.
+        /// By how much, in the units of its functions: m, of axes the cosine.
         by: f64,
     },
     /// The initial velocities would open a joint, and this one the fastest.
     OffVelocity {
         /// The joint, from zero.
         joint: usize,
-        /// How fast, m/s.
+        /// How fast, in the units of its functions per second: m/s, of axes the cosine per second.
         by: f64,
     },
-    /// A joint has nothing to do that the others don't, at least along one direction, and at least where the motion is to
+    /// A joint has nothing to do that the others, or its own functions, don't, at least along one direction, and at least where the motion is to
     /// start: its force isn't determined.
     RedundantJoint {
         /// The joint, from zero.
@@ -139,15 +139,15 @@ impl fmt::Display for SetupError {
             }
             Self::OffConstraint { joint, by } => write!(
                 f,
-                "the joint {joint} (from zero) is open by {by:e} m; give other places, or let `start_nearest` close the joints"
+                "the joint {joint} (from zero) is open by {by:e} (in the units of its functions: m, of axes the cosine); give other places, or let `start_nearest` close the joints"
             ),
             Self::OffVelocity { joint, by } => write!(
                 f,
-                "the initial velocities open the joint {joint} (from zero) by {by:e} m/s; give others, or let `start_nearest` find those next to them"
+                "the initial velocities open the joint {joint} (from zero) by {by:e} (in the units of its functions per second: m/s, of axes the cosine per second); give others, or let `start_nearest` find those next to them"
             ),
             Self::RedundantJoint { joint, pivot } => write!(
                 f,
-                "the others do what the joint {joint} (from zero) is to do (pivot {pivot:e}), at least where the motion starts; take one with fewer functions, or start elsewhere"
+                "the others, or its own functions, do a part of what the joint {joint} (from zero) is to do (pivot {pivot:e}), at least where the motion starts; take one with fewer functions, or start elsewhere"
             ),
             Self::InvalidStep { step } => {
                 write!(

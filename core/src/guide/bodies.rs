@@ -120,7 +120,7 @@
 //! [`Joints`](crate::methods::Joints) takes those of trees and, apart, one of each loop. A motion starts where joints
 //! are closed and with velocities that keep them so; [`start_nearest`](crate::Stepper::start_nearest) finds such from
 //! others next to them. What can't be is an error that names the joint: one that is open, one that has nothing to do
-//! (the fourth pin of a planar linkage: in space three do), a loop that has come to a singular position.
+//! (the fourth pin of a planar linkage: three of its five functions), a loop that has come to a singular position.
 //!
 //! The step is that of the minimal form, so momenta and energy are kept as ever. A chain of links is faster in
 //! coordinates of its own, by [`ChainStepper`](crate::methods::ChainStepper).

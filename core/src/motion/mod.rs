@@ -38,6 +38,7 @@ pub use right_hand_side::RightHandSide;
 pub use state::State;
 pub(crate) use stepper::StateOf;
 pub use stepper::Stepper;
+pub(crate) use stepper::check_attitude;
 pub use summation::{Motion, Proceeded, Summation};
 pub(crate) use summation::{STEPS_BETWEEN_CHECKS, is_due, restored};
 

@@ -106,10 +106,17 @@ pub trait Plan<S: Effect> {
     /// and these report nothing but their iterations.
     const RUNS_BY_STEPS: bool = false;
 
-    /// Adds an impulse to the momentum between two steps, and to what is kept of it.
+    /// Adds an impulse to the momentum between two steps, and to what is kept of it. A method that holds bodies in joints
+    /// adds what these let through.
     #[inline(always)]
-    fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, impulse: &Vector<S>) {
-        Summation::push(motion, impulse);
+    fn push<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        _scene: &S,
+        motion: &mut M,
+        _kept: &mut Self::Kept,
+        impulse: &Vector<S>,
+    ) {
+        motion.push(impulse);
     }
 
     /// Puts other advected values in the place of those that the body sees, and forgets what is kept of them.

@@ -299,9 +299,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         let half = *force * (self.step_size() * real(0.5));
         let mut next = *state;
-        self.plan.push(&mut next.motion, &mut next.kept, &half);
+        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half);
         let report = self.step_called(&mut next)?;
-        self.plan.push(&mut next.motion, &mut next.kept, &half);
+        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half);
         if !next.motion.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
@@ -574,7 +574,7 @@ where
 }
 
 /// Whether a motion may start here.
-fn check_attitude<G: LieGroup>(attitude: &G) -> Result<(), SetupError> {
+pub(crate) fn check_attitude<G: LieGroup>(attitude: &G) -> Result<(), SetupError> {
     // What a unit quaternion or a matrix printed to a dozen digits leaves; NaN fails it too.
     let allowed = G::Scalar::simd_default_epsilon() * real(1e4);
     let defect = attitude.defect();

@@ -206,12 +206,17 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         Ok(iterations)
     }
 
-    fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, impulse: &Vector<S>) {
-        let mut sums = Sums { motion: *motion, carry: kept.carry };
-        // What the plan keeps may depend on the momentum.
-        self.0.push(&mut { *motion }, &mut kept.kept, impulse);
-        Summation::push(&mut sums, impulse);
-        (*motion, kept.carry) = (sums.motion, sums.carry);
+    fn push<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        impulse: &Vector<S>,
+    ) {
+        let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
+        self.0.push(scene, &mut sums, &mut kept.kept, impulse);
+        motion.replace(sums.motion);
+        kept.carry = sums.carry;
     }
 
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {

@@ -148,8 +148,14 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         }
     }
 
-    fn push(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, impulse: &Vector<S>) {
-        self.plan.push(motion, kept, impulse);
+    fn push<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        impulse: &Vector<S>,
+    ) {
+        self.plan.push(scene, motion, kept, impulse);
     }
 
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {

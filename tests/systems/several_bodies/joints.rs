@@ -626,7 +626,7 @@ fn a_singular_position_names_the_joint() {
     assert!(matches!(error, StepError::SingularJoint { joint: 2, .. }) && taken == before);
 }
 
-/// A planar linkage of pins alone: in space one of its joints does what the others do.
+/// A planar linkage of pins alone: the others do a part of what the last is to do.
 #[test]
 fn redundant_pins_are_named() {
     let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
@@ -719,10 +719,142 @@ fn errors_name_the_joint() {
     let before = state;
     let error = long.step(&mut state).unwrap_err();
     println!("{error}");
-    assert!(matches!(error, StepError::UnsolvedBody { .. }) && state == before, "{error}");
+    assert!(matches!(error, StepError::UnsolvedBody { body: 2, .. }) && state == before, "{error}");
 }
 
 fn with_joints_checked(chain: &Chain<4>, h: f64) -> Result<(), SetupError> {
     let stepper = with_joints(chain, 0.01);
     Stepper::jointed(*stepper.scene(), *stepper.plan().joints(), h).map(|_| ())
+}
+
+/// A wheel that is pinned at its centre, at the origin and far from it: cosines are compared with one, and places with
+/// what the wheel and its place are long.
+#[test]
+fn a_wheel_on_its_axle() {
+    let moments = Vector3::new(0.1, 0.1, 0.2);
+    let K = NonstandardInertia::from_principal_moments(moments).unwrap();
+    let axis = Vector3::new(0.3, -0.7, 0.2);
+    for centre in [Vector3::zeros(), Vector3::new(1e6, 0.0, 0.0)] {
+        let pin = PinJoint { above: centre, below: Vector3::zeros(), axis_above: axis, axis_below: Vector3::z() };
+        let joints = Joints::tree([Joined::to_space(pin, 0)]);
+        let stepper = Stepper::jointed(scene([Free { m: 5.0, K }], 0.0, Vector3::z()), joints, 0.01).unwrap();
+        let attitude = nalgebra::Rotation3::rotation_between(&Vector3::z(), &axis).unwrap();
+        let about = [(SO3::try_from(*attitude.matrix()).unwrap(), R3::from(centre))];
+        for rate in [0.0, 1e-7, 3.0] {
+            let turning = Bodies([six(&(Vector3::z() * rate), &Vector3::zeros())]);
+            let mut state = stepper.start(about, turning).unwrap();
+            stepper.run(&mut state, 1000).unwrap();
+            let moved = stepper.velocity(&state).0[0] - turning.0[0];
+            assert!(
+                moved.amax() < 1e-12 * (rate + 1.0)
+                    && stepper.widest_gap(&state) < 8.0 * EPSILON * centre.norm().max(1.0)
+            );
+            // What steps leave may be started from.
+            stepper.start_with_momentum(state.attitude(), state.momentum()).unwrap();
+        }
+        // It is open by more than roundings.
+        let mut open = about;
+        open[0].1 = R3::from(centre + Vector3::y() * 1e-10 * centre.norm().max(1.0));
+        let error = stepper.start(open, Bodies([Vector6::zeros()])).unwrap_err();
+        assert!(matches!(error, SetupError::OffConstraint { joint: 0, .. }), "{error}");
+        let closed = stepper.start_nearest(open, Bodies([Vector6::zeros()])).unwrap();
+        assert!(stepper.widest_gap(&closed) < 4.0 * EPSILON * centre.norm().max(1.0));
+    }
+}
+
+/// Systems of any size, at rest and as good as at rest: what roundings leave is compared with what there is.
+#[test]
+fn small_and_slow() {
+    for size in [1.0, 1e-3, 1e-6] {
+        let (e, mass) = (Vector3::x() * (0.5 * size), size * size * size);
+        let moments = Vector3::new(0.02, 0.1, 0.1) * (mass * size * size);
+        let K = NonstandardInertia::from_principal_moments(moments).unwrap();
+        let link = BallJoint { above: e, below: -e };
+        let joints = Joints::tree([Joined::between(link, 0, 1), Joined::between(link, 1, 2)]);
+        let scene = scene([Free { m: mass, K }; 3], 0.0, Vector3::z());
+        let stepper = Stepper::jointed(scene, joints, 0.01).unwrap();
+        let about = row([0.9, 0.2, -0.5]).0.map(|(turn, place)| (turn, R3::from(place.translation() * size)));
+        for rate in [0.0, 1e-7, 1.0] {
+            let moving = Bodies([six(&(Vector3::new(0.3, 1.0, -0.2) * rate), &Vector3::zeros()); 3]);
+            let mut state = stepper.start_nearest(about, moving).unwrap();
+            let [p, l] = whole(&state);
+            stepper.run(&mut state, 500).unwrap();
+            let after = whole(&state);
+            let off = [(after[0] - p).norm() / (mass * size), (after[1] - l).norm() / (mass * size * size)];
+            println!("{size:e} {rate:e}: {off:?}, gap {:e}", stepper.widest_gap(&state) / size);
+            assert!(stepper.widest_gap(&state) < 8.0 * EPSILON * size);
+            assert!(off.iter().all(|&off| off < 1e-12 * (rate + 1.0)), "{off:?}");
+        }
+    }
+}
+
+/// A force that is given to each step anew: with the weight of the bodies it is their step under gravity, and
+/// velocities keep to the joints.
+#[test]
+fn a_control_force() {
+    let (start, velocity) = state_of(&read("closed loop")["states"][0]);
+    let falling = closed_loop(0.01, 3);
+    let data = &read("closed loop")["parameters"];
+    let weights = all(&data["bodies"], |body| number(&body["m"]) * number(&data["g"]));
+    let bodies = all(&data["bodies"], |body| Free {
+        m: number(&body["m"]),
+        K: NonstandardInertia::from_principal_moments(plain(&body["J"])).unwrap(),
+    });
+    let floating = scene::<3>(bodies.try_into().unwrap(), 0.0, Vector3::z());
+    let pushed = Stepper::jointed(floating, *falling.plan().joints(), 0.01).unwrap();
+    let force = Bodies(from_fn(|k| -Vector6::ith(5, weights[k])));
+    let mut expected = falling.start(start, velocity).unwrap();
+    falling.run(&mut expected, 100).unwrap();
+    let mut state = pushed.start(start, velocity).unwrap();
+    let compensated = pushed.clone().compensated();
+    let mut carried = compensated.start(start, velocity).unwrap();
+    for _ in 0..100 {
+        pushed.step_forced(&mut state, &force).unwrap();
+        compensated.step_forced(&mut carried, &force).unwrap();
+        pushed.start_with_momentum(state.attitude(), state.momentum()).unwrap();
+        pushed.start_with_momentum(carried.attitude(), carried.momentum()).unwrap();
+    }
+    let turned = expected.attitude().map(|body| body.0);
+    let off = [state.attitude(), carried.attitude()].map(|found| apart(&found.map(|body| body.0), &turned));
+    println!("{off:?}");
+    assert!(off.iter().all(|&off| off < 1e-12));
+}
+
+/// A joint whose functions repeat each other is named where it starts; what isn't in the group isn't a start either.
+#[test]
+fn a_joint_that_repeats_itself() {
+    /// The height of a point, twice over, and then perhaps a function whose slope is zero.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    struct Heights([f64; 2]);
+    impl Constraint<2> for Heights {
+        fn validate(&self) -> Result<(), SetupError> {
+            Ok(())
+        }
+        fn gap(&self, above: &Place, below: &Place) -> nalgebra::SVector<f64, 2> {
+            nalgebra::SVector::from(self.0) * (below.position.z - above.position.z)
+        }
+        fn slope(&self, _: &Place, _: &Place) -> [liestep::methods::Slope<2>; 2] {
+            let turn = nalgebra::SMatrix::zeros();
+            let shift =
+                nalgebra::SMatrix::<f64, 2, 3>::from_fn(|row, column| if column == 2 { self.0[row] } else { 0.0 });
+            [liestep::methods::Slope { turn, shift: -shift }, liestep::methods::Slope { turn, shift }]
+        }
+        fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+            self.0.iter().for_each(|&height| visit("height", height));
+        }
+    }
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
+    let still = Bodies([Vector6::zeros()]);
+    for heights in [[1.0, 1.0], [1.0, 0.3], [1.0, 0.0], [0.0, 1.0]] {
+        let joints = Joints::tree([Joined::to_space(Heights(heights), 0)]);
+        let stepper = Stepper::jointed(scene([Free { m: 1.0, K }], 9.81, Vector3::z()), joints, 0.01).unwrap();
+        let named = |error: Result<_, SetupError>| {
+            matches!(error.map(|_: ()| ()), Err(SetupError::RedundantJoint { joint: 0, .. }))
+        };
+        assert!(named(stepper.start([Body::identity()], still).map(|_| ())), "{heights:?}");
+        assert!(named(stepper.start_nearest([Body::identity()], still).map(|_| ())), "{heights:?}");
+        let nowhere = [(SO3::identity(), R3::from(Vector3::x() * f64::NAN))];
+        let error = stepper.start_nearest(nowhere, still).unwrap_err();
+        assert!(matches!(error, SetupError::NotInGroup { .. }), "{error}");
+    }
 }

@@ -207,8 +207,14 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
         Ok(iterations)
     }
 
-    fn push(&self, motion: &mut Motion<SO3, S::Advected>, kept: &mut Self::Kept, impulse: &Vector3<f64>) {
-        motion.momentum += impulse;
+    fn push<M: Summation<SO3, S::Advected>>(
+        &self,
+        _scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        impulse: &Vector3<f64>,
+    ) {
+        motion.push(impulse);
         kept.push(impulse);
     }
 

@@ -69,10 +69,6 @@ pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
     /// Their derivatives by the place of the body above, and of that below.
     fn slope(&self, above: &Place, below: &Place) -> [Slope<K>; 2];
 
-    /// How far from the origins of the bodies its points are, m: with the bodies' distances it is what
-    /// gaps are compared with.
-    fn reach(&self) -> f64;
-
     /// Shows its parameters.
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64));
 }
@@ -154,10 +150,6 @@ impl Constraint<3> for BallJoint {
         ]
     }
 
-    fn reach(&self) -> f64 {
-        self.above.norm().max(self.below.norm())
-    }
-
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
         describe([("above", &self.above), ("below", &self.below)], visit);
     }
@@ -211,10 +203,6 @@ impl Constraint<5> for PinJoint {
         [above, below]
     }
 
-    fn reach(&self) -> f64 {
-        self.ball().reach()
-    }
-
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
         self.ball().describe(visit);
         describe([("axis_above", &self.axis_above), ("axis_below", &self.axis_below)], visit);
@@ -259,13 +247,6 @@ impl Constraint<5> for Joint {
         match self {
             Self::Ball(joint) => joint.slope(above, below).map(|slope| lengthened(&slope)),
             Self::Pin(joint) => joint.slope(above, below),
-        }
-    }
-
-    fn reach(&self) -> f64 {
-        match self {
-            Self::Ball(joint) => joint.reach(),
-            Self::Pin(joint) => joint.reach(),
         }
     }
 

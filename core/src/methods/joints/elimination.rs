@@ -21,7 +21,7 @@
 //! loops are a border: with the solution `Y` for their columns `Eᵀ`, `S_L = −C_L Y` are the equations of their
 //! multipliers.
 
-use nalgebra::{SMatrix, SVector, Vector6};
+use nalgebra::{SMatrix, SVector, Vector2, Vector6};
 
 use super::graph::Tree;
 use super::places::{Ends, Slopes};
@@ -41,6 +41,10 @@ pub(super) struct Body<const K: usize> {
     pub(super) determinant: f64,
     /// `E` and `C` of the joint towards the root, with this body and with its parent.
     pub(super) slopes: Slopes<K>,
+    /// How many functions that joint has.
+    pub(super) rows: usize,
+    /// The least pivot of that joint, relative to the diagonal; one where there is none.
+    pub(super) pivot: f64,
     x: SMatrix<f64, 6, K>,
     inverse: SMatrix<f64, K, K>,
     p: SMatrix<f64, K, 6>,
@@ -52,6 +56,8 @@ impl<const K: usize> Body<K> {
             matrix: SMatrix::zeros(),
             determinant: 1.0,
             slopes: Slopes::new(),
+            rows: K,
+            pivot: 1.0,
             x: SMatrix::zeros(),
             inverse: SMatrix::zeros(),
             p: SMatrix::zeros(),
@@ -65,6 +71,8 @@ pub(super) struct Closing<const K: usize, const N: usize, const L: usize> {
     /// The bodies below and above; `None` is space.
     pub(super) bodies: [Option<usize>; 2],
     pub(super) slopes: Slopes<K>,
+    /// How many functions the joint has.
+    rows: usize,
     /// `Y`, and its multipliers of the trees' joints.
     columns: [SMatrix<f64, 6, K>; N],
     multipliers: [SMatrix<f64, K, K>; N],
@@ -77,10 +85,11 @@ pub(super) struct Closing<const K: usize, const N: usize, const L: usize> {
 }
 
 impl<const K: usize, const N: usize, const L: usize> Closing<K, N, L> {
-    pub(super) fn new(bodies: [Option<usize>; 2]) -> Self {
+    pub(super) fn new(bodies: [Option<usize>; 2], rows: usize) -> Self {
         Self {
             bodies,
             slopes: Slopes::new(),
+            rows,
             columns: [SMatrix::zeros(); N],
             multipliers: [SMatrix::zeros(); N],
             row: [SMatrix::zeros(); L],
@@ -137,7 +146,7 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
         let [own, of_parent] = body.slopes.0;
         body.x = solved(&body.matrix, &own.before);
         let s = own.after * body.x;
-        (body.inverse, _) = inverted(&s, &s.diagonal());
+        (body.inverse, body.pivot) = inverted(&s, &s.diagonal(), body.rows);
         let Some(parent) = member.parent else { continue };
         body.p = body.inverse * of_parent.after;
         let added = of_parent.before * body.p;
@@ -172,7 +181,7 @@ fn close<const K: usize, const N: usize, const L: usize>(
         }
     }
     for k in 0..L {
-        (loops[k].row[k], loops[k].pivot) = inverted(&loops[k].row[k], &loops[k].free);
+        (loops[k].row[k], loops[k].pivot) = inverted(&loops[k].row[k], &loops[k].free, loops[k].rows);
         let pivot_row = loops[k].row;
         for closing in &mut loops[k + 1..] {
             let factor = closing.row[k] * pivot_row[k];
@@ -184,14 +193,14 @@ fn close<const K: usize, const N: usize, const L: usize>(
     }
 }
 
-/// Solves for right sides by the factors; returns the sum of the squares of the `w`, of which the solution is a small
-/// difference where joints hold bodies fast.
+/// Solves for right sides by the factors; returns the sums of the squares of the `w`, of turns and of shifts: the
+/// solution is a small difference of these where joints hold bodies fast.
 pub(super) fn solve<const K: usize, const N: usize, const L: usize>(
     tree: &Tree<N>,
     bodies: &[Body<K>; N],
     loops: &[Closing<K, N, L>; L],
     unknowns: &mut Unknowns<K, N, L>,
-) -> f64 {
+) -> Vector2<f64> {
     let size = substitute(tree, bodies, &mut unknowns.bodies, &mut unknowns.joints);
     for (k, closing) in loops.iter().enumerate() {
         // `C_L x + g`, and then the rows above.
@@ -226,13 +235,13 @@ fn substitute<const K: usize, const N: usize, const C: usize>(
     bodies: &[Body<K>; N],
     of_bodies: &mut [SMatrix<f64, 6, C>; N],
     of_joints: &mut [SMatrix<f64, K, C>; N],
-) -> f64 {
-    let mut size = 0.0;
+) -> Vector2<f64> {
+    let mut size = Vector2::zeros();
     for &k in tree.order.iter().rev() {
         let (body, member) = (&bodies[k], tree.members[k]);
         let w = solved(&body.matrix, &of_bodies[k]);
         of_bodies[k] = w;
-        size += w.norm_squared();
+        size += Vector2::new(w.fixed_rows::<3>(0).norm_squared(), w.fixed_rows::<3>(3).norm_squared());
         if member.joint.is_none() {
             continue;
         }
@@ -268,18 +277,19 @@ fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMat
     solved
 }
 
-/// The inverse, by elimination in the order of the rows, and the least pivot relative to `sizes`. Rows that are zero
-/// and have no size are of functions that there aren't.
+/// The inverse, by elimination in the order of the rows, and the least pivot relative to `sizes`. Behind the
+/// first `rows` there are no functions.
 #[inline(always)]
-fn inverted<const K: usize>(matrix: &SMatrix<f64, K, K>, sizes: &SVector<f64, K>) -> (SMatrix<f64, K, K>, f64) {
+fn inverted<const K: usize>(
+    matrix: &SMatrix<f64, K, K>,
+    sizes: &SVector<f64, K>,
+    rows: usize,
+) -> (SMatrix<f64, K, K>, f64) {
     let (mut a, mut least) = (*matrix, f64::INFINITY);
-    for k in 0..K {
-        if sizes[k] == 0.0 {
-            continue;
-        }
+    for k in 0..rows.min(K) {
         let pivot = a[(k, k)];
         // Behind a pivot that isn't positive the others tell nothing.
-        let relative = pivot / sizes[k];
+        let relative = if sizes[k] == 0.0 { 0.0 } else { pivot / sizes[k] };
         least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
         let inverse = 1.0 / pivot;
         a[(k, k)] = 1.0;

@@ -1,16 +1,29 @@
 //! The equations of a system whose bodies are joined, at one place.
 
-use nalgebra::{Matrix3, SMatrix, SVector, Vector6};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector6};
 
 use super::Constraint;
 use super::elimination::{Body, Closing, Unknowns, factorise, solve};
-use super::graph::{Joints, Tree};
-use super::places::{Held, Places, Slopes, after, before, each_slope};
+use super::graph::{Joined, Joints, Tree};
+use super::places::{Ends, Held, Places, Slopes, after, before, each_slope, parts};
 
 /// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of
 /// a zero is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3
-/// µrad from there.
+/// µrad from there. It goes as the ratio of the bodies' masses, too: ratios of 1e11 are refused.
 const REDUNDANT: f64 = 1e-11;
+
+/// The joint that is open farthest, or opens fastest.
+pub(super) struct Widest {
+    pub(super) joint: usize,
+    /// By how much, in the units of its functions.
+    pub(super) by: f64,
+    /// Of the function that is it most, relative to the size of its terms.
+    pub(super) relative: f64,
+}
+
+/// The least pivot of a joint whose functions don't depend on each other: what rounding leaves of a zero in a tree,
+/// where a joint's pivots are relative to its own matrix. A point mass on an arm of ten million radii is at it.
+const DEPENDENT: f64 = 1e-14;
 
 /// Matrices, slopes and right sides; solved, the unknowns.
 pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usize, const L: usize> {
@@ -26,8 +39,13 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
 {
     /// With `E` of these places.
     pub(super) fn at(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>, places: &Places<N>) -> Self {
-        let loops = joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above]));
+        let loops =
+            joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above], joined.joint.rows()));
         let mut equations = Self { joints, tree, bodies: [Body::new(); N], loops, unknowns: Unknowns::new() };
+        for (body, member) in equations.bodies.iter_mut().zip(&tree.members) {
+            let joined = member.joint.and_then(|joint| joints.tree.get(joint));
+            body.rows = joined.map_or(0, |joined| joined.joint.rows());
+        }
         equations.each(places, |slopes, side, body, slope| {
             slopes.0[side].before = before(slope, &places.0[body].attitude);
         });
@@ -68,16 +86,19 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         factorise(self.tree, &mut self.bodies, &mut self.loops);
     }
 
-    /// Solves with these residuals of the bodies, and gaps of the joints times `scale`; the sum of the squares that
-    /// [`solve`] returns.
-    pub(super) fn solve(&mut self, residuals: &[Vector6<f64>; N], places: &Places<N>, scale: f64) -> f64 {
+    /// Solves with these residuals of the bodies, and these gaps of the joints; what [`solve`] returns.
+    pub(super) fn solve(
+        &mut self,
+        residuals: &[Vector6<f64>; N],
+        gap: impl Fn(&Joined<C>) -> SVector<f64, K>,
+    ) -> Vector2<f64> {
         self.unknowns.bodies = *residuals;
         for (unknown, member) in self.unknowns.joints.iter_mut().zip(&self.tree.members) {
             let joined = member.joint.and_then(|joint| self.joints.tree.get(joint));
-            *unknown = joined.map_or_else(SVector::zeros, |joined| places.gap(joined) * scale);
+            *unknown = joined.map_or_else(SVector::zeros, &gap);
         }
         for (unknown, joined) in self.unknowns.loops.iter_mut().zip(&self.joints.loops) {
-            *unknown = places.gap(joined) * scale;
+            *unknown = gap(joined);
         }
         solve(self.tree, &self.bodies, &self.loops, &mut self.unknowns)
     }
@@ -105,28 +126,77 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         reactions
     }
 
-    /// `E y` for velocities `y`, and how large its terms are, of each joint by its number.
-    pub(super) fn parting(&self, velocities: &[Vector6<f64>; N], mut visit: impl FnMut(usize, f64, f64)) {
-        let mut of = |joint: usize, bodies: [Option<usize>; 2], slopes: &Slopes<K>| {
-            let (mut sum, mut size) = (SVector::<f64, K>::zeros(), 0.0);
-            for (body, ends) in bodies.into_iter().zip(&slopes.0) {
-                if let Some(body) = body {
-                    let part = ends.before.tr_mul(&velocities[body]);
-                    sum += part;
-                    // What cancels within a part counts, too.
-                    size += ends.before.abs().tr_mul(&velocities[body].abs()).norm();
+    /// The joint that is open farthest; `lengths` are those of the bodies themselves, m.
+    pub(super) fn widest_gap(&self, places: &Places<N>, lengths: &[f64; N]) -> Widest {
+        let shift = |body: usize| lengths[body].max(places.0[body].position.norm());
+        self.widest(1.0, shift, |joint, _| {
+            let mut all = self.joints.tree.iter().chain(&self.joints.loops);
+            all.nth(joint).map_or_else(SVector::zeros, |joined| places.gap(joined))
+        })
+    }
+
+    /// The joint that these velocities open fastest, by `E y`; turns slower than `least`, rad/s, are as good as none.
+    pub(super) fn widest_parting(&self, velocities: &[Vector6<f64>; N], lengths: &[f64; N], least: f64) -> Widest {
+        let largest = |of: fn(&Vector6<f64>) -> f64| velocities.iter().map(of).fold(0.0, f64::max);
+        let turn = largest(|velocity| parts(velocity).0.norm()).max(least);
+        let speed = largest(|velocity| parts(velocity).1.norm());
+        self.widest(
+            turn,
+            |body| speed.max(lengths[body] * turn),
+            |_, ends| {
+                ends.iter().fold(SVector::zeros(), |sum, &(body, ends)| sum + ends.before.tr_mul(&velocities[body]))
+            },
+        )
+    }
+
+    /// Of these values of the functions, each compared with the sizes of its own terms.
+    fn widest(
+        &self,
+        turn: f64,
+        shift: impl Fn(usize) -> f64,
+        values: impl Fn(usize, &[(usize, &Ends<K>)]) -> SVector<f64, K>,
+    ) -> Widest {
+        let mut widest = Widest { joint: 0, by: 0.0, relative: 0.0 };
+        let mut compare = |joint: usize, bodies: [Option<usize>; 2], slopes: &Slopes<K>| {
+            let [own, other] = [0, 1].map(|side| bodies[side].map(|body| (body, &slopes.0[side])));
+            let both = [own.or(other), own.and(other)];
+            let of = |ends: &[(usize, &Ends<K>)]| {
+                let sizes = ends
+                    .iter()
+                    .fold(SVector::<f64, K>::zeros(), |sum, &(body, ends)| sum + ends.sizes(turn, shift(body)));
+                (values(joint, ends), sizes)
+            };
+            let (values, sizes) = match both {
+                [Some(one), Some(other)] => of(&[one, other]),
+                [Some(one), None] => of(&[one]),
+                _ => return,
+            };
+            for (value, size) in values.iter().zip(&sizes) {
+                let relative = if *value == 0.0 { 0.0 } else { value.abs() / size };
+                // What isn't a number is the widest.
+                if !(relative <= widest.relative || widest.relative.is_nan()) {
+                    widest = Widest { joint, by: values.norm(), relative };
                 }
             }
-            visit(joint, sum.norm(), size);
         };
         for (k, (body, member)) in self.bodies.iter().zip(&self.tree.members).enumerate() {
             if let Some(joint) = member.joint {
-                of(joint, [Some(k), member.parent], &body.slopes);
+                compare(joint, [Some(k), member.parent], &body.slopes);
             }
         }
         for (k, closing) in self.loops.iter().enumerate() {
-            of(T + k, closing.bodies, &closing.slopes);
+            compare(T + k, closing.bodies, &closing.slopes);
         }
+        widest
+    }
+
+    /// The largest distance of a body from the origin, or of what a joint compares from its body, m: what roundings of
+    /// places are units in the last place of.
+    pub(super) fn extent(&self, places: &Places<N>) -> f64 {
+        let of_bodies = self.bodies.iter().map(|body| &body.slopes);
+        let slopes = of_bodies.chain(self.loops.iter().map(|closing| &closing.slopes));
+        let arms = slopes.flat_map(|slopes| &slopes.0).map(Ends::arm);
+        places.0.iter().map(|place| place.position.norm()).chain(arms).fold(0.0, f64::max)
     }
 
     /// The first body whose part of the matrix has a determinant of the wrong sign, and that.
@@ -141,9 +211,17 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         self.bodies[body].determinant
     }
 
-    /// The first joint that the others leave nothing to do, by its number, and its pivot relative to that between free
-    /// bodies.
+    /// The first joint that leaves itself or that the others leave nothing to do, by its number, and its pivot relative
+    /// to that between free bodies.
     pub(super) fn redundant(&self) -> Option<(usize, f64)> {
+        // Far from rest a pivot of the tree may be negative, as the matrix isn't symmetric; what isn't a number is as
+        // good as zero.
+        let has_rank = |body: &Body<K>| body.pivot.abs() > DEPENDENT;
+        for (body, member) in self.bodies.iter().zip(&self.tree.members) {
+            if let (Some(joint), false) = (member.joint, has_rank(body)) {
+                return Some((joint, body.pivot));
+            }
+        }
         let has_something = |closing: &Closing<K, N, L>| closing.pivot > REDUNDANT;
         let joint = self.loops.iter().position(|closing| !has_something(closing))?;
         Some((T + joint, self.loops[joint].pivot))

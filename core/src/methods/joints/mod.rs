@@ -1,4 +1,5 @@
-//! Systems of rigid bodies held together by joints, with multipliers, each step in time proportional to their number.
+//! Systems of rigid bodies held together by joints, with multipliers. A step of `N` bodies with `L` loops takes time
+//! `O(N + N L + L³)`.
 //!
 //! The configurations of the bodies are `q = (R_a, x_a)` on (SO(3) × R³)ᴺ, and joints are functions `g(q) = 0` of
 //! them. With the matrix `G` of their derivatives along `δR = R ẑ`, `δx`, a step is that of the scene with the

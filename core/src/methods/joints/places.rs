@@ -15,6 +15,27 @@ pub(super) struct Ends<const K: usize> {
     pub(super) after: SMatrix<f64, K, 6>,
 }
 
+impl<const K: usize> Ends<K> {
+    /// How much each function changes as the body turns by one, and as it is shifted by one.
+    fn rates(&self) -> [SVector<f64, K>; 2] {
+        [0, 3].map(|first| SVector::from_fn(|row, _| self.before.fixed_view::<3, 1>(first, row).norm()))
+    }
+
+    /// The longest arm at which a turn shifts what the functions compare, m; zero where they compare directions alone.
+    pub(super) fn arm(&self) -> f64 {
+        let [turns, shifts] = self.rates();
+        let of = |row: usize| if shifts[row] > 0.0 { turns[row] / shifts[row] } else { 0.0 };
+        (0..K).map(of).fold(0.0, f64::max)
+    }
+
+    /// How much each function changes by terms of these sizes: `turn` in rad or rad/s, and `shift` in m or m/s, or what
+    /// the turn makes of the arm, where that is more.
+    pub(super) fn sizes(&self, turn: f64, shift: f64) -> SVector<f64, K> {
+        let [turns, shifts] = self.rates();
+        turns * turn + shifts * shift.max(self.arm() * turn)
+    }
+}
+
 /// Of both ends: of a tree's joint that of the body and that of its parent, of one that closes a loop that of the body
 /// below and that of the body above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,15 +68,6 @@ impl<const N: usize> Places<N> {
     fn slope<C: Constraint<K>, const K: usize>(&self, joined: &Joined<C>) -> [(Option<usize>, Slope<K>); 2] {
         let [above, below] = joined.joint.slope(&self.get(joined.above), &self.0[joined.below]);
         [(Some(joined.below), below), (joined.above, above)]
-    }
-
-    /// The square of the largest distance from space's origin, m²; the roundings of places are those of this size.
-    pub(super) fn extent<C: Constraint<K>, const K: usize, const T: usize, const L: usize>(
-        &self,
-        joints: &Joints<C, T, L>,
-    ) -> f64 {
-        let reach = joints.all().fold(0.0_f64, |most, (_, joined)| most.max(joined.joint.reach()));
-        self.0.iter().fold(reach * reach, |most, place| most.max(place.position.norm_squared()))
     }
 }
 

@@ -3,7 +3,7 @@
 use core::array::from_fn;
 use core::f64::consts::FRAC_PI_2;
 
-use nalgebra::Vector6;
+use nalgebra::{Vector2, Vector6};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
@@ -14,7 +14,7 @@ use super::graph::{Joints, Tree};
 use super::places::{Places, parts};
 use super::{Constraint, Place};
 use crate::error::{SetupError, StepError};
-use crate::groups::{CayleyRetraction, LieGroup, R3, Retraction, SO3};
+use crate::groups::{Advected as _, CayleyRetraction, LieGroup, R3, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
 use crate::motion::{
     Cost, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due,
@@ -40,17 +40,19 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// - Velocities keep to the joints as well: energies and momenta of a state are those of the joined system.
 /// - A step satisfies its equations to rounding, or is an error, mostly of a body or a joint, and leaves the state as it
 ///   was.
-/// - Nothing is allocated. A body takes about 3 kB of stack, and 300 bytes more for each loop.
+/// - Nothing is allocated.
 ///
 /// # Source
 ///
 /// SHAKE and RATTLE of the step (2.7) of \[RDAE\], in the momenta of the bodies.
 #[derive(Clone, Debug)]
 pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
-    h: f64,
+    pub(super) h: f64,
     constants: S::Constants,
     pub(super) joints: Joints<C, T, L>,
     pub(super) tree: Tree<N>,
+    /// Of each body its radius of gyration, m: what a turn of it by 1 rad is compared with.
+    pub(super) lengths: [f64; N],
 }
 
 impl<S: Effect> Stepper<S> {
@@ -149,7 +151,11 @@ where
         // The scene without joints has to be one that can be stepped.
         crate::motion::Declared::<S>::folded(scene, h)?;
         let tree = joints.planted()?;
-        Ok(Self { h, constants: scene.constants(h), joints, tree })
+        let lengths = scene.inertia(&scene.advected()).0.map(|inertia| {
+            let trace = |first: usize| (first..first + 3).map(|k| inertia[(k, k)]).sum::<f64>();
+            (trace(0) / trace(3)).sqrt()
+        });
+        Ok(Self { h, constants: scene.constants(h), joints, tree, lengths })
     }
 
     /// The joints.
@@ -159,6 +165,12 @@ where
     }
 }
 
+/// Of the turning part, and of the other.
+fn squares(of: &Vector6<f64>) -> Vector2<f64> {
+    let (turn, shift) = parts(of);
+    Vector2::new(turn.norm_squared(), shift.norm_squared())
+}
+
 /// What is solved for a step.
 struct Problem<'a, S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
     plan: &'a Jointed<S, C, K, N, T, L>,
@@ -166,15 +178,17 @@ struct Problem<'a, S: Effect, C, const K: usize, const N: usize, const T: usize,
     attitude: &'a [Body; N],
     places: Places<N>,
     equations: Equations<'a, C, K, N, T, L>,
-    /// The square of what roundings of places are units in the last place of.
+    /// A turn of 1 rad is compared with a shift by the shortest of the bodies' lengths: `1/length²`, 1/m².
+    weight: f64,
+    /// The square of what roundings of places are units in the last place of, in turns.
     extent: f64,
     half: Components<N>,
-    /// The last joint that an iteration has found with nothing to do, and its pivot.
+    /// The joint that the last iterate leaves nothing to do, and its pivot.
     met: Option<(usize, f64)>,
 }
 
 /// The squares of the lengths of an update and of the unknowns after it, that of the largest turn in it, and that of
-/// what rounding leaves of it.
+/// what rounding leaves of it. All are in rad, with shifts over the shortest of the bodies' lengths.
 struct Updated {
     update: f64,
     size: f64,
@@ -208,7 +222,7 @@ where
         });
         self.equations.set_after(&next, &turns);
         self.equations.factorise(&matrices);
-        self.met = self.equations.redundant().or(self.met);
+        self.met = self.equations.redundant();
         self.update(&residuals, &next, longest)
     }
 
@@ -221,18 +235,24 @@ where
 
     /// Where a body would turn by more than `longest`, all updates are shortened.
     fn update(&mut self, residuals: &Components<N>, next: &Places<N>, longest: f64) -> Updated {
-        let opposed = self.equations.solve(&residuals.0, next, 0.5);
+        let opposed = self.equations.solve(&residuals.0, |joined| next.gap(joined) * 0.5);
         let (mut update, mut largest, mut size) = (0.0, 0.0_f64, 0.0);
+        let weights = self.weights();
         for part in &self.equations.unknowns.bodies {
-            update += part.norm_squared();
+            update += squares(part).dot(&weights);
             largest = largest.max(parts(part).0.norm_squared());
         }
         let part = if largest > longest * longest { longest / largest.sqrt() } else { 1.0 };
         for (half, update) in self.half.0.iter_mut().zip(&self.equations.unknowns.bodies) {
             *half += update * part;
-            size += half.norm_squared();
+            size += squares(half).dot(&weights);
         }
-        Updated { update, size, largest, rounded: (opposed + self.extent) * (ROUNDED * ROUNDED) }
+        Updated { update, size, largest, rounded: (opposed.dot(&weights) + self.extent) * (ROUNDED * ROUNDED) }
+    }
+
+    /// Of the two [`squares`].
+    fn weights(&self) -> Vector2<f64> {
+        Vector2::new(1.0, self.weight)
     }
 
     /// How many iterations were made, and whether they have settled near the identity, with all determinants positive.
@@ -310,8 +330,10 @@ where
         if let Some(body) = self.turned_too_far().or(self.equations.wrong_body().map(|(body, _)| body)) {
             return blamed(body);
         }
-        let (update, size) = (Bodies(self.equations.unknowns.bodies), self.half);
-        StepError::NotConverged { iterations, residual: (update.dot(&update) / size.dot(&size)).sqrt() }
+        let square = |of: &[Vector6<f64>; N]| of.iter().map(|part| squares(part).dot(&self.weights())).sum::<f64>();
+        let (update, size) = (square(&self.equations.unknowns.bodies), square(&self.half.0));
+        // At rest there is nothing that an update is relative to.
+        StepError::NotConverged { iterations, residual: (update / if size > 0.0 { size } else { 1.0 }).sqrt() }
     }
 }
 
@@ -359,9 +381,13 @@ where
             motion.count();
             return Ok(StepReport::of(0));
         }
-        // Before the step, so that joints are closed behind it.
+        // Before the step, so that joints are closed behind it. What the step has been given stays until then.
+        let mut is_restored = false;
         if is_due(next.now().steps) {
             next.restore(&scene.advected());
+            is_restored = next.now().attitude != motion.now().attitude;
+            let given = Motion { advected: motion.now().advected, ..*next.now() };
+            next.show(given);
         }
         let now = *next.now();
         if !now.momentum.is_finite() {
@@ -370,12 +396,17 @@ where
         let kick = if S::PARTS.kick_before { S::kick_before(&self.constants, &now.advected) } else { Bodies::zero() };
         let a = now.momentum + kick;
         let places = Places::of(&now.attitude);
+        let equations = Equations::at(&self.joints, &self.tree, &places);
+        let length = self.lengths.iter().copied().fold(f64::INFINITY, f64::min);
+        let extent = equations.extent(&places) / length;
         let mut problem = Problem {
             plan: self,
             terms: step_terms::<S>(&self.constants, &a, &now.advected),
             attitude: &now.attitude,
-            equations: Equations::at(&self.joints, &self.tree, &places),
-            extent: places.extent(&self.joints),
+            equations,
+            weight: 1.0 / (length * length),
+            // Attitudes are rounded as numbers of the size of one.
+            extent: 1.0 + extent * extent,
             places,
             half: Bodies::zero(),
             met: None,
@@ -390,12 +421,18 @@ where
         if S::PARTS.kick_after {
             change = change + S::kick_after(&self.constants, &increment, &advected);
         }
-        change = change - self.reactions(scene, &places, &advected, &(now.momentum + change));
+        // The iteration has seen the matrix on its way, and not at the end of it.
+        let taken = self.projection(scene, &places, &advected, &(now.momentum + change));
+        change = change - taken.map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
         let momentum = now.momentum + change;
         if !momentum.is_finite() || !problem.half.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
         next.proceed(&Proceeded { increment, change, momentum, advected });
+        if is_restored {
+            let seen = Motion { advected: scene.advected().seen_from(&next.now().attitude), ..*next.now() };
+            next.show(seen);
+        }
         let half = problem.half;
         let far = !<CayleyRetraction as Retraction<[Body; N]>>::is_half_well_near_identity(&half);
         kept.follow(half, far, Continued::Parabola);
@@ -407,14 +444,31 @@ where
         Ok(StepReport::of(iterations))
     }
 
+    /// Joints take their part of the impulse, so that velocities keep to them.
+    fn push<M: Summation<[Body; N], S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        _kept: &mut Self::Kept,
+        impulse: &Components<N>,
+    ) {
+        motion.push(impulse);
+        let now = *motion.now();
+        let places = Places::of(&now.attitude);
+        // Where it isn't determined, the step from here is an error; none ends at such a place.
+        if let Ok(taken) = self.projection(scene, &places, &now.advected, &now.momentum) {
+            motion.push(&(Bodies::zero() - taken));
+        }
+    }
+
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term("its own step, with joints");
         for (_, joined) in self.joints.all() {
             visitor.term("a joint");
             #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
             let number = |body: Option<usize>| body.map_or(-1.0, |body| body as f64);
-            visitor.parameter("above", number(joined.above));
-            visitor.parameter("below", number(Some(joined.below)));
+            visitor.parameter("body above", number(joined.above));
+            visitor.parameter("body below", number(Some(joined.below)));
             joined.joint.describe(&mut |name, value| visitor.parameter(name, value));
         }
     }

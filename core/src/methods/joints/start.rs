@@ -1,29 +1,25 @@
 //! Motions start where joints are closed, with velocities that keep them so.
 
-use nalgebra::Vector6;
-
-// Roots and powers without a standard library.
-#[cfg(not(feature = "std"))]
-use nalgebra::ComplexField as _;
+use nalgebra::{SVector, Vector6};
 
 use super::Constraint;
-use super::equations::Equations;
+use super::equations::{Equations, Widest};
 use super::places::Places;
 use super::plan::{Body, Jointed};
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction};
 use crate::mechanics::Effect;
-use crate::motion::{Motion, State, Stepper};
+use crate::motion::{Motion, State, Stepper, check_attitude};
 use crate::numbers::{Bodies, Coordinates as _};
-use crate::solving::{MAX_DAMPED_ITERATIONS, Warm};
+use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, Warm};
 
-/// How far joints may be open, relative to the distances from the origin, and velocities may part them, relative to
+/// How far joints may be open, relative to the terms of their functions, and velocities may part them, relative to
 /// theirs: what is left of values that are printed to a dozen digits.
-const PRINTED: f64 = f64::EPSILON * 1e4;
+const PRINTED: f64 = f64::EPSILON * 1e5;
 /// How far joints of a start that is sought may be open to be closed: roundings, as steps leave them.
 const CLOSED: f64 = 2.0 * f64::EPSILON;
-/// The longest turn in one update of a start that is sought, rad.
-const LONGEST: f64 = 0.5;
+/// The longest turn in one update of a start that is sought, rad: that of half coordinates.
+const LONGEST: f64 = 2.0 * LONGEST_DAMPED;
 
 /// What a state of joined bodies is.
 type StateOf<A, const N: usize> = State<[Body; N], A, Warm<Bodies<Vector6<f64>, N>>>;
@@ -33,8 +29,8 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// The joint that is open farthest, and by how much.
-    fn widest(&self, places: &Places<N>) -> (usize, f64) {
+    /// The joint with the largest gap, in the units of its functions.
+    fn largest_gap(&self, places: &Places<N>) -> (usize, f64) {
         let gaps = self.joints.all().map(|(joint, joined)| (joint, places.gap(joined).norm()));
         // What isn't a number is the widest.
         gaps.fold((0, 0.0), |widest, gap| if gap.1 <= widest.1 { widest } else { gap })
@@ -48,65 +44,64 @@ where
         equations
     }
 
-    /// What joints take from momenta whose velocities would part them: of bodies that turn at `J⁻¹(μ − s)` the
-    /// impulses that leave those nearest to it.
-    pub(super) fn reactions(
+    /// What joints take from momenta whose velocities `J⁻¹(μ − s)` would part them: the impulses that leave the
+    /// velocities nearest to these. Where these aren't determined, a joint to blame and its pivot.
+    pub(super) fn projection(
         &self,
         scene: &S,
         places: &Places<N>,
         advected: &S::Advected,
         momentum: &Bodies<Vector6<f64>, N>,
-    ) -> Bodies<Vector6<f64>, N> {
+    ) -> Result<Bodies<Vector6<f64>, N>, (usize, f64)> {
         let mut equations = self.of_velocities(scene, places, advected);
+        if let Some(redundant) = equations.redundant() {
+            return Err(redundant);
+        }
         let residual = scene.momentum_bias(advected) - *momentum;
-        equations.solve(&residual.0, places, 0.0);
-        Bodies(equations.reactions())
+        equations.solve(&residual.0, |_| SVector::zeros());
+        Ok(Bodies(equations.reactions()))
     }
 
     /// Whether joints are closed, velocities keep them so, and each of them has something to do.
     pub(super) fn check_start(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {
         let places = Places::of(&motion.attitude);
-        let (joint, by) = self.widest(&places);
+        let equations = self.of_velocities(scene, &places, &motion.advected);
+        let Widest { joint, by, relative } = equations.widest_gap(&places, &self.lengths);
         // What isn't a number isn't closed either.
-        let is_closed = by <= PRINTED * places.extent(&self.joints).sqrt();
+        let is_closed = relative <= PRINTED;
         if !is_closed {
             return Err(SetupError::OffConstraint { joint, by });
         }
-        let equations = self.of_velocities(scene, &places, &motion.advected);
         check_redundance(&equations)?;
         let momentum = motion.momentum - scene.momentum_bias(&motion.advected);
         let velocities = Bodies::solve(&scene.inertia(&motion.advected), &momentum).0;
-        let (mut widest, mut all) = ((0, 0.0), 0.0);
-        equations.parting(&velocities.0, |joint, by, size| {
-            all += size * size;
-            widest = if by <= widest.1 { widest } else { (joint, by) };
-        });
-        let (joint, by) = widest;
-        if by <= PRINTED * all.sqrt() { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
+        // What roundings of attitudes in a step leave of rest.
+        let least = if self.h == 0.0 { 0.0 } else { CLOSED / (PRINTED * self.h.abs()) };
+        let Widest { joint, by, relative } = equations.widest_parting(&velocities.0, &self.lengths, least);
+        if relative <= PRINTED { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
     }
 
-    /// The places nearest to these, as the inertia measures it, where joints are closed.
+    /// Places next to these where joints are closed, by corrections that are least as the inertia measures it.
     fn closed(&self, scene: &S, attitude: &[Body; N]) -> Result<[Body; N], SetupError> {
         let mut attitude = *attitude;
         let mut last = f64::INFINITY;
         for _ in 0..MAX_DAMPED_ITERATIONS {
             let places = Places::of(&attitude);
-            let (_, by) = self.widest(&places);
-            let size = places.extent(&self.joints).sqrt();
             let mut equations = self.of_velocities(scene, &places, &scene.advected().seen_from(&attitude));
             check_redundance(&equations)?;
-            if by <= CLOSED * size || by <= PRINTED * size && by >= last {
+            let Widest { relative, .. } = equations.widest_gap(&places, &self.lengths);
+            if relative <= CLOSED || relative <= PRINTED && relative >= last {
                 return Ok(attitude);
             }
-            last = by;
-            equations.solve(&[Vector6::zeros(); N], &places, 1.0);
+            last = relative;
+            equations.solve(&[Vector6::zeros(); N], |joined| places.gap(joined));
             let updates = equations.unknowns.bodies;
             let largest = updates.iter().fold(0.0_f64, |most, update| most.max(update.fixed_rows::<3>(0).norm()));
             let part = if largest > LONGEST { LONGEST / largest } else { 1.0 };
             let increment = <CayleyRetraction as Retraction<[Body; N]>>::increment(&Bodies(updates.map(|u| u * part)));
             attitude = attitude.advance(&increment);
         }
-        let (joint, by) = self.widest(&Places::of(&attitude));
+        let (joint, by) = self.largest_gap(&Places::of(&attitude));
         Err(SetupError::OffConstraint { joint, by })
     }
 }
@@ -125,8 +120,8 @@ where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
-    /// A motion from where joints are closed next to these places, with the velocities next to these that keep them
-    /// closed; both as the inertia measures it.
+    /// A motion from a place next to these where joints are closed, by corrections that are least as the inertia measures
+    /// it, with those velocities nearest to these, measured so, that keep them closed.
     ///
     /// # Errors
     ///
@@ -140,13 +135,15 @@ where
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
+        check_attitude(&attitude)?;
         let attitude = self.plan.closed(&self.scene, &attitude)?;
         let advected = self.scene.advected().seen_from(&attitude);
         let mut momentum = self.scene.inertia(&advected) * velocity + self.scene.momentum_bias(&advected);
         let places = Places::of(&attitude);
         // The second time for what roundings of the first leave, where bodies are of unlike masses.
         for _ in 0..2 {
-            momentum = momentum - self.plan.reactions(&self.scene, &places, &advected, &momentum);
+            let taken = self.plan.projection(&self.scene, &places, &advected, &momentum);
+            momentum = momentum - taken.map_err(|(joint, pivot)| SetupError::RedundantJoint { joint, pivot })?;
         }
         self.start_with_momentum(attitude, momentum)
     }
@@ -155,6 +152,6 @@ where
     /// axes.
     #[must_use]
     pub fn widest_gap(&self, motion: &Motion<[Body; N], S::Advected>) -> f64 {
-        self.plan.widest(&Places::of(&motion.attitude)).1
+        self.plan.largest_gap(&Places::of(&motion.attitude)).1
     }
 }

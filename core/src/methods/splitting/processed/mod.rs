@@ -273,13 +273,14 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     }
 
     /// What is inside belongs to the momentum before.
-    fn push(
+    fn push<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
-        motion: &mut Motion<SO3<Scalar<S>>, S::Advected>,
+        _scene: &S,
+        motion: &mut M,
         kept: &mut Self::Kept,
         impulse: &Vector3<Scalar<S>>,
     ) {
-        Summation::push(motion, impulse);
+        motion.push(impulse);
         if !impulse.iter().all(|part| part.simd_eq(real(0.0)).all()) {
             kept.0 = None;
         }
