@@ -597,11 +597,9 @@ impl<I: Integrator> Integrator for Bare<'_, I> {
 }
 
 /// The end of a run that is shown, its iterations or its error, and at which steps it was.
-fn shown<I: Integrator>(
-    integrator: &I,
-    start: &I::State,
-    plan: &[u64],
-) -> (Motion<I::Group, I::Advected>, Result<u64, StepError>, Vec<u64>) {
+type Shown<M> = (M, Result<u64, StepError>, Vec<u64>);
+
+fn shown<I: Integrator>(integrator: &I, start: &I::State, plan: &[u64]) -> Shown<Motion<I::Group, I::Advected>> {
     let (mut state, mut calls) = (start.clone(), Vec::new());
     let (first, mut rest) = (plan[0], plan[1..].iter().copied());
     let made = integrator.run_shown(&mut state, first, &mut |motion| {

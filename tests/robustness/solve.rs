@@ -59,6 +59,7 @@ fn assert_determinant<const D: usize>() {
 /// and isn't finite where the matrix is singular.
 fn assert_inverse_solves<const D: usize>() {
     type V<const D: usize> = SVector<f64, D>;
+    type Three<const D: usize> = Bodies<V<D>, 3>;
     let mut random = Random::new(44);
     for ends in 0..1_u32 << (D - 1) {
         let is_end = |k: usize| ends >> (k - 1) & 1 == 1;
@@ -82,7 +83,6 @@ fn assert_inverse_solves<const D: usize>() {
             assert!(inverse_of(&a).0.iter().any(|entry| !entry.is_finite()), "{pattern:?}");
         }
     }
-    type Three<const D: usize> = Bodies<SVector<f64, D>, 3>;
     let pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
     let a = BlockDiagonal([(); 3].map(|()| jacobian::<D>(&mut random)));
     let b = Bodies([(); 3].map(|()| random.sample::<SVector<f64, D>>()));

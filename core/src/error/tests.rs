@@ -59,8 +59,10 @@ fn setup_errors() {
             SetupError::BodyParameter { .. } => &["`m`", "the body 7", "isn't a mass"],
             SetupError::Joint { .. } => &["the joint 7", "closes a loop"],
             SetupError::JointParameter { .. } => &["`above`", "the joint 7", "is not finite"],
-            SetupError::OffConstraint { .. } => &["the joint 7", "open by 5e-1 m", "`start_nearest`"],
-            SetupError::OffVelocity { .. } => &["the joint 7", "5e-1 m/s", "`start_nearest`"],
+            SetupError::OffConstraint { .. } => {
+                &["the joint 7", "open by 5e-1 (in the units of its functions: m,", "`start_nearest`"]
+            }
+            SetupError::OffVelocity { .. } => &["the joint 7", "by 5e-1 (", "m/s", "`start_nearest`"],
             SetupError::RedundantJoint { .. } => &["the joint 7", "0e0"],
             SetupError::InvalidStep { .. } => &["the step", "1e-300 s"],
             SetupError::SingularKinetic { .. } => &["kinetic part", "singular", "1e-30"],
