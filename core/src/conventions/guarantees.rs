@@ -16,7 +16,7 @@
 //! | `R p`, the spatial momentum | exactly | nothing advected |
 //! | `Σ R_a p_a` over bodies that see each other; its component along `a` where they also see one vector `a` | exactly | none of them is `seen_from(space)` |
 //! | `Σ p_a`, the momentum of bodies that are translated | exactly | `l_d` has only differences of their places, as by `seen_from` of another |
-//! | `Σ p_a` and `Σ (x_a × p_a + R_a p_a)` of bodies held together by joints; its component along the vertical through a pivot | as far as steps are solved | what else pulls the bodies leaves it alone |
+//! | of bodies held together by joints, with `p_a` of translations and `Π_a` of turns: `Σ p_a` and `Σ (x_a × p_a + R_a Π_a)`; where there is a pivot, the component of the latter sum along a vertical through it | as far as steps are solved | what else pulls the bodies leaves it alone |
 //! | `p_3` | exactly | `J_1 = J_2`, `ρ` along the third axis |
 //! | a step back by `−h` undoes the step | exactly | `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`; (3.13) is such, others by [`SELF_ADJOINT`](crate::mechanics::DiscreteLagrangian::SELF_ADJOINT) |
 //! | kinetic energy `½ p·J⁻¹p` | exactly | the kinetic term of (3.13) alone; not for other kinetic terms |

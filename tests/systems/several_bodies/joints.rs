@@ -827,6 +827,10 @@ fn a_joint_that_repeats_itself() {
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Heights([f64; 2]);
     impl Constraint<2> for Heights {
+        fn name(&self) -> &'static str {
+            "heights"
+        }
+
         fn validate(&self) -> Result<(), SetupError> {
             Ok(())
         }

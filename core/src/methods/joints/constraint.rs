@@ -63,10 +63,14 @@ pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
         K
     }
 
-    /// The functions.
+    /// What it is called, by which checkpoints tell two kinds with the same parameters apart.
+    fn name(&self) -> &'static str;
+
+    /// The functions, each in a unit of its own: m for lengths, 1 for cosines.
     fn gap(&self, above: &Place, below: &Place) -> SVector<f64, K>;
 
-    /// Their derivatives by the place of the body above, and of that below.
+    /// Their derivatives by the place of the body above, and of that below: each row in the unit of its function per
+    /// radian and per m.
     fn slope(&self, above: &Place, below: &Place) -> [Slope<K>; 2];
 
     /// Shows its parameters.
@@ -132,6 +136,10 @@ fn describe<const C: usize>(fields: [(&'static str, &Vector3<f64>); C], visit: &
 }
 
 impl Constraint<3> for BallJoint {
+    fn name(&self) -> &'static str {
+        "ball joint"
+    }
+
     fn validate(&self) -> Result<(), SetupError> {
         check([("above", &self.above), ("below", &self.below)])
     }
@@ -172,6 +180,10 @@ impl PinJoint {
 }
 
 impl Constraint<5> for PinJoint {
+    fn name(&self) -> &'static str {
+        "pin"
+    }
+
     fn validate(&self) -> Result<(), SetupError> {
         self.ball().validate()?;
         for (field, axis) in [("axis_above", &self.axis_above), ("axis_below", &self.axis_below)] {
@@ -219,6 +231,13 @@ fn lengthened(slope: &Slope<3>) -> Slope<5> {
 }
 
 impl Constraint<5> for Joint {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Ball(joint) => joint.name(),
+            Self::Pin(joint) => joint.name(),
+        }
+    }
+
     fn validate(&self) -> Result<(), SetupError> {
         match self {
             Self::Ball(joint) => joint.validate(),

@@ -44,7 +44,8 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 ///
 /// # Source
 ///
-/// SHAKE and RATTLE of the step (2.7) of \[RDAE\], in the momenta of the bodies.
+/// The step (2.7) of \[RDAE\] with the multipliers of constrained variational integrators, \[MW01\], section 3: SHAKE in
+/// positions, RATTLE in momenta.
 #[derive(Clone, Debug)]
 pub struct Jointed<S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
     pub(super) h: f64,
@@ -108,7 +109,7 @@ impl<S: Effect> Stepper<S> {
     /// let swing = joints.closed_by([Joined::to_space(pivot(3.0, right), 3)]);
     /// let stepper = Stepper::jointed(rods, swing, 0.01)?;
     ///
-    /// // About a garland; the joints are closed by the least motion.
+    /// // About a garland; it starts at a place next to it where the joints are closed.
     /// let about = from_fn(|k| {
     ///     let tilt = [0.8, 0.3, -0.3, -0.8][k];
     ///     let place = [[0.3, -0.4], [1.1, -0.9], [1.9, -0.9], [2.7, -0.4]][k];
@@ -464,7 +465,7 @@ where
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         visitor.term("its own step, with joints");
         for (_, joined) in self.joints.all() {
-            visitor.term("a joint");
+            visitor.term(joined.joint.name());
             #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
             let number = |body: Option<usize>| body.map_or(-1.0, |body| body as f64);
             visitor.parameter("body above", number(joined.above));
