@@ -57,10 +57,8 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, errors)?;
     let findings = judged::findings(&declaration, &discrete, &chosen, errors)?;
     let equations = match role {
-        Role::Lagrangian if !declaration.group.is_product() => {
-            Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?)
-        }
-        Role::Lagrangian | Role::Force => None,
+        Role::Lagrangian => Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?),
+        Role::Force => None,
     };
     Some(emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings))
 }

@@ -26,7 +26,8 @@ mod program;
 ///     advected(w = up, …),            w is the field `up`, carried by the group: w_i = g_i⁻¹ · up; may be left out
 ///     given(u = torque, …),           u is the field `torque` until a step is given another value; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
-///     velocity = Omega, l = …,        the continuous one, in the velocity's components by that name
+///     velocity = Omega, l = …,        the continuous one, in the velocity's components by that name; of several bodies
+///                                     `velocity(Omega_1, Omega_2)`
 ///     discretise = trapezoid(Cayley), how `l_d` is made of `l`; left out, there are the continuous equations alone
 ///     gradients,                      also the derivatives of a step, for `Stepper::linearised`; may be left out
 ///     crate = path,                   where liestep is found, if not at `::liestep`
@@ -64,9 +65,9 @@ mod program;
 /// What turns does so by `SO3`. What is translated by `R1`, `R2` or `R3` has a scalar or a vector for its increment, in the
 /// axes of space, which is added. A wheel's turn about its axis is one of `R1`, as in `examples/declarations/gyrostat.rs`.
 ///
-/// Two to four factors are declared together. They have no `ContinuousLagrangian`, and so no `l = …`; no
-/// `#[force]` acts on them, and no effect of the library, as those are of one body; and no splitting has their kinetic
-/// flow. Compositions, substeps and the derivatives of a step are there for them.
+/// Two to four factors are declared together, by `l_d` or by `l`. No `#[force]` acts on them, and no effect of the library,
+/// as those are of one body; no splitting has their kinetic flow, and `CotangentGauss` is of one group. Compositions,
+/// substeps and the derivatives of a step are there for them.
 ///
 /// # Continuous Lagrangians
 ///
@@ -89,6 +90,11 @@ mod program;
 /// cancel that are much larger than `l_d`: those of `k (Ω·JΩ)²` are as large as `4 k tr(J_d)²/h³`, and each is rounded, so
 /// that a short step loses digits which `trapezoid(Cayley)` keeps. A logarithm is known on SO(3) and where all generators
 /// are strictly triangular. A declared `l_d` has the continuous equations of its limit.
+///
+/// Of several bodies `velocity(Omega_1, v)` names the velocities, one for each factor of `group(F_1 = SO3, d = R3)`, in their
+/// order: of what turns in its own axes, of what is translated in those of space. Methods take and give the components of all,
+/// one after the other. Where the kinetic energy depends on a relative configuration, `trapezoid` and `chord` alone aren't
+/// their own adjoints and are refused; `trapezoid(Cayley)` is.
 ///
 /// # The parameters
 ///

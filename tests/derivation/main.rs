@@ -5,6 +5,7 @@
 
 mod by_hand;
 mod continuous;
+mod continuous_bodies;
 mod discretised;
 mod dual_numbers;
 mod equations;

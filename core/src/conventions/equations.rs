@@ -50,7 +50,7 @@
 //! |---|---|---|---|
 //! | actions on `V` and `V*` | `ρ(g)`, `ξ·v` | [`Advected`] | `core/src/laws/advected.rs` `kinds_move_as_declared` `kinds_act` `pairings_are_invariant` |
 //! | (2.1) | `δl_d/δw ⋄ w` | [`diamond`] | `tests/common/structure/momenta.rs` `assert_momenta`; `tests/derivation/dual_numbers.rs` `assert_terms` |
-//! | theorem 2.1.1, (2.2) | continuous advected equations | [`momentum_rate`], [`advected_rate`], [`RightHandSide`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `tests/systems/order.rs` `assert_second_order` |
+//! | theorem 2.1.1, (2.2) | continuous advected equations | [`momentum_rate`], [`advected_rate`], [`RightHandSide`] | `tests/groups/reduction.rs` `euler_poincare_reduction`; `tests/random_lagrangians/continuous.rs` `assert_equations`; `tests/systems/order.rs` `assert_second_order`; of several bodies `tests/derivation/continuous_bodies.rs` `bodies_that_feel_each_other` `two_links_move_as_a_double_spherical_pendulum` |
 //! | example 3, (2.3) | continuous Lagrangian of a top | [`l`], and [`inertia`], [`momentum_bias`], [`potential`] of a limit | `tests/systems/limit.rs` `assert_limit`; `tests/hard_cases/rows.rs` `t1_orders_of_the_tops_of_the_thesis` |
 //! | theorem 2.2.1 | reduced and unreduced paths are one | | `tests/systems/unreduced.rs` `assert_variational` |
 //! | (2.4), first line | `w_{i+1} = f_i⁻¹ w_i` | [`Advected::advect`] | `core/src/laws/advected.rs` `kinds_move_as_declared` |

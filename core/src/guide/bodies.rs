@@ -71,6 +71,51 @@
 //! together, at any tolerance of the solver, is read off the declaration and said in the documentation of the struct; so is
 //! whether a step solves for them together or one after the other.
 //!
+//! # By their velocities
+//!
+//! The same links by the velocities of both, in the order of the factors. `l_d` is made of it by `discretise`, and a solver
+//! integrates the equations themselves:
+//!
+//! ```
+//! use liestep::motion::RightHandSide;
+//! use liestep::nalgebra::Vector6;
+//! use liestep::prelude::*;
+//!
+//! #[lagrangian(
+//!     group(F_1 = SO3, F_2 = SO3),
+//!     velocity(Omega_1, Omega_2),
+//!     advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
+//!     l = 0.5 * Omega_1.dot(&(J_1 * Omega_1)) + 0.5 * Omega_2.dot(&(J_2 * Omega_2))
+//!         + Omega_1.cross(&rho).dot(&(Q * Omega_2.cross(&s_2)))
+//!         - g * (w_1.dot(&s_1) + w_2.dot(&s_2)),
+//!     discretise = trapezoid(Cayley),
+//! )]
+//! #[derive(Clone)]
+//! struct Links {
+//!     J_1: Inertia, // about the pivot, with the mass of the lower link at the joint
+//!     J_2: Inertia, // about the joint
+//!     rho: Vector3<f64>,
+//!     s_1: Vector3<f64>,
+//!     s_2: Vector3<f64>,
+//!     g: f64,
+//!     up: Vector3<f64>,
+//! }
+//!
+//! let down = -Vector3::z();
+//! let J_1 = Inertia::from_principal_moments(Vector3::new(1.35, 1.35, 0.02))?;
+//! let J_2 = Inertia::from_principal_moments(Vector3::new(0.35, 0.35, 0.02))?;
+//! let links = Links { J_1, J_2, rho: down, s_1: down * 1.5, s_2: down * 0.5, g: 9.81, up: Vector3::z() };
+//! let equations = RightHandSide::new(links.clone())?;
+//! let stepper = Stepper::new(links, 0.01)?;
+//! let mut state = stepper.start((SO3::identity(), SO3::identity()), Vector6::new(1.0, 0.0, 0.0, 2.0, 0.0, 0.0))?;
+//! let (_, force) = equations.rates(&state.attitude(), &state.momentum())?;
+//! assert!(force.norm() < 1e-12); // they hang, and turn in one plane
+//! stepper.run(&mut state, 10)?;
+//! let (_, force) = equations.rates(&state.attitude(), &state.momentum())?;
+//! assert!(force.norm() > 0.1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # What there is, and what isn't
 //!
 //! | | |
@@ -80,7 +125,8 @@
 //! | [recording and events](super::recording) | yes; columns have the number of the body behind their names |
 //! | the effects of the library | not in such a declaration, as they are of one body; in a system they are put on bodies |
 //! | forces, splittings | no: those are of one body |
-//! | `l = …`, the continuous Lagrangian | no |
+//! | `l = …`, the continuous Lagrangian, and the continuous equations of an `l_d` | yes: [below](#by-their-velocities) |
+//! | collocation by [`CotangentGauss`](crate::methods::CotangentGauss) | no: that is of one group |
 //! | joints, and loops of them | [of a system](#joints), not of such a declaration |
 //! | contact, impacts | no |
 //!

@@ -39,7 +39,8 @@ impl Legendre {
 ///
 /// `ξ = g⁻¹ġ` is the body velocity, in components of the declared basis `E_k` (on SO(3) in rad/s), `w = g⁻¹·a_0` the
 /// advected parameters as the body sees them. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are body-frame
-/// angular momenta in kg m²/s.
+/// angular momenta in kg m²/s. Of several bodies, on a product of groups, velocities and covectors have the components of
+/// all, one body after the other.
 ///
 /// [`lagrangian`](crate::lagrangian) implements it: of a declared `l` with its terms derived, and of a declared `l_d`
 /// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. They add by `+`, with each other and with effects. What an
@@ -85,7 +86,7 @@ impl Legendre {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` isn't a Lagrangian with a continuous limit",
     label = "no `l(ξ, w)` is known of it",
-    note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none, nor have several bodies, which are declared by `l_d`"
+    note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none, nor has a system of many bodies, `Each` and `Along`"
 )]
 pub trait ContinuousLagrangian: Term {
     /// What is known of the inverse Legendre transform.
@@ -107,7 +108,8 @@ pub trait ContinuousLagrangian: Term {
     fn diamond_rate(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Covector<Self>;
 
     /// The diamond along all matrices: entries `−⟨∂l/∂w, e_ij·w⟩`, where the matrix `e_ij` has a one at `(i, j)`; paired with
-    /// `E_k`, entry by entry, it is [`diamond_rate`](Self::diamond_rate).
+    /// `E_k`, entry by entry, it is [`diamond_rate`](Self::diamond_rate). Of a product each factor has its own; where it is
+    /// translated, the last column of its matrix counts.
     fn diamond_matrix(&self, velocity: &Velocity<Self>, w: &Self::Advected) -> Matrix<Self>;
 
     /// `(∂²l/∂w∂ξ)(ξ·w)`: by how much the momentum of a fixed velocity falls as `w` is carried along. Zero where `l` is

@@ -102,8 +102,8 @@ impl Factor {
 
 /// What belongs to `l = …`.
 pub(crate) struct Continuous {
-    /// The name of `ξ`; a term without a velocity may leave it out.
-    pub(crate) velocity: Option<Ident>,
+    /// The names of `ξ`, one for each factor of the group; a term without a velocity may leave them out.
+    pub(crate) velocities: Vec<Ident>,
     /// How `l_d` is made of it; left out where only the continuous equations are wanted.
     pub(crate) discretisation: Option<Discretisation>,
 }
@@ -158,9 +158,23 @@ impl AdvectedParameter {
 }
 
 impl Declaration {
-    /// The name of the velocity in `l`.
+    /// The names of the velocities in `l`.
+    pub(crate) fn velocities(&self) -> &[Ident] {
+        self.continuous.as_ref().map_or(&[], |continuous| &continuous.velocities)
+    }
+
+    /// The name of the first velocity in `l`, which messages show.
     pub(crate) fn velocity(&self) -> Option<&Ident> {
-        self.continuous.as_ref()?.velocity.as_ref()
+        self.velocities().first()
+    }
+
+    /// The name of the velocity of a factor in print.
+    pub(crate) fn name_of_velocity(&self, factor: usize) -> String {
+        match self.velocities().get(factor) {
+            Some(name) => name.unraw().to_string(),
+            None if self.group.is_product() => format!("ξ_{}", factor + 1),
+            None => "ξ".to_owned(),
+        }
     }
 
     /// How `l` is discretised.

@@ -3,12 +3,10 @@
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use syn::ext::IdentExt as _;
-
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{
-    Carried, Declared, DeclaredContinuous, Displacements, Let, Seen, hat, linear_forms, matrix_symbol, unit,
+    Carried, Declared, DeclaredContinuous, Displacements, Let, OfVelocity, Seen, hat, linear_forms, unit,
 };
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
@@ -113,17 +111,19 @@ pub(crate) struct LoweredContinuous {
 pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<LoweredContinuous> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let advected = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
-    let name = declaration.velocity().map_or_else(|| "ξ".to_owned(), |name| name.unraw().to_string());
-    let advected = advected.iter().map(|w| (w.symbol, w.variance)).collect();
-    let velocity = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
-    names.insert(Name::Velocity, velocity);
     let group = declaration.group.clone();
-    let name = format!("hat({})", symbols.get(velocity).name);
-    let velocity_matrix = (!group.is_so3).then(|| matrix_symbol(&group, &name, &mut symbols));
+    let mut velocities = Vec::new();
+    for (factor, own) in group.factors().iter().enumerate() {
+        let velocity = OfVelocity::new(own, &declaration.name_of_velocity(factor), &mut symbols);
+        names.insert(Name::Velocity(factor), velocity.components);
+        velocities.push(velocity);
+    }
+    // Of several bodies none has one.
+    let velocity_matrix = velocities.first().and_then(|velocity| velocity.matrix);
     let lowering = Lowering { symbols, names: &names, known: BTreeMap::new(), lets: None, velocity_matrix };
     match lowering.whole(tree) {
         Ok((symbols, expression, _)) => {
-            let declared = DeclaredContinuous { group, symbols, expression, velocity, velocity_matrix, advected };
+            let declared = DeclaredContinuous { group, symbols, expression, velocities, advected };
             Some(LoweredContinuous { declared, names })
         }
         Err(failure) => {
@@ -404,7 +404,7 @@ impl Lowering<'_> {
                 self.closed(tree, value)
             }
             Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
-            Kind::Hat(a, _) if matches!(a.kind, Kind::Name(Name::Velocity)) && self.velocity_matrix.is_some() => {
+            Kind::Hat(a, _) if matches!(a.kind, Kind::Name(Name::Velocity(_))) && self.velocity_matrix.is_some() => {
                 let square = ambient(tree.shape);
                 self.velocity_matrix
                     .map_or_else(|| Expression::zero(square), |id| Expression::symbol(id, &self.symbols))

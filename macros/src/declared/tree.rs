@@ -92,8 +92,8 @@ pub(crate) enum Name {
     Increment(usize),
     /// `h`.
     Step,
-    /// The components of the velocity in a continuous Lagrangian.
-    Velocity,
+    /// The components of the velocity in a continuous Lagrangian, of one factor of the group.
+    Velocity(usize),
     /// `eta`, the displacement at the beginning of the step.
     DisplacementBefore,
     /// `eta_next`, the one at its end.

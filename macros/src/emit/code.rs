@@ -16,8 +16,6 @@ pub(super) enum Form {
     Scalar,
     Vector,
     Square,
-    /// A matrix of the group's size.
-    Matrix,
 }
 
 /// The token of a node that isn't computed here: an input, or what an earlier stage has left.
@@ -45,22 +43,43 @@ impl Code<'_> {
     pub(super) fn assembled(&self, form: Form, values: &[TokenStream]) -> TokenStream {
         let (private, span) = (&self.header.private, Span::mixed_site());
         let dimension = self.declaration.group.dimension();
-        if let Form::Matrix = form {
-            let size = self.declaration.group.size;
-            let column = |j: usize| values.iter().skip(j).step_by(size).cloned().collect();
-            return self.columns(size, &(0..size).map(column).collect::<Vec<_>>());
-        }
         let nalgebra = quote_spanned!(span=> #private::nalgebra);
         match (form, dimension, values) {
             (Form::Scalar, ..) => values.iter().cloned().collect(),
             (Form::Vector, 3, entries) => quote_spanned!(span=> #nalgebra::Vector3::new(#(#entries),*)),
             (Form::Square, 3, entries) => quote_spanned!(span=> #nalgebra::Matrix3::new(#(#entries),*)),
             (Form::Vector, _, entries) => self.columns(dimension, &[entries.to_vec()]),
-            (Form::Square | Form::Matrix, _, entries) => {
-                let column = |j: usize| entries.iter().skip(j).step_by(dimension).cloned().collect();
-                self.columns(dimension, &(0..dimension).map(column).collect::<Vec<_>>())
-            }
+            (Form::Square, _, entries) => self.matrix(dimension, entries),
         }
+    }
+
+    /// The `let`s that matrices need, and the matrices: of the group, of a product in a tuple.
+    pub(super) fn blocks(
+        &self,
+        graph: &Graph,
+        blocks: &[Vec<NodeId>],
+        input: &dyn Fn(crate::program::Input) -> TokenStream,
+    ) -> TokenStream {
+        let given = |id: NodeId| match graph.node(id) {
+            Node::Input(entry) => Some(input(entry)),
+            _ => None,
+        };
+        let (lets, mut values) = self.statements(graph, &blocks.concat(), &given);
+        let matrices = blocks.iter().zip(self.declaration.group.factors()).map(|(block, own)| {
+            let rest = values.split_off(block.len().min(values.len()));
+            self.matrix(own.size, &std::mem::replace(&mut values, rest))
+        });
+        let matrices: Vec<TokenStream> = matrices.collect();
+        match matrices.as_slice() {
+            [single] => quote_spanned!(Span::mixed_site()=> #lets #single),
+            several => quote_spanned!(Span::mixed_site()=> #lets (#(#several),*)),
+        }
+    }
+
+    /// A square matrix from its entries, row by row.
+    fn matrix(&self, size: usize, values: &[TokenStream]) -> TokenStream {
+        let column = |j: usize| values.iter().skip(j).step_by(size).cloned().collect();
+        self.columns(size, &(0..size).map(column).collect::<Vec<_>>())
     }
 
     fn columns(&self, rows: usize, columns: &[Vec<TokenStream>]) -> TokenStream {

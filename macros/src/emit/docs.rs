@@ -3,7 +3,7 @@
 use crate::declared::{Declaration, Factor};
 use crate::judged::{Chosen, Equations, Findings};
 use crate::mathematics::derive::{Declared, Derived, Inverse, Seen, SelfAdjointness};
-use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text};
+use crate::mathematics::symbolic::{Stage, Variance, covector_text, text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
@@ -103,10 +103,7 @@ fn of_limit(continuous: Option<&Equations>) -> &'static str {
 /// `J` as a matrix, where it can be written as one.
 fn inertia(derived: &Derived, continuous: Option<&Equations>) -> Equation {
     let quadratic = continuous.filter(|equations| equations.derived.inverse != Inverse::Nonlinear);
-    let as_matrix = quadratic.and_then(|equations| {
-        let derived = &equations.derived;
-        matrix_text(&derived.hessian, derived.directions, &derived.symbols)
-    });
+    let as_matrix = quadratic.and_then(|equations| super::continuous::text::inertia(&equations.derived));
     match as_matrix {
         Some(text) if text.len() <= LONGEST => Equation::new("inertia", "J", text, "continuous limit"),
         _ => {
@@ -200,6 +197,12 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
         let name = w.plain_name();
         let f = match w.seen {
             Seen::From(factor) => increment(factor),
+            Seen::Relative { of, from } if !is_discrete => {
+                return format!("    {name} is {} as {} sees it\n", increment(of), increment(from));
+            }
+            Seen::Configuration(of) if !is_discrete => {
+                return format!("    {name} is {} as it is in space\n", increment(of));
+            }
             Seen::Relative { of, from } if declaration.group.factor(of).is_added => {
                 let (of, from) = (increment(of), increment(from));
                 return format!("    {name}⁺ = {name} + {of} − {from}: the place of {of} as {from} sees it\n");
@@ -228,6 +231,8 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
         if is_discrete {
             let moved = with_names(moved, f, &name);
             format!("    {name}⁺ = {f}⁻¹·{name} = {moved} for {name} in {space}\n")
+        } else if is_product {
+            format!("    {name} = g⁻¹·a₀ in {space}, seen from {f}\n")
         } else {
             format!("    {name} = g⁻¹·a₀ in {space}\n")
         }
@@ -238,7 +243,8 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
         (true, true) => format!("F = ({increments}) = g⁻¹ g⁺"),
         (true, false) if increments != "F" => format!("F = {increments} = g⁻¹ g⁺"),
         (true, false) => "F = g⁻¹ g⁺".to_owned(),
-        (false, _) => "g".to_owned(),
+        (false, true) => format!("g = ({increments})"),
+        (false, false) => "g".to_owned(),
     };
     format!("group\n    {element} in {group}\n{advected}")
 }

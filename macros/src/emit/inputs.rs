@@ -14,7 +14,10 @@ impl Code<'_> {
         let found = self.names.iter().find(|(_, id)| **id == input.symbol).map(|(name, _)| *name);
         match found {
             Some(Name::Step) => quote_spanned!(span=> h),
-            Some(Name::Velocity) => entry(&quote_spanned!(span=> velocity), input),
+            Some(Name::Velocity(factor)) => {
+                let row = self.declaration.group.component_of(factor) + input.row;
+                entry(&quote_spanned!(span=> velocity), Input { row, ..input })
+            }
             Some(Name::Increment(factor)) => self.increment_entry(&quote_spanned!(span=> f), factor, input),
             Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),

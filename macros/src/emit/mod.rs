@@ -210,7 +210,7 @@ impl Emitter<'_> {
                 (vec![scalariser.scalar(expression)], self.header.scalar.clone())
             }
             Form::Vector => (components(&mut graph, d, &none, expression), self.header.vector()),
-            Form::Square | Form::Matrix => (square(&mut graph, d, &none, expression), self.header.square()),
+            Form::Square => (square(&mut graph, d, &none, expression), self.header.square()),
         };
         let documentation = docs::of(equations, name, &graph, &outputs);
         let inverse =

@@ -52,8 +52,8 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         let group = header.group();
         bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
     }
-    if let Some(name) = declaration.velocity() {
-        bind(&name.unraw().to_string(), quote_spanned!(span=> *velocity));
+    for (factor, name) in declaration.velocities().iter().enumerate() {
+        bind(&name.unraw().to_string(), velocity(declaration, header, factor));
     }
     if declaration.role == Role::Force {
         bind("eta", quote_spanned!(span=> *eta));
@@ -131,6 +131,24 @@ fn advected(declaration: &Declaration, header: &Header, index: usize, part: Toke
         FieldKind::Place(coordinates) => translation(header, &part, coordinates),
         _ => part,
     }
+}
+
+/// The velocity of a factor, on a line a scalar.
+fn velocity(declaration: &Declaration, header: &Header, factor: usize) -> TokenStream {
+    let (span, private, group) = (Span::mixed_site(), &header.private, &declaration.group);
+    if !group.is_product() {
+        return quote_spanned!(span=> *velocity);
+    }
+    let (own, first) = (group.factor(factor), group.component_of(factor));
+    let entries = (first..first + own.dimension()).map(|row| {
+        let row = proc_macro2::Literal::usize_unsuffixed(row);
+        quote_spanned!(span=> velocity.data.0[0][#row])
+    });
+    if own.dimension() == 1 {
+        return entries.collect();
+    }
+    let vector = Ident::new(&format!("Vector{}", own.dimension()), span);
+    quote_spanned!(span=> #private::nalgebra::#vector::new(#(#entries),*))
 }
 
 /// `x` of the matrix `[I, x; 0, 1]`, on a line a scalar.

@@ -72,7 +72,8 @@ pub(crate) fn continuous(
 fn of_limit(declaration: &Declaration, chosen: &Chosen, errors: &mut Errors) -> Option<Equations> {
     let declared = derive::of_limit(&chosen.lowered.declared, &chosen.derived);
     let mut names = chosen.lowered.names.clone();
-    names.insert(Name::Velocity, declared.velocity);
+    let velocities = declared.velocities.iter().enumerate();
+    names.extend(velocities.map(|(factor, velocity)| (Name::Velocity(factor), velocity.components)));
     let Ok(derived) = derive::continuous(declared) else {
         explain::unconfirmed_term("continuous limit", declaration, errors);
         return None;

@@ -15,6 +15,7 @@ use std::rc::Rc;
 use super::{explain, verify};
 use crate::declared::errors::Errors;
 use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Shape, Tree};
+use crate::mathematics::derive::Seen;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational, Variance};
 
@@ -41,26 +42,21 @@ pub(crate) fn discretised(
 }
 
 fn discrete(declaration: &Declaration, tree: &Rc<Tree>, asked: Discretisation) -> Result<Rc<Tree>, Misfit> {
-    let build = Build { declaration, at: tree };
-    let velocity = match asked.coordinates {
-        Coordinates::Ambient => None,
-        Coordinates::Cayley => Some(build.per_step(build.cayley_coordinates()?)),
-        Coordinates::Exponential => Some(build.per_step(build.logarithm()?)),
-    };
-    // A name of its own, so that it is differentiated through as one.
-    let velocity = velocity.map(|velocity| {
-        let name = declaration.velocity().map_or_else(|| "ξ".to_owned(), ToString::to_string);
-        build.tree(velocity.shape, Kind::Bound(name, velocity))
-    });
+    let build = Build { declaration, at: tree, factor: 0 };
+    let factors = 0..declaration.group.factors().len();
+    let velocities = factors.clone().map(|factor| build.of(factor).velocity(asked.coordinates));
+    let velocities: Vec<Option<Rc<Tree>>> = velocities.collect::<Result<_, _>>()?;
     let with = |carried: Vec<Rc<Tree>>| {
         let mut substitution =
-            Substitution { build: &build, velocity: velocity.clone(), carried, known: BTreeMap::new() };
+            Substitution { build: &build, velocities: velocities.clone(), carried, known: BTreeMap::new() };
         substitution.of(tree)
     };
     let number = declaration.advected.len();
     let now = || (0..number).map(|index| build.advected(index)).collect::<Vec<_>>();
-    let next =
-        || (0..number).map(|index| build.carried(index, &build.increment(), &build.inverse())).collect::<Vec<_>>();
+    let next = || {
+        let whole = |factor| build.of(factor).whole_increment();
+        (0..number).map(|index| build.carried(index, &whole)).collect::<Vec<_>>()
+    };
     let h = build.scalar(Kind::Name(Name::Step));
     match asked.quadrature {
         Quadrature::Trapezoid => {
@@ -68,8 +64,12 @@ fn discrete(declaration: &Declaration, tree: &Rc<Tree>, asked: Discretisation) -
             Ok(build.product(build.product(build.number(Rational::new(1, 2)), h), sum))
         }
         Quadrature::Midpoint => {
-            let (half, back) = build.half_increment(velocity.as_ref().ok_or(Misfit::NotInMatrix)?)?;
-            let middle = (0..number).map(|index| build.carried(index, &half, &back)).collect();
+            let half = |factor: usize| {
+                let velocity = velocities.get(factor).cloned().flatten();
+                build.of(factor).half_increment(&velocity.ok_or(Misfit::NotInMatrix)?)
+            };
+            let halves: Vec<[Rc<Tree>; 2]> = factors.map(half).collect::<Result<_, _>>()?;
+            let middle = (0..number).map(|index| build.carried(index, &|factor| halves[factor].clone())).collect();
             Ok(build.product(h, with(middle)?))
         }
         Quadrature::Chord => {
@@ -84,9 +84,12 @@ fn discrete(declaration: &Declaration, tree: &Rc<Tree>, asked: Discretisation) -
 }
 
 /// Makes parts of a tree, all in the place of the declared one.
+#[derive(Clone, Copy)]
 struct Build<'a> {
     declaration: &'a Declaration,
     at: &'a Tree,
+    /// The factor of the group that it is about.
+    factor: usize,
 }
 
 impl Build<'_> {
@@ -143,8 +146,27 @@ impl Build<'_> {
         self.tree(a.shape, Kind::Divide(a, b))
     }
 
+    /// The same about another factor of the group.
+    fn of(&self, factor: usize) -> Self {
+        Self { factor, ..*self }
+    }
+
     fn group(&self) -> &Group {
-        &self.declaration.group
+        self.declaration.group.factor(self.factor)
+    }
+
+    /// The velocity as a function of the increment; none where the matrix `(F − I)/h` stands for `ξ̂`.
+    fn velocity(&self, coordinates: Coordinates) -> Result<Option<Rc<Tree>>, Misfit> {
+        let velocity = match coordinates {
+            _ if self.group().is_added => self.increment(),
+            Coordinates::Ambient => return Ok(None),
+            Coordinates::Cayley => self.cayley_coordinates()?,
+            Coordinates::Exponential => self.logarithm()?,
+        };
+        let velocity = self.per_step(velocity);
+        // A name of its own, so that it is differentiated through as one.
+        let name = self.declaration.name_of_velocity(self.factor);
+        Ok(Some(self.tree(velocity.shape, Kind::Bound(name, velocity))))
     }
 
     fn square(&self) -> Shape {
@@ -155,22 +177,54 @@ impl Build<'_> {
         self.tree(self.square(), Kind::Identity)
     }
 
+    /// A matrix, where increments are added a vector, and on a line a scalar.
     fn increment(&self) -> Rc<Tree> {
-        self.tree(self.square(), Kind::Name(Name::Increment(0)))
+        let shape = match self.group().shape() {
+            (1, 1) => Shape::Scalar,
+            (rows, columns) => Shape::Matrix(rows, columns),
+        };
+        self.tree(shape, Kind::Name(Name::Increment(self.factor)))
+    }
+
+    /// `F` and `F⁻¹`.
+    fn whole_increment(&self) -> [Rc<Tree>; 2] {
+        let increment = self.increment();
+        let inverse =
+            if self.group().is_added { Kind::Negate(increment.clone()) } else { Kind::Inverse(increment.clone()) };
+        let inverse = self.tree(increment.shape, inverse);
+        [increment, inverse]
     }
 
     fn inverse(&self) -> Rc<Tree> {
-        self.tree(self.square(), Kind::Inverse(self.increment()))
+        let [_, inverse] = self.whole_increment();
+        inverse
     }
 
     fn advected(&self, index: usize) -> Rc<Tree> {
         self.tree(self.declaration.advected_kind(index).shape(), Kind::Name(Name::Advected(index)))
     }
 
-    /// `G⁻¹·w`, with `G` and its inverse.
-    fn carried(&self, index: usize, forwards: &Rc<Tree>, back: &Rc<Tree>) -> Rc<Tree> {
+    /// `G⁻¹·w`, with the `G` of each factor and its inverse.
+    fn carried(&self, index: usize, element: &dyn Fn(usize) -> [Rc<Tree>; 2]) -> Rc<Tree> {
         let w = self.advected(index);
-        match self.declaration.advected_kind(index).variance() {
+        let seen = self.declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
+        let is_added = |factor: usize| self.declaration.group.factor(factor).is_added;
+        let by = |factor: usize, part: usize| element(factor)[part].clone();
+        let factor = match seen {
+            Seen::Relative { of, from } if is_added(of) => {
+                return self.add(w, self.subtract(by(of, 0), by(from, 0)));
+            }
+            Seen::Configuration(of) if is_added(of) => return self.add(w, by(of, 0)),
+            Seen::Relative { of, from } => return self.times(&self.times(&by(from, 1), &w), &by(of, 0)),
+            Seen::Configuration(of) => return self.times(&w, &by(of, 0)),
+            Seen::From(factor) => factor,
+        };
+        let variance = self.declaration.advected_kind(index).variance();
+        if variance == Variance::Fixed {
+            return w;
+        }
+        let [forwards, back] = &element(factor);
+        match variance {
             Variance::Vector => self.times(back, &w),
             Variance::Covector => self.times(&self.transposed(forwards), &w),
             Variance::Contravariant => self.times(&self.times(back, &w), &self.transposed(back)),
@@ -200,11 +254,10 @@ impl Build<'_> {
 
     /// `ξ` with `cay(ξ̂) = F`, by the shortest of the formulas that are right on the group.
     fn cayley_coordinates(&self) -> Result<Rc<Tree>, Misfit> {
-        let element = self
-            .cayley_candidates()
-            .into_iter()
-            .map(|candidate| self.named(candidate))
-            .find(|candidate| verify::is_cayley_coordinates(self.group(), &self.components(candidate.clone())));
+        let element = self.cayley_candidates().into_iter().map(|candidate| self.named(candidate)).find(|candidate| {
+            let components = self.components(candidate.clone());
+            verify::is_cayley_coordinates(self.group(), Name::Increment(self.factor), &components)
+        });
         element.map(|element| self.components(element)).ok_or(Misfit::NoCayley)
     }
 
@@ -271,8 +324,13 @@ impl Build<'_> {
     }
 
     /// `exp(hξ̂/2)` and its inverse.
-    fn half_increment(&self, velocity: &Rc<Tree>) -> Result<(Rc<Tree>, Rc<Tree>), Misfit> {
+    fn half_increment(&self, velocity: &Rc<Tree>) -> Result<[Rc<Tree>; 2], Misfit> {
         let half = self.number(Rational::new(1, 2));
+        if self.group().is_added {
+            let forwards = self.scaled(half, self.increment());
+            let back = self.tree(forwards.shape, Kind::Negate(forwards.clone()));
+            return Ok([forwards, back]);
+        }
         if self.group().is_so3 {
             let shift = self.scaled(self.product(half, self.scalar(Kind::Name(Name::Step))), velocity.clone());
             let square = |kind| self.tree(self.square(), kind);
@@ -282,14 +340,14 @@ impl Build<'_> {
             let (odd, even) =
                 (self.scaled(coefficient(1), hat.clone()), self.scaled(coefficient(2), self.times(&hat, &hat)));
             let even = self.add(self.identity(), even);
-            return Ok((self.add(even.clone(), odd.clone()), self.subtract(even, odd)));
+            return Ok([self.add(even.clone(), odd.clone()), self.subtract(even, odd)]);
         }
         let small = self.subtract(self.increment(), self.identity());
         let shift = self.scaled(half, self.nilpotent_logarithm(&small)?);
         let factorial = |k: i128| (1..=k).product::<i128>();
         let forwards = self.nilpotent_terms(&shift, |k| Rational::new(1, factorial(k)))?;
         let back = self.nilpotent_terms(&shift, |k| Rational::new(if k % 2 == 1 { -1 } else { 1 }, factorial(k)))?;
-        Ok((self.add(self.identity(), forwards), self.add(self.identity(), back)))
+        Ok([self.add(self.identity(), forwards), self.add(self.identity(), back)])
     }
 
     /// `Σ c_k Nᵏ`, which ends where all generators are strictly triangular.
@@ -319,8 +377,8 @@ impl Build<'_> {
 /// `l` with other values for the velocity and for what is advected.
 struct Substitution<'a> {
     build: &'a Build<'a>,
-    /// `None` where the matrix `(F − I)/h` stands for `ξ̂`.
-    velocity: Option<Rc<Tree>>,
+    /// Of each factor of the group; `None` where the matrix `(F − I)/h` stands for `ξ̂`.
+    velocities: Vec<Option<Rc<Tree>>>,
     carried: Vec<Rc<Tree>>,
     known: BTreeMap<*const Tree, Rc<Tree>>,
 }
@@ -338,12 +396,13 @@ impl Substitution<'_> {
     fn operation(&mut self, tree: &Rc<Tree>) -> Result<Rc<Tree>, Misfit> {
         let kind = match &tree.kind {
             Kind::Name(Name::Advected(index)) => return Ok(self.carried[*index].clone()),
-            Kind::Name(Name::Velocity) => return self.velocity.clone().ok_or(Misfit::NotInMatrix),
+            Kind::Name(Name::Velocity(factor)) => return self.velocity(*factor).ok_or(Misfit::NotInMatrix),
             Kind::Number(_) | Kind::Identity | Kind::Name(_) => return Ok(tree.clone()),
-            Kind::Hat(a, _) | Kind::CrossMatrix(a) if self.velocity.is_none() && is_velocity(a) => {
-                return Ok(self.build.difference_quotient());
+            Kind::Hat(a, _) | Kind::CrossMatrix(a) if self.in_matrix(a).is_some() => {
+                let factor = self.in_matrix(a).unwrap_or(0);
+                return Ok(self.build.of(factor).difference_quotient());
             }
-            Kind::Dot(a, b) if self.velocity.is_none() => match self.form(a, b)? {
+            Kind::Dot(a, b) => match self.form(a, b)? {
                 Some(form) => return Ok(form),
                 None => Kind::Dot(self.of(a)?, self.of(b)?),
             },
@@ -354,7 +413,6 @@ impl Substitution<'_> {
             Kind::Divide(a, b) => Kind::Divide(self.of(a)?, self.of(b)?),
             Kind::Transpose(a) => Kind::Transpose(self.of(a)?),
             Kind::Trace(a) => Kind::Trace(self.of(a)?),
-            Kind::Dot(a, b) => Kind::Dot(self.of(a)?, self.of(b)?),
             Kind::Cross(a, b) => Kind::Cross(self.of(a)?, self.of(b)?),
             Kind::CrossMatrix(a) => Kind::CrossMatrix(self.of(a)?),
             Kind::ComponentMultiply(a, b) => Kind::ComponentMultiply(self.of(a)?, self.of(b)?),
@@ -367,7 +425,7 @@ impl Substitution<'_> {
             Kind::Entry(a, row, column) => Kind::Entry(self.of(a)?, *row, *column),
             Kind::Bound(name, a) => {
                 // Where the matrix stands for the velocity, another name of the velocity is none.
-                if self.velocity.is_none() && is_velocity(a) {
+                if self.in_matrix(a).is_some() {
                     return Err(Misfit::NotInMatrix);
                 }
                 Kind::Bound(name.clone(), self.of(a)?)
@@ -376,16 +434,27 @@ impl Substitution<'_> {
         Ok(Tree::until(Tree::new(tree.span, tree.shape, kind), tree.end))
     }
 
+    /// The velocity of a factor; none where a matrix stands for it.
+    fn velocity(&self, factor: usize) -> Option<Rc<Tree>> {
+        self.velocities.get(factor).cloned().flatten()
+    }
+
+    /// The factor whose velocity this is, where a matrix stands for it.
+    fn in_matrix(&self, tree: &Tree) -> Option<usize> {
+        velocity_of(tree).filter(|&factor| self.velocity(factor).is_none())
+    }
+
     /// On SO(3), `(Aξ)·(Bξ)` as `tr(ξ̂ S_d ξ̂ᵀ)` with `S = AᵀB` and `S_d = ½ tr(S) I − S`, and `a·ξ` as `a·vee(ξ̂)`, which
     /// are the same in the algebra, and for the matrix `(F − I)/h` those of (3.13).
     fn form(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<Option<Rc<Tree>>, Misfit> {
-        let build = self.build;
-        if !build.group().is_so3 {
-            return Ok(None);
-        }
-        let (left, right) = (linear(a, build), linear(b, build));
+        let turns = |factor: usize| self.build.of(factor).group().is_so3 && self.velocity(factor).is_none();
+        let linear = |tree| linear(tree, self.build).filter(|(factor, _)| turns(*factor));
+        let (left, right) = (linear(a), linear(b));
         match (left, right) {
-            (Some(left), Some(right)) => {
+            // Of two bodies their product is none of one matrix.
+            (Some((of_left, _)), Some((of_right, _))) if of_left != of_right => Ok(None),
+            (Some((factor, left)), Some((_, right))) => {
+                let build = &self.build.of(factor);
                 let (left, right) = (self.factors(&left)?, self.factors(&right)?);
                 let chain = left.iter().rev().map(|factor| build.transposed(factor)).chain(right);
                 let form = chain.reduce(|product, factor| build.times(&product, &factor));
@@ -401,8 +470,8 @@ impl Substitution<'_> {
                 let product = build.times(&build.times(&quotient, &nonstandard), &build.transposed(&quotient));
                 Ok(Some(build.trace(&product)))
             }
-            (Some(form), None) if !mentions_velocity(b) => self.paired(&form, b).map(Some),
-            (None, Some(form)) if !mentions_velocity(a) => self.paired(&form, a).map(Some),
+            (Some((factor, form)), None) if !mentions_velocity(b) => self.paired((factor, &form), b).map(Some),
+            (None, Some((factor, form))) if !mentions_velocity(a) => self.paired((factor, &form), a).map(Some),
             _ => Ok(None),
         }
     }
@@ -412,34 +481,40 @@ impl Substitution<'_> {
     }
 
     /// `(A vee((F − I)/h))·b`.
-    fn paired(&mut self, factors: &[Rc<Tree>], other: &Rc<Tree>) -> Result<Rc<Tree>, Misfit> {
-        let (build, factors, other) = (self.build, self.factors(factors)?, self.of(other)?);
+    fn paired(&mut self, (factor, factors): (usize, &[Rc<Tree>]), other: &Rc<Tree>) -> Result<Rc<Tree>, Misfit> {
+        let (build, factors, other) = (self.build.of(factor), self.factors(factors)?, self.of(other)?);
         let vector = build.components(build.difference_quotient());
         let image = factors.iter().rev().fold(vector, |image, factor| build.times(factor, &image));
         Ok(build.scalar(Kind::Dot(image, other)))
     }
 }
 
-fn is_velocity(tree: &Tree) -> bool {
-    matches!(tree.kind, Kind::Name(Name::Velocity))
+/// The factor of the group whose velocity this is.
+fn velocity_of(tree: &Tree) -> Option<usize> {
+    match tree.kind {
+        Kind::Name(Name::Velocity(factor)) => Some(factor),
+        _ => None,
+    }
 }
 
 fn mentions_velocity(tree: &Rc<Tree>) -> bool {
-    is_velocity(tree) || tree.kind.operands().into_iter().flatten().any(mentions_velocity)
+    velocity_of(tree).is_some() || tree.kind.operands().into_iter().flatten().any(mentions_velocity)
 }
 
-/// The matrices `A_1, A_2, …` of `A_1 A_2 … ξ`.
-fn linear(tree: &Rc<Tree>, build: &Build) -> Option<Vec<Rc<Tree>>> {
+/// The factor of the group and the matrices `A_1, A_2, …` of `A_1 A_2 … ξ`.
+fn linear(tree: &Rc<Tree>, build: &Build) -> Option<(usize, Vec<Rc<Tree>>)> {
     match &tree.kind {
-        Kind::Name(Name::Velocity) => Some(Vec::new()),
-        Kind::Multiply(a, b) if a.shape == build.square() && !mentions_velocity(a) => {
-            let rest = linear(b, build)?;
+        Kind::Name(Name::Velocity(factor)) => Some((*factor, Vec::new())),
+        Kind::Multiply(a, b) if !mentions_velocity(a) => {
+            let (factor, rest) = linear(b, build)?;
+            let own = build.of(factor);
             // A product of matrices in parentheses is one matrix.
-            Some([vec![a.clone()], rest].concat())
-        }
-        Kind::Multiply(a, b) if a.shape == Shape::Scalar && !mentions_velocity(a) => {
-            let scaled = build.scaled(a.clone(), build.identity());
-            Some([vec![scaled], linear(b, build)?].concat())
+            let matrix = match a.shape {
+                Shape::Scalar => own.scaled(a.clone(), own.identity()),
+                shape if shape == own.square() => a.clone(),
+                _ => return None,
+            };
+            Some((factor, [vec![matrix], rest].concat()))
         }
         _ => None,
     }

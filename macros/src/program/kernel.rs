@@ -115,35 +115,53 @@ pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, co
 pub(crate) fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, term: &Expression) -> Vec<NodeId> {
     let dimension = derived.group.dimension();
     let along = [1, 2].map(|least| if rank >= least { dimension } else { 1 });
-    let unit = |graph: &mut Graph, k: usize| {
-        let (zero, one) = (graph.zero(), graph.one());
-        Entries::new(dimension, 1, |row, _| if row == k { one } else { zero })
-    };
-    let places = (0..along[0]).flat_map(|k| (0..along[1]).map(move |j| (k, j)));
-    let of_place = |(k, j)| {
-        let mut given = Given::from([(derived.directions[0], unit(graph, k)), (derived.directions[1], unit(graph, j))]);
-        if let Some([eta, zeta]) = derived.direction_matrices {
-            given.insert(eta, generator(graph, &derived.group, 0, k));
-            given.insert(zeta, generator(graph, &derived.group, 0, j));
+    let places = (0..along[0]).flat_map(|k| (0..along[1]).map(move |j| [k, j]));
+    let of_place = |place: [usize; 2]| {
+        let mut given = with_velocities(graph, derived);
+        for (factor, directions) in derived.directions.iter().enumerate() {
+            let (own, first) = (derived.group.factor(factor).dimension(), derived.group.component_of(factor));
+            for (direction, k) in directions.iter().zip(place) {
+                let (zero, one) = (graph.zero(), graph.one());
+                let unit = Entries::new(own, 1, |row, _| if first + row == k { one } else { zero });
+                given.insert(direction.components, unit);
+                if let Some(matrix) = direction.matrix {
+                    given.insert(matrix, generator(graph, &derived.group, factor, k));
+                }
+            }
         }
-        given.extend(derived.velocity_matrix.map(|xi| (xi, matrix_of(graph, &derived.group, derived.velocity))));
         Scalariser { graph, symbols: &derived.symbols, given }.scalar(term)
     };
     places.map(of_place).collect()
 }
 
-/// The entries, row by row, of the matrix that the diamond along any matrix pairs with.
-pub(crate) fn diamond_matrix(graph: &mut Graph, derived: &Continuous) -> Vec<NodeId> {
-    let size = derived.group.size;
-    let places = (0..size).flat_map(|row| (0..size).map(move |column| (row, column)));
-    let entry = |place| {
-        let (zero, one) = (graph.zero(), graph.one());
-        let unit = Entries::new(size, size, |row, column| if (row, column) == place { one } else { zero });
-        let mut given = Given::from([(derived.any, unit)]);
-        given.extend(derived.velocity_matrix.map(|xi| (xi, matrix_of(graph, &derived.group, derived.velocity))));
-        Scalariser { graph, symbols: &derived.symbols, given }.scalar(&derived.diamond_of_any)
+/// The matrices of the velocities, where they have symbols of their own.
+fn with_velocities(graph: &mut Graph, derived: &Continuous) -> Given {
+    let velocities = derived.velocities.iter();
+    let matrices = velocities.filter_map(|velocity| Some((velocity.matrix?, velocity.components)));
+    matrices.map(|(matrix, components)| (matrix, matrix_of(graph, &derived.group, components))).collect()
+}
+
+/// The entries, row by row, of the matrix that the diamond along any matrix pairs with; of each factor of the group its
+/// own. Where increments are added, all that counts is the last column of the matrix.
+pub(crate) fn diamond_matrices(graph: &mut Graph, derived: &Continuous) -> Vec<Vec<NodeId>> {
+    let factors = derived.group.factors().iter().enumerate();
+    let of_factor = |(factor, own): (usize, &Group)| {
+        let places = (0..own.size).flat_map(|row| (0..own.size).map(move |column| (row, column)));
+        let entry = |(row, column): (usize, usize)| {
+            let place = if own.is_added { (row, (column + 1 == own.size).then_some(0)) } else { (row, Some(column)) };
+            let (zero, one) = (graph.zero(), graph.one());
+            let mut given = with_velocities(graph, derived);
+            for (other, &any) in derived.any.iter().enumerate() {
+                let shape = derived.group.factor(other).shape();
+                let is_one = |row, column| other == factor && place == (row, Some(column));
+                let unit = Entries::new(shape.0, shape.1, |row, column| if is_one(row, column) { one } else { zero });
+                given.insert(any, unit);
+            }
+            Scalariser { graph, symbols: &derived.symbols, given }.scalar(&derived.diamond_of_any)
+        };
+        places.map(entry).collect()
     };
-    places.map(entry).collect()
+    factors.map(of_factor).collect()
 }
 
 /// The block of the constant matrix `E_k` that belongs to a factor; of a group that isn't a product all of it. Of a factor

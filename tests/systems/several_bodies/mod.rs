@@ -13,9 +13,11 @@ mod translated;
 use liestep::SO3;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::laws::samples::{Random, derivative};
-use liestep::mechanics::{DiscreteLagrangian, Term};
+use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Term};
+use liestep::motion::RightHandSide;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use serde_json::Value;
+use workbench::runge_kutta;
 
 use declarations::motions::{matrix, vector};
 
@@ -138,6 +140,27 @@ where
         assert!((limit(&xi) - expected).abs() < 1e-7, "{} {expected}", limit(&xi));
     }
     assert!(L::SELF_ADJOINT);
+}
+
+/// Where a solver of the continuous equations, which are those of the limit of `l_d`, comes from a start: attitude and
+/// velocity after the time.
+fn solved<L, const D: usize>(
+    l: &L,
+    (attitude, velocity): (L::Group, SVector<f64, D>),
+    (time, steps): (f64, u32),
+) -> (L::Group, SVector<f64, D>)
+where
+    L: ContinuousLagrangian<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>> + Clone,
+{
+    let continuous = RightHandSide::new(l.clone()).unwrap();
+    let momentum = l.momentum(&velocity, &l.advected().seen_from(&attitude));
+    let mut state = continuous.state(&attitude, &momentum);
+    for _ in 0..steps {
+        runge_kutta::step(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, time / f64::from(steps));
+    }
+    let (attitude, momentum) = continuous.parts(&state);
+    let w = l.advected().seen_from(&attitude);
+    (attitude, continuous.velocity(&momentum, &w).unwrap())
 }
 
 /// The means of each tenth of a hundred thousand numbers, and the largest of their sizes.

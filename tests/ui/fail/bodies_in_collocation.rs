@@ -1,5 +1,6 @@
 use liestep::methods::CotangentGauss;
 use liestep::{NonstandardInertia, SO3, lagrangian};
+use nalgebra::Vector6;
 
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
@@ -11,8 +12,8 @@ struct Bodies {
     J_2: NonstandardInertia,
 }
 
-fn motion(bodies: Bodies) {
-    let _ = CotangentGauss::<_, 2, 6>::new(bodies, 0.1);
+fn motion(gauss: CotangentGauss<Bodies, 2, 6>, attitudes: (SO3, SO3), momentum: Vector6<f64>) {
+    let _ = gauss.step(&attitudes, &momentum);
 }
 
 fn main() {}

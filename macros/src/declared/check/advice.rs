@@ -67,7 +67,7 @@ impl Checker<'_> {
         let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
         let of_step: &[&str] = if self.declaration.continuous.is_some() { &["I"] } else { &["F", "I", "h"] };
         let builtin = of_step.iter().chain(displacements).map(|name| (*name).to_owned());
-        let velocity = self.declaration.velocity().map(|velocity| velocity.unraw().to_string());
+        let velocity = self.declaration.velocities().iter().map(|velocity| velocity.unraw().to_string());
         builtin.chain(velocity).chain(advected).chain(fields).chain(bound).collect()
     }
 

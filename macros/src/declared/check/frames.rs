@@ -1,6 +1,6 @@
 //! From which body a vector is seen: the one mistake among several bodies that shapes don't show.
 //!
-//! What is known is an increment, which is seen from its own body, what a body sees, and a relative configuration, which
+//! What is known is an increment or a velocity, which is seen from its own body, what a body sees, and a relative configuration, which
 //! brings a vector from one body to another. Fields may belong to any, and so may what is seen from space: where the
 //! attitude of one body is given relative to another, that is the other. Only two bodies that are known and differ are a
 //! mistake.
@@ -22,6 +22,7 @@ pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
     let turns = |factor: usize| declaration.group.is_product() && !declaration.group.factor(factor).is_added;
     match name {
         Name::Increment(factor) if turns(factor) => [Some(factor); 2],
+        Name::Velocity(factor) if turns(factor) => [Some(factor), None],
         Name::Advected(index) => match declaration.advected.get(index).filter(|w| !w.is_given).map(|w| w.seen) {
             Some(Seen::From(factor)) if turns(factor) => {
                 let is_tensor = declaration.advected_kind(index).variance().is_tensor();

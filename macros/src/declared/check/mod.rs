@@ -433,6 +433,7 @@ impl Checker<'_> {
         let size = self.matrices.size;
         let square = Shape::Matrix(size, size);
         let increment = self.declaration.factors.iter().position(|factor| factor.name == name);
+        let velocity = self.declaration.velocities().iter().position(|velocity| velocity.unraw() == name);
         let of_increment = |factor: usize| match self.declaration.group.factor(factor).shape() {
             (1, 1) if self.declaration.group.factor(factor).is_added => Shape::Scalar,
             (rows, columns) => Shape::Matrix(rows, columns),
@@ -446,8 +447,12 @@ impl Checker<'_> {
                 (of_increment(factor), Name::Increment(factor))
             }
             "h" => (Shape::Scalar, Name::Step),
-            _ if self.declaration.velocity().is_some_and(|velocity| velocity.unraw() == name) => {
-                (self.displacement(), Name::Velocity)
+            _ if velocity.is_some() => {
+                let factor = velocity.unwrap_or(0);
+                let own = self.declaration.group.factor(factor);
+                let is_scalar = own.is_added && own.dimension() == 1;
+                let shape = if is_scalar { Shape::Scalar } else { Shape::Matrix(own.dimension(), 1) };
+                (shape, Name::Velocity(factor))
             }
             "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
             "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),

@@ -1,5 +1,7 @@
 //! Every declared name must be used: a forgotten name is a forgotten force.
 
+use syn::Ident;
+
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, Name, Role};
 use crate::mathematics::derive::Seen;
@@ -17,11 +19,19 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         return;
     }
     if declaration.continuous.is_some() {
-        if let Some(velocity) = declaration.velocity().filter(|_| !used.contains(&Name::Velocity)) {
-            let message =
-                format!("`{velocity}` isn't used in the Lagrangian: remove `velocity = {velocity}`, or use it");
-            errors.push(velocity.span(), message);
-        } else if !used.iter().any(|name| matches!(name, Name::Velocity | Name::Advected(_))) {
+        let unused = |(factor, _): &(usize, &Ident)| !used.contains(&Name::Velocity(*factor));
+        let unused: Vec<&Ident> =
+            declaration.velocities().iter().enumerate().filter(unused).map(|(_, name)| name).collect();
+        if !unused.is_empty() {
+            for velocity in unused {
+                let advice = if declaration.group.is_product() {
+                    "that body would not move; leave its factor out, or use it".to_owned()
+                } else {
+                    format!("remove `velocity = {velocity}`, or use it")
+                };
+                errors.push(velocity.span(), format!("`{velocity}` isn't used in the Lagrangian: {advice}"));
+            }
+        } else if !used.iter().any(|name| matches!(name, Name::Velocity(_) | Name::Advected(_))) {
             errors.push_over(
                 declaration.expression.as_ref().map(super::value),
                 "the Lagrangian depends on no velocity, which `velocity = Omega` names, and on nothing advected: nothing \

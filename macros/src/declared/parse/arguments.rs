@@ -3,6 +3,7 @@
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
+use syn::punctuated::Punctuated;
 use syn::{Expr, ExprArray, Ident, Path, Token, parenthesized};
 
 use super::group;
@@ -21,8 +22,8 @@ pub(super) struct Arguments {
     pub(super) expression: Option<(Ident, Expr)>,
     /// `l`, with its key.
     pub(super) continuous: Option<(Ident, Expr)>,
-    /// The name of the velocity, with its key.
-    pub(super) velocity: Option<(Ident, Ident)>,
+    /// The names of the velocities, with their key.
+    pub(super) velocity: Option<(Ident, Vec<Ident>)>,
     /// With its key.
     pub(super) discretisation: Option<(Ident, Discretisation)>,
     pub(super) root: Option<Path>,
@@ -115,9 +116,18 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
         "velocity" if role == Role::Lagrangian => {
             once(arguments.velocity.is_some());
+            if input.peek(syn::token::Paren) {
+                let content;
+                parenthesized!(content in input);
+                let message = "write `velocity(Omega_1, Omega_2)`: a name for each factor of the group, in their order";
+                let names = Punctuated::<Ident, Token![,]>::parse_terminated(&content);
+                let names = names.map_err(|error| syn::Error::new(error.span(), message))?;
+                arguments.velocity = Some((key, names.into_iter().collect()));
+                return comma(input);
+            }
             equals(&key, input)?;
             without_quotes(&key, input)?;
-            arguments.velocity = Some((key, input.call(Ident::parse_any)?));
+            arguments.velocity = Some((key, vec![input.call(Ident::parse_any)?]));
         }
         "discretise" if role == Role::Lagrangian => {
             once(arguments.discretisation.is_some());

@@ -153,7 +153,7 @@ pub(super) fn check_increments(factors: &[Factor], taken: &Taken, errors: &mut E
             "is a field already"
         } else if taken.advected.contains(name) {
             "is advected already"
-        } else if taken.velocity.as_ref() == Some(name) {
+        } else if taken.velocities.contains(name) {
             "is the velocity already"
         } else {
             continue;
@@ -166,7 +166,7 @@ pub(super) fn check_increments(factors: &[Factor], taken: &Taken, errors: &mut E
 pub(super) struct Taken {
     pub(super) fields: Vec<String>,
     pub(super) advected: Vec<String>,
-    pub(super) velocity: Option<String>,
+    pub(super) velocities: Vec<String>,
 }
 
 /// The generators, to be read when the group is known.

@@ -98,10 +98,6 @@ pub(crate) fn as_far_as_readable(
         if let Some((key, _)) = &arguments.generators {
             errors.push(key.span(), "`generators` belong to `group = Name`: remove them");
         }
-        if let Some((key, _)) = &arguments.continuous {
-            let message = "several bodies are declared by their steps: write `l_d = …` in their increments";
-            errors.push_decisive(key.span(), message);
-        }
         let (factors, group) = group::product(named, errors);
         (factors.first().and_then(|factor| factor.path.clone()), group, factors)
     } else {
@@ -130,7 +126,12 @@ pub(crate) fn as_far_as_readable(
     let taken = group::Taken {
         fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
         advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),
-        velocity: arguments.velocity.as_ref().map(|(_, name)| name.unraw().to_string()),
+        velocities: arguments
+            .velocity
+            .iter()
+            .flat_map(|(_, names)| names)
+            .map(|name| name.unraw().to_string())
+            .collect(),
     };
     group::check_increments(&factors, &taken, errors);
     let advected = advected(
@@ -141,7 +142,7 @@ pub(crate) fn as_far_as_readable(
         group_path.as_ref().map(|_| (&group, factors.as_slice())),
         errors,
     );
-    let (expression, continuous) = kind(role, &mut arguments, &fields, &advected, errors);
+    let (expression, continuous) = kind(role, &mut arguments, (&fields, &advected, &factors), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
     Declaration {
@@ -164,16 +165,17 @@ pub(crate) fn as_far_as_readable(
 fn kind(
     role: Role,
     arguments: &mut Arguments,
-    fields: &[Field],
-    advected: &[AdvectedParameter],
+    (fields, advected, factors): (&[Field], &[AdvectedParameter], &[Factor]),
     errors: &mut Errors,
 ) -> (Option<Expr>, Option<Continuous>) {
     let (velocity, discretisation) = (arguments.velocity.take(), arguments.discretisation.take());
     let Some((key, l)) = arguments.continuous.take() else {
-        if let Some((key, name)) = velocity {
+        if let Some((key, names)) = velocity {
+            let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
             let message = format!(
                 "`velocity` belongs to a continuous Lagrangian `l = …`; in `l_d` the velocity of a step is in `F`: remove \
-                 it, or write `l = …` in `{name}`"
+                 it, or write `l = …` in {}",
+                names.join(", ")
             );
             errors.push_decisive(key.span(), message);
         }
@@ -190,11 +192,13 @@ fn kind(
         errors.push_decisive(l_d.span(), message);
         errors.push(key.span(), "`l` is given here");
     }
-    let velocity = velocity.map(|(_, name)| name);
-    if let Some(name) = &velocity {
+    let velocities = velocities(velocity, factors, errors);
+    for (at, name) in velocities.iter().enumerate() {
         let plain = name.unraw().to_string();
         check_free(role, name, errors);
-        if fields.iter().any(|field| field.plain_name() == plain) {
+        if velocities[..at].contains(name) {
+            errors.push_decisive(name.span(), format!("`{plain}` is a velocity already: choose another name"));
+        } else if fields.iter().any(|field| field.plain_name() == plain) {
             errors.push_decisive(name.span(), format!("`{plain}` is a field already: choose another name"));
         } else if advected.iter().any(|w| w.plain_name() == plain) {
             errors.push_decisive(name.span(), format!("`{plain}` is advected already: choose another name"));
@@ -213,7 +217,21 @@ fn kind(
         };
         errors.push_between(place, message);
     }
-    (Some(l), Some(Continuous { velocity, discretisation }))
+    (Some(l), Some(Continuous { velocities, discretisation }))
+}
+
+/// The names of the velocities, one for each factor, or none.
+fn velocities(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &mut Errors) -> Vec<Ident> {
+    let Some((key, names)) = named else { return Vec::new() };
+    if names.len() != factors.len() {
+        let increments: Vec<String> = factors.iter().map(|factor| format!("`{}`", factor.name)).collect();
+        let message = match increments.as_slice() {
+            [_] => "one group has one velocity: write `velocity = Omega`".to_owned(),
+            several => format!("name the velocities of {}, in this order: {} names", several.join(", "), several.len()),
+        };
+        errors.push_decisive(key.span(), message);
+    }
+    names
 }
 
 fn advected(

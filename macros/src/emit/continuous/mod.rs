@@ -12,7 +12,7 @@ use crate::declared::{Coordinates, Declaration, Discretisation, Quadrature};
 use crate::judged::Equations;
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Graph, along_directions, diamond_matrix};
+use crate::program::{Graph, along_directions, diamond_matrices};
 
 /// The item with the continuous equations alone.
 pub(crate) fn alone(item: &TokenStream, declaration: &Declaration, equations: &Equations) -> TokenStream {
@@ -161,7 +161,6 @@ impl Code<'_> {
             Form::Scalar => header.scalar.clone(),
             Form::Vector => header.vector(),
             Form::Square => header.square(),
-            Form::Matrix => header.matrix(),
         };
         let (name, vector) = (Ident::new(name, span), header.vector());
         quote_spanned! {span=>
@@ -174,9 +173,9 @@ impl Code<'_> {
     fn diamond_matrix(&self, equations: &Equations) -> TokenStream {
         let (span, header) = (Span::mixed_site(), self.header);
         let mut graph = Graph::default();
-        let outputs = diamond_matrix(&mut graph, &equations.derived);
-        let documentation = docs::of(&[], "diamond_matrix", &graph, &outputs);
-        let body = self.body(Form::Matrix, &graph, &outputs, &|input| self.input_token(input));
+        let blocks = diamond_matrices(&mut graph, &equations.derived);
+        let documentation = docs::of(&[], "diamond_matrix", &graph, &blocks.concat());
+        let body = self.blocks(&graph, &blocks, &|input| self.input_token(input));
         let (vector, matrix) = (header.vector(), header.matrix());
         quote_spanned! {span=>
             #[doc = #documentation]

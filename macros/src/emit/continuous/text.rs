@@ -3,46 +3,66 @@
 use crate::declared::{Declaration, FieldKind};
 use crate::emit::docs::{Equation, setting};
 use crate::judged::Equations;
-use crate::mathematics::derive::{Continuous, Inverse};
-use crate::mathematics::symbolic::{Expression, Rational, Variance, matrix_text, text, vector_text};
+use crate::mathematics::derive::{Carried, Continuous, Inverse, OfVelocity, Seen};
+use crate::mathematics::group::Group;
+use crate::mathematics::symbolic::{Expression, Rational, Variance, matrix_text, monomial_contains, text, vector_text};
 
 /// A longer equation is said in words.
 const LONGEST: usize = 1_500;
 
-/// The name of the velocity.
+/// The name of the velocity; `ξ` stands for those of several bodies together.
 fn velocity(derived: &Continuous) -> &str {
-    &derived.symbols.get(derived.velocity).name
+    match derived.velocities.as_slice() {
+        [one] => &derived.symbols.get(one.components).name,
+        _ => "ξ",
+    }
 }
 
-/// A covector as a vector, or as what it pairs with `η`.
+/// The names of the velocities of all factors.
+fn velocities(derived: &Continuous) -> Vec<&str> {
+    derived.velocities.iter().map(|velocity| derived.symbols.get(velocity.components).name.as_str()).collect()
+}
+
+/// A covector as a vector, or as what it pairs with `η`; of several bodies there is one of each.
 fn covector(derived: &Continuous, expression: &Expression) -> Option<String> {
-    vector_text(expression, derived.directions[0], &derived.symbols).filter(|text| text.len() <= LONGEST)
+    let [directions] = derived.directions.as_slice() else { return None };
+    vector_text(expression, directions[0].components, &derived.symbols).filter(|text| text.len() <= LONGEST)
+}
+
+/// The part of a covector that belongs to a factor of the group.
+fn of_factor(derived: &Continuous, factor: usize, expression: &Expression) -> Expression {
+    let direction = derived.directions[factor][0];
+    expression.filtered(|monomial| {
+        let mut symbols = [Some(direction.components), direction.matrix].into_iter().flatten();
+        symbols.any(|symbol| monomial_contains(monomial, symbol))
+    })
 }
 
 /// The equations in the order of the thesis.
 pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec<Equation> {
     let derived = &equations.derived;
-    let xi = velocity(derived);
     let scalar = |expression: &Expression| {
         let text = text(expression, &derived.symbols);
         if text.len() <= LONGEST { text } else { "…, which is long".to_owned() }
     };
     let paired = |method, name: &str, expression: &Expression, source| match covector(derived, expression) {
         Some(text) => Equation::new(method, name, text, source),
+        None if derived.directions.len() > 1 => Equation::new(method, name, of_bodies(derived, expression), source),
         None => Equation::new(method, &format!("⟨{name}, η⟩"), scalar(expression), source),
     };
     let w = names(declaration);
-    let at = if w.is_empty() { xi.to_owned() } else { format!("{xi}, {}", w.join(", ")) };
+    let at: Vec<&str> = velocities(derived).into_iter().chain(w.iter().map(String::as_str)).collect();
+    let at = at.join(", ");
     let source = if declaration.continuous.is_some() { "as declared, in normal form" } else { "the limit of l_d/h" };
     let mut list = vec![
         Equation::new("l", &format!("l({at})"), scalar(&derived.lagrangian), source),
         paired("momentum", "μ", &derived.momentum, "∂l/∂ξ, (1.14)"),
     ];
-    list.push(match matrix_text(&derived.hessian, derived.directions, &derived.symbols) {
+    list.push(match inertia(derived) {
         Some(text) if text.len() <= LONGEST => Equation::new("velocity_hessian", "𝕀", text, "∂²l/∂ξ², the inertia"),
         _ => Equation::new("velocity_hessian", "⟨𝕀η, ζ⟩", scalar(&derived.hessian), "∂²l/∂ξ², the inertia"),
     });
-    let has_moved = derived.advected.iter().any(|(_, variance)| *variance != Variance::Fixed);
+    let has_moved = derived.advected.iter().any(is_moved);
     if has_moved {
         list.push(paired("diamond_rate", "∂l/∂w ⋄ w", &derived.diamond, "(2.1)"));
     }
@@ -55,6 +75,23 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
     list.push(hamiltonian(derived, &hamiltonian_of(&w)));
     list.push(kept(declaration, equations));
     list
+}
+
+/// The covectors of several bodies, in their order.
+fn of_bodies(derived: &Continuous, expression: &Expression) -> String {
+    let of_body = |(factor, directions): (usize, &[OfVelocity; 2])| {
+        let own = of_factor(derived, factor, expression);
+        let found = vector_text(&own, directions[0].components, &derived.symbols);
+        let found = found.unwrap_or_else(|| format!("η_{} ↦ {}", factor + 1, text(&own, &derived.symbols)));
+        if found.len() <= LONGEST { found } else { "…, which is long".to_owned() }
+    };
+    derived.directions.iter().enumerate().map(of_body).collect::<Vec<_>>().join(";  ")
+}
+
+/// `∂²l/∂ξ²` as a matrix, where it can be written as one.
+pub(in crate::emit) fn inertia(derived: &Continuous) -> Option<String> {
+    let [directions] = derived.directions.as_slice() else { return None };
+    matrix_text(&derived.hessian, directions.map(|direction| direction.components), &derived.symbols)
 }
 
 /// The names of what is advected.
@@ -76,8 +113,31 @@ fn sum(terms: &[String]) -> String {
     if sum.is_empty() { "0".to_owned() } else { sum }
 }
 
+/// Whether the group moves it.
+fn is_moved(w: &Carried) -> bool {
+    w.variance != Variance::Fixed || w.seen.is_configuration()
+}
+
+/// `μ̇` of each body: on SO(3) with a cross product, and where increments are added the force alone.
+fn momentum_rates(derived: &Continuous) -> String {
+    let velocities = velocities(derived);
+    let of_body = |(factor, own): (usize, &Group)| {
+        let diamond = of_factor(derived, factor, &derived.diamond);
+        let force = vector_text(&diamond, derived.directions[factor][0].components, &derived.symbols);
+        let force = force.filter(|text| text.len() <= LONGEST);
+        let force = force.unwrap_or_else(|| format!("(∂l/∂w ⋄ w)_{}", factor + 1));
+        let turn = format!("μ_{} × {}", factor + 1, velocities[factor]);
+        sum(&if own.is_added { vec![force] } else { vec![turn, force] })
+    };
+    derived.group.factors().iter().enumerate().map(of_body).collect::<Vec<_>>().join(";  ")
+}
+
 /// (1.4) with (2.2), on SO(3) in cross products.
 fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
+    if derived.group.is_product() {
+        let right = momentum_rates(derived);
+        return Equation::new("momentum_rate", "dμ/dt", right, "(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w, of each");
+    }
     let xi = velocity(derived);
     let momentum = covector(derived, &derived.momentum);
     let diamond = covector(derived, &derived.diamond);
@@ -100,10 +160,26 @@ fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
 
 /// (2.2), by the kind of each parameter.
 fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equation> {
-    let hat = format!("hat({})", velocity(derived));
+    let velocities = velocities(derived);
+    let added = |factor: usize| derived.group.factor(factor).is_added;
     let rate = |index: usize, name: String| {
-        let right = match declaration.advected_kind(index).variance() {
-            Variance::Covector if derived.group.is_so3 => format!("{name} × {}", velocity(derived)),
+        let w = derived.advected.get(index)?;
+        let of = |factor: usize| velocities[factor];
+        let (xi, right) = match w.seen {
+            Seen::From(factor) => (of(factor), None),
+            Seen::Relative { of: body, from } if added(body) => ("", Some(format!("{} − {}", of(body), of(from)))),
+            Seen::Configuration(body) if added(body) => ("", Some(of(body).to_owned())),
+            Seen::Relative { of: body, from } => {
+                ("", Some(format!("{name} hat({}) − hat({}) {name}", of(body), of(from))))
+            }
+            Seen::Configuration(body) => ("", Some(format!("{name} hat({})", of(body)))),
+        };
+        let hat = format!("hat({xi})");
+        if let Some(right) = right {
+            return Some(Equation::new("advected_rate", &format!("d{name}/dt"), right, "(2.2): −ξ·w"));
+        }
+        let right = match w.variance {
+            Variance::Covector if derived.group.rotates() => format!("{name} × {xi}"),
             Variance::Vector => format!("−{hat} {name}"),
             Variance::Covector => format!("{hat}ᵀ {name}"),
             Variance::Contravariant => format!("−{hat} {name} − {name} {hat}ᵀ"),
@@ -119,7 +195,7 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
 /// `μ − s(w)`.
 fn without_bias(derived: &Continuous) -> String {
     match covector(derived, &derived.bias()) {
-        Some(bias) if bias == "0" => "μ".to_owned(),
+        _ if derived.bias().is_zero() => "μ".to_owned(),
         Some(bias) if !bias.contains(" + ") && !bias.contains('−') => format!("μ − {bias}"),
         Some(bias) => format!("μ − ({bias})"),
         None => "μ − s(w)".to_owned(),
@@ -167,7 +243,7 @@ fn kept(declaration: &Declaration, equations: &Equations) -> Equation {
     let energy = hamiltonian_of(&names);
     let condition = if given.is_empty() { String::new() } else { format!(" while {} stays", given.join(", ")) };
     let mut kept = vec![energy + &condition];
-    let carried = |index: &usize| declaration.advected_kind(*index).variance() != Variance::Fixed;
+    let carried = |index: &usize| derived.advected.get(*index).is_some_and(is_moved);
     let carried: Vec<usize> = (0..declaration.advected.len()).filter(carried).collect();
     match carried.as_slice() {
         [] => kept.push("Ad*_{g⁻¹} μ".to_owned()),
@@ -199,19 +275,23 @@ pub(super) fn derivation(declaration: &Declaration, equations: &Equations) -> St
 /// Without the setting.
 pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations) -> String {
     let texts = self::equations(declaration, equations);
-    let xi = velocity(&equations.derived);
-    let basis = if equations.derived.group.is_so3 {
+    let (xi, group) = (velocity(&equations.derived), &equations.derived.group);
+    let basis = if group.is_so3 {
         "so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)"
+    } else if group.is_product() {
+        "of one factor after the other: of what turns the body momentum, of what is translated the momentum"
     } else {
         "with the generators E_k of the declaration"
     };
+    let all = velocities(&equations.derived).join(", ");
+    let named = if group.is_product() { format!("{xi} = ({all})") } else { xi.to_owned() };
     let lines: String = texts.iter().fold(String::new(), |lines, equation| lines + "    " + &equation.line() + "\n");
     let limit = if declaration.continuous.is_some() && declaration.discretisation().is_none() {
         String::new()
     } else {
         format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²)\n")
     };
-    format!("continuous\n    {xi} = g⁻¹ dg/dt\n{limit}    pairing: μ_k = ⟨μ, E_k⟩, {basis}\n{lines}")
+    format!("continuous\n    {named} = g⁻¹ dg/dt\n{limit}    pairing: μ_k = ⟨μ, E_k⟩, {basis}\n{lines}")
 }
 
 /// What the struct's own documentation says of the continuous equations.

@@ -235,10 +235,24 @@ const EVERYTHING: &str = "group = SE2, velocity = xi, advected(w = up, v = way, 
 const FIELDS: &str = "struct Everything { M: Matrix3<f64>, r: Vector3<f64>, up: Vector3<f64>,
     way: ContravariantVector<f64, 3>, field: MixedTensor<f64, 3> }";
 
+/// Two links, and a body on a cart on a line.
+const LINKS: &str = "group(F_1 = SO3, F_2 = SO3), velocity(Omega_1, Omega_2),
+    advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
+    l = 0.5 * (hat(Omega_1) * J_1 * hat(Omega_1).transpose()).trace()
+        + 0.5 * (hat(Omega_2) * J_2 * hat(Omega_2).transpose()).trace()
+        + (hat(Omega_1) * rho).dot(&(Q * (hat(Omega_2) * s_2))) - g * (w_1.dot(&s_1) + w_2.dot(&s_2))";
+const OF_LINKS: &str = "struct Links { J_1: NonstandardInertia, J_2: NonstandardInertia, rho: Vector3<f64>,
+    s_1: Vector3<f64>, s_2: Vector3<f64>, g: f64, up: Vector3<f64> }";
+const CART: &str = "group(F = SO3, t = R1, d = R3), velocity(Omega, u, v),
+    advected(R = F.seen_from(space), x = t.seen_from(space), r = d.seen_from(space), w = up.seen_from(F)),
+    l = 0.5 * Omega.dot(&(J * Omega)) * (1.0 + x.powi(2)) + 0.5 * m * (u + v.x).powi(2) + m * v.norm_squared()
+        + v.dot(&(R * Omega.cross(&s))) + u * w.dot(&s) - m * (1.0 + r.norm_squared()).sqrt() - x * r.dot(&(R * w))";
+const OF_CART: &str = "struct Cart { J: Inertia, m: f64, s: Vector3<f64>, up: Vector3<f64> }";
+
 /// Each exact check sees a sign that is turned, and a factor.
 #[test]
 fn a_turned_sign_is_seen() {
-    for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS)] {
+    for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS), (LINKS, OF_LINKS), (CART, OF_CART)] {
         let (declaration, tree) = read(arguments, item);
         let Equations { names, derived, .. } = equations(arguments, item);
         let check = |change: &dyn Fn(&mut derive::Continuous)| {
@@ -267,7 +281,7 @@ fn a_turned_sign_is_seen() {
 /// The rate of the energy vanishes with the right signs of `⋄` and of `ẇ` together, and not with one of them turned.
 #[test]
 fn the_rate_of_the_energy() {
-    for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS)] {
+    for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS), (LINKS, OF_LINKS), (CART, OF_CART)] {
         let (declaration, tree) = read(arguments, item);
         let Equations { names, derived, .. } = equations(arguments, item);
         let rate = |diamond: &Expression| {
@@ -462,8 +476,96 @@ fn what_isnt_quadratic_at_rest() {
 #[test]
 fn the_second_derivative_is_symmetric() {
     let Equations { derived, .. } = equations(EVERYTHING, FIELDS);
-    let [eta, zeta] = derived.directions.map(|direction| Expression::symbol(direction, &derived.symbols));
-    let exchanged = std::collections::BTreeMap::from([(derived.directions[0], zeta), (derived.directions[1], eta)]);
+    let [eta, zeta] = derived.directions[0].map(|direction| direction.components);
+    let exchanged = [(eta, zeta), (zeta, eta)].map(|(from, to)| (from, Expression::symbol(to, &derived.symbols)));
+    let exchanged = std::collections::BTreeMap::from(exchanged);
     let turned = substitute(&derived.hessian, &exchanged, &derived.symbols);
     assert_eq!(turned, derived.hessian);
+}
+
+/// Of several bodies, each in its own line; the sum of what turns them together is conserved.
+#[test]
+#[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them
+fn of_several_bodies() {
+    expect![[r#"
+        group
+            g = (F_1, F_2) in SO3 × SO3
+            w_1 = g⁻¹·a₀ in V*, seen from F_1
+            w_2 = g⁻¹·a₀ in V*, seen from F_2
+            Q is F_2 as F_1 sees it
+        continuous
+            ξ = (Omega_1, Omega_2) = g⁻¹ dg/dt
+            pairing: μ_k = ⟨μ, E_k⟩, of one factor after the other: of what turns the body momentum, of what is translated the momentum
+            l(Omega_1, Omega_2, w_1, w_2, Q) = −g ⟨s_1, w_1⟩ − g ⟨s_2, w_2⟩ + (1/2) tr(J_1) ⟨Omega_1, Omega_1⟩ + (1/2) tr(J_2) ⟨Omega_2, Omega_2⟩ − ⟨rho, hat(Omega_1) Q hat(Omega_2) s_2⟩ − (1/2) ⟨Omega_1, J_1 Omega_1⟩ − (1/2) ⟨Omega_2, J_2 Omega_2⟩    [as declared, in normal form]
+            μ = tr(J_1) Omega_1 + rho × (Q hat(Omega_2) s_2) − J_1 Omega_1;  tr(J_2) Omega_2 + s_2 × (Qᵀ hat(Omega_1) rho) − J_2 Omega_2    [∂l/∂ξ, (1.14)]
+            ⟨𝕀η, ζ⟩ = tr(J_1) ⟨η_1, ζ_1⟩ + tr(J_2) ⟨η_2, ζ_2⟩ − ⟨rho, hat(η_1) Q hat(ζ_2) s_2⟩ − ⟨rho, hat(ζ_1) Q hat(η_2) s_2⟩ − ⟨η_1, J_1 ζ_1⟩ − ⟨η_2, J_2 ζ_2⟩    [∂²l/∂ξ², the inertia]
+            ∂l/∂w ⋄ w = g w_1 × s_1 + ⟨s_2, hat(Qᵀ Omega_1) Omega_2⟩ rho − ⟨s_2, hat(Qᵀ rho) Omega_2⟩ Omega_1;  g w_2 × s_2 − ⟨rho, hat(Q s_2) Omega_1⟩ Omega_2 + ⟨rho, hat(Q Omega_2) Omega_1⟩ s_2    [(2.1)]
+            (∂²l/∂w∂ξ)(ξ·w) = …, which is long;  …, which is long    [by which μ of a fixed ξ falls]
+            dμ/dt = μ_1 × Omega_1 + g w_1 × s_1 + ⟨s_2, hat(Qᵀ Omega_1) Omega_2⟩ rho − ⟨s_2, hat(Qᵀ rho) Omega_2⟩ Omega_1;  μ_2 × Omega_2 + g w_2 × s_2 − ⟨rho, hat(Q s_2) Omega_1⟩ Omega_2 + ⟨rho, hat(Q Omega_2) Omega_1⟩ s_2    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w, of each]
+            dw_1/dt = w_1 × Omega_1    [(2.2): −ξ·w]
+            dw_2/dt = w_2 × Omega_2    [(2.2): −ξ·w]
+            dQ/dt = Q hat(Omega_2) − hat(Omega_1) Q    [(2.2): −ξ·w]
+            ξ = 𝕀(w)⁻¹ μ    [(1.14) inverted]
+            h(μ, w_1, w_2, Q) = ½ ⟨μ, 𝕀(w)⁻¹ μ⟩ + g ⟨s_1, w_1⟩ + g ⟨s_2, w_2⟩    [(1.16)]
+            kept = h(μ, w_1, w_2, Q); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
+    "#]].assert_eq(&continuous_derivation(LINKS, OF_LINKS));
+    expect![[r#"
+        group
+            g = (F, t, d) in SO3 × R1 × R3
+            R is F as it is in space
+            x is t as it is in space
+            r is d as it is in space
+            w = g⁻¹·a₀ in V*, seen from F
+        continuous
+            ξ = (Omega, u, v) = g⁻¹ dg/dt
+            pairing: μ_k = ⟨μ, E_k⟩, of one factor after the other: of what turns the body momentum, of what is translated the momentum
+            l(Omega, u, v, R, x, r, w) = m u ⟨v, e1⟩ + (m u²/2) + m ⟨v, v⟩ + (m/2) ⟨v, e1⟩² − m sqrt(1 + ⟨r, r⟩) − x ⟨r, R w⟩ + (x²/2) ⟨Omega, J Omega⟩ + u ⟨s, w⟩ + ⟨s, hat(Rᵀ v) Omega⟩ + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
+            μ = x² J Omega + s × (Rᵀ v) + J Omega;  m u + m ⟨v, e1⟩ + ⟨s, w⟩;  …, which is long    [∂l/∂ξ, (1.14)]
+            ⟨𝕀η, ζ⟩ = m η_2 ζ_2 + m η_2 ⟨ζ_3, e1⟩ + m ζ_2 ⟨η_3, e1⟩ + 2 m ⟨η_3, ζ_3⟩ + m ⟨η_3, e1⟩ ⟨ζ_3, e1⟩ + x² ⟨η_1, J ζ_1⟩ + ⟨s, hat(Rᵀ η_3) ζ_1⟩ + ⟨s, hat(Rᵀ ζ_3) η_1⟩ + ⟨η_1, J ζ_1⟩    [∂²l/∂ξ², the inertia]
+            ∂l/∂w ⋄ w = u s × w − ⟨s, Rᵀ v⟩ Omega + ⟨Omega, Rᵀ v⟩ s;  x ⟨Omega, J Omega⟩ − ⟨r, R w⟩;  −(m/sqrt(1 + ⟨r, r⟩)) r − x R w    [(2.1)]
+            (∂²l/∂w∂ξ)(ξ·w) = −2 x u J Omega + ⟨s, Rᵀ v⟩ Omega − ⟨s, Omega⟩ Rᵀ v;  −⟨s, hat(w) Omega⟩;  ⟨Omega, Omega⟩ R s − ⟨s, Omega⟩ R Omega    [by which μ of a fixed ξ falls]
+            dμ/dt = μ_1 × Omega + u s × w − ⟨s, Rᵀ v⟩ Omega + ⟨Omega, Rᵀ v⟩ s;  x ⟨Omega, J Omega⟩ − ⟨r, R w⟩;  −(m/sqrt(1 + ⟨r, r⟩)) r − x R w    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w, of each]
+            dR/dt = R hat(Omega)    [(2.2): −ξ·w]
+            dx/dt = u    [(2.2): −ξ·w]
+            dr/dt = v    [(2.2): −ξ·w]
+            dw/dt = w × Omega    [(2.2): −ξ·w]
+            ξ = 𝕀(w)⁻¹ (μ − s(w))    [(1.14) inverted]
+            h(μ, R, x, r, w) = ½ ⟨μ − s(w), 𝕀(w)⁻¹ (μ − s(w))⟩ + m sqrt(1 + ⟨r, r⟩) + x ⟨r, R w⟩    [(1.16)]
+            kept = h(μ, R, x, r, w); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
+    "#]].assert_eq(&continuous_derivation(CART, OF_CART));
+}
+
+/// With the matrices `(F − I)/h` what couples the links is taken at both ends, as typed here; at the second it isn't the
+/// adjoint of the first, and so this is refused.
+#[test]
+fn the_trapezoidal_rule_of_several_bodies() {
+    let declared = "group(F_1 = SO3, F_2 = SO3),
+        advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
+        l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
+            + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
+            + 0.5 * ((F_1 - I) * rho).dot(&(Q * ((F_2 - I) * s_2))) / h
+            + 0.5 * ((F_1 - I) * rho).dot(&(F_1.transpose() * Q * F_2 * ((F_2 - I) * s_2))) / h
+            - 0.5 * h * g * (w_1.dot(&(s_1 + F_1 * s_1)) + w_2.dot(&(s_2 + F_2 * s_2)))";
+    let made = format!("{LINKS}, discretise = trapezoid");
+    assert_eq!(discrete(&made, OF_LINKS), discrete(declared, OF_LINKS));
+    assert!(expanded(&made, OF_LINKS).to_string().contains("isn't its own adjoint"));
+}
+
+/// Each rule is its own adjoint for several bodies too, and its limit is `l`.
+#[test]
+fn discretisations_of_several_bodies() {
+    for rule in ["trapezoid(Cayley)", "trapezoid(exp)", "midpoint(exp)", "chord(Cayley)"] {
+        let expansion = expanded(&format!("{LINKS}, discretise = {rule}"), OF_LINKS);
+        assert!(!super::is_refused(&expansion), "{rule}");
+        assert!(
+            expansion
+                .to_string()
+                .contains("SELF_ADJOINT : :: liestep :: __private :: core :: primitive :: bool = true")
+        );
+    }
+    let expansion = expanded(&format!("{CART}, discretise = trapezoid(Cayley)"), OF_CART);
+    assert!(!super::is_refused(&expansion), "{expansion}");
+    // What stands elsewhere than in a matrix isn't `(F − I)/h`.
+    let product = LINKS.replace("(hat(Omega_1) * rho)", "Omega_1.cross(&rho)");
+    assert!(super::is_refused(&expanded(&format!("{product}, discretise = trapezoid"), OF_LINKS)));
 }

@@ -13,8 +13,8 @@ use crate::mathematics::group::Group;
 /// Independent points.
 const POINTS: u64 = 3;
 
-/// Whether `tree` at `F = cay(ξ̂)` is `ξ`, for random `ξ`.
-pub(crate) fn is_cayley_coordinates(group: &Group, tree: &Rc<Tree>) -> bool {
+/// Whether `tree` at `F = cay(ξ̂)` is `ξ`, for random `ξ`; `increment` is the name of `F`.
+pub(crate) fn is_cayley_coordinates(group: &Group, increment: Name, tree: &Rc<Tree>) -> bool {
     (1..=POINTS).all(|seed| {
         let mut number = Residue::stream(seed);
         let identity = Value::identity(group.size);
@@ -25,7 +25,7 @@ pub(crate) fn is_cayley_coordinates(group: &Group, tree: &Rc<Tree>) -> bool {
             sum.plus(&Value::square(group.size, entries).map(|entry: Residue| entry * half))
         });
         let (minus, plus) = (identity.zip(&half, |x, y| x - y), identity.plus(&half));
-        let values = BTreeMap::from([(Name::Increment(0), minus.inverse().times(&plus))]);
+        let values = BTreeMap::from([(increment, minus.inverse().times(&plus))]);
         let found = Evaluation::new(&values).of(tree);
         found.entries.len() == xi.len() && found.entries.iter().zip(&xi).all(|(a, b)| a.is_defined() && a == b)
     })

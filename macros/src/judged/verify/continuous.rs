@@ -14,12 +14,12 @@ use super::number::Number;
 use super::residue::Residue;
 use super::series::PowerSeries;
 use super::value::Value;
-use super::{SAMPLES, exponential, increments, parameter, stream};
+use super::{SAMPLES, block, exponential, increments, parameter, stream, translation, velocities};
 use crate::declared::{Declaration, FieldKind, Name, Tree};
-use crate::mathematics::derive::{Continuous, Derived};
+use crate::mathematics::derive::{Continuous, Derived, Seen};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
-use crate::program::{Graph, Input, Node, NodeId, along_directions, components, diamond_matrix, square};
+use crate::program::{Graph, Input, Node, NodeId, along_directions, components, diamond_matrices, square};
 
 /// Independent points.
 const POINTS: u64 = 3;
@@ -33,7 +33,8 @@ struct Terms {
     momentum: Vec<NodeId>,
     hessian: Vec<NodeId>,
     diamond: Vec<NodeId>,
-    diamond_matrix: Vec<NodeId>,
+    /// Of each factor of the group.
+    diamond_matrices: Vec<Vec<NodeId>>,
     advection: Vec<NodeId>,
 }
 
@@ -49,8 +50,8 @@ impl Terms {
         ]
         .map(|(rank, expression)| along_directions(&mut graph, derived, rank, expression));
         let lagrangian = lagrangian.first().copied().unwrap_or_else(|| graph.zero());
-        let diamond_matrix = diamond_matrix(&mut graph, derived);
-        Self { graph, lagrangian, momentum, hessian, diamond, diamond_matrix, advection }
+        let diamond_matrices = diamond_matrices(&mut graph, derived);
+        Self { graph, lagrangian, momentum, hessian, diamond, diamond_matrices, advection }
     }
 
     fn values<T: Number>(&self, outputs: &[NodeId], names: &BTreeMap<Name, SymbolId>, at: &Values<T>) -> Vec<T> {
@@ -96,9 +97,14 @@ impl<'a, T: Number> Point<'a, T> {
         for index in 0..declaration.advected.len() {
             values.insert(Name::Advected(index), parameter(declaration.advected_kind(index), &mut number));
         }
-        let velocity = FieldKind::Vector(declaration.group.dimension());
-        values.insert(Name::Velocity, parameter(velocity, &mut number));
-        Self { declaration, values }
+        let velocity = parameter(FieldKind::Vector(declaration.group.dimension()), &mut number);
+        let mut point = Self { declaration, values };
+        point.set_velocity(&velocity.entries);
+        point
+    }
+
+    fn set_velocity(&mut self, components: &[T]) {
+        self.values.extend(velocities(&self.declaration.group, components));
     }
 
     fn group(&self) -> &Group {
@@ -106,15 +112,15 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     fn velocity(&self) -> Vec<T> {
-        self.values.get(&Name::Velocity).map_or_else(Vec::new, |velocity| velocity.entries.clone())
+        velocity(self.group(), &self.values)
     }
 
     /// As dual numbers, whose velocity changes along component `j`.
     fn along_velocity(&self, j: usize) -> Values<Dual<T>> {
         let mut values = self.lifted();
-        if let Some(entry) = values.get_mut(&Name::Velocity).and_then(|velocity| velocity.entries.get_mut(j)) {
-            entry.slope = T::ONE;
-        }
+        let components = self.velocity().into_iter().enumerate();
+        let varied = components.map(|(at, value)| Dual { value, slope: if at == j { T::ONE } else { T::ZERO } });
+        values.extend(velocities(self.group(), &varied.collect::<Vec<_>>()));
         values
     }
 
@@ -129,7 +135,8 @@ impl<'a, T: Number> Point<'a, T> {
         for index in 0..self.declaration.advected.len() {
             let (name, variance) = (Name::Advected(index), self.declaration.advected_kind(index).variance());
             let Some(w) = self.values.get(&name) else { continue };
-            let mut slope = carried(variance, element, w);
+            let seen = self.declaration.advected.get(index).map_or(Seen::From(0), |w| w.seen);
+            let mut slope = carried(self.group(), (variance, seen), element, w);
             // The last coordinate of a point stays one.
             if let (FieldKind::Point(_), Some(last)) = (self.declaration.advected_kind(index), slope.entries.last_mut())
             {
@@ -160,8 +167,7 @@ impl Point<'_, Residue> {
     /// As power series in `h`, along `F = exp(h ξ̂)`.
     fn moving(&self) -> Values<PowerSeries<Residue>> {
         let mut values = self.in_numbers(PowerSeries::constant);
-        let velocity = values.get(&Name::Velocity).map_or_else(Vec::new, |velocity| velocity.entries.clone());
-        let step = element(self.group(), &velocity).map(|entry| entry * PowerSeries::STEP);
+        let step = element(self.group(), &velocity(self.group(), &values)).map(|entry| entry * PowerSeries::STEP);
         values.extend(increments(self.group(), &exponential(&step)));
         values.insert(Name::Step, Value::scalar(PowerSeries::STEP));
         values
@@ -172,8 +178,30 @@ fn element<T: Number>(group: &Group, xi: &[T]) -> Value<T> {
     Value::combination(group.size, &group.generators, xi)
 }
 
-/// `E·w`.
-fn carried<T: Number>(variance: Variance, e: &Value<T>, w: &Value<T>) -> Value<T> {
+/// The components of all velocities.
+fn velocity<T: Number>(group: &Group, values: &Values<T>) -> Vec<T> {
+    let of_factor =
+        |factor| values.get(&Name::Velocity(factor)).map_or(&[][..], |velocity| velocity.entries.as_slice());
+    (0..group.factors().len()).flat_map(of_factor).copied().collect()
+}
+
+/// `E·w`, of an element with a block for each factor.
+fn carried<T: Number>(group: &Group, (variance, seen): (Variance, Seen), e: &Value<T>, w: &Value<T>) -> Value<T> {
+    let of = |factor: usize| {
+        let own = block(group, e, factor);
+        if group.factor(factor).is_added { translation(&own) } else { own }
+    };
+    let negative = |value: Value<T>| value.map(|x| -x);
+    match seen {
+        Seen::From(factor) => carried_by_one(variance, &of(factor), w),
+        Seen::Relative { of: body, from } if group.factor(body).is_added => of(from).plus(&negative(of(body))),
+        Seen::Configuration(body) if group.factor(body).is_added => negative(of(body)),
+        Seen::Relative { of: body, from } => of(from).times(w).plus(&negative(w.times(&of(body)))),
+        Seen::Configuration(body) => negative(w.times(&of(body))),
+    }
+}
+
+fn carried_by_one<T: Number>(variance: Variance, e: &Value<T>, w: &Value<T>) -> Value<T> {
     match variance {
         Variance::Vector => e.times(w),
         Variance::Covector => e.transpose().times(w).map(|x| -x),
@@ -238,8 +266,7 @@ fn disagreement_at(
     for j in 0..dimension {
         let varied = point.along_velocity(j);
         let momenta = terms.values(&terms.momentum, names, &varied);
-        let velocities = varied.get(&Name::Velocity).map_or_else(Vec::new, |velocity| velocity.entries.clone());
-        let change = dot(&momenta, &velocities).slope - slope(&varied);
+        let change = dot(&momenta, &velocity(point.group(), &varied)).slope - slope(&varied);
         let column: Vec<Residue> = hessian.iter().skip(j).step_by(dimension).copied().collect();
         if differs(change, dot(&xi, &column)) {
             return Some("velocity ∂h/∂μ");
@@ -251,11 +278,15 @@ fn disagreement_at(
             return Some("diamond term ∂l/∂w ⋄ w");
         }
     }
-    let size = point.group().size;
-    for (place, found) in at(&terms.diamond_matrix).into_iter().enumerate() {
-        let unit = Value::new(size, size, |i, j| if i * size + j == place { Residue::ONE } else { Residue::ZERO });
-        if differs(found, -slope(&point.carried_by_matrix(&unit))) {
-            return Some("diamond along all matrices");
+    let all = point.group().size;
+    for (factor, entries) in terms.diamond_matrices.iter().enumerate() {
+        let (first, size) = (point.group().row_of(factor), point.group().factor(factor).size);
+        for (place, found) in at(entries).into_iter().enumerate() {
+            let is_one = |i, j| (i, j) == (first + place / size, first + place % size);
+            let unit = Value::new(all, all, |i, j| if is_one(i, j) { Residue::ONE } else { Residue::ZERO });
+            if differs(found, -slope(&point.carried_by_matrix(&unit))) {
+                return Some("diamond along all matrices");
+            }
         }
     }
     let carried = point.carried_by(&xi);
@@ -331,9 +362,7 @@ pub(crate) fn rest_disagrees(
     let differs = |a: &Residue, b: &Residue| a.is_defined() && b.is_defined() && a != b;
     (1..=POINTS).any(|seed| {
         let mut point = Point::new(declaration, Residue::stream(seed));
-        if let Some(velocity) = point.values.get_mut(&Name::Velocity) {
-            *velocity = velocity.map(|_| Residue::ZERO);
-        }
+        point.set_velocity(&vec![Residue::ZERO; declaration.group.dimension()]);
         let at = |outputs: &[NodeId]| terms.values(outputs, names, &point.values);
         let (inertia, bias, potential) = limit.at(symbols, &point);
         let pairs =
@@ -441,7 +470,7 @@ pub(crate) fn kinetic_hessian(
     let (terms, dimension) = (Terms::new(derived), declaration.group.dimension());
     let samples = (1..=u64::try_from(SAMPLES).unwrap_or(1)).map(|seed| {
         let mut point = Point::new(declaration, stream(seed));
-        point.values.insert(Name::Velocity, Value::new(dimension, 1, |_, _| 0.0));
+        point.set_velocity(&vec![0.0; dimension]);
         let entries = terms.values(&terms.hessian, names, &point.values);
         Value { rows: dimension, columns: dimension, entries }
     });

@@ -375,6 +375,15 @@ fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)>
     (0..group.factors().len()).map(|factor| (Name::Increment(factor), value(factor))).collect()
 }
 
+/// The velocities of all factors, of the components of all.
+fn velocities<T: Number>(group: &Group, components: &[T]) -> Vec<(Name, Value<T>)> {
+    let value = |(factor, own): (usize, &Group)| {
+        let entries = components.iter().skip(group.component_of(factor)).take(own.dimension()).copied().collect();
+        (Name::Velocity(factor), Value { rows: own.dimension(), columns: 1, entries })
+    };
+    group.factors().iter().enumerate().map(value).collect()
+}
+
 /// `d` of the matrix `[I, d; 0, 1]`.
 fn translation<T: Number>(matrix: &Value<T>) -> Value<T> {
     Value::new(matrix.rows - 1, 1, |row, _| matrix.at(row, matrix.rows - 1))

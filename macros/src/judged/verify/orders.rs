@@ -10,7 +10,7 @@ use super::evaluation::Evaluation;
 use super::number::Number as _;
 use super::series::Series;
 use super::value::Value;
-use super::{exponential, increments, parameter, stream};
+use super::{exponential, increments, parameter, stream, velocities};
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::{Function, Rational};
 
@@ -102,7 +102,7 @@ impl Points {
         }
         let speeds: Vec<Series> = group.generators.iter().map(|_| number() + Series::constant(0.5)).collect();
         let velocity = Value::combination(group.size, &group.generators, &speeds);
-        at_rest.insert(Name::Velocity, Value { rows: speeds.len(), columns: 1, entries: speeds });
+        at_rest.extend(velocities(group, &speeds));
         for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
             at_rest.insert(name, parameter(FieldKind::Vector(group.dimension()), &mut number));
         }

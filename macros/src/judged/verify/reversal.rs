@@ -56,7 +56,7 @@ impl Sample<'_> {
                 Name::Advected(_) => self.advected.iter().any(|w| (w.0, w.1) == (*name, Variance::Vector)),
                 Name::Increment(_)
                 | Name::Step
-                | Name::Velocity
+                | Name::Velocity(_)
                 | Name::DisplacementBefore
                 | Name::DisplacementAfter => false,
             };

@@ -26,6 +26,7 @@
 //! ```
 
 use super::Context;
+use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId, Symbols, Variance};
 
 /// An advected parameter, and how it is moved.
@@ -55,14 +56,18 @@ impl Seen {
 }
 
 /// `E·w`, with an element of the algebra for each factor.
-pub(super) fn along(context: &Context, carried: Carried, e: &dyn Fn(usize) -> Expression) -> Expression {
-    let (symbols, w) = (context.symbols, context.symbol(carried.symbol));
+pub(super) fn along(
+    (group, symbols): (&Group, &Symbols),
+    carried: Carried,
+    e: &dyn Fn(usize) -> Expression,
+) -> Expression {
+    let w = Expression::symbol(carried.symbol, symbols);
     match carried.seen {
-        Seen::Relative { of, from } if context.is_added(of) => e(from).minus(e(of)),
-        Seen::Configuration(of) if context.is_added(of) => e(of).scaled(-Rational::ONE),
+        Seen::Relative { of, from } if group.factor(of).is_added => e(from).minus(e(of)),
+        Seen::Configuration(of) if group.factor(of).is_added => e(of).scaled(-Rational::ONE),
         Seen::From(factor) => infinitesimal(symbols, carried.variance, &e(factor), &w),
-        Seen::Relative { of, from } => context.product(&e(from), &w).minus(context.product(&w, &e(of))),
-        Seen::Configuration(of) => context.product(&w, &e(of)).scaled(-Rational::ONE),
+        Seen::Relative { of, from } => e(from).times(&w, symbols).minus(w.times(&e(of), symbols)),
+        Seen::Configuration(of) => w.times(&e(of), symbols).scaled(-Rational::ONE),
     }
 }
 

@@ -11,10 +11,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{Declared, Derived, Refusal, action, unit};
+use super::{Carried, Declared, Derived, Refusal, Seen, action, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{
-    Expression, Rational, Stage, Structure, SymbolId, Symbols, Variance, Variations, substitute, variation,
+    Expression, Rational, Stage, Structure, SymbolId, Symbols, Variations, substitute, variation,
 };
 
 /// A continuous Lagrangian with the symbols that it is written in.
@@ -24,12 +24,52 @@ pub(crate) struct DeclaredContinuous {
     pub(crate) symbols: Symbols,
     /// `l(ξ, w)`.
     pub(crate) expression: Expression,
-    /// The components of `ξ`.
-    pub(crate) velocity: SymbolId,
-    /// The matrix `ξ̂`; on SO(3), where it is that of a cross product, none.
-    pub(crate) velocity_matrix: Option<SymbolId>,
+    /// `ξ`, one for each factor of the group.
+    pub(crate) velocities: Vec<OfVelocity>,
     /// The advected parameters `w`.
-    pub(crate) advected: Vec<(SymbolId, Variance)>,
+    pub(crate) advected: Vec<Carried>,
+}
+
+/// The velocity of a factor of the group, or a direction of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OfVelocity {
+    pub(crate) components: SymbolId,
+    /// The matrix `ξ̂`; none on SO(3), where it is that of a cross product, and where increments are added.
+    pub(crate) matrix: Option<SymbolId>,
+}
+
+impl OfVelocity {
+    /// The symbols of these names for a factor.
+    fn several<const N: usize>(group: &Group, names: [&str; N], stage: Stage, symbols: &mut Symbols) -> [Self; N] {
+        let components = names.map(|name| symbols.add(name, (group.dimension(), 1), Structure::General, stage));
+        let has_matrix = !group.is_so3 && !group.is_added;
+        let structure = if group.orthogonal { Structure::Skew } else { Structure::General };
+        let shape = (group.size, group.size);
+        let matrices =
+            names.map(|name| has_matrix.then(|| symbols.add(format!("hat({name})"), shape, structure, Stage::Step)));
+        std::array::from_fn(|at| Self { components: components[at], matrix: matrices[at] })
+    }
+
+    /// The symbols of a velocity.
+    pub(crate) fn new(group: &Group, name: &str, symbols: &mut Symbols) -> Self {
+        let [velocity] = Self::several(group, [name], Stage::Step, symbols);
+        velocity
+    }
+
+    /// An element of the algebra: a matrix, where increments are added a vector.
+    fn element(self, group: &Group, symbols: &Symbols) -> Expression {
+        let components = Expression::symbol(self.components, symbols);
+        match self.matrix {
+            Some(matrix) => Expression::symbol(matrix, symbols),
+            None if group.is_added => components,
+            None => components.hat(symbols),
+        }
+    }
+
+    /// Whether an expression depends on it.
+    fn is_in(self, expression: &Expression) -> bool {
+        expression.contains(self.components) || self.matrix.is_some_and(|matrix| expression.contains(matrix))
+    }
 }
 
 /// How `ξ` follows from `μ`.
@@ -48,13 +88,11 @@ pub(crate) enum Inverse {
 pub(crate) struct Continuous {
     pub(crate) group: Group,
     pub(crate) symbols: Symbols,
-    pub(crate) velocity: SymbolId,
-    pub(crate) velocity_matrix: Option<SymbolId>,
-    pub(crate) advected: Vec<(SymbolId, Variance)>,
-    /// `η` and `ζ`, in components.
-    pub(crate) directions: [SymbolId; 2],
-    /// `η̂` and `ζ̂`; on SO(3) none.
-    pub(crate) direction_matrices: Option<[SymbolId; 2]>,
+    /// One for each factor of the group, as all of these.
+    pub(crate) velocities: Vec<OfVelocity>,
+    pub(crate) advected: Vec<Carried>,
+    /// `η` and `ζ`.
+    pub(crate) directions: Vec<[OfVelocity; 2]>,
     pub(crate) lagrangian: Expression,
     /// `μ`.
     pub(crate) momentum: Expression,
@@ -62,8 +100,8 @@ pub(crate) struct Continuous {
     pub(crate) hessian: Expression,
     /// `∂l/∂w ⋄ w`.
     pub(crate) diamond: Expression,
-    /// The same along any matrix, which the symbol stands for.
-    pub(crate) any: SymbolId,
+    /// The same along any matrices, which the symbols stand for; where increments are added, along vectors.
+    pub(crate) any: Vec<SymbolId>,
     pub(crate) diamond_of_any: Expression,
     /// `(∂²l/∂w∂ξ)(ξ·w)`.
     pub(crate) advection: Expression,
@@ -87,54 +125,69 @@ impl Continuous {
     }
 
     pub(super) fn at_rest(&self, expression: &Expression) -> Expression {
-        let rest = Expression::zero((self.group.dimension(), 1));
-        let mut map = BTreeMap::from([(self.velocity, rest)]);
-        let size = self.group.size;
-        map.extend(self.velocity_matrix.map(|matrix| (matrix, Expression::zero((size, size)))));
+        let mut map = BTreeMap::new();
+        for (velocity, group) in self.velocities.iter().zip(self.group.factors()) {
+            map.insert(velocity.components, Expression::zero((group.dimension(), 1)));
+            map.extend(velocity.matrix.map(|matrix| (matrix, Expression::zero((group.size, group.size)))));
+        }
         substitute(expression, &map, &self.symbols)
     }
 }
 
 /// Derives everything.
 pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Refusal> {
-    let DeclaredContinuous { group, mut symbols, expression, velocity, velocity_matrix, advected } = declared;
-    let expression = if group.is_so3 { expression.with_hats_resolved(&symbols) } else { expression };
-    let directions =
-        ["η", "ζ"].map(|name| symbols.add(name, (group.dimension(), 1), Structure::General, Stage::Construction));
-    let direction_matrices =
-        velocity_matrix.map(|_| ["hat(η)", "hat(ζ)"].map(|name| matrix_symbol(&group, name, &mut symbols)));
-    let any = symbols.add("X", (group.size, group.size), Structure::General, Stage::Step);
-    let xi = Element::new(velocity, velocity_matrix, &symbols);
-    let [eta, zeta] =
-        [0, 1].map(|at| Element::new(directions[at], direction_matrices.map(|matrices| matrices[at]), &symbols));
+    let DeclaredContinuous { group, mut symbols, expression, velocities, advected } = declared;
+    let is_crossed = group.rotates();
+    let expression = if is_crossed { expression.with_hats_resolved(&symbols) } else { expression };
+    let numbered = |name: &str, factor: usize| {
+        if group.is_product() { format!("{name}_{}", factor + 1) } else { name.to_owned() }
+    };
+    let mut directions = Vec::new();
+    for (factor, own) in group.factors().iter().enumerate() {
+        let names = ["η", "ζ"].map(|name| numbered(name, factor));
+        let names = [names[0].as_str(), names[1].as_str()];
+        directions.push(OfVelocity::several(own, names, Stage::Construction, &mut symbols));
+    }
+    let mut any = Vec::new();
+    for (factor, own) in group.factors().iter().enumerate() {
+        any.push(symbols.add(numbered("X", factor), own.shape(), Structure::General, Stage::Step));
+    }
     let vary = |of: &Expression, variations: &Variations| {
         let varied = variation(of, variations, &symbols);
-        if group.is_so3 { varied.with_hats_resolved(&symbols) } else { varied }
+        if is_crossed { varied.with_hats_resolved(&symbols) } else { varied }
     };
-    let along_velocity = |of: &Expression, direction: &Element| {
-        let mut variations = Variations::from([(velocity, direction.components.clone())]);
-        variations.extend(velocity_matrix.map(|matrix| (matrix, direction.matrix.clone())));
+    let element = |of: OfVelocity, factor: usize| of.element(group.factor(factor), &symbols);
+    let along_velocity = |of: &Expression, direction: usize| {
+        let mut variations = Variations::new();
+        for (factor, (velocity, directions)) in velocities.iter().zip(&directions).enumerate() {
+            let direction = directions[direction];
+            variations.insert(velocity.components, Expression::symbol(direction.components, &symbols));
+            variations.extend(velocity.matrix.map(|matrix| (matrix, element(direction, factor))));
+        }
         vary(of, &variations)
     };
-    let any_matrix = Expression::symbol(any, &symbols);
-    let carried = |of: &Expression, element: &Expression| {
-        let moved = advected.iter().map(|&(w, variance)| {
-            let moved = action::infinitesimal(&symbols, variance, element, &Expression::symbol(w, &symbols));
-            // The last coordinate of a point stays one, whatever the matrix; the algebra leaves it.
-            let is_point = *element == any_matrix && symbols.get(w).structure == Structure::Point;
-            (w, if is_point { without_last(&moved, &symbols) } else { moved })
+    let carried = |of: &Expression, e: &dyn Fn(usize) -> Expression| {
+        let moved = advected.iter().map(|&w| (w.symbol, action::along((&group, &symbols), w, e)));
+        vary(of, &moved.collect())
+    };
+    // The last coordinate of a point stays one, whatever the matrix; the algebra leaves it.
+    let along_any = |of: &Expression| {
+        let e = |factor: usize| Expression::symbol(any[factor], &symbols);
+        let moved = advected.iter().map(|&w| {
+            let moved = action::along((&group, &symbols), w, &e);
+            let is_point = matches!(w.seen, Seen::From(_)) && symbols.get(w.symbol).structure == Structure::Point;
+            (w.symbol, if is_point { without_last(&moved, &symbols) } else { moved })
         });
         vary(of, &moved.collect())
     };
-    let momentum = along_velocity(&expression, &eta);
-    let hessian = along_velocity(&momentum, &zeta);
-    let diamond = carried(&expression, &eta.matrix).scaled(-Rational::ONE);
-    let diamond_of_any = carried(&expression, &any_matrix).scaled(-Rational::ONE);
-    let advection = carried(&momentum, &xi.matrix);
-    let has_velocity = |of: &Expression| of.contains(velocity) || velocity_matrix.is_some_and(|xi| of.contains(xi));
-    let inverse = if has_velocity(&hessian) {
+    let momentum = along_velocity(&expression, 0);
+    let hessian = along_velocity(&momentum, 1);
+    let diamond = carried(&expression, &|factor| element(directions[factor][0], factor)).scaled(-Rational::ONE);
+    let diamond_of_any = along_any(&expression).scaled(-Rational::ONE);
+    let advection = carried(&momentum, &|factor| element(velocities[factor], factor));
+    let inverse = if velocities.iter().any(|velocity| velocity.is_in(&hessian)) {
         Inverse::Nonlinear
-    } else if advected.iter().any(|&(w, _)| hessian.contains(w)) {
+    } else if advected.iter().any(|w| hessian.contains(w.symbol)) {
         Inverse::Varying
     } else {
         Inverse::Constant
@@ -153,11 +206,9 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
         advection,
         inverse,
         directions,
-        direction_matrices,
         group,
         symbols,
-        velocity,
-        velocity_matrix,
+        velocities,
         advected,
     })
 }
@@ -169,40 +220,26 @@ fn without_last(column: &Expression, symbols: &Symbols) -> Expression {
     column.clone().minus(unit.times(&row.times(column, symbols), symbols))
 }
 
-/// An element of the algebra, in components and as a matrix.
-struct Element {
-    components: Expression,
-    matrix: Expression,
-}
-
-impl Element {
-    fn new(components: SymbolId, matrix: Option<SymbolId>, symbols: &Symbols) -> Self {
-        let components = Expression::symbol(components, symbols);
-        let matrix = matrix.map_or_else(|| components.hat(symbols), |matrix| Expression::symbol(matrix, symbols));
-        Self { components, matrix }
-    }
-}
-
-/// A symbol for an element of the algebra as a matrix.
-pub(crate) fn matrix_symbol(group: &Group, name: &str, symbols: &mut Symbols) -> SymbolId {
-    let structure = if group.orthogonal { Structure::Skew } else { Structure::General };
-    symbols.add(name, (group.size, group.size), structure, Stage::Step)
-}
-
 /// The limit of a discrete Lagrangian, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`.
 pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContinuous {
     let (group, mut symbols) = (declared.group.clone(), derived.symbols.clone());
-    let name = if group.is_so3 { "Ω" } else { "ξ" };
-    let velocity = symbols.add(name, (group.dimension(), 1), Structure::General, Stage::Step);
-    let velocity_matrix = (!group.is_so3).then(|| matrix_symbol(&group, "hat(ξ)", &mut symbols));
-    let matrix = Element::new(velocity, velocity_matrix, &symbols).matrix;
+    let mut velocities = Vec::new();
+    for (factor, own) in group.factors().iter().enumerate() {
+        let name = if own.is_so3 { "Ω" } else { "ξ" };
+        let name = if group.is_product() { format!("{name}_{}", factor + 1) } else { name.to_owned() };
+        velocities.push(OfVelocity::new(own, &name, &mut symbols));
+    }
     let directions = &derived.directions;
-    let factors = directions.factors.iter();
-    let map = factors.flat_map(|one| [one.first, one.second].map(|direction| (direction, matrix.clone()))).collect();
+    let factors = directions.factors.iter().zip(&velocities).zip(group.factors());
+    let map = factors.flat_map(|((one, velocity), own)| {
+        let element = velocity.element(own, &symbols);
+        [one.first, one.second].map(|direction| (direction, element.clone()))
+    });
+    let map = map.collect();
     let along = |expression: &Expression| substitute(expression, &map, &symbols);
     let limit = &derived.limit;
-    let advected = declared.advected.iter().map(|w| (w.symbol, w.variance)).collect();
     let kinetic = along(&limit.inertia).scaled(Rational::new(1, 2));
     let expression = kinetic.plus(along(&limit.bias)).minus(limit.potential.clone());
-    DeclaredContinuous { group, symbols, expression, velocity, velocity_matrix, advected }
+    let advected = declared.advected.clone();
+    DeclaredContinuous { group, symbols, expression, velocities, advected }
 }

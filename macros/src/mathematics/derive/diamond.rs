@@ -6,12 +6,12 @@
 //!
 //! For `w` in `V*`, `E·w = −Eᵀ w`, this is (2.1): `⟨w, E δl_d/δw⟩`.
 
-use super::{Context, action};
+use super::Context;
 use crate::mathematics::symbolic::{Expression, Rational, Variations, variation};
 
 pub(super) fn diamond(context: &Context) -> Expression {
     let carried = context.declared.advected.iter();
     let variations: Variations =
-        carried.map(|&w| (w.symbol, action::along(context, w, &|factor| context.first(factor)))).collect();
+        carried.map(|&w| (w.symbol, context.along(w, &|factor| context.first(factor)))).collect();
     variation(context.lagrangian, &variations, context.symbols).scaled(-Rational::ONE)
 }

@@ -125,12 +125,13 @@ fn through_lets(context: &Context) -> Result<Limit, LimitError> {
 fn at_rest(context: &Context, Discretised { continuous, symbols }: &Discretised) -> Limit {
     let mut map: BTreeMap<SymbolId, Expression> =
         symbols.iter().map(|&(from, to)| (from, context.symbol(to))).collect();
-    let matrices = continuous.direction_matrices.map(|matrices| matrices.map(Some)).unwrap_or_default();
-    for ((components, matrix), image) in
-        continuous.directions.into_iter().zip(matrices).zip([context.first(0), context.second(0)])
-    {
-        map.insert(components, context.components(&image));
-        map.extend(matrix.map(|matrix| (matrix, image)));
+    for (factor, directions) in continuous.directions.iter().enumerate() {
+        for (direction, image) in directions.iter().zip([context.first(factor), context.second(factor)]) {
+            let is_added = context.is_added(factor);
+            let components = if is_added { image.clone() } else { context.components_of(factor, &image) };
+            map.insert(direction.components, components);
+            map.extend(direction.matrix.map(|matrix| (matrix, image)));
+        }
     }
     let here = |expression: &Expression| substitute(&continuous.at_rest(expression), &map, context.symbols);
     Limit {

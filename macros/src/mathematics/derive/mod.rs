@@ -25,7 +25,7 @@ pub(crate) use action::{Carried, Seen};
 pub(crate) use algebra::{hat, linear_forms, unit};
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
-pub(crate) use continuous::{Continuous, DeclaredContinuous, Inverse, continuous, matrix_symbol, of_limit};
+pub(crate) use continuous::{Continuous, DeclaredContinuous, Inverse, OfVelocity, continuous, of_limit};
 pub(crate) use force::{Displacements, ForceError};
 pub(crate) use limit::{Discretised, Limit, LimitError};
 pub(crate) use self_adjoint::SelfAdjointness;
@@ -310,6 +310,11 @@ impl Context<'_> {
         )
     }
 
+    /// `E·w`, with an element of the algebra for each factor.
+    fn along(&self, w: Carried, e: &dyn Fn(usize) -> Expression) -> Expression {
+        action::along((&self.declared.group, self.symbols), w, e)
+    }
+
     /// Whether the increments of a factor are vectors that are added.
     fn is_added(&self, factor: usize) -> bool {
         self.declared.group.factor(factor).is_added
@@ -329,8 +334,7 @@ impl Context<'_> {
         let small = |momentum: &Expression| {
             if closed.is_empty() { transport::in_small_increment(self, momentum) } else { momentum.clone() }
         };
-        let moved =
-            self.declared.advected.iter().map(|&w| (w.symbol, action::along(self, w, &|factor| self.first(factor))));
+        let moved = self.declared.advected.iter().map(|&w| (w.symbol, self.along(w, &|factor| self.first(factor))));
         self.declared.has_derivatives.then(|| Ends { momenta: momenta.map(small), moved: moved.collect() })
     }
 
@@ -341,6 +345,11 @@ impl Context<'_> {
     /// The components of an element of the algebra with respect to the generators.
     fn components(&self, element: &Expression) -> Expression {
         algebra::components(&self.declared.group, element, self.symbols)
+    }
+
+    /// The same of a factor.
+    fn components_of(&self, factor: usize, element: &Expression) -> Expression {
+        algebra::components(self.declared.group.factor(factor), element, self.symbols)
     }
 
     fn substituted(&self, expression: &Expression, map: &BTreeMap<SymbolId, Expression>) -> Expression {

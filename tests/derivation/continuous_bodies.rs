@@ -1,0 +1,298 @@
+//! Continuous Lagrangians of several bodies: their equations against dual numbers of the declared `l`, with what moves the
+//! bodies typed by hand, and the motion of two links against that of the limit of a declared `l_d`.
+
+use checks::random::Random;
+use declarations::DoublePendulum;
+use declarations::motions::{number, read, vector};
+use liestep::groups::{Configuration, R1, R3, Relative, SeenFrom};
+use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian as _, Inertia, Legendre, Term};
+use liestep::motion::RightHandSide;
+use liestep::numbers::Real;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SVector, UnitQuaternion, Vector3, Vector6, convert};
+use num_dual::{Dual64, HyperDual64};
+use workbench::runge_kutta;
+
+/// Two bodies that turn, one that is translated in space and one on a line. The kinetic energy depends on all that is
+/// seen, and isn't quadratic.
+#[lagrangian(
+    group(F_1 = SO3, d = R3, F_2 = SO3, t = R1),
+    velocity(Omega_1, v, Omega_2, u),
+    advected(
+        w = up.seen_from(F_2),
+        Q = F_2.seen_from(F_1),
+        R = F_1.seen_from(space),
+        r = d.seen_from(space),
+        x = t.seen_from(space),
+    ),
+    l = {
+        let turning = Omega_1.dot(&(J_1 * Omega_1)) * (1.0 + x.powi(2)) + Omega_2.dot(&(J_2 * Omega_2));
+        let moving = v.norm_squared() * (1.0 + w.dot(&s).powi(2)) + (u + s.dot(&Omega_1)).powi(2);
+        let coupled = k * Omega_1.cross(&rho).dot(&(Q * Omega_2.cross(&s))) + k * v.dot(&(R * Omega_1.cross(&rho)));
+        let bent = (1.0 + v.norm_squared() + u.powi(2) + Omega_2.norm_squared()).sqrt();
+        let linear = u * w.dot(&rho) + v.dot(&(R * (A * s))) + (A * Q * hat(Omega_2)).trace();
+        let potential = (1.0 + r.norm_squared()).sqrt() + x * r.dot(&(R * rho)) + (Q * A).trace() + k * w.dot(&s).sin();
+        0.5 * (turning + moving) + coupled + bent + linear - potential
+    },
+)]
+#[derive(Clone)]
+struct Bodies<T: RealField + Copy> {
+    J_1: Inertia<T>,
+    J_2: Inertia<T>,
+    A: Matrix3<T>,
+    k: T,
+    rho: Vector3<T>,
+    s: Vector3<T>,
+    up: Vector3<T>,
+}
+
+/// Components of the velocities of all bodies.
+const D: usize = 10;
+type Components<T> = SVector<T, D>;
+/// `w`, `Q`, `R`, `r` and `x`.
+type Values = (Vector3<f64>, Matrix3<f64>, Matrix3<f64>, Vector3<f64>, f64);
+
+/// Of a seed; what couples the bodies is small, so that the kinetic energy is convex.
+fn bodies<T: RealField + Copy + Real>(seed: u64) -> Bodies<T> {
+    let mut random = Random::new(seed);
+    let mut inertia = || {
+        let root = random.matrix();
+        Inertia::new((Matrix3::identity() * 3.0 + (root * root.transpose()) * 0.2).map(convert)).unwrap()
+    };
+    let (J_1, J_2) = (inertia(), inertia());
+    let A = random.matrix().map(convert);
+    let mut vector = || random.vector().map(convert);
+    Bodies { J_1, J_2, A, k: convert(0.1), rho: vector(), s: vector(), up: vector() }
+}
+
+fn part<T: RealField + Copy>(of: &Components<T>, start: usize) -> Vector3<T> {
+    of.fixed_rows::<3>(start).into_owned()
+}
+
+/// What is seen, moved by `exp(η̂)` to first order: `w + η·w`.
+fn seen<T: RealField + Copy + Real>(
+    (w, q, r, place, x): &Values,
+    eta: &Components<T>,
+) -> <Bodies<T> as Term>::Advected {
+    let [first, second] = [0, 6].map(|start| part(eta, start).cross_matrix());
+    let (w, q, r) = (w.map(convert::<f64, T>), q.map(convert::<f64, T>), r.map(convert::<f64, T>));
+    let mut there = Matrix4::identity();
+    there.fixed_view_mut::<3, 1>(0, 3).copy_from(&(place.map(convert::<f64, T>) - part(eta, 3)));
+    let on_line = Matrix2::new(T::one(), convert::<f64, T>(*x) - eta[9], T::zero(), T::one());
+    (
+        SeenFrom(w + second * w),
+        Relative(q + first * q - q * second),
+        Configuration(r - r * first),
+        Configuration(there),
+        Configuration(on_line),
+    )
+}
+
+/// `ad*_ξ μ`: what turns has a cross product, and what is translated nothing.
+fn coadjoint(xi: &Components<f64>, momentum: &Components<f64>) -> Components<f64> {
+    let mut rate = Components::zeros();
+    for start in [0, 6] {
+        rate.fixed_rows_mut::<3>(start).copy_from(&part(momentum, start).cross(&part(xi, start)));
+    }
+    rate
+}
+
+/// Momentum, diamond, (1.4) with (2.2), (1.12), the inverse of (1.14), and (1.16).
+#[test]
+fn bodies_that_feel_each_other() {
+    const { assert!(matches!(<Bodies<f64> as ContinuousLagrangian>::LEGENDRE, Legendre::Nonlinear)) };
+    let mut worst = 0.0_f64;
+    for seed in 0..20 {
+        let (system, dual, hyper) = (bodies::<f64>(seed), bodies::<Dual64>(seed), bodies::<HyperDual64>(seed));
+        let mut random = Random::new(100 + seed);
+        let rotation = |random: &mut Random| *random.rotation().as_matrix();
+        let values = (random.vector(), rotation(&mut random), rotation(&mut random), random.vector(), random.signed());
+        let xi = Components::from_fn(|_, _| random.signed());
+        let w = seen(&values, &Components::zeros());
+        let unit = |k: usize| Components::from_fn(|j, _| if j == k { 1.0 } else { 0.0 });
+        let (first, second) = (HyperDual64::new(0.0, 1.0, 0.0, 0.0), HyperDual64::new(0.0, 0.0, 1.0, 0.0));
+        let slope = |direction: &Components<f64>, moved: &Components<f64>| {
+            let epsilon = Dual64::new(0.0, 1.0);
+            let velocity = xi.map(Dual64::from) + direction.map(Dual64::from) * epsilon;
+            dual.l(&velocity, &seen(&values, &(moved.map(Dual64::from) * epsilon))).eps
+        };
+        let momentum = Components::from_fn(|k, _| slope(&unit(k), &Components::zeros()));
+        let diamond = Components::from_fn(|k, _| -slope(&Components::zeros(), &unit(k)));
+        let rate = coadjoint(&xi, &momentum) + diamond;
+        let scale = 1.0 + momentum.norm() * (1.0 + xi.norm()) + diamond.norm();
+        let mut near = |what: &str, found: &Components<f64>, expected: &Components<f64>, scale: f64| {
+            let error = (found - expected).norm() / scale;
+            worst = worst.max(error);
+            assert!(error <= 1e-14, "{what}: {error:e}, {found} and {expected}");
+        };
+        near("momentum", &system.momentum(&xi, &w), &momentum, scale);
+        near("diamond", &system.diamond_rate(&xi, &w), &diamond, scale);
+        near("rate of the momentum", &system.momentum_rate(&xi, &w), &rate, scale);
+        // Along the motion, ẇ = −ξ·w, the momentum changes by that rate.
+        let (acceleration, turn) = system.euler_poincare(&xi, &w).unwrap();
+        let change = Components::from_fn(|k, _| {
+            let velocity = xi.map(HyperDual64::from)
+                + acceleration.map(HyperDual64::from) * first
+                + unit(k).map(HyperDual64::from) * second;
+            hyper.l(&velocity, &seen(&values, &(-xi.map(HyperDual64::from) * first))).eps1eps2
+        });
+        let inertia = system.velocity_hessian(&xi, &w);
+        near("Euler–Poincaré", &change, &rate, scale + inertia.norm() * acceleration.norm());
+        let moved = seen(&values, &(-xi.map(Dual64::from) * Dual64::new(0.0, 1.0)));
+        assert!((turn.0.0 - moved.0.0.map(|x| x.eps)).norm() < 1e-14 * (1.0 + xi.norm()));
+        assert!((turn.1.0 - moved.1.0.map(|x| x.eps)).norm() < 1e-14 * (1.0 + xi.norm()));
+        assert!((turn.2.0 - moved.2.0.map(|x| x.eps)).norm() < 1e-14 * (1.0 + xi.norm()));
+        assert!((turn.3.0 - moved.3.0.map(|x| x.eps)).norm() < 1e-14 * (1.0 + xi.norm()));
+        assert!((turn.4.0 - moved.4.0.map(|x| x.eps)).norm() < 1e-14 * (1.0 + xi.norm()));
+        let found = system.velocity(&momentum, &w).unwrap();
+        near("velocity of the momentum", &found, &xi, (1.0 + inertia.norm()) * (1.0 + xi.norm()));
+        near("Lie–Poisson", &system.lie_poisson(&momentum, &w).unwrap().0, &rate, scale);
+        let energy = momentum.dot(&xi) - dual.l(&xi.map(Dual64::from), &seen(&values, &Components::zeros())).re;
+        assert!((system.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (scale + energy.abs()));
+    }
+    println!("the worst error of a term is {worst:.1e} of its size");
+}
+
+/// The double pendulum by its velocities.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    velocity(Omega_1, Omega_2),
+    advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
+    l = 0.5 * (hat(Omega_1) * J_1 * hat(Omega_1).transpose()).trace()
+        + 0.5 * (hat(Omega_2) * J_2 * hat(Omega_2).transpose()).trace()
+        + Omega_1.cross(&rho).dot(&(Q * Omega_2.cross(&s_2)))
+        - g * (w_1.dot(&s_1) + w_2.dot(&s_2)),
+    discretise = trapezoid(Cayley),
+)]
+#[derive(Clone)]
+struct Links {
+    J_1: NonstandardInertia,
+    J_2: NonstandardInertia,
+    rho: Vector3<f64>,
+    s_1: Vector3<f64>,
+    s_2: Vector3<f64>,
+    g: f64,
+    up: Vector3<f64>,
+}
+
+impl Links {
+    fn of(pendulum: &DoublePendulum) -> Self {
+        let DoublePendulum { J_1, J_2, rho, s_1, s_2, g, up } = pendulum.clone();
+        Self { J_1, J_2, rho, s_1, s_2, g, up }
+    }
+}
+
+/// A double pendulum without any symmetry.
+fn pendulum() -> DoublePendulum {
+    let inertia = |x: f64, y: f64, z: f64| Matrix3::new(x, 0.02, -0.03, 0.02, y, 0.01, -0.03, 0.01, z);
+    let (rho, c_1, c_2, m_2) =
+        (Vector3::new(0.1, 0.2, -1.0), Vector3::new(0.1, 0.05, -0.5), Vector3::new(0.05, -0.1, -0.4), 0.7);
+    let J_1 = NonstandardInertia::new(inertia(0.3, 0.2, 0.4) + rho * rho.transpose() * m_2).unwrap();
+    let J_2 = NonstandardInertia::new(inertia(0.1, 0.15, 0.05) + c_2 * c_2.transpose() * m_2).unwrap();
+    DoublePendulum { J_1, J_2, rho, s_1: c_1 + rho * m_2, s_2: c_2 * m_2, g: 9.81, up: Vector3::z() }
+}
+
+/// What is derived of the declared `l` is what is derived of the limit of the declared `l_d`, and the formula by hand,
+/// `μ_1 = J Ω_1 + ρ × Q (Ω_2 × s_2)` and `μ_2 = J Ω_2 + s_2 × Qᵀ(Ω_1 × ρ)`.
+#[test]
+fn two_links_are_the_limit_of_their_steps() {
+    let pendulum = pendulum();
+    let links = Links::of(&pendulum);
+    const { assert!(Links::SELF_ADJOINT && matches!(Links::LEGENDRE, Legendre::Varying)) };
+    let mut random = Random::new(7);
+    for _ in 0..20 {
+        let attitudes = (random.rotation(), random.rotation());
+        let (first, second) = (*attitudes.0.as_matrix(), *attitudes.1.as_matrix());
+        let q = first.transpose() * second;
+        let [w_1, w_2] = [first, second].map(|r| r.transpose() * Vector3::z());
+        let w = (SeenFrom(w_1), SeenFrom(w_2), Relative(q));
+        let xi = Vector6::from_fn(|_, _| 3.0 * random.signed());
+        let (o_1, o_2) = (xi.fixed_rows::<3>(0).into_owned(), xi.fixed_rows::<3>(3).into_owned());
+        let [j_1, j_2] = [&pendulum.J_1, &pendulum.J_2].map(|j| *j.to_inertia().as_matrix());
+        let (u_1, u_2) = (o_1.cross(&pendulum.rho), q * o_2.cross(&pendulum.s_2));
+        let mu_1 = j_1 * o_1 + pendulum.rho.cross(&u_2);
+        let mu_2 = j_2 * o_2 + pendulum.s_2.cross(&(q.transpose() * u_1));
+        let momentum = Vector6::from_iterator(mu_1.iter().chain(&mu_2).copied());
+        let scale = 1.0 + momentum.norm() * (1.0 + xi.norm());
+        let near = |what: &str, found: Vector6<f64>, expected: Vector6<f64>| {
+            assert!((found - expected).norm() <= 1e-13 * scale, "{what}: {found} and {expected}");
+        };
+        near("momentum", links.momentum(&xi, &w), momentum);
+        near("momentum of the limit", pendulum.momentum(&xi, &w), momentum);
+        near("velocity", links.velocity(&momentum, &w).unwrap(), xi);
+        near("diamond", links.diamond_rate(&xi, &w), pendulum.diamond_rate(&xi, &w));
+        near("advection", links.momentum_advection(&xi, &w), pendulum.momentum_advection(&xi, &w));
+        let [here, there] = [&links.lie_poisson(&momentum, &w), &pendulum.lie_poisson(&momentum, &w)]
+            .map(|rates| rates.as_ref().unwrap().0);
+        near("Lie–Poisson", here, there);
+        let energy = 0.5 * momentum.dot(&xi) + pendulum.g * (w_1.dot(&pendulum.s_1) + w_2.dot(&pendulum.s_2));
+        assert!((links.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (scale + energy.abs()));
+        // By hand: in space, the force that turns both about the pivot is the weight alone.
+        let spatial = first * here.fixed_rows::<3>(0) + second * here.fixed_rows::<3>(3);
+        let turned = first * o_1.cross(&mu_1) + second * o_2.cross(&mu_2);
+        let weight = Vector3::z().cross(&(first * pendulum.s_1 + second * pendulum.s_2)) * pendulum.g;
+        assert!((spatial + turned - weight).norm() <= 1e-13 * scale, "the moment of the weight");
+    }
+}
+
+/// Two point masses on rods, whose reference knows directions alone: what a solver makes of the continuous equations, and
+/// that steps of what is made of `l` converge to it at order two; what is conserved.
+#[test]
+fn two_links_move_as_a_double_spherical_pendulum() {
+    let data = &read("several bodies")["double_spherical_pendulum"];
+    let (start, end) = (&data["states"][0], &data["states"][1]);
+    let (m_1, m_2, l_1, l_2, own, e) = (1.0, 0.7, 1.0, 0.9, 0.01, Vector3::z());
+    // About its axis a rod has some moment, which doesn't matter: nothing turns it.
+    let inertia =
+        |ml: f64| NonstandardInertia::from_diagonal(Vector3::new(0.5 * own, 0.5 * own, ml - 0.5 * own)).unwrap();
+    let links = Links {
+        J_1: inertia((m_1 + m_2) * l_1 * l_1),
+        J_2: inertia(m_2 * l_2 * l_2),
+        rho: e * l_1,
+        s_1: e * ((m_1 + m_2) * l_1),
+        s_2: e * (m_2 * l_2),
+        g: 9.81,
+        up: e,
+    };
+    let direction = |value: &serde_json::Value, k: usize| vector(&value["q"][k]);
+    let omega = [0, 1].map(|k| vector(&start["omega"][k]));
+    let turned = [0, 1].map(|k| UnitQuaternion::rotation_between(&e, &direction(start, k)).unwrap());
+    let attitude = (SO3::from(turned[0]), SO3::from(turned[1]));
+    let [first, second] = [0, 1].map(|k| turned[k].inverse_transform_vector(&omega[k]));
+    let velocity = Vector6::from_iterator(first.iter().chain(&second).copied());
+    let missed = |end_at: &(SO3, SO3)| {
+        let [first, second] = [end_at.0, end_at.1].map(|attitude| attitude.as_matrix() * e);
+        (first - direction(end, 0)).amax().max((second - direction(end, 1)).amax())
+    };
+    let time = 2.0;
+    let continuous = RightHandSide::new(links.clone()).unwrap();
+    let w = (SeenFrom(turned[0].inverse() * e), SeenFrom(turned[1].inverse() * e), {
+        Relative(attitude.0.as_matrix().transpose() * attitude.1.as_matrix())
+    });
+    let momentum = links.momentum(&velocity, &w);
+    let mut state = continuous.state(&attitude, &momentum);
+    let energy = continuous.energy(&attitude, &momentum).unwrap();
+    assert!((energy - number(&start["energy"])).abs() < 1e-13, "{energy}");
+    let kept = continuous.conserved(&attitude, &momentum);
+    assert_eq!(continuous.left_symmetries().len(), 1, "the momentum along the vertical");
+    for _ in 0..4000 {
+        runge_kutta::step(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, time / 4000.0);
+    }
+    let (there, after) = continuous.parts(&state);
+    println!("by a solver off by {:.1e}", missed(&there));
+    assert!(missed(&there) < 1e-9, "{:e}", missed(&there));
+    assert!((continuous.energy(&there, &after).unwrap() - energy).abs() < 1e-9);
+    for (before, after) in kept.iter().zip(continuous.conserved(&there, &after)) {
+        assert!((before - after).abs() < 1e-9, "{before} and {after}");
+    }
+    let errors = [200_u32, 400, 800].map(|steps| {
+        let stepper = Stepper::new(links.clone(), time / f64::from(steps)).unwrap();
+        let mut state = stepper.start(attitude, velocity).unwrap();
+        stepper.run(&mut state, steps.into()).unwrap();
+        missed(&state.attitude())
+    });
+    println!("steps are off by {errors:?}");
+    for pair in errors.windows(2) {
+        assert!((pair[0] / pair[1] - 4.0).abs() < 0.1, "{errors:?}");
+    }
+}
