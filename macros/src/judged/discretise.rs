@@ -512,7 +512,7 @@ fn linear(tree: &Rc<Tree>, build: &Build) -> Option<(usize, Vec<Rc<Tree>>)> {
             let matrix = match a.shape {
                 Shape::Scalar => own.scaled(a.clone(), own.identity()),
                 shape if shape == own.square() => a.clone(),
-                _ => return None,
+                Shape::Matrix(..) => return None,
             };
             Some((factor, [vec![matrix], rest].concat()))
         }

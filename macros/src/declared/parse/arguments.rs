@@ -116,18 +116,8 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
         "velocity" if role == Role::Lagrangian => {
             once(arguments.velocity.is_some());
-            if input.peek(syn::token::Paren) {
-                let content;
-                parenthesized!(content in input);
-                let message = "write `velocity(Omega_1, Omega_2)`: a name for each factor of the group, in their order";
-                let names = Punctuated::<Ident, Token![,]>::parse_terminated(&content);
-                let names = names.map_err(|error| syn::Error::new(error.span(), message))?;
-                arguments.velocity = Some((key, names.into_iter().collect()));
-                return comma(input);
-            }
-            equals(&key, input)?;
-            without_quotes(&key, input)?;
-            arguments.velocity = Some((key, vec![input.call(Ident::parse_any)?]));
+            let names = velocities(&key, input)?;
+            arguments.velocity = Some((key, names));
         }
         "discretise" if role == Role::Lagrangian => {
             once(arguments.discretisation.is_some());
@@ -203,6 +193,20 @@ fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group:
     }
     input.parse::<Token![=]>()?;
     Ok((name, group::named(input, errors)?))
+}
+
+/// `= Omega`, `(Omega_1, Omega_2)`.
+fn velocities(key: &Ident, input: ParseStream) -> syn::Result<Vec<Ident>> {
+    if input.peek(syn::token::Paren) {
+        let content;
+        parenthesized!(content in input);
+        let message = "write `velocity(Omega_1, Omega_2)`: a name for each factor of the group, in their order";
+        let names = Punctuated::<Ident, Token![,]>::parse_terminated(&content);
+        return names.map(|names| names.into_iter().collect()).map_err(|error| syn::Error::new(error.span(), message));
+    }
+    equals(key, input)?;
+    without_quotes(key, input)?;
+    Ok(vec![input.call(Ident::parse_any)?])
 }
 
 /// The name of an argument, known or followed by what it would be given.

@@ -234,6 +234,17 @@ fn hamiltonian_of(w: &[String]) -> String {
     format!("h({})", arguments.join(", "))
 }
 
+/// A component of the momentum; of several bodies one of that of a body, which is the body's where it is alone.
+fn component(group: &Group, k: usize) -> String {
+    let factors = group.factors().iter().enumerate();
+    let of_k = factors.map(|(factor, own)| (factor, own.dimension(), group.component_of(factor)));
+    match of_k.into_iter().find(|(_, dimension, first)| (*first..first + dimension).contains(&k)) {
+        Some((factor, 1, _)) if group.is_product() => format!("μ_{}", factor + 1),
+        Some((factor, _, first)) if group.is_product() => format!("(μ_{})_{}", factor + 1, k - first + 1),
+        _ => format!("μ_{}", k + 1),
+    }
+}
+
 /// What the motion keeps.
 fn kept(declaration: &Declaration, equations: &Equations) -> Equation {
     let derived = &equations.derived;
@@ -257,10 +268,12 @@ fn kept(declaration: &Declaration, equations: &Equations) -> Equation {
     for symmetry in &equations.right_symmetries {
         let terms = symmetry.iter().enumerate().filter(|(_, factor)| !factor.is_zero());
         let term = |(k, factor): (usize, &Rational)| match factor.parts() {
-            (1, 1) => format!("μ_{}", k + 1),
-            (-1, 1) => format!("−μ_{}", k + 1),
-            (numerator, 1) => format!("{} μ_{}", numerator.to_string().replace('-', "−"), k + 1),
-            (numerator, denominator) => format!("({numerator}/{denominator}) μ_{}", k + 1).replace('-', "−"),
+            (1, 1) => component(&derived.group, k),
+            (-1, 1) => format!("−{}", component(&derived.group, k)),
+            (numerator, 1) => format!("{numerator} {}", component(&derived.group, k)).replace('-', "−"),
+            (numerator, denominator) => {
+                format!("({numerator}/{denominator}) {}", component(&derived.group, k)).replace('-', "−")
+            }
         };
         kept.push(sum(&terms.map(term).collect::<Vec<_>>()));
     }

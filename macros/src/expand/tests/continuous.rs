@@ -483,7 +483,7 @@ fn the_second_derivative_is_symmetric() {
     assert_eq!(turned, derived.hessian);
 }
 
-/// Of several bodies, each in its own line; the sum of what turns them together is conserved.
+/// Of several bodies one covector after the other, by the names that are declared.
 #[test]
 #[allow(clippy::needless_raw_string_hashes)] // as expect-test writes them
 fn of_several_bodies() {
@@ -500,7 +500,7 @@ fn of_several_bodies() {
             μ = tr(J_1) Omega_1 + rho × (Q hat(Omega_2) s_2) − J_1 Omega_1;  tr(J_2) Omega_2 + s_2 × (Qᵀ hat(Omega_1) rho) − J_2 Omega_2    [∂l/∂ξ, (1.14)]
             ⟨𝕀η, ζ⟩ = tr(J_1) ⟨η_1, ζ_1⟩ + tr(J_2) ⟨η_2, ζ_2⟩ − ⟨rho, hat(η_1) Q hat(ζ_2) s_2⟩ − ⟨rho, hat(ζ_1) Q hat(η_2) s_2⟩ − ⟨η_1, J_1 ζ_1⟩ − ⟨η_2, J_2 ζ_2⟩    [∂²l/∂ξ², the inertia]
             ∂l/∂w ⋄ w = g w_1 × s_1 + ⟨s_2, hat(Qᵀ Omega_1) Omega_2⟩ rho − ⟨s_2, hat(Qᵀ rho) Omega_2⟩ Omega_1;  g w_2 × s_2 − ⟨rho, hat(Q s_2) Omega_1⟩ Omega_2 + ⟨rho, hat(Q Omega_2) Omega_1⟩ s_2    [(2.1)]
-            (∂²l/∂w∂ξ)(ξ·w) = …, which is long;  …, which is long    [by which μ of a fixed ξ falls]
+            (∂²l/∂w∂ξ)(ξ·w) = η_1 ↦ −⟨rho, Omega_1⟩ ⟨s_2, hat(Qᵀ η_1) Omega_2⟩ + ⟨rho, hat(Q s_2) η_1⟩ ⟨Omega_2, Omega_2⟩ − ⟨rho, hat(Q Omega_2) η_1⟩ ⟨s_2, Omega_2⟩ + ⟨s_2, hat(Qᵀ rho) Omega_2⟩ ⟨Omega_1, η_1⟩;  η_2 ↦ −⟨rho, Omega_1⟩ ⟨s_2, hat(Qᵀ Omega_1) η_2⟩ + ⟨rho, hat(Q s_2) Omega_1⟩ ⟨Omega_2, η_2⟩ − ⟨rho, hat(Q η_2) Omega_1⟩ ⟨s_2, Omega_2⟩ + ⟨s_2, hat(Qᵀ rho) η_2⟩ ⟨Omega_1, Omega_1⟩    [by which μ of a fixed ξ falls]
             dμ/dt = μ_1 × Omega_1 + g w_1 × s_1 + ⟨s_2, hat(Qᵀ Omega_1) Omega_2⟩ rho − ⟨s_2, hat(Qᵀ rho) Omega_2⟩ Omega_1;  μ_2 × Omega_2 + g w_2 × s_2 − ⟨rho, hat(Q s_2) Omega_1⟩ Omega_2 + ⟨rho, hat(Q Omega_2) Omega_1⟩ s_2    [(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w, of each]
             dw_1/dt = w_1 × Omega_1    [(2.2): −ξ·w]
             dw_2/dt = w_2 × Omega_2    [(2.2): −ξ·w]
@@ -520,7 +520,7 @@ fn of_several_bodies() {
             ξ = (Omega, u, v) = g⁻¹ dg/dt
             pairing: μ_k = ⟨μ, E_k⟩, of one factor after the other: of what turns the body momentum, of what is translated the momentum
             l(Omega, u, v, R, x, r, w) = m u ⟨v, e1⟩ + (m u²/2) + m ⟨v, v⟩ + (m/2) ⟨v, e1⟩² − m sqrt(1 + ⟨r, r⟩) − x ⟨r, R w⟩ + (x²/2) ⟨Omega, J Omega⟩ + u ⟨s, w⟩ + ⟨s, hat(Rᵀ v) Omega⟩ + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
-            μ = x² J Omega + s × (Rᵀ v) + J Omega;  m u + m ⟨v, e1⟩ + ⟨s, w⟩;  …, which is long    [∂l/∂ξ, (1.14)]
+            μ = x² J Omega + s × (Rᵀ v) + J Omega;  m u + m ⟨v, e1⟩ + ⟨s, w⟩;  η_3 ↦ m u ⟨η_3, e1⟩ + 2 m ⟨v, η_3⟩ + m ⟨v, e1⟩ ⟨η_3, e1⟩ + ⟨s, hat(Rᵀ η_3) Omega⟩    [∂l/∂ξ, (1.14)]
             ⟨𝕀η, ζ⟩ = m η_2 ζ_2 + m η_2 ⟨ζ_3, e1⟩ + m ζ_2 ⟨η_3, e1⟩ + 2 m ⟨η_3, ζ_3⟩ + m ⟨η_3, e1⟩ ⟨ζ_3, e1⟩ + x² ⟨η_1, J ζ_1⟩ + ⟨s, hat(Rᵀ η_3) ζ_1⟩ + ⟨s, hat(Rᵀ ζ_3) η_1⟩ + ⟨η_1, J ζ_1⟩    [∂²l/∂ξ², the inertia]
             ∂l/∂w ⋄ w = u s × w − ⟨s, Rᵀ v⟩ Omega + ⟨Omega, Rᵀ v⟩ s;  x ⟨Omega, J Omega⟩ − ⟨r, R w⟩;  −(m/sqrt(1 + ⟨r, r⟩)) r − x R w    [(2.1)]
             (∂²l/∂w∂ξ)(ξ·w) = −2 x u J Omega + ⟨s, Rᵀ v⟩ Omega − ⟨s, Omega⟩ Rᵀ v;  −⟨s, hat(w) Omega⟩;  ⟨Omega, Omega⟩ R s − ⟨s, Omega⟩ R Omega    [by which μ of a fixed ξ falls]
@@ -533,6 +533,11 @@ fn of_several_bodies() {
             h(μ, R, x, r, w) = ½ ⟨μ − s(w), 𝕀(w)⁻¹ (μ − s(w))⟩ + m sqrt(1 + ⟨r, r⟩) + x ⟨r, R w⟩    [(1.16)]
             kept = h(μ, R, x, r, w); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
     "#]].assert_eq(&continuous_derivation(CART, OF_CART));
+    // A wheel, and a body that nothing moves.
+    let wheel = "group(F = SO3, t = R1, d = R2), velocity(Omega, u, v),
+        l = 0.5 * Omega.dot(&(J * Omega)) + 0.5 * m * (u + s.dot(&Omega)).powi(2) + 0.5 * m * v.norm_squared()";
+    let text = continuous_derivation(wheel, "struct Wheel { J: Inertia, m: f64, s: Vector3<f64> }");
+    assert!(text.contains("kept = h(μ); Ad*_{g⁻¹} μ; μ_2; (μ_3)_1; (μ_3)_2    ["), "{text}");
 }
 
 /// With the matrices `(F − I)/h` what couples the links is taken at both ends, as typed here; at the second it isn't the
