@@ -139,7 +139,10 @@ impl<L: ContinuousLagrangian<Scalar = f64>, const PAIRS: usize, const N: usize> 
                 PAIRS > 0 && PAIRS <= 8,
                 "collocation needs a pair of stages, and doubles have no use for more than 8"
             );
-            assert!(size_of::<Matrix<L>>() == size_of::<SMatrix<f64, N, N>>(), "N is the size of the group's matrices");
+            assert!(
+                size_of::<Matrix<L>>() == size_of::<SMatrix<f64, N, N>>(),
+                "N is the size of the group's matrices, of one group: several bodies have no collocation"
+            );
         }
         lagrangian.validate()?;
         let spatial = lagrangian.advected();
