@@ -4,8 +4,8 @@
 use checks::random::Random;
 use declarations::DoublePendulum;
 use declarations::motions::{number, read, vector};
-use liestep::groups::{Configuration, R1, R3, Relative, SeenFrom};
-use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian as _, Inertia, Legendre, Term};
+use liestep::groups::{Advected as _, Configuration, LieGroup as _, R1, R3, Relative, SeenFrom};
+use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Inertia, Legendre, Term};
 use liestep::motion::RightHandSide;
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
@@ -34,6 +34,7 @@ use workbench::runge_kutta;
         let potential = (1.0 + r.norm_squared()).sqrt() + x * r.dot(&(R * rho)) + (Q * A).trace() + k * w.dot(&s).sin();
         0.5 * (turning + moving) + coupled + bent + linear - potential
     },
+    discretise = trapezoid(Cayley),
 )]
 #[derive(Clone)]
 struct Bodies<T: RealField + Copy> {
@@ -151,6 +152,32 @@ fn bodies_that_feel_each_other() {
         assert!((system.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (scale + energy.abs()));
     }
     println!("the worst error of a term is {worst:.1e} of its size");
+}
+
+/// What is made of their `l` converges, at order two, to what a solver makes of the continuous equations.
+#[test]
+fn steps_of_bodies_that_feel_each_other() {
+    let system = bodies::<f64>(3);
+    const { assert!(<Bodies<f64> as DiscreteLagrangian>::SELF_ADJOINT) };
+    let mut random = Random::new(31);
+    let attitude = (random.rotation(), R3::identity(), random.rotation(), R1::identity());
+    let velocity = Components::from_fn(|_, _| random.signed());
+    let continuous = RightHandSide::new(system.clone()).unwrap();
+    let momentum = system.momentum(&velocity, &system.advected().seen_from(&attitude));
+    let (time, mut state) = (0.5, continuous.state(&attitude, &momentum));
+    for _ in 0..1000 {
+        runge_kutta::step(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, time / 1000.0);
+    }
+    let error = |steps: u32| {
+        let stepper = Stepper::new(system.clone(), time / f64::from(steps)).unwrap();
+        let mut moved = stepper.start(attitude, velocity).unwrap();
+        stepper.run(&mut moved, steps.into()).unwrap();
+        let found = continuous.state(&moved.attitude(), &moved.momentum());
+        found.iter().zip(&state).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let ratio = error(50) / error(100);
+    println!("off by {:e}, and by {ratio} times that at the double step", error(100));
+    assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
 }
 
 /// The double pendulum by its velocities.
