@@ -57,6 +57,12 @@ impl DoubleDouble {
         self.high
     }
 
+    /// The whole number below.
+    fn floor(self) -> f64 {
+        let floor = self.high.floor();
+        if floor == self.high && self.low < 0.0 { floor - 1.0 } else { floor }
+    }
+
     #[inline]
     pub fn sqrt(self) -> Self {
         let root = self.high.sqrt();
@@ -77,12 +83,12 @@ impl core::fmt::Display for DoubleDouble {
         let mut rest = if self.high < 0.0 { -*self } else { *self };
         // Half of the last digit, so that the digits are cut off.
         rest += (0..30).fold(long(0.5), |half, _| half / long(10.0));
-        let whole = rest.high.floor();
+        let whole = rest.floor();
         rest -= long(whole);
         write!(f, "{}{whole}.", if self.high < 0.0 { "-" } else { "" })?;
         for _ in 0..30 {
             rest *= long(10.0);
-            let digit = rest.high.floor();
+            let digit = rest.floor();
             rest -= long(digit);
             write!(f, "{digit}")?;
         }

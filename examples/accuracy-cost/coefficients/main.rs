@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo run --release --example coefficients
-//! cargo run --release --example coefficients -- --kernel "kick drift kick/ drift"
+//! cargo run --release --example coefficients -- --kernel "kick/ drift kick drift"
 //! cargo run --release --example coefficients -- --processor "processed 3-6 a" --stages 5 --unseen
 //! ```
 //!
@@ -11,8 +11,8 @@
 //! next order. Which of them is best that error doesn't tell: with `--unseen` they are tried on ten asymmetric tops that
 //! the seed draws, and what they cost there is printed beside those of the library.
 //!
-//! Without options each scheme of the library is found again: its kernel and its processor are the solutions next to
-//! their own first three digits, and what is left at the next order is printed.
+//! Without options those of the library are printed with 30 digits: the solutions that its numbers are the first digits
+//! of, or an error where there is none so near.
 
 mod problem;
 mod search;
@@ -23,17 +23,17 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 
 use liestep::laws::samples::Random;
-use liestep::methods::{Flow, ProcessedScheme, SplittingScheme};
+use liestep::methods::{Flow, ProcessedScheme};
 use workbench::args::{Failure, example};
 use workbench::double_double::DoubleDouble;
 use workbench::output::print;
 
 use problem::{Form, Problem, Wanted};
-use search::{best, solved};
+use search::{best, made_good};
 use unseen::{LEVELS, Top, means};
 use words::Part;
 
-const HELP: &str = "Finds coefficients of processed splittings; without options those of the library again
+const HELP: &str = "Finds coefficients of processed splittings; without options those of the library, with 30 digits
 
 Options:
       --kernel <HALF>     Kernels that begin so, such as \"kick/ drift kick drift\", to the middle one
@@ -95,7 +95,7 @@ fn find(arguments: &Arguments) -> Result<(), Failure> {
     match (&arguments.kernel, &arguments.processor) {
         (Some(half), None) => kernels(arguments, half),
         (None, Some(name)) => processors(arguments, name),
-        (None, None) => library(arguments),
+        (None, None) => library(),
         (Some(_), Some(_)) => Err("a kernel or a processor is looked for, not both; see --help".into()),
     }
 }
@@ -142,8 +142,8 @@ fn text(parts: &[Part<DoubleDouble>]) -> String {
     text
 }
 
-/// A kernel of the library as its form, and with 30 digits.
-fn kernel(scheme: &ProcessedScheme) -> Result<(Problem, search::Found, Vec<Part<DoubleDouble>>), Failure> {
+/// A kernel of the library, with 30 digits.
+fn kernel(scheme: &ProcessedScheme) -> Result<Vec<Part<DoubleDouble>>, Failure> {
     let parts: Vec<_> = scheme.kernel().shares().zip(scheme.kernel().gradients()).collect();
     let half = parts.len().div_ceil(2);
     let is_kick = |place: &usize| parts[*place].0.0 == Flow::Kick;
@@ -153,10 +153,31 @@ fn kernel(scheme: &ProcessedScheme) -> Result<(Problem, search::Found, Vec<Part<
     start.extend(form.gradients.iter().map(|place| parts[*place].1));
     let problem = Problem::new(order(scheme)?, Wanted::Kernel(form));
     start.resize(problem.unknowns(), 0.0);
-    let found = solved(&problem, &start).ok_or("the kernel solves no equation")?;
-    let polished = problem.polished(&found.unknowns).ok_or("the kernel can't be polished")?;
-    let parts = problem.parts(&polished);
-    Ok((problem, found, parts))
+    same(scheme, &problem, &made_good(&problem, &start))
+}
+
+/// Its processor, with 30 digits.
+fn processor(scheme: &ProcessedScheme, kernel: Vec<Part<DoubleDouble>>) -> Result<Vec<Part<DoubleDouble>>, Failure> {
+    let parts: Vec<_> = scheme.processor().collect();
+    let kick_first = parts[0].1 == 0.0;
+    let wanted = Wanted::Processor { kernel, stages: parts.len() / 2, kick_first };
+    let shares = parts.iter().flat_map(|&(flow, share, gradient)| match flow {
+        Flow::Drift => vec![share],
+        Flow::Kick => vec![share, gradient],
+    });
+    let start: Vec<f64> = shares.skip(usize::from(kick_first)).collect();
+    same(scheme, &Problem::new(order(scheme)?, wanted), &start)
+}
+
+/// The solution that these are the first digits of.
+fn same(scheme: &ProcessedScheme, problem: &Problem, digits: &[f64]) -> Result<Vec<Part<DoubleDouble>>, Failure> {
+    let polished = problem.polished(digits).ok_or_else(|| format!("{}: no solution is near", scheme.name()))?;
+    let shares = problem.shares();
+    let apart = digits[..shares].iter().zip(&polished).map(|(a, b)| (b.rounded() - a).abs()).fold(0.0, f64::max);
+    if apart > 1e-15 {
+        return Err(format!("{}: the solution that is near is {apart:.1e} apart", scheme.name()).into());
+    }
+    Ok(problem.parts(&polished))
 }
 
 fn order(scheme: &ProcessedScheme) -> Result<usize, Failure> {
@@ -170,7 +191,7 @@ fn processors(arguments: &Arguments, name: &str) -> Result<(), Failure> {
         format!("no scheme is called {name}; there are: {}", names.join(", "))
     })?;
     let (stages, kick_first) = (arguments.stages, arguments.kick_first);
-    let wanted = Wanted::Processor { kernel: kernel(&scheme)?.2, stages, kick_first };
+    let wanted = Wanted::Processor { kernel: kernel(&scheme)?, stages, kick_first };
     let problem = Problem::new(order(&scheme)?, wanted);
     let mut random = Random::new(arguments.seed);
     let all = best(&problem, &mut random, arguments.starts, arguments.keep);
@@ -209,37 +230,11 @@ fn as_scheme(scheme: &ProcessedScheme, parts: &[Part<DoubleDouble>]) -> Processe
     ProcessedScheme::new("found", scheme.order(), scheme.kernel(), Vec::leak(rows), last)
 }
 
-fn library(_: &Arguments) -> Result<(), Failure> {
+fn library() -> Result<(), Failure> {
     for scheme in ProcessedScheme::ALL {
-        let (_, found, parts) = kernel(&scheme)?;
-        let own = scheme.kernel();
-        print(&format!("{}\n  kernel: {:.2e} is left\n{}", scheme.name(), found.left, text(&parts)))?;
-        let mut apart = 0.0_f64;
-        for (part, (_, share)) in parts.iter().zip(SplittingScheme::shares(&own)) {
-            let (Part::Drift(found) | Part::Kick(found, _)) = part;
-            apart = apart.max((found.rounded() - share).abs());
-        }
-        let processor: Vec<_> = scheme.processor().collect();
-        let kick_first = processor[0].1 == 0.0;
-        let stages = processor.len() / 2;
-        let problem = Problem::new(order(&scheme)?, Wanted::Processor { kernel: parts, stages, kick_first });
-        let start: Vec<f64> = processor
-            .iter()
-            .flat_map(|&(flow, share, gradient)| match flow {
-                Flow::Drift => vec![share],
-                Flow::Kick => vec![share, gradient],
-            })
-            .skip(usize::from(kick_first))
-            .collect();
-        let (within, next) = problem.missed(&start);
-        let polished = problem.polished(&start).ok_or("the processor can't be polished")?;
-        let moved = start.iter().zip(&polished).map(|(a, b)| (b.rounded() - a).abs()).fold(0.0, f64::max);
-        let best = solved(&problem, &start).map(|f| f.left);
-        print(&format!(
-            "  kernel apart {apart:.1e}; processor: {:.1e} missed, {:.4e} is left, moved {moved:.1e}, best {best:?}\n",
-            within.norm(),
-            next.norm()
-        ))?;
+        let kernel = kernel(&scheme)?;
+        let processor = processor(&scheme, kernel.clone())?;
+        print(&format!("{}\n  kernel\n{}  processor\n{}", scheme.name(), text(&kernel), text(&processor)))?;
     }
     Ok(())
 }

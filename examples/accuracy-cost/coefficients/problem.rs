@@ -142,25 +142,30 @@ impl Problem {
         };
         let mut x: Vec<DoubleDouble> = unknowns.iter().map(|x| (*x).into()).collect();
         x.resize(unknowns.len() + vanishing.len(), 0.0.into());
-        let columns: Vec<DVector<f64>> = (0..x.len())
-            .map(|k| {
+        // First what vanishes, so that the unknowns aren't changed for that.
+        for first in [unknowns.len(), 0] {
+            let column = |k: usize| -> DVector<f64> {
                 let [plus, minus] = [1e-5, -1e-5].map(|change: f64| {
                     let mut moved = x.clone();
                     moved[k] += change.into();
                     words(&moved)
                 });
                 plus.iter().zip(&minus).map(|(a, b)| (*a - *b).rounded() / 2e-5).collect::<Vec<_>>().into()
-            })
-            .collect();
-        let inverse = DMatrix::from_columns(&columns).pseudo_inverse(1e-7).ok()?;
-        for _ in 0..40 {
-            let missed: DVector<f64> = words(&x).iter().map(|x| x.rounded()).collect::<Vec<_>>().into();
-            if missed.amax() < 3e-31 {
-                x.truncate(unknowns.len());
-                return Some(x);
+            };
+            let columns: Vec<_> = (first..x.len()).map(column).collect();
+            if columns.is_empty() {
+                continue;
             }
-            for (x, change) in x.iter_mut().zip((&inverse * missed).iter()) {
-                *x -= (*change).into();
+            let inverse = DMatrix::from_columns(&columns).pseudo_inverse(1e-7).ok()?;
+            for _ in 0..40 {
+                let missed: DVector<f64> = words(&x).iter().map(|x| x.rounded()).collect::<Vec<_>>().into();
+                if missed.amax() < 3e-31 {
+                    x.truncate(unknowns.len());
+                    return Some(x);
+                }
+                for (x, change) in x[first..].iter_mut().zip((&inverse * missed).iter()) {
+                    *x -= (*change).into();
+                }
             }
         }
         None

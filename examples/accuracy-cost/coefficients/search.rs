@@ -70,13 +70,9 @@ impl LeastSquaresProblem<f64, lm::Dyn, lm::Dyn> for Weighted<'_> {
 
 /// The solution of the order's equations that the method comes to from a start; nothing where it comes to none.
 pub(crate) fn solved(problem: &Problem, start: &[f64]) -> Option<Found> {
-    let weights = [1.0, 0.0];
-    let mut at = start.to_vec();
     // First what a processor makes good, so that the shares aren't changed for that.
-    if problem.shares() < problem.unknowns() {
-        at = minimized(Weighted { problem, weights, at, first: problem.shares() });
-    }
-    let unknowns = minimized(Weighted { problem, weights, at, first: 0 });
+    let at = made_good(problem, start);
+    let unknowns = minimized(Weighted { problem, weights: EXACT, at, first: 0 });
     let (within, next) = problem.missed(&unknowns);
     (within.norm() < 1e-12).then(|| Found { unknowns, left: next.norm() })
 }
@@ -88,6 +84,15 @@ fn least(problem: &Problem, found: Found) -> Option<Found> {
         .fold(found.unknowns, |at, within| minimized(Weighted { problem, weights: [*within, 1.0], at, first: 0 }));
     solved(problem, &at)
 }
+
+/// With the same shares, what a processor makes good of a kernel's error.
+pub(crate) fn made_good(problem: &Problem, start: &[f64]) -> Vec<f64> {
+    let (at, first) = (start.to_vec(), problem.shares());
+    if first == at.len() { at } else { minimized(Weighted { problem, weights: EXACT, at, first }) }
+}
+
+/// Nothing but what the order asks for.
+const EXACT: [f64; 2] = [1.0, 0.0];
 
 fn minimized(weighted: Weighted<'_>) -> Vec<f64> {
     LevenbergMarquardt::new().with_patience(40).minimize(weighted).0.at
