@@ -60,7 +60,7 @@ impl DoubleDouble {
     /// The whole number below.
     fn floor(self) -> f64 {
         let floor = self.high.floor();
-        if floor == self.high && self.low < 0.0 { floor - 1.0 } else { floor }
+        if self.high - floor <= 0.0 && self.low < 0.0 { floor - 1.0 } else { floor }
     }
 
     #[inline]
