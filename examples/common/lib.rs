@@ -9,6 +9,7 @@
 
 pub mod args;
 pub mod csv;
+pub mod double_double;
 pub mod free_body;
 pub mod heavy_top;
 pub mod measure;

@@ -99,6 +99,9 @@
 //!
 //! The highest orders drown in the rounding of a double; `tests/accuracy/many_digits` measures them with 32 digits.
 //!
+//! `cargo run --release --example coefficients` finds kernels and processors of processed splittings from random starts,
+//! polishes them to 30 digits, and with `--unseen` tries them on tops that none was chosen by.
+//!
 //! # Asking for an accuracy
 //!
 //! ```

@@ -14,11 +14,9 @@ mod cotangent;
 pub(crate) mod free_body;
 pub(crate) mod heavy_top;
 pub(crate) mod motion;
-mod number;
 mod poisson;
 
-pub(crate) use number::{DoubleDouble, long};
-
+pub(crate) use workbench::double_double::{DoubleDouble, long};
 use workbench::measure::{order, relative};
 
 use crate::convergence::End;
@@ -69,4 +67,27 @@ pub(crate) fn assert_order(
     println!("    the library: {apart:.1e} apart where the error is {missed:.1e}");
     assert!((order - f64::from(expected)).abs() < 0.1, "{name}, {motion}: order {order}, errors {errors:?}");
     assert!(apart < 0.2 * missed, "{name}, {motion}: the library is {apart:e} apart, the error {missed:e}");
+}
+
+/// The digits of a few numbers that others have computed.
+#[test]
+fn numbers_have_32_digits() {
+    let number = DoubleDouble::parse;
+    for (found, expected) in [
+        (number("2").sqrt(), "1.41421356237309504880168872420969807857"),
+        (number("1") / number("7"), "0.142857142857142857142857142857142857143"),
+        (number("-0.1") * number("1e-1"), "-0.01"),
+        (number("1.00000000000000000001") - number("1"), "0.00000000000000000001"),
+    ] {
+        let error = (found - number(expected)).rounded();
+        assert!(error.abs() < 1e-31, "{expected}: off by {error:e}");
+    }
+    for text in [
+        "0.142857142857142857142857142857",
+        "0.249999999999999999999999999999",
+        "-1.000000000000000000000000000001",
+        "0.000000000000000000000000000000",
+    ] {
+        assert_eq!(number(text).to_string(), text);
+    }
 }

@@ -2,7 +2,8 @@
 //!
 //! All were found for this library: kernels and processors by Levenberg and Marquardt's method on the conditions in the
 //! Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, what is left at the next order made small, and polished
-//! to 30 digits, but for the last of order 4. `tests/accuracy/conditions.rs` has the conditions.
+//! to 30 digits. `cargo run --release --example coefficients` finds and polishes them; `tests/accuracy/conditions.rs` has
+//! the conditions once more.
 
 // All digits that were found, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
@@ -113,10 +114,10 @@ impl ProcessedScheme {
         4,
         TWICE_ONE_DRIFT,
         &[
-            [0.054864149511051258, 0.094931451225438807, -5.3717973010608155e-05],
-            [-0.10972829902209814, -0.094931451225438807, -0.00093515131058771338],
+            [0.054864149511049415639146885511, 0.094931451225437736688605888439, -0.000053717973010598082549787894],
+            [-0.109728299022098367694014751199, -0.094931451225439340968587073141, -0.000935151310587703304089004259],
         ],
-        0.054864149511046879,
+        0.054864149511047347774886680987,
     );
 
     /// All of these.
