@@ -51,6 +51,7 @@ pub(super) struct Body<const K: usize> {
 }
 
 impl<const K: usize> Body<K> {
+    #[inline(always)]
     pub(super) fn new() -> Self {
         Self {
             matrix: SMatrix::zeros(),
@@ -143,7 +144,7 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
         if member.joint.is_none() {
             continue;
         }
-        let [own, of_parent] = body.slopes.0;
+        let [own, of_parent] = &body.slopes.0;
         body.x = solved(&body.matrix, &own.before);
         let s = own.after * body.x;
         (body.inverse, body.pivot) = inverted(&s, &s.diagonal(), body.rows);
