@@ -84,13 +84,13 @@ fn pendulums(output: &mut Output) -> Result<String, Failure> {
     let (h, steps) = (0.002, 12_000_u32);
     let stepper = Stepper::new(double_pendulum()?, h)?;
     let tilted = |angle: f64| SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(0.0, angle, 0.0)));
-    let [mut first, mut second] = [0.0, 1e-9].map(|off| {
+    let start = |off: f64| {
         let velocity = Vector6::new(0.3, 0.0, 0.0, 0.0, 0.0, 0.0);
         stepper.start((tilted(2.0), tilted(2.6 + off)), velocity)
-    });
-    let (first, second) = (first.as_mut().map_err(|error| *error)?, second.as_mut().map_err(|error| *error)?);
+    };
+    let (mut first, mut second) = (start(0.0)?, start(1e-9)?);
     let end = |(upper, lower): (SO3, SO3)| -(upper.as_matrix() + lower.as_matrix()) * Vector3::z();
-    let (energy, mut worst) = (stepper.energy(first), 0.0_f64);
+    let (energy, mut worst) = (stepper.energy(&first), 0.0_f64);
     let (mut ways, mut parting) = ([Vec::new(), Vec::new()], Vec::new());
     for step in 0..=steps {
         let ends = [end(first.attitude()), end(second.attitude())];
@@ -98,9 +98,9 @@ fn pendulums(output: &mut Output) -> Result<String, Failure> {
             ways.iter_mut().zip(&ends).for_each(|(way, end)| way.push((end.x, end.z)));
             parting.push((f64::from(step) * h, (ends[0] - ends[1]).norm().max(1e-12)));
         }
-        worst = worst.max((stepper.energy(first) - energy).abs());
-        stepper.step(first)?;
-        stepper.step(second)?;
+        worst = worst.max((stepper.energy(&first) - energy).abs());
+        stepper.step(&mut first)?;
+        stepper.step(&mut second)?;
     }
     let apart = parting.iter().map(|point| point.1).fold(0.0, f64::max);
     let [one, other] = ways;
@@ -132,7 +132,7 @@ fn asteroids(output: &mut Output) -> Result<String, Failure> {
         },
         h,
     )?;
-    let (apart, speed) = (Vector3::x() * 2.0, Vector3::new(0.0, 0.9, 0.3));
+    let (apart, speed) = (Vector3::x() * 2.0, Vector3::new(0.0, 1.1, 0.4));
     let place = |part: f64| R3::from(apart * part);
     let start = (SO3::identity(), place(-m_2 / (m_1 + m_2)), SO3::identity(), place(m_1 / (m_1 + m_2)));
     let turning = [Vector3::new(0.1, 0.2, 0.6), Vector3::new(-0.3, 0.1, 0.9)];

@@ -123,8 +123,8 @@ pub struct Slope<const K: usize> {
 /// let mut state = stepper.start(start, Bodies([Vector6::new(0.0, 0.0, 0.0, 0.0, 2.0, 0.0)]))?;
 /// let energy = stepper.energy(&state);
 /// stepper.run(&mut state, 1000)?;
-/// assert!(stepper.widest_gap(&state) < 1e-15);
-/// assert!((stepper.energy(&state) - energy).abs() < 1e-2);
+/// assert!(stepper.widest_gap(&state) < 1e-14);
+/// assert!((stepper.energy(&state) - energy).abs() < 5e-2);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[diagnostic::on_unimplemented(

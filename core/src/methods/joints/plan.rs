@@ -74,7 +74,8 @@ impl<S: Effect> Stepper<S> {
     /// Four rods of 1 m on ball joints, both ends on pivots: a swing.
     ///
     /// ```
-    ///     /// use liestep::groups::R3;
+    /// use core::array::from_fn;
+    /// use liestep::groups::R3;
     /// use liestep::mechanics::Each;
     /// use liestep::methods::{BallJoint, Joined, Joints};
     /// use liestep::numbers::Bodies;
@@ -429,7 +430,7 @@ where
             change = change + S::kick_after(&self.constants, &increment, &advected);
         }
         // The iteration has seen the matrix on its way, and not at the end of it.
-        let taken = self.projection(&mut equations, scene, &places, &advected, &(now.momentum + change));
+        let taken = Self::projection(&mut equations, scene, &places, &advected, &(now.momentum + change));
         change = change - taken.map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
         let momentum = now.momentum + change;
         if !momentum.is_finite() || !half.is_finite() {
@@ -461,7 +462,7 @@ where
         motion.push(impulse);
         let now = *motion.now();
         let places = Places::of(&now.attitude);
-        let taken = self.projection(&mut self.equations(), scene, &places, &now.advected, &now.momentum);
+        let taken = Self::projection(&mut self.equations(), scene, &places, &now.advected, &now.momentum);
         let taken = taken.map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
         motion.push(&(Bodies::zero() - taken));
         Ok(())

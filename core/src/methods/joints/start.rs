@@ -54,7 +54,6 @@ where
     ///
     /// What the equations were of doesn't matter.
     pub(super) fn projection(
-        &self,
         equations: &mut Equations<'_, C, K, N, T, L>,
         scene: &S,
         places: &Places<N>,
@@ -151,7 +150,7 @@ where
         let mut equations = self.plan.equations();
         // The second time for what roundings of the first leave, where bodies are of unlike masses.
         for _ in 0..2 {
-            let taken = self.plan.projection(&mut equations, &self.scene, &places, &advected, &momentum);
+            let taken = Jointed::projection(&mut equations, &self.scene, &places, &advected, &momentum);
             momentum = momentum - taken.map_err(|(joint, pivot)| SetupError::RedundantJoint { joint, pivot })?;
         }
         self.start_with_momentum(attitude, momentum)

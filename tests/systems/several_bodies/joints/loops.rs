@@ -130,6 +130,25 @@ fn energy_of_a_closed_loop() {
     assert_eq!(resumed, there);
 }
 
+/// The same for a million steps, some three hours of motion.
+#[test]
+#[ignore = "takes a minute: `cargo test -p liestep-tests --test systems a_million_steps_of_a_closed_loop -- --ignored --nocapture`"]
+fn a_million_steps_of_a_closed_loop() {
+    let (start, velocity) = state_of(&read("closed loop")["states"][0]);
+    let stepper = closed_loop(0.01, 3);
+    let mut state = stepper.start(start, velocity).unwrap();
+    let (energy, mut gap) = (stepper.energy(&state), 0.0_f64);
+    let (means, most) = tenths(|| {
+        stepper.run(&mut state, 10).unwrap();
+        gap = gap.max(stepper.widest_gap(&state));
+        stepper.energy(&state) - energy
+    });
+    let [first, second] = [&means[..5], &means[5..]].map(|half| half.iter().sum::<f64>() / 5.0);
+    println!("energy {energy:.4}: within {most:.4}, means {means:.5?}; gap {gap:.1e}");
+    assert!(most < 0.004 && (first - second).abs() < 2e-4 && gap < 4.0 * EPSILON * 2.0);
+    assert!(state.orthogonality_defect() < 1e-12);
+}
+
 /// A ring of six that nothing pulls keeps its momentum and its angular momentum; hung up at one point and pulled down,
 /// the part of the latter about the vertical.
 #[test]

@@ -2,6 +2,9 @@
 //! equations, a pendulum on a pin against its recursion, and all of them against the principle that joints do no work;
 //! what is conserved, and what can go wrong.
 
+// The letters of the field.
+#![allow(non_snake_case)]
+
 mod chains;
 mod driven;
 mod kinds;
@@ -153,6 +156,6 @@ fn assert_no_work<S, C, const K: usize, const N: usize>(
     let left = l.legendre_plus(&f, &w, h) + half - after.momentum();
     let size = taken.0.iter().map(Vector6::amax).fold(0.0, f64::max);
     let work = [working(joints, &start, &taken), working(joints, &end, &left)];
-    println!("of {size:.1e} these work: {work:.1e?}");
+    println!("of {size:.1e} these work: {work:?}");
     assert!(size > 1e-3 && work.iter().all(|&work| work < 1e-9 * size.max(1.0)), "{work:?} of {size}");
 }
