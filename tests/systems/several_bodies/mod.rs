@@ -169,7 +169,7 @@ where
     };
     let unit = |k: usize| [0, D].map(|first| SVector::from_fn(|i, _| f64::from(u8::from(first + i == k))));
     let ends: Vec<_> = (0..2 * D).map(variation).collect();
-    let scale = ends.iter().flatten().map(|part| part.amax()).fold(1.0, f64::max);
+    let scale = ends.iter().flatten().map(nalgebra::Matrix::amax).fold(1.0, f64::max);
     let mut worst = 0.0_f64;
     for (j, first) in ends.iter().enumerate() {
         for (k, second) in ends.iter().enumerate() {

@@ -231,6 +231,15 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         self.bodies[body].determinant
     }
 
+    /// Whether all that is left of bodies and joints has, with those of bodies being positive, a determinant of the wrong
+    /// sign, and then the first negative one of a joint. From rest to a step the whole doesn't vanish, so that the places
+    /// are others where joints are closed, too, as a strut has on its other side.
+    pub(super) fn reversed(&self) -> Option<f64> {
+        let mut negative = self.bodies.iter().map(|body| body.of_joint).filter(|&determinant| determinant < 0.0);
+        let first = negative.next()?;
+        negative.count().is_multiple_of(2).then_some(first)
+    }
+
     /// The first joint that leaves itself or that the others leave nothing to do, by its number, and its pivot relative
     /// to that between free bodies.
     pub(super) fn redundant(&self) -> Option<(usize, f64)> {

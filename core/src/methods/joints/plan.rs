@@ -279,7 +279,10 @@ where
     }
 
     fn is_wanted(&self) -> bool {
-        self.turned_too_far().is_none() && self.equations.wrong_body().is_none() && self.equations.redundant().is_none()
+        self.turned_too_far().is_none()
+            && self.equations.wrong_body().is_none()
+            && self.equations.reversed().is_none()
+            && self.equations.redundant().is_none()
     }
 
     fn turned_too_far(&self) -> Option<usize> {
@@ -329,6 +332,9 @@ where
         }
         if let Some(body) = self.turned_too_far().or(self.equations.wrong_body().map(|(body, _)| body)) {
             return blamed(body);
+        }
+        if let Some(determinant) = self.equations.reversed() {
+            return StepError::WrongBranch { determinant };
         }
         let square = |of: &[Vector6<f64>; N]| of.iter().map(|part| squares(part).dot(&self.weights())).sum::<f64>();
         let (update, size) = (square(&self.equations.unknowns.bodies), square(&self.half.0));

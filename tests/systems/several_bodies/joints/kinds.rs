@@ -225,30 +225,30 @@ impl Constraint<1> for Strut {
     }
 }
 
-/// A kind of one's own: two bodies on struts. Its parameters are checked, and a kind that has another name and the same
-/// numbers doesn't go on from its checkpoints.
+/// A kind of one's own: two bodies on struts. Their ends whip so fast that a step meets places where a strut is as long on
+/// its other side; taken there, the energy would be sixty times what it is. Its parameters are checked, and a kind that has
+/// another name and the same numbers doesn't go on from its checkpoints.
 #[test]
 fn a_joint_of_ones_own() {
-    let strut =
-        |called, length| Strut { called, above: Vector3::new(0.1, 0.3, -0.2), below: Vector3::x() * -0.4, length };
+    let strut = |called, length| Strut { called, above: Vector3::new(0.1, 0.3, -0.2), below: -Vector3::x(), length };
     check_slopes(&strut("strut", 0.7), &mut Random::new(6));
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.2, 0.3, 0.25)).unwrap();
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
     let bodies = scene([1.0, 0.7].map(|m| Free { m, K }), 9.81, Vector3::z());
     let joined =
         |called, length| [Joined::to_space(strut(called, 0.5), 0), Joined::between(strut(called, length), 0, 1)];
-    let of = |called, length| Stepper::jointed(bodies, Joints::tree(joined(called, length)), 0.002);
+    let of = |called, length| Stepper::jointed(bodies, Joints::tree(joined(called, length)), 0.005);
     let refused = of("strut", -1.0).unwrap_err();
     assert!(matches!(refused, SetupError::JointParameter { joint: 1, field: "length", .. }), "{refused}");
     let stepper = of("strut", 0.8).unwrap();
     let mut random = Random::new(7);
     let about = from_fn(|k| {
         let attitude: SO3 = <CayleyRetraction as Retraction<SO3>>::retract(&random.sample());
-        (attitude, R3::from(Vector3::new(0.6, 0.2, -0.4) * if k == 0 { 1.0 } else { 2.0 }))
+        (attitude, R3::from(Vector3::new(0.9, 0.2, -0.4) * if k == 0 { 1.0 } else { 2.0 }))
     });
     let mut state = stepper.start_nearest(about, Bodies(from_fn(|_| random.sample()))).unwrap();
     let (before, energy) = (state, stepper.energy(&state));
     stepper.step(&mut state).unwrap();
-    assert_no_work((stepper.scene(), 0.002), &joined("strut", 0.8), &Bodies([Vector6::zeros(); 2]), [&before, &state]);
+    assert_no_work((stepper.scene(), 0.005), &joined("strut", 0.8), &Bodies([Vector6::zeros(); 2]), [&before, &state]);
     let (mut gap, mut off) = (0.0_f64, 0.0_f64);
     for _ in 1..1000 {
         stepper.step(&mut state).unwrap();
@@ -256,7 +256,7 @@ fn a_joint_of_ones_own() {
         off = off.max((stepper.energy(&state) - energy).abs());
     }
     println!("energy {energy:.3} within {off:.1e}, gap {gap:.1e}");
-    assert!(off < 1e-2 && gap < 8.0 * EPSILON * 3.0);
+    assert!(off < 0.6 && gap < 8.0 * EPSILON * 3.0);
 
     let saved = stepper.checkpoint(&state);
     assert_eq!(stepper.resume(&saved).unwrap(), state);
