@@ -10,6 +10,9 @@ use crate::groups::SO3;
 use crate::mechanics::NonstandardInertia;
 use crate::numbers::Bodies;
 
+/// What is done in the place of a solution.
+type Solve<'a> = &'a dyn Fn(&[Link], &mut [Work]);
+
 /// Links without any symmetry.
 fn chain() -> Chain<3> {
     let link = |m: f64, c: Vector3<f64>, rho: Vector3<f64>| {
@@ -33,7 +36,7 @@ fn momentum_of_badly_solved_steps() {
     let once = |links: &[Link], work: &mut [Work]| {
         newton(links, work, f64::INFINITY);
     };
-    let badly: [(f64, u32, &dyn Fn(&[Link], &mut [Work]), f64); 3] =
+    let badly: [(f64, u32, Solve<'_>, f64); 3] =
         [(0.01, 10_000, &unsolved, 1e-3), (0.0025, 10_000, &unsolved, 5e-4), (0.01, 100_000, &once, 1e-10)];
     for (h, steps, solve, off) in badly {
         let stepper = ChainStepper::new(chain(), h).unwrap();
