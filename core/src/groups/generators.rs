@@ -201,6 +201,30 @@ pub(super) const fn structure_constants<const N: usize, const D: usize>(
     constants
 }
 
+/// The entries of a matrix that aren't zero, each with its row and column, and how many they are; what is behind them isn't
+/// meant. A loop over so few is written out by the compiler, and one that asks all entries isn't.
+pub(crate) type NonZero<const N: usize> = ([[(usize, usize, f64); N]; N], usize);
+
+/// Those of all generators, row by row.
+pub(crate) const fn nonzero_entries<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> [NonZero<N>; D] {
+    let mut all = [([[(0, 0, 0.0); N]; N], 0); D];
+    let mut k = 0;
+    while k < D {
+        let (mut place, mut count) = (0, 0);
+        while place < N * N {
+            let (row, column) = (place / N, place % N);
+            if basis[k][row][column] != 0.0 {
+                all[k].0[count / N][count % N] = (row, column, basis[k][row][column]);
+                count += 1;
+            }
+            place += 1;
+        }
+        all[k].1 = count;
+        k += 1;
+    }
+    all
+}
+
 /// Whether the product of any two generators vanishes, as those of translations do: then `(I + X)(I + Y) = I + X + Y`.
 pub(crate) const fn products_vanish<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> bool {
     let mut place = 0;

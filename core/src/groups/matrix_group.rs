@@ -6,7 +6,9 @@ use core::marker::PhantomData;
 use nalgebra::{RealField, SMatrix, SVector};
 
 use super::LieGroup;
-use super::generators::{Generators, dynamic, products_vanish, squared_lengths, structure_constants};
+use super::generators::{
+    Generators, NonZero, dynamic, nonzero_entries, products_vanish, squared_lengths, structure_constants,
+};
 use crate::numbers::{Lanes, Real, real, reported};
 
 /// An element of the matrix group that `K` declares by its [`Generators`].
@@ -79,6 +81,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> T
 
 impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
+    const ENTRIES: [NonZero<N>; D] = nonzero_entries(&K::GENERATORS);
     const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
     /// Elements are multiplied by adding what they have beside `I`.
     const IS_ADDED: bool = products_vanish(&K::GENERATORS);
@@ -87,7 +90,9 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> M
     #[inline]
     fn pairings(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
         SVector::from_fn(|k, _| {
-            nonzero(&K::GENERATORS[k]).fold(T::zero(), |sum, (i, j, entry)| sum + matrix[(i, j)] * real(entry))
+            let (entries, count) = &Self::ENTRIES[k];
+            let entries = entries.as_flattened().iter().take(*count);
+            entries.fold(T::zero(), |sum, &(i, j, entry)| sum + matrix[(i, j)] * real(entry))
         })
     }
 
@@ -138,8 +143,8 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     #[inline]
     fn hat(components: &SVector<T, D>) -> SMatrix<T, N, N> {
         let mut algebra = SMatrix::zeros();
-        for (k, generator) in K::GENERATORS.iter().enumerate() {
-            for (i, j, entry) in nonzero(generator) {
+        for (k, (entries, count)) in Self::ENTRIES.iter().enumerate() {
+            for &(i, j, entry) in entries.as_flattened().iter().take(*count) {
                 algebra[(i, j)] += components[k] * real(entry);
             }
         }

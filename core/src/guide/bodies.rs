@@ -14,8 +14,9 @@
 //! | `r = d_2.seen_from(d_1)` | the place of one from the other, of increments `d` of `R3` (`R2`, `R1`) |
 //!
 //! A body that is translated has a factor `d = R3`, and `d` is a vector in the formula; `t = R1` is a scalar.
-//! `examples/declarations` has a top on a cart (`top_on_cart.rs`), two asteroids (`two_bodies.rs`) and a spacecraft with
-//! wheels (`gyrostat.rs`).
+//! `examples/declarations` has a top on a cart (`top_on_cart.rs`), two asteroids (`two_bodies.rs`), a spacecraft with
+//! wheels (`gyrostat.rs`), and a flyer with a load on a cable (`suspended_load.rs`), whose rotors push by
+//! [`step_forced`](crate::Stepper::step_forced); `cargo run --release --example several-bodies` draws some of them.
 //!
 //! Two links on ball joints. The kinetic energy couples them, because the lower link hangs at the upper one's end:
 //!
@@ -161,7 +162,7 @@
 //! | [`BallJoint`](crate::methods::BallJoint) | a point of one body is a point of another, or of space |
 //! | [`PinJoint`](crate::methods::PinJoint) | so is an axis, about which they turn |
 //! | [`Joint`](crate::methods::Joint) | either, where a system has both |
-//! | [`Constraint`](crate::methods::Constraint) | functions of the places of two bodies that are zero: a joint of your own |
+//! | [`Constraint`](crate::methods::Constraint) | functions of the places of two bodies that are zero: a joint of your own, with a strut as a listing |
 //!
 //! [`Joints`](crate::methods::Joints) takes those of trees and, apart, one of each loop. A motion starts where joints
 //! are closed and with velocities that keep them so; [`start_nearest`](crate::Stepper::start_nearest) finds such from

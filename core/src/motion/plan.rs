@@ -108,6 +108,10 @@ pub trait Plan<S: Effect> {
 
     /// Adds an impulse to the momentum between two steps, and to what is kept of it. A method that holds bodies in joints
     /// adds what these let through.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::SingularJoint`] where that isn't determined.
     #[inline(always)]
     fn push<M: Summation<Group<S>, S::Advected>>(
         &self,
@@ -115,8 +119,9 @@ pub trait Plan<S: Effect> {
         motion: &mut M,
         _kept: &mut Self::Kept,
         impulse: &Vector<S>,
-    ) {
+    ) -> Result<(), StepError> {
         motion.push(impulse);
+        Ok(())
     }
 
     /// Puts other advected values in the place of those that the body sees, and forgets what is kept of them.

@@ -299,9 +299,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         let half = *force * (self.step_size() * real(0.5));
         let mut next = *state;
-        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half);
+        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
         let report = self.step_called(&mut next)?;
-        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half);
+        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
         if !next.motion.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }

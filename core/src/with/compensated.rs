@@ -212,11 +212,12 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Compensated<P> {
         motion: &mut M,
         kept: &mut Self::Kept,
         impulse: &Vector<S>,
-    ) {
+    ) -> Result<(), StepError> {
         let mut sums = Sums { motion: *motion.now(), carry: kept.carry };
-        self.0.push(scene, &mut sums, &mut kept.kept, impulse);
+        self.0.push(scene, &mut sums, &mut kept.kept, impulse)?;
         motion.replace(sums.motion);
         kept.carry = sums.carry;
+        Ok(())
     }
 
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {

@@ -154,8 +154,8 @@ impl<S: Effect, P: Plan<S>, R: Instead<S>> Plan<S> for OrElse<P, R> {
         motion: &mut M,
         kept: &mut Self::Kept,
         impulse: &Vector<S>,
-    ) {
-        self.plan.push(scene, motion, kept, impulse);
+    ) -> Result<(), StepError> {
+        self.plan.push(scene, motion, kept, impulse)
     }
 
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {

@@ -14,7 +14,7 @@ use liestep::with::{Recorder, Table};
 use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
 
-use super::{apart, attitudes_of, check_derived, momentum, order, part};
+use super::{apart, attitudes_of, check_derived, check_symplectic, momentum, order, part};
 
 type Group = (SO3, SO3);
 
@@ -40,6 +40,14 @@ fn element(random: &mut Random, size: f64) -> Group {
 fn what_is_derived_is_what_is_declared() {
     check_derived::<_, 6>(&pendulum(), &mut Random::new(5));
     const { assert!(!DoublePendulum::INERTIA_IS_CONSTANT) };
+}
+
+#[test]
+fn a_step_is_symplectic() {
+    let mut random = Random::new(8);
+    for h in [0.02, 0.1] {
+        check_symplectic::<_, 6>(pendulum(), h, element(&mut random, 1.0), &random.sample());
+    }
 }
 
 /// What a step ends at is the momentum after it, and what it begins with that before.

@@ -10,11 +10,11 @@ mod links;
 mod many;
 mod translated;
 
-use liestep::SO3;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::laws::samples::{Random, derivative};
-use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Term};
+use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Regular, Term};
 use liestep::motion::RightHandSide;
+use liestep::{SO3, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use serde_json::Value;
 use workbench::runge_kutta;
@@ -161,6 +161,47 @@ where
     let (attitude, momentum) = continuous.parts(&state);
     let w = l.advected().seen_from(&attitude);
     (attitude, continuous.velocity(&momentum, &w).unwrap())
+}
+
+/// P1: a step keeps the symplectic form of attitudes and momenta, `ν·ξ' − ν'·ξ − ⟨μ, [ξ, ξ']⟩` for variations `δg = g ξ̂`
+/// and `δμ = ν`, by differences of steps from places next to this one.
+fn check_symplectic<L, const D: usize>(l: L, h: f64, attitude: L::Group, velocity: &SVector<f64, D>)
+where
+    L: Regular<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>> + Clone,
+    CayleyRetraction: Retraction<L::Group>,
+{
+    let stepper = Stepper::new(l, h).unwrap();
+    let start = stepper.start(attitude, *velocity).unwrap();
+    let stepped = |k: usize, s: f64| {
+        let axis = |first: usize| SVector::from_fn(|i, _| if first + i == k { s } else { 0.0 });
+        let (g, momentum) = (attitude.compose(&element::<L::Group, D>(&axis(0))), start.momentum() + axis(D));
+        let mut state = stepper.start_with_momentum(g, momentum).unwrap();
+        stepper.step(&mut state).unwrap();
+        (state.attitude(), state.momentum())
+    };
+    let (end, momentum) = stepped(0, 0.0);
+    let variation = |k: usize| {
+        let turned = |s: f64| {
+            let xi = CayleyRetraction::local_coordinates(&end.inverse().compose(&stepped(k, s).0));
+            xi.unwrap()
+        };
+        [derivative(turned), derivative(|s| stepped(k, s).1)]
+    };
+    let form = |mu: &SVector<f64, D>, [xi, nu]: &[SVector<f64, D>; 2], [other, its]: &[SVector<f64, D>; 2]| {
+        nu.dot(other) - its.dot(xi) - mu.dot(&L::Group::lie_bracket(xi, other))
+    };
+    let unit = |k: usize| [0, D].map(|first| SVector::from_fn(|i, _| f64::from(u8::from(first + i == k))));
+    let ends: Vec<_> = (0..2 * D).map(variation).collect();
+    let scale = ends.iter().flatten().map(nalgebra::Matrix::amax).fold(1.0, f64::max);
+    let mut worst = 0.0_f64;
+    for (j, first) in ends.iter().enumerate() {
+        for (k, second) in ends.iter().enumerate() {
+            let before = form(&start.momentum(), &unit(j), &unit(k));
+            worst = worst.max((form(&momentum, first, second) - before).abs() / (scale * scale));
+        }
+    }
+    println!("symplectic to {worst:.1e} of {scale:.1}");
+    assert!(worst < 1e-11, "{worst:e}");
 }
 
 /// The means of each tenth of a hundred thousand numbers, and the largest of their sizes.

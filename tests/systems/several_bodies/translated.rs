@@ -16,7 +16,7 @@ use liestep::{NonstandardInertia, SO3, State, Stepper, lagrangian};
 use nalgebra::{Matrix3, SVector, Vector1, Vector2, Vector3};
 use serde_json::Value;
 
-use super::{apart, attitudes_of, check_derived, order, part, solved};
+use super::{apart, attitudes_of, check_derived, check_symplectic, order, part, solved};
 
 fn moments(values: &Value) -> Vector3<f64> {
     Vector3::from_fn(|k, _| values[k].as_f64().unwrap())
@@ -385,4 +385,16 @@ fn what_is_derived_of_translated_bodies() {
     check_derived::<_, 5>(&top_on_cart(&data["top_on_cart"]["parameters"]), random);
     check_derived::<_, 12>(&two_bodies(&data["two_bodies"]["parameters"]), random);
     check_derived::<_, 6>(&gyrostat(), random);
+}
+
+#[test]
+fn steps_of_translated_bodies_are_symplectic() {
+    let data = read("several bodies");
+    let (cart, bodies) = (&data["top_on_cart"], &data["two_bodies"]);
+    let (attitude, velocity) = on_cart(&cart["states"][0]);
+    check_symplectic::<_, 5>(top_on_cart(&cart["parameters"]), 0.05, attitude, &velocity);
+    let (attitude, velocity) = pair(&bodies["states"][0]);
+    check_symplectic::<_, 12>(two_bodies(&bodies["parameters"]), 0.05, attitude, &velocity);
+    let velocity = SVector::from([0.3, -0.5, 0.8, 2.0, -3.0, 5.0]);
+    check_symplectic::<_, 6>(gyrostat(), 0.05, at_rest(), &velocity);
 }

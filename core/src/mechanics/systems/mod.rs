@@ -320,11 +320,10 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
-        let system = |at: At| {
+        P::system(|at| {
             let (constants, _) = &constants[term_at::<M>(at.place)];
             E::newton_system(constants, &terms.as_ref()[at.place], &P::components(half, at))
-        };
-        (P::sum(|at| system(at).0), P::squares(|at| system(at).1))
+        })
     }
 
     #[inline(always)]

@@ -60,14 +60,22 @@ pub trait Places<E: Effect> {
     /// A matrix for all, from one for each place at one body; zero where there is no place.
     fn squares(of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group>;
 
+    /// Both, from a vector and a matrix of each place.
+    #[inline(always)]
+    fn system(
+        mut of: impl FnMut(At) -> (Vector<E>, Square<E>),
+    ) -> (<Self::Group as LieGroup>::Vector, SquareOf<Self::Group>) {
+        (Self::sum(|at| of(at).0), Self::squares(|at| of(at).1))
+    }
+
     /// One of Newton's iterations, from residual and Jacobian of each place.
     #[inline(always)]
     fn newton_update(
         pattern: Pattern,
-        mut system: impl FnMut(At) -> (Vector<E>, Square<E>),
+        system: impl FnMut(At) -> (Vector<E>, Square<E>),
     ) -> NewtonUpdate<<Self::Group as LieGroup>::Vector, SquareOf<Self::Group>, E::Scalar> {
-        let residual = Self::sum(|at| system(at).0);
-        NewtonUpdate::of(&residual, &Self::squares(|at| system(at).1), pattern)
+        let (residual, jacobian) = Self::system(system);
+        NewtonUpdate::of(&residual, &jacobian, pattern)
     }
 }
 
@@ -152,6 +160,17 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
     fn squares(mut of: impl FnMut(At) -> Square<E>) -> BlockDiagonal<Square<E>, N> {
         let zero = Vector::<E>::zero();
         BlockDiagonal(filled([zero.outer(&zero); N], |place| of(At { place, bodies: [place; 2] })))
+    }
+
+    /// Body by body: what both have in common is computed once.
+    #[inline(always)]
+    fn system(mut of: impl FnMut(At) -> (Vector<E>, Square<E>)) -> (All<Vector<E>, N>, BlockDiagonal<Square<E>, N>) {
+        let zero = Vector::<E>::zero();
+        let (mut vectors, mut squares) = ([zero; N], [zero.outer(&zero); N]);
+        for place in 0..N {
+            (vectors[place], squares[place]) = of(At { place, bodies: [place; 2] });
+        }
+        (Bodies(vectors), BlockDiagonal(squares))
     }
 
     /// Body by body, so that what is solved for one stays in registers.

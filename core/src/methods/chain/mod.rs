@@ -13,6 +13,8 @@
 
 mod elimination;
 mod stepper;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::{Matrix3, Vector3};
 

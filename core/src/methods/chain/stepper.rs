@@ -147,8 +147,17 @@ impl<const N: usize> ChainStepper<N> {
     ///
     /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out.
     pub fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
+        let mut work = self.prepared(state);
+        let iterations = if self.h == 0.0 { 0 } else { self.solve(&mut work, &state.kept)? };
+        self.proceed(state, &mut work)?;
+        Ok(StepReport::of(iterations))
+    }
+
+    /// What the increments are to satisfy.
+    #[inline(always)]
+    pub(super) fn prepared(&self, state: &ChainState<N>) -> [Work; N] {
         let mut work = Self::work(&state.motion.attitude);
-        let (links, h) = (&self.chain.links[..], self.h);
+        let h = self.h;
         for (((work, attitude), momentum), weight) in
             work.iter_mut().zip(&state.motion.attitude).zip(&state.motion.momentum.0).zip(&self.weights)
         {
@@ -156,9 +165,15 @@ impl<const N: usize> ChainStepper<N> {
             // (h/2) w × g s: the kick before the step.
             work.target = (momentum + w.cross(weight) * (0.5 * h)) * h;
         }
-        let iterations = if h == 0.0 { 0 } else { self.solve(&mut work, &state.kept)? };
-        outwards(links, &mut work);
-        momenta(links, &mut work);
+        work
+    }
+
+    /// The end of a step with these increments.
+    #[inline(always)]
+    pub(super) fn proceed(&self, state: &mut ChainState<N>, work: &mut [Work; N]) -> Result<(), StepError> {
+        let (links, h) = (&self.chain.links[..], self.h);
+        outwards(links, work);
+        momenta(links, work);
         let mut next = *state;
         let (mut sum, inverse_step) = (0.0, if h == 0.0 { 0.0 } else { 1.0 / h });
         for (k, (work, link)) in work.iter().zip(links).enumerate() {
@@ -177,13 +192,13 @@ impl<const N: usize> ChainStepper<N> {
         if !sum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        next.kept.follow(&work);
+        next.kept.follow(work);
         next.motion.steps += 1;
         if is_due(next.motion.steps) {
             next.motion.attitude = next.motion.attitude.map(|attitude| orthogonal(&attitude));
         }
         *state = next;
-        Ok(StepReport::of(iterations))
+        Ok(())
     }
 
     /// So many steps; returns all their iterations. On an error the state is unchanged.

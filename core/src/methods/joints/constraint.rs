@@ -44,6 +44,89 @@ pub struct Slope<const K: usize> {
 /// [`BallJoint`], [`PinJoint`] and [`Joint`] are such. One of your own is held by the same
 /// [stepper](crate::Stepper::jointed); that its [`slope`](Self::slope) is the derivative of its [`gap`](Self::gap) is
 /// up to you.
+///
+/// # Examples
+///
+/// A strut, a rod without mass between two points: one function. A body that hangs on it, thrown sideways:
+///
+/// ```
+/// use liestep::groups::R3;
+/// use liestep::mechanics::Each;
+/// use liestep::methods::{Constraint, Joined, Joints, Place, Slope};
+/// use liestep::numbers::Bodies;
+/// use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
+/// use nalgebra::{Vector1, Vector3, Vector6};
+///
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct Strut {
+///     above: Vector3<f64>, // m, in the axes of its body
+///     below: Vector3<f64>,
+///     length: f64, // m
+/// }
+///
+/// impl Strut {
+///     fn along(&self, above: &Place, below: &Place) -> Vector3<f64> {
+///         below.of(&self.below) - above.of(&self.above)
+///     }
+/// }
+///
+/// impl Constraint<1> for Strut {
+///     fn name(&self) -> &'static str {
+///         "strut"
+///     }
+///
+///     fn validate(&self) -> Result<(), SetupError> {
+///         let is_length = self.length > 0.0;
+///         if is_length { Ok(()) } else { Err(SetupError::Parameter { field: "length", cause: "is no length" }) }
+///     }
+///
+///     /// `(|y|² − l²)/2l`, m.
+///     fn gap(&self, above: &Place, below: &Place) -> Vector1<f64> {
+///         Vector1::new((self.along(above, below).norm_squared() / self.length - self.length) / 2.0)
+///     }
+///
+///     /// `y/l·(ξ + η × Rρ)` of the body below, and less that of the body above.
+///     fn slope(&self, above: &Place, below: &Place) -> [Slope<1>; 2] {
+///         let along = self.along(above, below) / self.length;
+///         let of = |place: &Place, point: &Vector3<f64>, side: f64| Slope {
+///             turn: (place.attitude * point).cross(&along).transpose() * side,
+///             shift: along.transpose() * side,
+///         };
+///         [of(above, &self.above, -1.0), of(below, &self.below, 1.0)]
+///     }
+///
+///     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+///         self.above.iter().chain(&self.below).for_each(|&entry| visit("point", entry));
+///         visit("length", self.length);
+///     }
+/// }
+///
+/// /// A body and its weight.
+/// #[lagrangian(
+///     group(F = SO3, d = R3),
+///     advected(x = d.seen_from(space)),
+///     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+///         - 0.5 * h * m * g * (x + x + d)[2],
+/// )]
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct Heavy {
+///     J_d: NonstandardInertia,
+///     m: f64,
+///     g: f64,
+/// }
+///
+/// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09))?;
+/// let strut = Strut { above: Vector3::zeros(), below: Vector3::x() * 0.2, length: 1.0 };
+/// let joints = Joints::tree([Joined::to_space(strut, 0)]);
+/// let stepper = Stepper::jointed(Each::<1>::of([Heavy { J_d, m: 1.0, g: 9.81 }]), joints, 0.01)?;
+/// let start = [(SO3::identity(), R3::from(Vector3::new(-0.2, 0.0, -1.0)))];
+/// let mut state = stepper.start(start, Bodies([Vector6::new(0.0, 0.0, 0.0, 0.0, 2.0, 0.0)]))?;
+/// let energy = stepper.energy(&state);
+/// stepper.run(&mut state, 1000)?;
+/// assert!(stepper.widest_gap(&state) < 1e-14);
+/// assert!((stepper.energy(&state) - energy).abs() < 5e-2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constraint on two bodies",
     label = "not a joint",

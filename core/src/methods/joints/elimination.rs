@@ -45,12 +45,15 @@ pub(super) struct Body<const K: usize> {
     pub(super) rows: usize,
     /// The least pivot of that joint, relative to the diagonal; one where there is none.
     pub(super) pivot: f64,
+    /// The determinant of that joint's matrix `S`, relative to the size of its diagonal; one where there is none.
+    pub(super) of_joint: f64,
     x: SMatrix<f64, 6, K>,
     inverse: SMatrix<f64, K, K>,
     p: SMatrix<f64, K, 6>,
 }
 
 impl<const K: usize> Body<K> {
+    #[inline(always)]
     pub(super) fn new() -> Self {
         Self {
             matrix: SMatrix::zeros(),
@@ -58,6 +61,7 @@ impl<const K: usize> Body<K> {
             slopes: Slopes::new(),
             rows: K,
             pivot: 1.0,
+            of_joint: 1.0,
             x: SMatrix::zeros(),
             inverse: SMatrix::zeros(),
             p: SMatrix::zeros(),
@@ -143,10 +147,10 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
         if member.joint.is_none() {
             continue;
         }
-        let [own, of_parent] = body.slopes.0;
+        let [own, of_parent] = &body.slopes.0;
         body.x = solved(&body.matrix, &own.before);
         let s = own.after * body.x;
-        (body.inverse, body.pivot) = inverted(&s, &s.diagonal(), body.rows);
+        (body.inverse, body.pivot, body.of_joint) = inverted(&s, &s.diagonal(), body.rows);
         let Some(parent) = member.parent else { continue };
         body.p = body.inverse * of_parent.after;
         let added = of_parent.before * body.p;
@@ -181,7 +185,7 @@ fn close<const K: usize, const N: usize, const L: usize>(
         }
     }
     for k in 0..L {
-        (loops[k].row[k], loops[k].pivot) = inverted(&loops[k].row[k], &loops[k].free, loops[k].rows);
+        (loops[k].row[k], loops[k].pivot, _) = inverted(&loops[k].row[k], &loops[k].free, loops[k].rows);
         let pivot_row = loops[k].row;
         for closing in &mut loops[k + 1..] {
             let factor = closing.row[k] * pivot_row[k];
@@ -277,20 +281,21 @@ fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMat
     solved
 }
 
-/// The inverse, by elimination in the order of the rows, and the least pivot relative to `sizes`. Behind the
-/// first `rows` there are no functions.
+/// The inverse, by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant relative
+/// to their absolute values. Behind the first `rows` there are no functions.
 #[inline(always)]
 fn inverted<const K: usize>(
     matrix: &SMatrix<f64, K, K>,
     sizes: &SVector<f64, K>,
     rows: usize,
-) -> (SMatrix<f64, K, K>, f64) {
-    let (mut a, mut least) = (*matrix, f64::INFINITY);
+) -> (SMatrix<f64, K, K>, f64, f64) {
+    let (mut a, mut least, mut determinant) = (*matrix, f64::INFINITY, 1.0);
     for k in 0..rows.min(K) {
         let pivot = a[(k, k)];
         // Behind a pivot that isn't positive the others tell nothing.
         let relative = if sizes[k] == 0.0 { 0.0 } else { pivot / sizes[k] };
         least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
+        determinant *= pivot / sizes[k].abs();
         let inverse = 1.0 / pivot;
         a[(k, k)] = 1.0;
         for j in 0..K {
@@ -308,5 +313,5 @@ fn inverted<const K: usize>(
             }
         }
     }
-    (a, least)
+    (a, least, determinant)
 }

@@ -2,10 +2,14 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector6};
 
-use super::Constraint;
+// Roots without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
 use super::elimination::{Body, Closing, Unknowns, factorise, solve};
 use super::graph::{Joined, Joints, Tree};
-use super::places::{Ends, Held, Places, Slopes, after, before, each_slope, parts};
+use super::places::{Ends, Places, Slopes, after, before, parts};
+use super::{Constraint, Slope};
 
 /// The least pivot of a joint that has something to do, relative to that between free bodies. What rounding leaves of
 /// a zero is some `1e-14`; towards a singular position a pivot goes as the square of the way to it, so this is some 3
@@ -37,8 +41,10 @@ pub(super) struct Equations<'a, C, const K: usize, const N: usize, const T: usiz
 impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>
     Equations<'a, C, K, N, T, L>
 {
-    /// With `E` of these places.
-    pub(super) fn at(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>, places: &Places<N>) -> Self {
+    /// Without slopes and matrices.
+    // Written where it is used, so that it isn't copied there.
+    #[inline(always)]
+    pub(super) fn new(joints: &'a Joints<C, T, L>, tree: &'a Tree<N>) -> Self {
         let loops =
             joints.loops.each_ref().map(|joined| Closing::new([Some(joined.below), joined.above], joined.joint.rows()));
         let mut equations = Self { joints, tree, bodies: [Body::new(); N], loops, unknowns: Unknowns::new() };
@@ -46,36 +52,50 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
             let joined = member.joint.and_then(|joint| joints.tree.get(joint));
             body.rows = joined.map_or(0, |joined| joined.joint.rows());
         }
-        equations.each(places, |slopes, side, body, slope| {
-            slopes.0[side].before = before(slope, &places.0[body].attitude);
-        });
         equations
     }
 
-    fn each(&mut self, places: &Places<N>, set: impl Fn(&mut Slopes<K>, usize, usize, &super::Slope<K>)) {
-        let (bodies, loops) = (&mut self.bodies, &mut self.loops);
-        each_slope(places, self.joints, self.tree, |held, side, body, slope| {
-            let slopes = match held {
-                Held::Body(k) => &mut bodies[k].slopes,
-                Held::Loop(k) => &mut loops[k].slopes,
-            };
-            set(slopes, side, body, slope);
-        });
+    /// What `of` makes of the slopes of all joints at these places.
+    #[inline(always)]
+    fn each(&mut self, places: &Places<N>, of: impl Fn(&mut Ends<K>, usize, &Slope<K>)) {
+        for (k, (body, member)) in self.bodies.iter_mut().zip(&self.tree.members).enumerate() {
+            let Some(joined) = member.joint.and_then(|joint| self.joints.tree.get(joint)) else { continue };
+            let [below, above] = places.slope(joined);
+            // That of the body itself comes first.
+            let [own, other] = if member.is_below { [below, above] } else { [above, below] };
+            let [of_own, of_other] = &mut body.slopes.0;
+            of(of_own, k, &own);
+            if let Some(parent) = member.parent {
+                of(of_other, parent, &other);
+            }
+        }
+        for (closing, joined) in self.loops.iter_mut().zip(&self.joints.loops) {
+            let slopes = places.slope(joined);
+            for ((body, ends), slope) in closing.bodies.into_iter().zip(&mut closing.slopes.0).zip(&slopes) {
+                if let Some(body) = body {
+                    of(ends, body, slope);
+                }
+            }
+        }
+    }
+
+    /// `E` of these places.
+    pub(super) fn set_before(&mut self, places: &Places<N>) {
+        self.each(places, |ends, body, slope| ends.before = before(slope, &places.0[body].attitude));
     }
 
     /// `C` of these places, for unknowns that turn the bodies by these maps.
     pub(super) fn set_after(&mut self, places: &Places<N>, turns: &[Matrix3<f64>; N]) {
-        self.each(places, |slopes, side, body, slope| slopes.0[side].after = after(slope, &turns[body]));
+        self.each(places, |ends, body, slope| ends.after = after(slope, &turns[body]));
     }
 
-    /// `C = E`: for velocities.
-    pub(super) fn set_symmetric(&mut self) {
-        let of_bodies = self.bodies.iter_mut().map(|body| &mut body.slopes);
-        for slopes in of_bodies.chain(self.loops.iter_mut().map(|closing| &mut closing.slopes)) {
-            for ends in &mut slopes.0 {
-                ends.after = ends.before.transpose();
-            }
-        }
+    /// For velocities at these places, `C = E`, with the inertias of the bodies.
+    pub(super) fn set_velocities(&mut self, places: &Places<N>, inertias: &[SMatrix<f64, 6, 6>; N]) {
+        self.each(places, |ends, body, slope| {
+            ends.before = before(slope, &places.0[body].attitude);
+            ends.after = ends.before.transpose();
+        });
+        self.factorise(inertias);
     }
 
     /// Makes factors of these matrices of the bodies.
@@ -195,8 +215,8 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
     pub(super) fn extent(&self, places: &Places<N>) -> f64 {
         let of_bodies = self.bodies.iter().map(|body| &body.slopes);
         let slopes = of_bodies.chain(self.loops.iter().map(|closing| &closing.slopes));
-        let arms = slopes.flat_map(|slopes| &slopes.0).map(Ends::arm);
-        places.0.iter().map(|place| place.position.norm()).chain(arms).fold(0.0, f64::max)
+        let arms = slopes.flat_map(|slopes| &slopes.0).map(Ends::squared_arm);
+        places.0.iter().map(|place| place.position.norm_squared()).chain(arms).fold(0.0, f64::max).sqrt()
     }
 
     /// The first body whose part of the matrix has a determinant of the wrong sign, and that.
@@ -209,6 +229,15 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
 
     pub(super) fn determinant(&self, body: usize) -> f64 {
         self.bodies[body].determinant
+    }
+
+    /// Whether all that is left of bodies and joints has, with those of bodies being positive, a determinant of the wrong
+    /// sign, and then the first negative one of a joint. From rest to a step the whole doesn't vanish, so that the places
+    /// are others where joints are closed, too, as a strut has on its other side.
+    pub(super) fn reversed(&self) -> Option<f64> {
+        let mut negative = self.bodies.iter().map(|body| body.of_joint).filter(|&determinant| determinant < 0.0);
+        let first = negative.next()?;
+        negative.count().is_multiple_of(2).then_some(first)
     }
 
     /// The first joint that leaves itself or that the others leave nothing to do, by its number, and its pivot relative

@@ -1,9 +1,8 @@
 //! The plan of a system of joined bodies.
 
-use core::array::from_fn;
 use core::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Vector2, Vector6};
+use nalgebra::{Matrix3, Vector2, Vector6};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
@@ -19,7 +18,7 @@ use crate::mechanics::{Effect, Operations, Regular, SceneVisitor};
 use crate::motion::{
     Cost, Motion, Plan, Proceeded, Steerable, StepReport, Stepper, Summation, half_coordinates, is_due,
 };
-use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _, Vectors};
+use crate::numbers::{Bodies, Coordinates as _, Vectors, filled};
 use crate::solving::{
     Continued, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, Warm, has_sufficed, may_suffice,
     newton_system, step_terms,
@@ -173,12 +172,12 @@ fn squares(of: &Vector6<f64>) -> Vector2<f64> {
 }
 
 /// What is solved for a step.
-struct Problem<'a, S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
+struct Problem<'a, 'b, S: Effect, C, const K: usize, const N: usize, const T: usize, const L: usize> {
     plan: &'a Jointed<S, C, K, N, T, L>,
     terms: S::StepTerms,
     attitude: &'a [Body; N],
     places: Places<N>,
-    equations: Equations<'a, C, K, N, T, L>,
+    equations: &'a mut Equations<'b, C, K, N, T, L>,
     /// A turn of 1 rad is compared with a shift by the shortest of the bodies' lengths: `1/length²`, 1/m².
     weight: f64,
     /// The square of what roundings of places are units in the last place of, in turns.
@@ -197,14 +196,14 @@ struct Updated {
     rounded: f64,
 }
 
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Problem<'_, S, C, K, N, T, L>
+impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Problem<'_, '_, S, C, K, N, T, L>
 where
     S: Effect<Scalar = f64, Group = [Body; N], Retraction = CayleyRetraction>,
     C: Constraint<K>,
 {
     /// Where the increments lead, to the bit.
     fn next(&self) -> Places<N> {
-        Places(from_fn(|k| {
+        Places(filled([Place::SPACE; N], |k| {
             let (turn, shift) = parts(&self.half.0[k]);
             let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&turn);
             let attitude = *self.attitude[k].0.advance(&increment).as_matrix();
@@ -214,17 +213,17 @@ where
 
     /// One of Newton's iterations.
     fn newton(&mut self, longest: f64) -> Updated {
-        let (residuals, BlockDiagonal(matrices)) = newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
+        let (residuals, matrices) = &newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
         let next = self.next();
         // With half of each gap, as with half the coordinates a shift is twice its unknown.
-        let turns = from_fn(|k| {
+        let turns = filled([Matrix3::zeros(); N], |k| {
             let tangent = <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
             self.places.0[k].attitude * tangent * 0.5
         });
         self.equations.set_after(&next, &turns);
-        self.equations.factorise(&matrices);
+        self.equations.factorise(&matrices.0);
         self.met = self.equations.redundant();
-        self.update(&residuals, &next, longest)
+        self.update(residuals, &next, longest)
     }
 
     /// Another with the matrix of the last.
@@ -280,7 +279,10 @@ where
     }
 
     fn is_wanted(&self) -> bool {
-        self.turned_too_far().is_none() && self.equations.wrong_body().is_none() && self.equations.redundant().is_none()
+        self.turned_too_far().is_none()
+            && self.equations.wrong_body().is_none()
+            && self.equations.reversed().is_none()
+            && self.equations.redundant().is_none()
     }
 
     fn turned_too_far(&self) -> Option<usize> {
@@ -330,6 +332,9 @@ where
         }
         if let Some(body) = self.turned_too_far().or(self.equations.wrong_body().map(|(body, _)| body)) {
             return blamed(body);
+        }
+        if let Some(determinant) = self.equations.reversed() {
+            return StepError::WrongBranch { determinant };
         }
         let square = |of: &[Vector6<f64>; N]| of.iter().map(|part| squares(part).dot(&self.weights())).sum::<f64>();
         let (update, size) = (square(&self.equations.unknowns.bodies), square(&self.half.0));
@@ -390,21 +395,28 @@ where
             let given = Motion { advected: motion.now().advected, ..*next.now() };
             next.show(given);
         }
-        let now = *next.now();
+        let restored;
+        let now = if is_restored {
+            restored = *next.now();
+            &restored
+        } else {
+            motion.now()
+        };
         if !now.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum" });
         }
         let kick = if S::PARTS.kick_before { S::kick_before(&self.constants, &now.advected) } else { Bodies::zero() };
         let a = now.momentum + kick;
         let places = Places::of(&now.attitude);
-        let equations = Equations::at(&self.joints, &self.tree, &places);
+        let mut equations = self.equations();
+        equations.set_before(&places);
         let length = self.lengths.iter().copied().fold(f64::INFINITY, f64::min);
         let extent = equations.extent(&places) / length;
         let mut problem = Problem {
             plan: self,
             terms: step_terms::<S>(&self.constants, &a, &now.advected),
             attitude: &now.attitude,
-            equations,
+            equations: &mut equations,
             weight: 1.0 / (length * length),
             // Attitudes are rounded as numbers of the size of one.
             extent: 1.0 + extent * extent,
@@ -412,21 +424,22 @@ where
             half: Bodies::zero(),
             met: None,
         };
-        let slow = || half_coordinates(scene, &now, self.h);
+        let slow = || half_coordinates(scene, now, self.h);
         let iterations = problem.solve(kept.guess(<[Body; N]>::DIMENSION), slow)?;
         let increment = <CayleyRetraction as Retraction<[Body; N]>>::increment_of_half(&problem.half);
         let places = problem.next();
-        let impulse = Bodies(problem.equations.reactions()) * (-2.0 / self.h);
+        let half = problem.half;
+        let impulse = Bodies(equations.reactions()) * (-2.0 / self.h);
         let advected = next.turned(&increment);
         let mut change = <[Body; N]>::adjoint_transpose_increment(&increment, &(a + impulse)) + (kick + impulse);
         if S::PARTS.kick_after {
             change = change + S::kick_after(&self.constants, &increment, &advected);
         }
         // The iteration has seen the matrix on its way, and not at the end of it.
-        let taken = self.projection(scene, &places, &advected, &(now.momentum + change));
+        let taken = Self::projection(&mut equations, scene, &places, &advected, &(now.momentum + change));
         change = change - taken.map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
         let momentum = now.momentum + change;
-        if !momentum.is_finite() || !problem.half.is_finite() {
+        if !momentum.is_finite() || !half.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
         next.proceed(&Proceeded { increment, change, momentum, advected });
@@ -434,11 +447,10 @@ where
             let seen = Motion { advected: scene.advected().seen_from(&next.now().attitude), ..*next.now() };
             next.show(seen);
         }
-        let half = problem.half;
         let far = !<CayleyRetraction as Retraction<[Body; N]>>::is_half_well_near_identity(&half);
-        kept.follow(half, far, Continued::Parabola);
+        kept.follow(half, far, Continued::Polynomial);
         if next.now().steps == 0 {
-            kept.forget_the_estimate(Continued::Parabola);
+            kept.forget_the_estimate(Continued::Polynomial);
         }
         next.count();
         *motion = next;
@@ -452,14 +464,14 @@ where
         motion: &mut M,
         _kept: &mut Self::Kept,
         impulse: &Components<N>,
-    ) {
+    ) -> Result<(), StepError> {
         motion.push(impulse);
         let now = *motion.now();
         let places = Places::of(&now.attitude);
-        // Where it isn't determined, the step from here is an error; none ends at such a place.
-        if let Ok(taken) = self.projection(scene, &places, &now.advected, &now.momentum) {
-            motion.push(&(Bodies::zero() - taken));
-        }
+        let taken = Self::projection(&mut self.equations(), scene, &places, &now.advected, &now.momentum);
+        let taken = taken.map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
+        motion.push(&(Bodies::zero() - taken));
+        Ok(())
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
@@ -476,11 +488,23 @@ where
 
     #[allow(clippy::cast_possible_truncation)] // far fewer
     fn cost(&self) -> Cost {
-        let joined = Operations { step: N as u32 * OF_A_BODY, iteration: N as u32 * OF_A_BODY };
+        let (of_step, of_iteration) = const { of_a_body(K as u32) };
+        let bodies = N as u32;
         let Operations { step, iteration } = S::OPERATIONS;
-        Cost::of_stages(Operations { step: step + joined.step, iteration: iteration + joined.iteration }, 1)
+        let all = Operations { step: step + bodies * of_step, iteration: iteration + bodies * of_iteration };
+        Cost::of_stages(all, 1)
     }
 }
 
-/// Operations of the elimination of a body, about.
-const OF_A_BODY: u32 = 1000;
+/// Operations of a body and its joint with `k` functions, beside those of the scene: in a step, which ends with a
+/// projection, and in an iteration. Those of loops aren't counted, nor is what a constraint computes.
+const fn of_a_body(k: u32) -> (u32, u32) {
+    // Factors of a matrix of six; the `w`, one column, by them; and the lines of the elimination's table.
+    let (factors, column) = (131, 66);
+    let matrices = k * column + 11 * k * k + 2 * k * k * k + 6 * k * (2 * k - 1) + 72 * k;
+    let solution = column + 12 * k + k * (2 * k - 1) + 12 * k + 12 * k + 12 * k;
+    // Slopes times attitudes or tangents at both ends; places, tangents and gaps.
+    let (slopes, places) = (2 * 15 * k, 140);
+    let iteration = factors + matrices + solution + slopes + places;
+    (2 * slopes + factors + matrices + solution, iteration)
+}

@@ -36,24 +36,31 @@ where
         gaps.fold((0, 0.0), |widest, gap| if gap.1 <= widest.1 { widest } else { gap })
     }
 
+    /// Without slopes and matrices.
+    #[inline(always)]
+    pub(super) fn equations(&self) -> Equations<'_, C, K, N, T, L> {
+        Equations::new(&self.joints, &self.tree)
+    }
+
     /// Of velocities at these places.
     fn of_velocities(&self, scene: &S, places: &Places<N>, advected: &S::Advected) -> Equations<'_, C, K, N, T, L> {
-        let mut equations = Equations::at(&self.joints, &self.tree, places);
-        equations.set_symmetric();
-        equations.factorise(&scene.inertia(advected).0);
+        let mut equations = self.equations();
+        equations.set_velocities(places, &scene.inertia(advected).0);
         equations
     }
 
     /// What joints take from momenta whose velocities `J⁻¹(μ − s)` would part them: the impulses that leave the
     /// velocities nearest to these. Where these aren't determined, a joint to blame and its pivot.
+    ///
+    /// What the equations were of doesn't matter.
     pub(super) fn projection(
-        &self,
+        equations: &mut Equations<'_, C, K, N, T, L>,
         scene: &S,
         places: &Places<N>,
         advected: &S::Advected,
         momentum: &Bodies<Vector6<f64>, N>,
     ) -> Result<Bodies<Vector6<f64>, N>, (usize, f64)> {
-        let mut equations = self.of_velocities(scene, places, advected);
+        equations.set_velocities(places, &scene.inertia(advected).0);
         if let Some(redundant) = equations.redundant() {
             return Err(redundant);
         }
@@ -140,9 +147,10 @@ where
         let advected = self.scene.advected().seen_from(&attitude);
         let mut momentum = self.scene.inertia(&advected) * velocity + self.scene.momentum_bias(&advected);
         let places = Places::of(&attitude);
+        let mut equations = self.plan.equations();
         // The second time for what roundings of the first leave, where bodies are of unlike masses.
         for _ in 0..2 {
-            let taken = self.plan.projection(&self.scene, &places, &advected, &momentum);
+            let taken = Jointed::projection(&mut equations, &self.scene, &places, &advected, &momentum);
             momentum = momentum - taken.map_err(|(joint, pivot)| SetupError::RedundantJoint { joint, pivot })?;
         }
         self.start_with_momentum(attitude, momentum)

@@ -279,11 +279,12 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         motion: &mut M,
         kept: &mut Self::Kept,
         impulse: &Vector3<Scalar<S>>,
-    ) {
+    ) -> Result<(), StepError> {
         motion.push(impulse);
         if !impulse.iter().all(|part| part.simd_eq(real(0.0)).all()) {
             kept.0 = None;
         }
+        Ok(())
     }
 
     /// What is inside has seen the values before.

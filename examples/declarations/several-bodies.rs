@@ -1,0 +1,235 @@
+//! Several bodies that are declared together, or put at places.
+//!
+//! ```text
+//! cargo run --release --example several-bodies
+//! cargo run --release --example several-bodies -- --out several-bodies
+//! ```
+//!
+//! 1. Two double pendulums that start a nanometre apart, as far as rods of a metre are long: they part as chaos does.
+//! 2. Two asteroids that attract each other, and turn each other by their shapes: the full two-body problem.
+//! 3. A quadrotor that carries a load on a cable to another place. Rotors push as a controller says, anew in each step.
+//!
+//! A chain of twenty rods is drawn by `hanging-chain`.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use std::process::ExitCode;
+
+use declarations::{DoublePendulum, SuspendedLoad, TwoBodies};
+use liestep::groups::R3;
+use liestep::mechanics::Inertia;
+use liestep::prelude::*;
+use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
+use plotters::style::RGBColor;
+
+use workbench::args::{Failure, example};
+use workbench::output::{Output, print};
+use workbench::plot::{BLUE, Drawn, GREEN, Line, ORANGE, Panel, Vertical, heading, legend, px, render};
+
+const HELP: &str = "Draws a double pendulum, two asteroids, and a load under a quadrotor
+
+Options:
+  --out <DIR>  Where the figures go [default: liestep-several-bodies]
+";
+
+fn main() -> ExitCode {
+    example(HELP, |words| {
+        let mut folder = "liestep-several-bodies".into();
+        while let Some(option) = words.option()? {
+            match option.as_str() {
+                "out" => folder = words.folder()?,
+                _ => return Err(words.unknown()),
+            }
+        }
+        let mut output = Output::new(folder)?;
+        let report = format!("{}{}{}", pendulums(&mut output)?, asteroids(&mut output)?, load(&mut output)?);
+        print(&format!("{report}{output}"))?;
+        Ok(())
+    })
+}
+
+type Points = Vec<(f64, f64)>;
+
+fn line(colour: RGBColor, points: Points) -> Line {
+    Line { colour, width: 2, points }
+}
+
+/// A path in a plane.
+fn path<'a>(title: &'a str, [across, up]: [&'a str; 2], lines: Vec<Line>) -> Panel<'a> {
+    Panel { title, across, up, vertical: Vertical::Linear, function: false, lines }
+}
+
+/// Two panels, one above the other.
+fn figure(title: &str, about: &str, names: &[(&str, RGBColor)], panels: &[Panel<'_>; 2]) -> Drawn<String> {
+    render((700, 900), |area| {
+        let (header, body) = area.split_vertically(px(84));
+        heading(&header, title, about)?;
+        legend(&header, (16, 68), names)?;
+        let (above, below) = body.split_vertically(px(520));
+        panels[0].draw(&above)?;
+        panels[1].draw(&below)
+    })
+}
+
+/// Rods of a metre and a kilogram that hang along their axes.
+fn double_pendulum() -> Result<DoublePendulum, Failure> {
+    let (e, up) = (Vector3::z(), Vector3::z());
+    let about_joint = Matrix3::from_diagonal(&Vector3::new(0.005, 0.005, 1.0 / 12.0)) + e * e.transpose() * 0.25;
+    let (J_1, J_2) = (NonstandardInertia::new(about_joint + e * e.transpose())?, NonstandardInertia::new(about_joint)?);
+    Ok(DoublePendulum { J_1, J_2, rho: -e, s_1: e * -1.5, s_2: e * -0.5, g: 9.81, up })
+}
+
+fn pendulums(output: &mut Output) -> Result<String, Failure> {
+    let (h, steps) = (0.002, 12_000_u32);
+    let stepper = Stepper::new(double_pendulum()?, h)?;
+    let tilted = |angle: f64| SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(0.0, angle, 0.0)));
+    let start = |off: f64| {
+        let velocity = Vector6::new(0.3, 0.0, 0.0, 0.0, 0.0, 0.0);
+        stepper.start((tilted(2.0), tilted(2.6 + off)), velocity)
+    };
+    let (mut first, mut second) = (start(0.0)?, start(1e-9)?);
+    let end = |(upper, lower): (SO3, SO3)| -(upper.as_matrix() + lower.as_matrix()) * Vector3::z();
+    let (energy, mut worst) = (stepper.energy(&first), 0.0_f64);
+    let (mut ways, mut parting) = ([Vec::new(), Vec::new()], Vec::new());
+    for step in 0..=steps {
+        let ends = [end(first.attitude()), end(second.attitude())];
+        if step % 10 == 0 {
+            ways.iter_mut().zip(&ends).for_each(|(way, end)| way.push((end.x, end.z)));
+            parting.push((f64::from(step) * h, (ends[0] - ends[1]).norm().max(1e-12)));
+        }
+        worst = worst.max((stepper.energy(&first) - energy).abs());
+        stepper.step(&mut first)?;
+        stepper.step(&mut second)?;
+    }
+    let apart = parting.iter().map(|point| point.1).fold(0.0, f64::max);
+    let [one, other] = ways;
+    let panels = [
+        path("The lower ends, m", ["x", "z"], vec![line(ORANGE, other), line(BLUE, one)]),
+        Panel::over_time("How far they are apart", "m", Vertical::Logarithmic, vec![line(BLUE, parting)]),
+    ];
+    let names = [("one", BLUE), ("the other", ORANGE)];
+    let about = "a nanoradian apart at the start, h = 2 ms";
+    output.write("double-pendulum.svg", &figure("Two double pendulums in space", about, &names, &panels)?)?;
+    Ok(format!(
+        "Double pendulums: up to {apart:.1} m apart in 24 s; the energy is within {worst:.1e} of {energy:.1} J.\n"
+    ))
+}
+
+fn asteroids(output: &mut Output) -> Result<String, Failure> {
+    let (h, steps) = (0.01, 4_000_u32);
+    let [first, second] = [[0.2, 0.35, 0.3], [0.12, 0.06, 0.1]].map(Vector3::from);
+    let (m_1, m_2) = (1.3, 0.9);
+    let stepper = Stepper::new(
+        TwoBodies {
+            m_1,
+            m_2,
+            K_1: NonstandardInertia::from_principal_moments(first)?,
+            K_2: NonstandardInertia::from_principal_moments(second)?,
+            J_1: Inertia::from_principal_moments(first)?,
+            J_2: Inertia::from_principal_moments(second)?,
+            G: 1.0,
+        },
+        h,
+    )?;
+    let (apart, speed) = (Vector3::x() * 2.0, Vector3::new(0.0, 1.1, 0.4));
+    let place = |part: f64| R3::from(apart * part);
+    let start = (SO3::identity(), place(-m_2 / (m_1 + m_2)), SO3::identity(), place(m_1 / (m_1 + m_2)));
+    let turning = [Vector3::new(0.1, 0.2, 0.6), Vector3::new(-0.3, 0.1, 0.9)];
+    let moving = [speed * (-m_2 / (m_1 + m_2)), speed * (m_1 / (m_1 + m_2))];
+    let all = [turning[0], moving[0], turning[1], moving[1]];
+    let mut state = stepper.start(start, SVector::<f64, 12>::from_fn(|k, _| all[k / 3][k % 3]))?;
+    let energy = stepper.energy(&state);
+    let (mut ways, mut off) = ([Vec::new(), Vec::new()], Vec::new());
+    for step in 0..=steps {
+        if step % 4 == 0 {
+            let (_, x, _, y) = state.attitude();
+            for (way, place) in ways.iter_mut().zip([x.translation(), y.translation()]) {
+                way.push((place.x, place.y));
+            }
+            off.push((f64::from(step) * h, stepper.energy(&state) / energy - 1.0));
+        }
+        stepper.step(&mut state)?;
+    }
+    let worst = off.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    let momentum = state.momentum_of::<1>() + state.momentum_of::<3>();
+    let [one, other] = ways;
+    let panels = [
+        path("Where they are", ["x", "y"], vec![line(BLUE, one), line(ORANGE, other)]),
+        Panel::over_time("Energy, off its start", "relative", Vertical::Linear, vec![line(BLUE, off)]),
+    ];
+    let names = [("1.3", BLUE), ("0.9", ORANGE)];
+    let about = "masses 1.3 and 0.9, the constant of gravitation one, h = 0.01";
+    output.write("asteroids.svg", &figure("Two asteroids", about, &names, &panels)?)?;
+    Ok(format!("Asteroids: the energy is kept to {worst:.1e}, the momentum to {:.1e}.\n", momentum.amax()))
+}
+
+/// Where the quadrotor is wanted, m.
+const WANTED: [f64; 3] = [3.0, 0.0, 1.0];
+
+/// Torque and thrust, by the geometric tracking control on SE(3): the thrust is along the third axis, which is turned to
+/// where it is wanted.
+fn pushed(load: &SuspendedLoad, attitude: &SO3, x: Vector3<f64>, velocity: &SVector<f64, 9>) -> SVector<f64, 9> {
+    let (turning, v) = (velocity.fixed_rows::<3>(0).into_owned(), velocity.fixed_rows::<3>(3).into_owned());
+    let wanted = (Vector3::from(WANTED) - x) * 2.0 - v * 3.0 + load.up * ((load.m + load.m_load) * load.g);
+    let third = wanted.normalize();
+    let second = third.cross(&Vector3::x()).normalize();
+    let axes = Matrix3::from_columns(&[second.cross(&third), second, third]);
+    let r = attitude.as_matrix();
+    let error = SO3::vee(&(axes.transpose() * r - r.transpose() * axes)) * 0.5;
+    let torque = error * -0.8 - turning * 0.16;
+    let thrust = r.column(2) * wanted.dot(&r.column(2));
+    SVector::from_fn(|k, _| match k {
+        0..3 => torque[k],
+        3..6 => thrust[k - 3],
+        _ => 0.0,
+    })
+}
+
+fn load(output: &mut Output) -> Result<String, Failure> {
+    let (h, steps) = (0.002, 6_000_u32);
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.01, 0.01, 0.016))?;
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(1e-3, 1e-3, 1e-3))?;
+    let system = SuspendedLoad { J_d, m: 1.0, K, m_load: 0.4, cable: Vector3::z() * -1.0, g: 9.81, up: Vector3::z() };
+    let stepper = Stepper::new(system, h)?;
+    let at_rest = (SO3::identity(), R3::from(Vector3::zeros()), SO3::identity());
+    let mut state = stepper.start(at_rest, SVector::zeros())?;
+    let (mut ways, mut swing, mut cables) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
+    let (energy, mut work) = (stepper.energy(&state), 0.0);
+    for step in 0..=steps {
+        let (attitude, x, cable) = state.attitude();
+        let along = cable.as_matrix() * stepper.scene().cable;
+        let (x, load) = (x.translation(), x.translation() + along);
+        if step % 10 == 0 {
+            for (way, place) in ways.iter_mut().zip([x, load]) {
+                way.push((place.x, place.z));
+            }
+            swing.push((f64::from(step) * h, along.x.atan2(-along.z).to_degrees()));
+        }
+        if step % 250 == 0 && step <= 2_000 {
+            cables.push(line(GREEN, vec![(x.x, x.z), (load.x, load.z)]));
+        }
+        let before = stepper.velocity(&state);
+        let force = pushed(stepper.scene(), &attitude, x, &before);
+        stepper.step_forced(&mut state, &force)?;
+        work += force.dot(&(before + stepper.velocity(&state))) * (0.5 * h);
+    }
+    let (_, x, _) = state.attitude();
+    let missed = (x.translation() - Vector3::from(WANTED)).norm();
+    let unaccounted = (stepper.energy(&state) - energy - work).abs();
+    let largest = swing.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    let [flyer, load] = ways;
+    let mut lines = cables;
+    lines.extend([line(ORANGE, load), line(BLUE, flyer)]);
+    let panels = [
+        path("Where they are, m", ["x", "z"], lines),
+        Panel::over_time("The cable against the vertical", "degrees", Vertical::Linear, vec![line(BLUE, swing)]),
+    ];
+    let names = [("quadrotor", BLUE), ("load", ORANGE), ("cable, each half second", GREEN)];
+    let about = "a control force for each step, h = 2 ms";
+    output.write("load.svg", &figure("A load under a quadrotor", about, &names, &panels)?)?;
+    Ok(format!(
+        "Load: {missed:.2} m from its place after 12 s, the cable has swung up to {largest:.0}°; the energy is that of the \
+         rotors' work to {unaccounted:.1e} J.\n"
+    ))
+}

@@ -1,0 +1,272 @@
+//! Chains and trees.
+
+use core::array::from_fn;
+
+use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
+use liestep::laws::samples::Random;
+use liestep::methods::{BallJoint, Chain, ChainStepper, Joined, Joints, Link, PinJoint};
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
+use nalgebra::{Matrix3, Vector3, Vector6};
+
+use super::super::apart;
+use super::{Body, Components, EPSILON, Free, Held, halves, row, scene, six, whole};
+
+/// The same chain with a joint for each link, its bodies about their centres of mass.
+fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<BallJoint, 3, N, N, 0> {
+    let bodies = chain.links.map(|link| {
+        let central = link.J_d.as_matrix() - link.c * link.c.transpose() * link.m;
+        Free { m: link.m, K: NonstandardInertia::new(central).unwrap() }
+    });
+    let joints = Joints::tree(from_fn(|k| {
+        let below = -chain.links[k].c;
+        if k == 0 {
+            return Joined::to_space(BallJoint { above: Vector3::zeros(), below }, 0);
+        }
+        let upper = chain.links[k - 1];
+        Joined::between(BallJoint { above: upper.rho - upper.c, below }, k - 1, k)
+    }));
+    Stepper::jointed(scene(bodies, chain.g, chain.up), joints, h).unwrap()
+}
+
+/// Where the links' centres of mass are, and how they move.
+fn placed<const N: usize>(
+    chain: &Chain<N>,
+    attitudes: &[SO3; N],
+    velocities: &Bodies<Vector3<f64>, N>,
+) -> ([Body; N], Components<N>) {
+    let (mut joint, mut velocity) = (Vector3::zeros(), Vector3::zeros());
+    let mut all = [(Body::identity(), Vector6::zeros()); N];
+    for (k, link) in chain.links.iter().enumerate() {
+        let (r, omega) = (attitudes[k].as_matrix(), &velocities.0[k]);
+        let of_centre = velocity + r * omega.cross(&link.c);
+        all[k] = ((attitudes[k], R3::from(joint + r * link.c)), six(omega, &of_centre));
+        joint += r * link.rho;
+        velocity += r * omega.cross(&link.rho);
+    }
+    (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
+}
+
+/// Links without any symmetry.
+fn irregular<const N: usize>(random: &mut Random) -> Chain<N> {
+    let mut vector = |size: f64| -> Vector3<f64> {
+        let vector: Vector3<f64> = random.sample();
+        vector * size
+    };
+    let links = [(); N].map(|()| {
+        let shape = Matrix3::from_columns(&[vector(0.3), vector(0.3), vector(0.3)]);
+        let central = shape * shape.transpose() + Matrix3::from_diagonal_element(0.01);
+        let (m, c) = (0.5 + vector(0.4).x.abs(), vector(0.5));
+        Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho: vector(1.0) }
+    });
+    Chain { links, g: 9.81, up: vector(1.0).normalize() }
+}
+
+/// Joints with multipliers and the minimal form are one integrator: they part by rounding alone.
+#[test]
+fn a_chain_moves_as_in_its_minimal_form() {
+    const N: usize = 5;
+    let mut random = Random::new(21);
+    for h in [0.01, -0.005] {
+        let chain = irregular::<N>(&mut random);
+        let minimal = ChainStepper::new(chain, h).unwrap();
+        let stepper = with_joints(&chain, h);
+        let attitudes: [SO3; N] = from_fn(|_| {
+            let xi: Vector3<f64> = random.sample();
+            <CayleyRetraction as Retraction<SO3>>::retract(&xi)
+        });
+        let velocities = Bodies(from_fn(|_| random.sample()));
+        let mut expected = minimal.start(attitudes, velocities).unwrap();
+        let (places, moving) = placed(&chain, &attitudes, &velocities);
+        let mut state = stepper.start(places, moving).unwrap();
+        assert!((stepper.energy(&state) - minimal.energy(&expected)).abs() < 1e-12);
+        let mut iterations = [0; 2];
+        for _ in 0..5 {
+            iterations[0] += minimal.run(&mut expected, 20).unwrap();
+            iterations[1] += stepper.run(&mut state, 20).unwrap();
+            let found = state.attitude().map(|body| body.0);
+            let velocity = stepper.velocity(&state);
+            let other = minimal.velocity(&expected);
+            let slower = (0..N).map(|k| (halves(&velocity.0[k])[0] - other.0[k]).amax()).fold(0.0, f64::max);
+            let errors = [apart(&found, &expected.attitude()), slower, stepper.widest_gap(&state)];
+            println!("{h}: {errors:?}");
+            assert!(errors[0] < 1e-12 && errors[1] < 1e-11 && errors[2] < 4.0 * EPSILON * 5.0, "{errors:?}");
+        }
+        println!("iterations: {iterations:?}");
+        assert!(iterations[1] < 2 * iterations[0]);
+    }
+}
+
+/// Rods of one metre that hang along their axes, the last with another mass.
+fn rods<const N: usize>(last: f64) -> Chain<N> {
+    let e = Vector3::z();
+    let rod = |m: f64| {
+        let central = Matrix3::from_diagonal(&Vector3::new(0.005, 0.005, 1.0 / 12.0)) * m;
+        let J_d = NonstandardInertia::new(central + e * e.transpose() * (0.25 * m)).unwrap();
+        Link { J_d, m, c: -e * 0.5, rho: -e }
+    };
+    let mut links = [rod(1.0); N];
+    links[N - 1] = rod(last);
+    Chain { links, g: 9.81, up: e }
+}
+
+/// A hundred links are let go horizontally, and the last has up to ten thousand times the mass of the others: as in
+/// their minimal form, and with the energy that they had.
+#[test]
+fn a_hundred_links_let_go_horizontally() {
+    for (last, h, steps, allowed) in [(1.0, 0.005, 200, 1e-9), (1e4, 0.002, 100, 1e-8), (1e-4, 0.002, 100, 1e-8)] {
+        let chain = rods::<100>(last);
+        let (stepper, minimal) = (with_joints(&chain, h), ChainStepper::new(chain, h).unwrap());
+        let flat = [SO3::from_euler_angles(0.3, core::f64::consts::FRAC_PI_2, 0.0); 100];
+        let at_rest = Bodies([Vector3::zeros(); 100]);
+        let (places, moving) = placed(&chain, &flat, &at_rest);
+        let mut state = stepper.start(places, moving).unwrap();
+        let mut expected = minimal.start(flat, at_rest).unwrap();
+        let before = stepper.energy(&state);
+        let mut gap = 0.0_f64;
+        for _ in 0..steps / 10 {
+            stepper.run(&mut state, 10).unwrap();
+            minimal.run(&mut expected, 10).unwrap();
+            gap = gap.max(stepper.widest_gap(&state));
+        }
+        let off = apart(&state.attitude().map(|body| body.0), &expected.attitude());
+        let energy = (stepper.energy(&state) - before) / (9.81 * 50.0 * (99.0 + 2.0 * last));
+        println!("{last}: {off:.1e} from the minimal form, energy {energy:.1e}, gap {gap:.1e}");
+        assert!(off < allowed && energy.abs() < 1e-4 && gap < 4.0 * EPSILON * 100.0);
+    }
+}
+
+/// A body on a pivot with three on it, one of which carries another: energy, the momentum about the vertical, and the
+/// joints. The order of the joints and which of its bodies a joint calls the one above make no difference.
+#[test]
+fn a_tree() {
+    const N: usize = 5;
+    let mut random = Random::new(3);
+    let mut next = |size: f64| -> Vector3<f64> {
+        let vector: Vector3<f64> = random.sample();
+        vector * size
+    };
+    let bodies: [Free; N] = from_fn(|_| Free {
+        m: 0.5 + next(1.0).x.abs(),
+        K: NonstandardInertia::from_principal_moments(Vector3::new(0.05, 0.06, 0.07) + next(0.01)).unwrap(),
+    });
+    let joints: [BallJoint; N] = from_fn(|_| BallJoint { above: next(0.5), below: next(0.5) });
+    let parents = [None, Some(0), Some(0), Some(0), Some(2)];
+    let straight: [Joined<BallJoint>; N] = from_fn(|k| Joined { joint: joints[k], above: parents[k], below: k });
+    let turned: [Joined<BallJoint>; N] = from_fn(|k| {
+        let Joined { joint, above, below } = straight[N - 1 - k];
+        let back = BallJoint { above: joint.below, below: joint.above };
+        above.map_or(straight[N - 1 - k], |above| Joined::between(back, below, above))
+    });
+    let about = from_fn(|_| {
+        let turn: SO3 = <CayleyRetraction as Retraction<SO3>>::retract(&next(1.0));
+        (turn, R3::from(next(1.0)))
+    });
+    let moving = Bodies(from_fn(|_| six(&next(1.0), &next(1.0))));
+    let pivot = joints[0].above;
+    let about_pivot = |[p, l]: [Vector3<f64>; 2]| (l - pivot.cross(&p)).z;
+    let ends = [straight, turned].map(|tree| {
+        let stepper = Stepper::jointed(scene(bodies, 9.81, Vector3::z()), Joints::tree(tree), 0.005).unwrap();
+        let mut state = stepper.start_nearest(about, moving).unwrap();
+        let (energy, vertical) = (stepper.energy(&state), about_pivot(whole(&state)));
+        stepper.run(&mut state, 200).unwrap();
+        let middle = state.attitude().map(|body| body.0);
+        let (mut gap, mut off) = (0.0_f64, 0.0_f64);
+        for _ in 0..2000 {
+            stepper.step(&mut state).unwrap();
+            gap = gap.max(stepper.widest_gap(&state));
+            off = off.max((stepper.energy(&state) - energy).abs());
+        }
+        let moved = about_pivot(whole(&state)) - vertical;
+        println!("energy {energy:.3} within {off:.1e}, momentum {moved:.1e}, gap {gap:.1e}");
+        assert!(off < 0.02 && moved.abs() < 1e-11 && gap < 4.0 * EPSILON * 2.0);
+        middle
+    });
+    assert!(apart(&ends[0], &ends[1]) < 1e-11, "{:e}", apart(&ends[0], &ends[1]));
+}
+
+/// What can't be started is refused, and says which joint.
+#[test]
+fn errors_name_the_joint() {
+    let chain = rods::<4>(1.0);
+    let stepper = with_joints(&chain, 0.01);
+    let attitudes = [0.1, 0.5, -0.3, 0.2].map(|tilt| SO3::exp(Vector3::new(tilt, 0.2, 0.0)));
+    let velocities = Bodies([Vector3::new(0.3, -0.2, 0.1); 4]);
+    let (places, moving) = placed(&chain, &attitudes, &velocities);
+    let mut open = places;
+    open[2].1 = R3::from(open[2].1.translation() + Vector3::x() * 1e-6);
+    let error = stepper.start(open, moving).unwrap_err();
+    println!("{error}");
+    assert!(matches!(error, SetupError::OffConstraint { joint: 2 | 3, by } if (by - 1e-6).abs() < 1e-12));
+    let mut opening = moving;
+    opening.0[1][4] += 1e-6;
+    let error = stepper.start(places, opening).unwrap_err();
+    println!("{error}");
+    assert!(matches!(error, SetupError::OffVelocity { joint: 1 | 2, by } if (by - 1e-6).abs() < 1e-12));
+    // Both are put right, and what is right stays.
+    let state = stepper.start_nearest(open, opening).unwrap();
+    let off = (state.attitude()[2].1.translation() - places[2].1.translation()).norm();
+    assert!(off < 1e-6 && off > 1e-9 && stepper.widest_gap(&state) < 4.0 * EPSILON * 4.0, "{off:e}");
+    let state = stepper.start_nearest(places, moving).unwrap();
+    let (right, found) = (stepper.start(places, moving).unwrap(), stepper.velocity(&state));
+    assert!(apart(&state.attitude().map(|body| body.0), &attitudes) < 1e-14);
+    assert!((found - stepper.velocity(&right)).0.iter().all(|difference| difference.amax() < 1e-13));
+
+    let link = BallJoint { above: Vector3::z(), below: -Vector3::z() };
+    let scene = scene([Free { m: 1.0, K: rods::<1>(1.0).links[0].J_d }; 3], 9.81, Vector3::z());
+    let refused = |tree: [Joined<BallJoint>; 2]| Stepper::jointed(scene, Joints::tree(tree), 0.01).unwrap_err();
+    let first = Joined::between(link, 0, 1);
+    assert!(matches!(refused([first, Joined::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
+    assert!(matches!(refused([first, Joined::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
+    assert!(matches!(refused([first, Joined::between(link, 1, 0)]), SetupError::Joint { .. }));
+    let broken = BallJoint { below: Vector3::new(0.0, f64::NAN, 0.0), ..link };
+    let error = refused([first, Joined::between(broken, 1, 2)]);
+    assert!(matches!(error, SetupError::JointParameter { joint: 1, field: "below", .. }), "{error}");
+    let (axis_above, axis_below) = (Vector3::zeros(), Vector3::x());
+    let pin = PinJoint { above: Vector3::z(), below: Vector3::z(), axis_above, axis_below };
+    let error = Stepper::jointed(scene, Joints::tree([Joined::between(pin, 0, 1)]), 0.01).unwrap_err();
+    assert!(matches!(error, SetupError::JointParameter { joint: 0, field: "axis_above", .. }), "{error}");
+    assert!(matches!(with_joints_checked(&chain, f64::NAN), Err(SetupError::InvalidStep { .. })));
+
+    // A step that turns a link too far names it.
+    let long = with_joints(&chain, 0.1);
+    let mut fast = velocities;
+    fast.0[2] = Vector3::new(0.0, 0.0, 50.0);
+    let (places, moving) = placed(&chain, &attitudes, &fast);
+    let mut state = long.start(places, moving).unwrap();
+    let before = state;
+    let error = long.step(&mut state).unwrap_err();
+    println!("{error}");
+    assert!(matches!(error, StepError::UnsolvedBody { body: 2, .. }) && state == before, "{error}");
+}
+
+fn with_joints_checked(chain: &Chain<4>, h: f64) -> Result<(), SetupError> {
+    let stepper = with_joints(chain, 0.01);
+    Stepper::jointed(*stepper.scene(), *stepper.plan().joints(), h).map(|_| ())
+}
+
+/// Systems of any size, at rest and as good as at rest: what roundings leave is compared with what there is.
+#[test]
+fn small_and_slow() {
+    for size in [1.0, 1e-3, 1e-6] {
+        let (e, mass) = (Vector3::x() * (0.5 * size), size * size * size);
+        let moments = Vector3::new(0.02, 0.1, 0.1) * (mass * size * size);
+        let K = NonstandardInertia::from_principal_moments(moments).unwrap();
+        let link = BallJoint { above: e, below: -e };
+        let joints = Joints::tree([Joined::between(link, 0, 1), Joined::between(link, 1, 2)]);
+        let scene = scene([Free { m: mass, K }; 3], 0.0, Vector3::z());
+        let stepper = Stepper::jointed(scene, joints, 0.01).unwrap();
+        let about = row([0.9, 0.2, -0.5]).0.map(|(turn, place)| (turn, R3::from(place.translation() * size)));
+        for rate in [0.0, 1e-7, 1.0] {
+            let moving = Bodies([six(&(Vector3::new(0.3, 1.0, -0.2) * rate), &Vector3::zeros()); 3]);
+            let mut state = stepper.start_nearest(about, moving).unwrap();
+            let [p, l] = whole(&state);
+            stepper.run(&mut state, 500).unwrap();
+            let after = whole(&state);
+            let off = [(after[0] - p).norm() / (mass * size), (after[1] - l).norm() / (mass * size * size)];
+            println!("{size:e} {rate:e}: {off:?}, gap {:e}", stepper.widest_gap(&state) / size);
+            assert!(stepper.widest_gap(&state) < 8.0 * EPSILON * size);
+            assert!(off.iter().all(|&off| off < 1e-12 * (rate + 1.0)), "{off:?}");
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! What is given to steps anew, and terms between bodies that joints hold.
+
+use core::array::from_fn;
+
+use declarations::SuspendedLoad;
+use declarations::motions::{number, read};
+use liestep::groups::R3;
+use liestep::laws::samples::Random;
+use liestep::mechanics::{Along, Each, Term as _};
+use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
+
+use super::super::{all, apart};
+use super::loops::{closed_loop, state_of};
+use super::{EPSILON, Free, Heavy, assert_no_work, plain, row, scene, six};
+
+/// A force that is given to each step anew: with the weight of the bodies it is their step under gravity, and
+/// velocities keep to the joints.
+#[test]
+fn a_control_force() {
+    let (start, velocity) = state_of(&read("closed loop")["states"][0]);
+    let falling = closed_loop(0.01, 3);
+    let data = &read("closed loop")["parameters"];
+    let weights = all(&data["bodies"], |body| number(&body["m"]) * number(&data["g"]));
+    let bodies = all(&data["bodies"], |body| Free {
+        m: number(&body["m"]),
+        K: NonstandardInertia::from_principal_moments(plain(&body["J"])).unwrap(),
+    });
+    let floating = scene::<3>(bodies.try_into().unwrap(), 0.0, Vector3::z());
+    let pushed = Stepper::jointed(floating, *falling.plan().joints(), 0.01).unwrap();
+    let force = Bodies(from_fn(|k| -Vector6::ith(5, weights[k])));
+    let mut expected = falling.start(start, velocity).unwrap();
+    falling.run(&mut expected, 100).unwrap();
+    let mut state = pushed.start(start, velocity).unwrap();
+    let compensated = pushed.clone().compensated();
+    let mut carried = compensated.start(start, velocity).unwrap();
+    for _ in 0..100 {
+        pushed.step_forced(&mut state, &force).unwrap();
+        compensated.step_forced(&mut carried, &force).unwrap();
+        pushed.start_with_momentum(state.attitude(), state.momentum()).unwrap();
+        pushed.start_with_momentum(carried.attitude(), carried.momentum()).unwrap();
+    }
+    let turned = expected.attitude().map(|body| body.0);
+    let off = [state.attitude(), carried.attitude()].map(|found| apart(&found.map(|body| body.0), &turned));
+    println!("{off:?}");
+    assert!(off.iter().all(|&off| off < 1e-12));
+}
+
+/// A planar linkage whose last joint, which closes the loop, is a pin, under a force that changes with each step.
+#[test]
+fn a_loop_that_a_pin_closes_is_driven() {
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let ball = |above, below| Joint::Ball(BallJoint { above, below });
+    let pin = |above, below| {
+        Joint::Pin(PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::new(0.2, 2.0, 0.0) })
+    };
+    let (places, corner) = row([0.9, 0.0, -0.9]);
+    let tree = [
+        Joined::to_space(ball(Vector3::zeros(), left), 0),
+        Joined::between(pin(right, left), 0, 1),
+        Joined::between(ball(right, left), 1, 2),
+    ];
+    let last = Joined::to_space(pin(corner, right), 2);
+    let joints = [tree[0], tree[1], tree[2], last];
+    let bodies = scene([1.0, 0.7, 1.2].map(|m| Free { m, K }), 9.81, Vector3::z());
+    let stepper = Stepper::jointed(bodies, Joints::tree(tree).closed_by([last]), 0.005).unwrap();
+    let mut random = Random::new(4);
+    let mut state = stepper.start_nearest(places, Bodies(from_fn(|_| random.sample()))).unwrap();
+    let mut gap = 0.0_f64;
+    for step in 0..500 {
+        let force = Bodies(from_fn(|_| random.sample::<Vector6<f64>>() * 5.0));
+        let before = state;
+        stepper.step_forced(&mut state, &force).unwrap();
+        if step % 100 == 0 {
+            assert_no_work((stepper.scene(), 0.005), &joints, &force, [&before, &state]);
+        }
+        gap = gap.max(stepper.widest_gap(&state));
+        stepper.start_with_momentum(state.attitude(), state.momentum()).unwrap();
+    }
+    assert!(gap < 4.0 * EPSILON * 3.0, "{gap:e}");
+}
+
+/// A spring between points of two bodies; how stiff it is may be given to each step.
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+    given(k = stiffness),
+    l_d = -0.25 * h * k * ((r + R_2 * at_2 - R_1 * at_1).norm_squared()
+        + (r + d_2 - d_1 + R_2 * F_2 * at_2 - R_1 * F_1 * at_1).norm_squared()),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cord {
+    stiffness: f64,
+    at_1: Vector3<f64>,
+    at_2: Vector3<f64>,
+}
+
+/// Springs across the joints of a chain: joints do no work, the energy that is kept is the springs', too, and steps to
+/// which another stiffness is given are those of springs that have it.
+#[test]
+fn bodies_that_joints_and_springs_hold() {
+    const N: usize = 3;
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let joints: [Joined<BallJoint>; N] = from_fn(|k| match k {
+        0 => Joined::to_space(BallJoint { above: Vector3::zeros(), below: left }, 0),
+        _ => Joined::between(BallJoint { above: right, below: left }, k - 1, k),
+    });
+    let of = |stiffness: f64, h: f64| {
+        let bodies = Each::<N>::of([Heavy { m: 1.0, K, g: 9.81, up: Vector3::z() }; N]);
+        let cord = Cord { stiffness, at_1: Vector3::new(0.1, 0.2, 0.0), at_2: Vector3::new(-0.1, 0.2, 0.1) };
+        Stepper::jointed(bodies + Along::<N>::of([cord]), Joints::tree(joints), h).unwrap()
+    };
+    let (stepper, free) = (of(30.0, 0.005), of(0.0, 0.005));
+    let mut random = Random::new(9);
+    let moving = Bodies(from_fn(|_| random.sample()));
+    let start = stepper.start_nearest(row([0.9, 0.2, -0.7]).0, moving).unwrap();
+    let off = |h: f64, steps: u32| {
+        let stepper = of(30.0, h);
+        let (mut state, energy, mut off) = (stepper.adopt(&start), stepper.energy(&start), 0.0_f64);
+        for step in 0..steps {
+            let before = state;
+            stepper.step(&mut state).unwrap();
+            if step % 200 == 0 {
+                assert_no_work((stepper.scene(), h), &joints, &Bodies([Vector6::zeros(); N]), [&before, &state]);
+            }
+            off = off.max((stepper.energy(&state) - energy).abs());
+            assert!(stepper.widest_gap(&state) < 4.0 * EPSILON * 3.0);
+        }
+        off
+    };
+    let errors = [off(0.005, 200), off(0.0025, 400)];
+    let later = off(0.005, 2000);
+    println!("energy within {errors:?}, and in ten seconds {later:.1e}");
+    assert!((errors[0] / errors[1] - 4.0).abs() < 0.4 && later < 0.1);
+    let (mut state, mut other) = (start, free.adopt(&start));
+    stepper.run(&mut state, 200).unwrap();
+    free.run(&mut other, 200).unwrap();
+    let turned = [state.attitude(), other.attitude()].map(|bodies| bodies.map(|body| body.0));
+    assert!(apart(&turned[0], &turned[1]) > 0.1, "springs don't matter");
+
+    let (mut given, mut expected) = (start, free.adopt(&start));
+    for step in 0..50 {
+        let stiffness = 30.0 + f64::from(step);
+        let stiffer = of(stiffness, 0.005);
+        let values = stiffer.scene().advected();
+        stepper.step_with(&mut given, &values).unwrap();
+        expected = stiffer.adopt(&expected);
+        stiffer.step(&mut expected).unwrap();
+        assert!((given.momentum() - expected.momentum()).0.iter().all(|off| off.amax() < 1e-12));
+    }
+    let turned = [given.attitude(), expected.attitude()].map(|bodies| bodies.map(|body| body.0));
+    assert!(apart(&turned[0], &turned[1]) < 1e-12);
+}
+
+/// A load on a cable, declared with the cable's attitude as coordinate, moves as two bodies on a ball joint do, whose
+/// places are coordinates, too: under forces that change with each step, to rounding.
+#[test]
+fn a_load_under_a_quadrotor() {
+    let [J_d, K] = [[0.02, 0.03, 0.04], [0.002, 0.0015, 0.001]]
+        .map(|moments| NonstandardInertia::from_principal_moments(Vector3::from(moments)).unwrap());
+    let (m, m_load, g, up, cable) = (1.0, 0.4, 9.81, Vector3::z(), Vector3::new(0.1, 0.05, -0.9));
+    for h in [0.01, -0.005] {
+        let declared = Stepper::new(SuspendedLoad { J_d, m, K, m_load, cable, g, up }, h).unwrap();
+        let joint = Joined::between(BallJoint { above: Vector3::zeros(), below: -cable }, 0, 1);
+        let bodies = scene([Free { m, K: J_d }, Free { m: m_load, K }], g, up);
+        let jointed = Stepper::jointed(bodies, Joints::tree([joint]), h).unwrap();
+        let mut random = Random::new(31);
+        let [attitude, hanging] =
+            [0.4, -0.7].map(|angle| SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(angle, 0.2, -angle))));
+        let (x, velocity): (Vector3<f64>, SVector<f64, 9>) = (random.sample(), random.sample());
+        let mut state = declared.start((attitude, R3::from(x), hanging), velocity).unwrap();
+        let along = hanging.as_matrix() * cable;
+        let [turning, v, of_cable] = [0, 3, 6].map(|first| velocity.fixed_rows::<3>(first).into_owned());
+        let of_load = v + hanging.as_matrix() * of_cable.cross(&cable);
+        let places = [(attitude, R3::from(x)), (hanging, R3::from(x + along))];
+        let mut other = jointed.start(places, Bodies([six(&turning, &v), six(&of_cable, &of_load)])).unwrap();
+        assert!((declared.energy(&state) - jointed.energy(&other)).abs() < 1e-13);
+        for _ in 0..200 {
+            let [torque, thrust]: [Vector3<f64>; 2] = from_fn(|_| random.sample());
+            let force = SVector::<f64, 9>::from_fn(|k, _| {
+                if k < 3 {
+                    0.1 * torque[k]
+                } else if k < 6 {
+                    10.0 * thrust[k - 3]
+                } else {
+                    0.0
+                }
+            });
+            declared.step_forced(&mut state, &force).unwrap();
+            let pushed = six(&(torque * 0.1), &(thrust * 10.0));
+            jointed.step_forced(&mut other, &Bodies([pushed, Vector6::zeros()])).unwrap();
+        }
+        let (found, expected) = (state.attitude(), other.attitude());
+        let errors = [
+            apart(&[found.0, found.2], &expected.map(|body| body.0)),
+            (found.1.translation() - expected[0].1.translation()).amax(),
+            (declared.velocity(&state).fixed_rows::<3>(6) - jointed.velocity(&other).0[1].fixed_rows::<3>(0)).amax(),
+        ];
+        println!("{h}: {errors:?}");
+        assert!(errors[0] < 1e-11 && errors[1] < 1e-11 && errors[2] < 1e-10, "{errors:?}");
+    }
+}

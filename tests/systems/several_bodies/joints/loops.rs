@@ -1,0 +1,392 @@
+//! Loops of joints.
+
+use core::array::from_fn;
+
+use declarations::motions::{matrix, number, read, vector};
+use liestep::groups::R3;
+use liestep::laws::samples::Random;
+use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
+use liestep::motion::Integrator as _;
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
+use nalgebra::{Vector3, Vector6};
+use serde_json::Value;
+
+use super::super::{all, apart, order, tenths};
+use super::{Body, Components, EPSILON, Free, Held, assert_no_work, plain, row, scene, six, whole};
+
+/// Of the reference, with this joint as the one that closes the loop.
+pub(super) fn closed_loop(h: f64, cut: usize) -> Held<BallJoint, 3, 3, 3, 1> {
+    let data = &read("closed loop")["parameters"];
+    let bodies = all(&data["bodies"], |body| Free {
+        m: number(&body["m"]),
+        K: NonstandardInertia::from_principal_moments(plain(&body["J"])).unwrap(),
+    });
+    let end = |body: usize, side: &str| plain(&data["bodies"][body][side]);
+    let joints = [
+        Joined::to_space(BallJoint { above: Vector3::zeros(), below: end(0, "left") }, 0),
+        Joined::between(BallJoint { above: end(0, "right"), below: end(1, "left") }, 0, 1),
+        Joined::between(BallJoint { above: end(1, "right"), below: end(2, "left") }, 1, 2),
+        Joined::to_space(BallJoint { above: plain(&data["pivot"]), below: end(2, "right") }, 2),
+    ];
+    let tree = from_fn(|k| joints[if k < cut { k } else { k + 1 }]);
+    let scene = scene(bodies.try_into().unwrap(), number(&data["g"]), Vector3::z());
+    Stepper::jointed(scene, Joints::tree(tree).closed_by([joints[cut]]), h).unwrap()
+}
+
+pub(super) fn state_of(value: &Value) -> ([Body; 3], Components<3>) {
+    let bodies = &value["bodies"];
+    let of = |k: usize| {
+        let attitude = SO3::try_from(matrix(&bodies[k]["R"])).unwrap();
+        (attitude, R3::from(vector(&bodies[k]["x"])))
+    };
+    (from_fn(of), Bodies(from_fn(|k| six(&vector(&bodies[k]["Omega_body"]), &vector(&bodies[k]["v"])))))
+}
+
+/// Against Newton's and Euler's equations in inertial coordinates, which share nothing with reduced equations: order
+/// 2, in attitudes, places and velocities.
+#[test]
+fn a_closed_loop() {
+    let states = &read("closed loop")["states"];
+    let ((start, velocity), (end, expected)) = (state_of(&states[0]), state_of(&states[1]));
+    let errors = [(0.01, 100), (0.005, 200), (0.0025, 400)].map(|(h, steps)| {
+        let stepper = closed_loop(h, 3);
+        let mut state = stepper.start(start, velocity).unwrap();
+        assert!((stepper.energy(&state) - number(&states[0]["energy"])).abs() < 1e-13);
+        let mut gap = 0.0_f64;
+        for _ in 0..steps {
+            stepper.step(&mut state).unwrap();
+            gap = gap.max(stepper.widest_gap(&state));
+        }
+        assert!(gap < 4.0 * EPSILON * 2.0, "{gap:e}");
+        let found = state.attitude();
+        let places = found.iter().zip(&end).map(|(a, b)| (a.1.translation() - b.1.translation()).amax());
+        let attitudes = apart(&found.map(|body| body.0), &end.map(|body| body.0));
+        let velocities = stepper.velocity(&state);
+        let slower = velocities.0.iter().zip(&expected.0).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
+        [attitudes, places.fold(0.0, f64::max), slower]
+    });
+    for of in 0..3 {
+        order(&errors.map(|errors| errors[of]));
+    }
+}
+
+/// Whichever joint of the loop is given apart, and in whichever direction the others are gone through, the motion is
+/// the same; with its sums compensated, too.
+#[test]
+fn a_loop_may_be_cut_anywhere() {
+    let (start, velocity) = state_of(&read("closed loop")["states"][0]);
+    let moved = [0, 1, 2, 3].map(|cut| {
+        let stepper = closed_loop(0.01, cut);
+        let mut state = stepper.start(start, velocity).unwrap();
+        stepper.run(&mut state, 100).unwrap();
+        assert!(stepper.widest_gap(&state) < 4.0 * EPSILON * 2.0);
+        state.attitude().map(|body| body.0)
+    });
+    for other in &moved[1..] {
+        assert!(apart(&moved[0], other) < 1e-12, "{:e}", apart(&moved[0], other));
+    }
+    let compensated = closed_loop(0.01, 3).compensated();
+    let mut state = compensated.start(start, velocity).unwrap();
+    compensated.run(&mut state, 100).unwrap();
+    assert!(apart(&state.attitude().map(|body| body.0), &moved[0]) < 1e-12);
+    assert!(closed_loop(0.01, 3).widest_gap(&state) < 6.0 * EPSILON * 2.0);
+}
+
+/// The energy of a loop is bounded over a hundred thousand steps, its joints stay closed, and what is put around steps
+/// goes around these.
+#[test]
+fn energy_of_a_closed_loop() {
+    let (start, velocity) = state_of(&read("closed loop")["states"][0]);
+    let stepper = closed_loop(0.01, 3);
+    let mut state = stepper.start(start, velocity).unwrap();
+    let (energy, mut gap) = (stepper.energy(&state), 0.0_f64);
+    let (means, most) = tenths(|| {
+        stepper.step(&mut state).unwrap();
+        gap = gap.max(stepper.widest_gap(&state));
+        stepper.energy(&state) - energy
+    });
+    let [first, second] = [&means[..5], &means[5..]].map(|half| half.iter().sum::<f64>() / 5.0);
+    println!("energy {energy:.4}: within {most:.4}, means {means:.5?}; gap {gap:.1e}");
+    assert!(most < 0.004 && (first - second).abs() < 2e-4 && gap < 4.0 * EPSILON * 2.0);
+    assert!(state.orthogonality_defect() < 1e-12);
+
+    let mut there = stepper.start(start, velocity).unwrap();
+    stepper.run(&mut there, 40).unwrap();
+    let back = stepper.inverse().unwrap();
+    let mut returned = back.adopt(&there);
+    back.run(&mut returned, 40).unwrap();
+    assert!(apart(&returned.attitude().map(|body| body.0), &start.map(|body| body.0)) < 1e-12);
+    let first = stepper.start(start, velocity).unwrap();
+    let at = stepper.state_at(&first, 0.4).unwrap();
+    assert!(apart(&at.attitude().map(|body| body.0), &there.attitude().map(|body| body.0)) < 1e-12);
+    let part = stepper.part(&first, 0.3).unwrap();
+    assert!(stepper.widest_gap(&part) < 4.0 * EPSILON * 2.0);
+
+    let saved = serde_json::to_string(&stepper.checkpoint(&there)).unwrap();
+    let mut resumed = stepper.resume(&serde_json::from_str(&saved).unwrap()).unwrap();
+    stepper.run(&mut resumed, 10).unwrap();
+    stepper.run(&mut there, 10).unwrap();
+    assert_eq!(resumed, there);
+}
+
+/// The same for a million steps, some three hours of motion.
+#[test]
+#[ignore = "takes a minute: `cargo test -p liestep-tests --test systems a_million_steps_of_a_closed_loop -- --ignored --nocapture`"]
+fn a_million_steps_of_a_closed_loop() {
+    let (start, velocity) = state_of(&read("closed loop")["states"][0]);
+    let stepper = closed_loop(0.01, 3);
+    let mut state = stepper.start(start, velocity).unwrap();
+    let (energy, mut gap) = (stepper.energy(&state), 0.0_f64);
+    let (means, most) = tenths(|| {
+        stepper.run(&mut state, 10).unwrap();
+        gap = gap.max(stepper.widest_gap(&state));
+        stepper.energy(&state) - energy
+    });
+    let [first, second] = [&means[..5], &means[5..]].map(|half| half.iter().sum::<f64>() / 5.0);
+    println!("energy {energy:.4}: within {most:.4}, means {means:.5?}; gap {gap:.1e}");
+    assert!(most < 0.004 && (first - second).abs() < 2e-4 && gap < 4.0 * EPSILON * 2.0);
+    assert!(state.orthogonality_defect() < 1e-12);
+}
+
+/// A ring of six that nothing pulls keeps its momentum and its angular momentum; hung up at one point and pulled down,
+/// the part of the latter about the vertical.
+#[test]
+fn momenta_of_a_ring() {
+    const N: usize = 6;
+    let side = 0.5;
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.01, 0.05, 0.045)).unwrap();
+    let link = BallJoint { above: Vector3::x() * side, below: Vector3::x() * -side };
+    let pivot = Vector3::new(-side, 0.0, 0.0);
+    // A hexagon, upright; the first side begins at the origin.
+    let attitudes: [SO3; N] = from_fn(|k| {
+        let k = u8::try_from(k).unwrap();
+        SO3::exp(Vector3::y() * (core::f64::consts::FRAC_PI_3 * f64::from(k)))
+    });
+    let mut corner = Vector3::zeros();
+    let places = attitudes.map(|attitude| {
+        let along = attitude.as_matrix() * Vector3::x();
+        let centre = corner + along * side;
+        corner += along * (2.0 * side);
+        (attitude, R3::from(centre))
+    });
+    let mut random = Random::new(8);
+    let moving = Bodies(from_fn(|_| {
+        let (omega, v): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
+        six(&omega, &v)
+    }));
+
+    let row: [Joined<BallJoint>; N - 1] = from_fn(|k| Joined::between(link, k, k + 1));
+    let ring = Joints::tree(row).closed_by([Joined::between(link, N - 1, 0)]);
+    let free = Stepper::jointed(scene([Free { m: 1.0, K }; N], 0.0, Vector3::z()), ring, 0.01).unwrap();
+    let mut state = free.start_nearest(places, moving).unwrap();
+    let ([p, l], energy) = (whole(&state), free.energy(&state));
+    let mut gap = 0.0_f64;
+    for _ in 0..5000 {
+        free.step(&mut state).unwrap();
+        gap = gap.max(free.widest_gap(&state));
+    }
+    let [dp, dl] = whole(&state);
+    // It has flown away by its velocity, and roundings of places with it.
+    let far = state.attitude()[0].1.translation().norm();
+    println!(
+        "free: {:.1e} {:.1e}, energy {:.1e}, gap {gap:.1e} at {far:.0} m",
+        (dp - p).amax(),
+        (dl - l).amax(),
+        free.energy(&state) - energy
+    );
+    assert!((dp - p).amax() < 1e-12 && (dl - l).amax() < 1e-10 && gap < 4.0 * EPSILON * far.max(1.0));
+    assert!((free.energy(&state) - energy).abs() < 1e-2 * energy);
+
+    let hung = [Joined::to_space(BallJoint { above: Vector3::zeros(), below: pivot }, 0)];
+    let tree: [Joined<BallJoint>; N] = from_fn(|k| if k == 0 { hung[0] } else { row[k - 1] });
+    let ring = Joints::tree(tree).closed_by([Joined::between(link, N - 1, 0)]);
+    let hanging = Stepper::jointed(scene([Free { m: 1.0, K }; N], 9.81, Vector3::z()), ring, 0.005).unwrap();
+    let mut state = hanging.start_nearest(places, moving).unwrap();
+    let (vertical, energy) = (whole(&state)[1].z, hanging.energy(&state));
+    hanging.run(&mut state, 5000).unwrap();
+    println!("hung up: {:.1e}, energy {:.1e}", whole(&state)[1].z - vertical, hanging.energy(&state) - energy);
+    assert!((whole(&state)[1].z - vertical).abs() < 1e-11 && (hanging.energy(&state) - energy).abs() < 0.1);
+}
+
+/// Three links of one metre with these masses between pivots so far apart, under gravity.
+fn garland(masses: [f64; 3], apart: f64) -> Held<BallJoint, 3, 3, 3, 1> {
+    let bodies = masses
+        .map(|m| Free { m, K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap() });
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
+    let joints = Joints::tree([
+        Joined::to_space(pivot(0.0, left), 0),
+        Joined::between(BallJoint { above: right, below: left }, 0, 1),
+        Joined::between(BallJoint { above: right, below: left }, 1, 2),
+    ]);
+    let joints = joints.closed_by([Joined::to_space(pivot(apart, right), 2)]);
+    Stepper::jointed(scene(bodies, 9.81, Vector3::z()), joints, 0.002).unwrap()
+}
+
+/// A loop whose bodies differ by ten thousand in mass: energy and joints as ever. It can't be stretched.
+#[test]
+fn a_loop_of_unlike_masses() {
+    for masses in [[1e4, 1.0, 1.0], [1.0, 1e4, 1.0], [1.0, 1e-4, 1.0]] {
+        let stepper = garland(masses, 0.9);
+        let about = row([1.6, 0.3, -1.5]).0;
+        let mut state = stepper.start_nearest(about, Bodies([Vector6::from_element(0.2); 3])).unwrap();
+        let (before, mut most, mut gap) = (stepper.energy(&state), 0.0_f64, 0.0_f64);
+        for _ in 0..2000 {
+            stepper.step(&mut state).unwrap();
+            most = most.max((stepper.energy(&state) - before).abs());
+            gap = gap.max(stepper.widest_gap(&state));
+        }
+        let scale = 9.81 * masses.iter().sum::<f64>();
+        println!("{masses:?}: energy {:.1e}, gap {gap:.1e}", most / scale);
+        assert!(most < 1e-3 * scale && gap < 4.0 * EPSILON * 2.0);
+    }
+}
+
+/// A heavy body stretches the light ones that hold it until the loop is at its singular position, like a blow: up to
+/// there energy and joints are kept, and then the joint is named, and the state stays.
+#[test]
+fn a_loop_that_is_stretched_names_the_joint() {
+    let stepper = garland([1e4, 1.0, 1.0], 2.0);
+    let mut state = stepper.start_nearest(row([0.9, 0.0, -0.9]).0, Bodies([Vector6::from_element(0.5); 3])).unwrap();
+    let (energy, mut gap) = (stepper.energy(&state), 0.0_f64);
+    for step in 0..2000 {
+        let before = state;
+        if let Err(error) = stepper.step(&mut state) {
+            let off = (stepper.energy(&state) - energy) / energy;
+            println!("after {step} steps: {error}; energy {off:.1e}, gap {gap:.1e}");
+            assert!(matches!(error, StepError::SingularJoint { joint: 3, .. }) && state == before);
+            assert!(step > 100 && off.abs() < 1e-2 && gap < 4.0 * EPSILON * 2.0);
+            return;
+        }
+        gap = gap.max(stepper.widest_gap(&state));
+    }
+    panic!("it is never stretched");
+}
+
+/// Two links between pivots so far apart that they are stretched: the joint that closes the loop is named, and the
+/// state stays.
+#[test]
+fn a_singular_position_names_the_joint() {
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let pivot = |x: f64, below| BallJoint { above: Vector3::x() * x, below };
+    let joints = |apart: f64| {
+        let link = BallJoint { above: right, below: left };
+        let tree = [Joined::to_space(pivot(0.0, left), 0), Joined::between(link, 0, 1)];
+        Joints::tree(tree).closed_by([Joined::to_space(pivot(apart, right), 1)])
+    };
+    let scene = scene([Free { m: 1.0, K }; 2], 9.81, Vector3::z());
+    let stepper = Stepper::jointed(scene, joints(2.0), 0.01).unwrap();
+    let straight = [0.5, 1.5].map(|x| (SO3::identity(), R3::from(Vector3::x() * x)));
+    let still = Bodies([Vector6::zeros(); 2]);
+    let refused = stepper.start(straight, still).unwrap_err();
+    println!("{refused}");
+    assert!(matches!(refused, SetupError::RedundantJoint { joint: 2, .. }));
+    assert!(matches!(stepper.start_nearest(straight, still), Err(SetupError::RedundantJoint { joint: 2, .. })));
+    // Started elsewhere and taken there.
+    let bent = Stepper::jointed(scene, joints(1.9), 0.01).unwrap();
+    let tilt = 0.95_f64.acos();
+    let about = [1.0, -1.0].map(|side| {
+        let attitude = SO3::exp(Vector3::y() * (tilt * side));
+        (attitude, R3::from(Vector3::new(0.95 - 0.475 * side, 0.0, -0.5 * tilt.sin())))
+    });
+    let mut state = bent.start_nearest(about, still).unwrap();
+    bent.run(&mut state, 10).unwrap();
+    let motion = Stepper::new(scene, 0.01).unwrap().start(straight, still).unwrap();
+    let mut taken = stepper.adopt(&motion);
+    let before = taken;
+    let error = stepper.step(&mut taken).unwrap_err();
+    println!("{error}");
+    assert!(matches!(error, StepError::SingularJoint { joint: 2, .. }) && taken == before);
+}
+
+/// A planar linkage of pins alone: the others do a part of what the last is to do.
+#[test]
+fn redundant_pins_are_named() {
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1)).unwrap();
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let pin = |above, below| PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() };
+    let ball = |above, below| BallJoint { above, below };
+    let (places, corner) = row([0.9, 0.0, -0.9]);
+    let tree = Joints::tree([
+        Joined::to_space(Joint::Pin(pin(Vector3::zeros(), left)), 0),
+        Joined::between(Joint::Pin(pin(right, left)), 0, 1),
+        Joined::between(Joint::Ball(ball(right, left)), 1, 2),
+    ]);
+    let scene = scene([Free { m: 1.0, K }; 3], 9.81, Vector3::z());
+    let still = Bodies([Vector6::zeros(); 3]);
+    let all_pins = Joints::tree([
+        Joined::to_space(Joint::Pin(pin(Vector3::zeros(), left)), 0),
+        Joined::between(Joint::Pin(pin(right, left)), 0, 1),
+        Joined::between(Joint::Pin(pin(right, left)), 1, 2),
+    ]);
+    let last = Joined::to_space(Joint::Pin(pin(corner, right)), 2);
+    let redundant = Stepper::jointed(scene, all_pins.closed_by([last]), 0.005).unwrap();
+    let error = redundant.start(places, still).unwrap_err();
+    println!("{error}");
+    assert!(matches!(error, SetupError::RedundantJoint { joint: 3, .. }));
+    // With balls at both ends of the last body it is a linkage that turns one way, and that body about itself.
+    let last = Joined::to_space(Joint::Ball(ball(corner, right)), 2);
+    let linkage = Stepper::jointed(scene, tree.closed_by([last]), 0.005).unwrap();
+    let mut state = linkage.start(places, still).unwrap();
+    let (energy, mut gap, mut off) = (linkage.energy(&state), 0.0_f64, 0.0_f64);
+    for _ in 0..2000 {
+        linkage.step(&mut state).unwrap();
+        gap = gap.max(linkage.widest_gap(&state));
+        off = off.max((linkage.energy(&state) - energy).abs());
+    }
+    // Pins and an even start keep it in its plane.
+    let sideways = state.attitude().iter().map(|body| body.1.translation().y.abs()).fold(0.0, f64::max);
+    println!("energy {off:.1e}, gap {gap:.1e}, sideways {sideways:.1e}");
+    assert!(off < 2e-2 && gap < 4.0 * EPSILON * 2.0 && sideways < 1e-12);
+}
+
+/// A garland of three from whose middle body a fourth goes to a third pivot: two loops that have that body in common.
+/// Whichever joints are given apart, joints do no work, and the motion is the same.
+#[test]
+fn two_loops() {
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
+    let bodies = scene([1.0, 1.3, 0.8, 0.6].map(|m| Free { m, K }), 9.81, Vector3::z());
+    let [left, right] = [-0.5, 0.5].map(|x| Vector3::x() * x);
+    let link = BallJoint { above: right, below: left };
+    let (places, corner) = row([0.9, 0.1, -0.7]);
+    // At right angles to the garland, from a point of the middle body that isn't its centre.
+    let knot = BallJoint { above: Vector3::new(0.1, 0.0, 0.05), below: left };
+    let start = super::place(&places[1]).of(&knot.above);
+    let fourth = SO3::exp(Vector3::z() * 1.1);
+    let along = fourth.as_matrix() * Vector3::x();
+    let all = [
+        Joined::to_space(BallJoint { above: Vector3::zeros(), below: left }, 0),
+        Joined::between(link, 0, 1),
+        Joined::between(link, 1, 2),
+        Joined::to_space(BallJoint { above: corner, below: right }, 2),
+        Joined::between(knot, 1, 3),
+        Joined::to_space(BallJoint { above: start + along, below: right }, 3),
+    ];
+    let places = [places[0], places[1], places[2], (fourth, R3::from(start + along * 0.5))];
+    let mut random = Random::new(12);
+    let moving = Bodies(from_fn(|_| random.sample()));
+    let ends = [[3, 5], [0, 4], [2, 1]].map(|apart| {
+        let mut others = (0..6).filter(|k| !apart.contains(k));
+        let tree = Joints::tree([(); 4].map(|()| all[others.next().unwrap()]));
+        let stepper = Stepper::jointed(bodies, tree.closed_by(apart.map(|k| all[k])), 0.005).unwrap();
+        let mut state = stepper.start_nearest(places, moving).unwrap();
+        let (energy, before) = (stepper.energy(&state), state);
+        assert!(energy > stepper.energy(&stepper.start(places, Bodies([Vector6::zeros(); 4])).unwrap()) + 0.1);
+        stepper.step(&mut state).unwrap();
+        assert_no_work((stepper.scene(), 0.005), &all, &Bodies([Vector6::zeros(); 4]), [&before, &state]);
+        let (mut gap, mut off) = (0.0_f64, 0.0_f64);
+        for _ in 1..400 {
+            stepper.step(&mut state).unwrap();
+            gap = gap.max(stepper.widest_gap(&state));
+            off = off.max((stepper.energy(&state) - energy).abs());
+        }
+        println!("energy {energy:.3} within {off:.1e}, gap {gap:.1e}");
+        assert!(off < 1e-2 && gap < 4.0 * EPSILON * 2.0);
+        state.attitude().map(|body| body.0)
+    });
+    for other in &ends[1..] {
+        assert!(apart(&ends[0], other) < 1e-11, "{:e}", apart(&ends[0], other));
+    }
+}

@@ -1,0 +1,161 @@
+//! Bodies held together by joints: chains against the minimal form, a closed loop against Newton's and Euler's
+//! equations, a pendulum on a pin against its recursion, and all of them against the principle that joints do no work;
+//! what is conserved, and what can go wrong.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+mod chains;
+mod driven;
+mod kinds;
+mod loops;
+
+use core::array::from_fn;
+
+use declarations::motions::number;
+use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, R3, Retraction};
+use liestep::laws::samples::derivative;
+use liestep::mechanics::{DiscreteLagrangian, Each, Placed};
+use liestep::methods::{Constraint, Joined, Jointed, Place};
+use liestep::motion::Motion;
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::{DMatrix, DVector, Vector3, Vector6};
+use serde_json::Value;
+
+/// A body that is pulled down.
+#[lagrangian(
+    group(F = SO3, d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+        - 0.5 * h * m * g * (x + x + d).dot(&up),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Heavy {
+    m: f64,
+    K: NonstandardInertia,
+    g: f64,
+    up: Vector3<f64>,
+}
+
+type Body = (SO3, R3);
+
+type Scene<const N: usize> = Placed<Each<N>, Heavy, N>;
+
+type Held<C, const K: usize, const N: usize, const T: usize, const L: usize> =
+    Stepper<Scene<N>, Jointed<Scene<N>, C, K, N, T, L>>;
+type Components<const N: usize> = Bodies<Vector6<f64>, N>;
+
+const EPSILON: f64 = f64::EPSILON;
+
+/// Mass and inertia of a body.
+#[derive(Clone, Copy, Debug)]
+struct Free {
+    m: f64,
+    K: NonstandardInertia,
+}
+
+fn scene<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> Scene<N> {
+    Each::<N>::of(bodies.map(|Free { m, K }| Heavy { m, K, g, up }))
+}
+
+fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {
+    Vector6::from_fn(|k, _| if k < 3 { turning[k] } else { velocity[k - 3] })
+}
+
+/// The turning part, and the other.
+fn halves(of: &Vector6<f64>) -> [Vector3<f64>; 2] {
+    [0, 3].map(|first| of.fixed_rows::<3>(first).into_owned())
+}
+
+fn place(body: &Body) -> Place {
+    Place { attitude: *body.0.as_matrix(), position: body.1.translation() }
+}
+
+/// The momentum of all, and their angular momentum about the origin.
+fn whole<A, const N: usize>(motion: &Motion<[Body; N], A>) -> [Vector3<f64>; 2]
+where
+    A: liestep::groups::Advected<[Body; N]>,
+{
+    let (bodies, momenta) = (motion.attitude(), motion.momentum());
+    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
+        let [turning, linear] = halves(momentum);
+        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
+    })
+}
+
+/// Links of one metre in a row from the origin, each turned about the y axis by so much, and where the last ends.
+fn row<const N: usize>(tilts: [f64; N]) -> ([Body; N], Vector3<f64>) {
+    let mut corner = Vector3::zeros();
+    let places = tilts.map(|tilt| {
+        let attitude = SO3::exp(Vector3::y() * tilt);
+        let along = attitude.as_matrix() * Vector3::x();
+        corner += along;
+        (attitude, R3::from(corner - along * 0.5))
+    });
+    (places, corner)
+}
+
+fn plain(value: &Value) -> Vector3<f64> {
+    Vector3::from_fn(|k, _| number(&value[k]))
+}
+
+/// The place, turned or shifted along one of six axes: in its own, in those of space.
+fn moved(body: &Body, k: usize, s: f64) -> Body {
+    let axis = Vector3::ith(k % 3, s);
+    if k < 3 {
+        (body.0.compose(&<CayleyRetraction as Retraction<SO3>>::retract(&axis)), body.1)
+    } else {
+        (body.0, R3::from(body.1.translation() + axis))
+    }
+}
+
+/// How much of an impulse on bodies at these places does work while the joints stay closed: what of it isn't in the span
+/// of their slopes, by differences of what they compare.
+fn working<C: Constraint<K>, const K: usize, const N: usize>(
+    joints: &[Joined<C>],
+    bodies: &[Body; N],
+    impulse: &Components<N>,
+) -> f64 {
+    let gap = |joined: &Joined<C>, bodies: &[Body; N]| {
+        let above = joined.above.map_or(Place::SPACE, |above| place(&bodies[above]));
+        joined.joint.gap(&above, &place(&bodies[joined.below]))
+    };
+    let mut slopes = DMatrix::zeros(6 * N, K * joints.len());
+    for ((j, joined), k) in joints.iter().enumerate().flat_map(|joint| (0..6 * N).map(move |k| (joint, k))) {
+        for row in 0..joined.joint.rows() {
+            slopes[(k, K * j + row)] = derivative(|s| {
+                let mut changed = *bodies;
+                changed[k / 6] = moved(&bodies[k / 6], k % 6, s);
+                gap(joined, &changed)[row]
+            });
+        }
+    }
+    let impulse = DVector::from_fn(6 * N, |k, _| impulse.0[k / 6][k % 6]);
+    let multipliers = slopes.clone().svd(true, true).solve(&impulse, 1e-9).unwrap();
+    (impulse - slopes * multipliers).amax()
+}
+
+/// D'Alembert's principle: what joints take from the momenta before and after a step does no work while they stay closed.
+/// Half of what is given to the step is given at either end.
+fn assert_no_work<S, C, const K: usize, const N: usize>(
+    stepper: (&S, f64),
+    joints: &[Joined<C>],
+    given: &Components<N>,
+    [before, after]: [&Motion<[Body; N], S::Advected>; 2],
+) where
+    S: DiscreteLagrangian<Scalar = f64, Group = [Body; N]>,
+    C: Constraint<K>,
+{
+    let (l, h) = stepper;
+    let [start, end] = [before, after].map(Motion::attitude);
+    let f: [Body; N] = from_fn(|k| start[k].inverse().compose(&end[k]));
+    let (w, f) = (l.advected().seen_from(&start), f.matrix());
+    let half = *given * (0.5 * h);
+    let taken = before.momentum() + half - l.legendre_minus(&f, &w, h);
+    let left = l.legendre_plus(&f, &w, h) + half - after.momentum();
+    let size = taken.0.iter().map(Vector6::amax).fold(0.0, f64::max);
+    let work = [working(joints, &start, &taken), working(joints, &end, &left)];
+    println!("of {size:.1e} these work: {work:?}");
+    assert!(size > 1e-3 && work.iter().all(|&work| work < 1e-9 * size.max(1.0)), "{work:?} of {size}");
+}
