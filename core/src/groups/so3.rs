@@ -327,6 +327,9 @@ impl<T: Real> LieGroup for SO3<T> {
 
     /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
     /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
+    ///
+    /// Called, so that a look costs the same in a program with one scene and in one with many.
+    #[inline(never)]
     fn restored(&self) -> Option<(Self, Mask<T>)> {
         let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
         far.any().then(|| {
