@@ -73,7 +73,7 @@ fn a_run_that_stops_has_a_table() {
 fn the_scenes_run() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
     let gallery = fs::read_to_string(scenes.join("README.md")).unwrap();
-    let mut files: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> = fs::read_dir(&scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     files.sort();
     assert!(files.len() >= 12, "{}", files.len());
