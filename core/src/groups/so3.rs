@@ -317,6 +317,7 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
+    #[inline(always)]
     fn defect(&self) -> T {
         let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
         let on = [0, 1, 2].map(|i| entry(i, i) - T::one());
@@ -328,15 +329,22 @@ impl<T: Real> LieGroup for SO3<T> {
     /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
     /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
     ///
-    /// Called, so that a look costs the same in a program with one scene and in one with many.
-    #[inline(never)]
+    /// To look is inlined, so that it costs the same in a program with one scene and in one with many.
+    #[inline(always)]
     fn restored(&self) -> Option<(Self, Mask<T>)> {
         let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
-        far.any().then(|| {
-            let gram = self.0.transpose() * self.0;
-            let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
-            (Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry))), far)
-        })
+        far.any().then(|| (self.nearer(far), far))
+    }
+}
+
+impl<T: Real> SO3<T> {
+    /// Nearer to the group in these lanes.
+    #[cold]
+    #[inline(never)]
+    fn nearer(&self, far: Mask<T>) -> Self {
+        let gram = self.0.transpose() * self.0;
+        let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
+        Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry)))
     }
 }
 
