@@ -29,7 +29,8 @@ fn toy() -> Result<Toy, Box<dyn Error>> {
     // J_d about the tip, kg m².
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(1e-5, 1e-5, 5.5e-5))?;
     let gravity = Gravity { m: 0.05, g: 9.81, rho: Vector3::new(0.0, 0.0, 0.03), up: Vector3::z() };
-    let stepper = Stepper::new(RigidBody { J_d: inertia } + gravity, STEP)?.or_substeps(64).into_any().hiding_advected();
+    let stepper =
+        Stepper::new(RigidBody { J_d: inertia } + gravity, STEP)?.or_substeps(64).into_any().hiding_advected();
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.2, 0.0, 0.0));
     let state = stepper.start(tilted, Vector3::new(0.0, 0.0, 300.0))?;
     Ok(Frames::new(stepper, state))
