@@ -287,8 +287,8 @@ where
     /// What stands last in a row that ends here, and what comes after the last of a block.
     #[inline(never)]
     fn end_row(&mut self, now: &Moment<'_, I>, end: usize) -> Result<(), RecordError> {
-        let places = self.block[..end].iter_mut().rev();
-        places.zip(self.quantities.iter_mut().rev()).for_each(|(place, quantity)| *place = quantity(now));
+        let places = &mut self.block[end - self.quantities.len()..end];
+        places.iter_mut().zip(&mut self.quantities).for_each(|(place, quantity)| *place = quantity(now));
         self.filled = end;
         if end >= self.full { self.flush() } else { Ok(()) }
     }
