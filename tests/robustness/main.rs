@@ -10,6 +10,7 @@ mod long_drifts;
 mod observed;
 mod policies;
 mod random_inputs;
+mod recorded;
 mod secants;
 mod secants_long_run;
 mod setup;

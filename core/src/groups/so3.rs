@@ -301,7 +301,7 @@ impl<T: Real> LieGroup for SO3<T> {
         ["q_w", "q_x", "q_y", "q_z"].map(|name| (name.to_owned(), "1")).into()
     }
 
-    #[inline]
+    #[inline(always)]
     fn write_numbers<'a>(&self, numbers: &'a mut [T]) -> &'a mut [T] {
         let quaternion = quaternion(&self.0);
         let Some((own, behind)) = numbers.split_first_chunk_mut::<4>() else { return &mut [] };
@@ -317,6 +317,7 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
+    #[inline(always)]
     fn defect(&self) -> T {
         let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
         let on = [0, 1, 2].map(|i| entry(i, i) - T::one());
@@ -327,37 +328,52 @@ impl<T: Real> LieGroup for SO3<T> {
 
     /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
     /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
+    ///
+    /// To look is inlined, so that it costs the same in a program with one scene and in one with many.
+    #[inline(always)]
     fn restored(&self) -> Option<(Self, Mask<T>)> {
         let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
-        far.any().then(|| {
-            let gram = self.0.transpose() * self.0;
-            let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
-            (Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry))), far)
-        })
+        far.any().then(|| (self.nearer(far), far))
+    }
+}
+
+impl<T: Real> SO3<T> {
+    /// Nearer to the group in these lanes.
+    #[cold]
+    #[inline(never)]
+    fn nearer(&self, far: Mask<T>) -> Self {
+        let gram = self.0.transpose() * self.0;
+        let nearest = self.0 * (Matrix3::from_diagonal_element(real(3.0)) - gram) * real::<T>(0.5);
+        Self(nearest.zip_map(&self.0, |nearest, entry| nearest.select(far, entry)))
     }
 }
 
 /// The unit quaternion of a rotation, real part first, from its largest part. Every lane has its own.
 #[inline(always)]
 fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
-    // Four times the square of a part, and that part times all.
-    let largest = T::one() + r.m11 + r.m22 + r.m33;
-    // Within 120° of the identity no other part need be asked: this one keeps all digits.
-    if !largest.simd_ge(T::one()).all() {
-        return quaternion_of_a_large_turn(r);
-    }
-    let scale = real::<T>(0.5) / largest.simd_sqrt();
-    [largest, r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12].map(|product| product * scale)
-}
-
-/// The same by the largest part.
-#[inline(never)]
-fn quaternion_of_a_large_turn<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
+    // Four times the square of a part, and that part times all.
+    let ww = one + r.m11 + r.m22 + r.m33;
+    // Within 120° of the identity no other part need be asked: this one keeps all digits.
+    if ww.simd_ge(one).all() {
+        return scaled(ww, [ww, wx, wy, wz]);
+    }
     let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
-    let [ww, xx] = [one + r.m11 + r.m22 + r.m33, one + r.m11 - r.m22 - r.m33];
-    let [yy, zz] = [one - r.m11 + r.m22 - r.m33, one - r.m11 - r.m22 + r.m33];
+    let xx = one + r.m11 - r.m22 - r.m33;
+    let yy = one - r.m11 + r.m22 - r.m33;
+    let zz = one - r.m11 - r.m22 + r.m33;
+    let is_largest = |part: T, others: [T; 3]| others.into_iter().all(|other| part.simd_ge(other).all());
+    if is_largest(xx, [ww, yy, zz]) {
+        return scaled(xx, [wx, xx, xy, xz]);
+    }
+    if is_largest(yy, [ww, zz, xx]) {
+        return scaled(yy, [wy, xy, yy, yz]);
+    }
+    if is_largest(zz, [ww, xx, yy]) {
+        return scaled(zz, [wz, xz, yz, zz]);
+    }
+    // Lanes that differ.
     let (mut largest, mut products) = (ww, [ww, wx, wy, wz]);
     let others = [(xx, [wx, xx, xy, xz]), (yy, [wy, xy, yy, yz]), (zz, [wz, xz, yz, zz])];
     for (square, others) in others {
@@ -367,7 +383,13 @@ fn quaternion_of_a_large_turn<T: Real>(r: &Matrix3<T>) -> [T; 4] {
             *product = part.select(larger, *product);
         }
     }
-    let scale = real::<T>(0.5) / largest.simd_sqrt();
+    scaled(largest, products)
+}
+
+/// A quaternion whose parts times one of them, four times, are these; that one times itself is `square`.
+#[inline(always)]
+fn scaled<T: Real>(square: T, products: [T; 4]) -> [T; 4] {
+    let scale = real::<T>(0.5) / square.simd_sqrt();
     products.map(|product| product * scale)
 }
 

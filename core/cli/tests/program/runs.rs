@@ -73,7 +73,7 @@ fn a_run_that_stops_has_a_table() {
 fn the_scenes_run() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
     let gallery = fs::read_to_string(scenes.join("README.md")).unwrap();
-    let mut files: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut files: Vec<_> = fs::read_dir(&scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     files.sort();
     assert!(files.len() >= 12, "{}", files.len());
@@ -94,7 +94,26 @@ fn the_scenes_run() {
         assert!(result("svg").len() < 60_000, "{}", path.display());
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap();
         assert!(gallery.contains(&format!("({name}.toml)")) && gallery.contains(&format!("/{name}.svg)")), "{name}");
+        let kept = fs::read_to_string(scenes.join(format!("../figures/scenes/{name}.svg"))).unwrap();
+        assert_same_picture(&result("svg"), &kept, name);
     }
+}
+
+/// But for a pixel. Charts of what is rounding are drawn by the sines of the machine that drew them.
+fn assert_same_picture(made: &str, kept: &str, name: &str) {
+    if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
+        println!("skipped: {name}.svg was drawn with the sines of Linux on x86-64");
+        return;
+    }
+    let parts = |picture: &str| -> (String, Vec<f64>) {
+        let is_of_number = |letter: char| letter.is_ascii_digit() || letter == '.' || letter == '-';
+        let numbers = picture.split(|letter| !is_of_number(letter)).filter_map(|text| text.parse().ok());
+        (picture.replace(is_of_number, ""), numbers.collect())
+    };
+    let ((words, numbers), (kept_words, kept_numbers)) = (parts(made), parts(kept));
+    assert!(words == kept_words && numbers.len() == kept_numbers.len() && numbers.len() > 500, "{name}");
+    let moved = numbers.iter().zip(&kept_numbers).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(moved <= 1.0, "{name}: {moved}");
 }
 
 /// What a file's scene does is what the sum in a program does, bit for bit; and the units are those of SI.
@@ -153,6 +172,29 @@ fn a_file_may_have_every_effect() {
     }
     assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
     assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
+}
+
+/// What the library has, files have: its table of effects names no other than those above, and the kinetic terms.
+#[test]
+fn no_effect_is_without_a_table() {
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let read = |name: &str| fs::read_to_string(sources.join(name)).unwrap();
+    let (library, tables, kinetic) = (
+        read("src/effects/mod.rs"),
+        read("scene/src/effects.rs"),
+        read("scene/src/kinetic.rs") + &read("scene/src/choose.rs"),
+    );
+    let exported = library.lines().filter_map(|line| line.strip_prefix("pub use ")?.split_once("::"));
+    let names: Vec<&str> = exported.flat_map(|(_, names)| names.trim_matches(['{', '}', ';']).split(", ")).collect();
+    assert!(names.len() > 14, "{names:?}");
+    for name in names {
+        let has = if name.ends_with("Body") {
+            kinetic.contains(&format!("{name} {{"))
+        } else {
+            tables.contains(&format!("-> {name} {{"))
+        };
+        assert!(has, "{name}");
+    }
 }
 
 /// The last row of the top without drag, with a line in its tables `body` and `run` more.

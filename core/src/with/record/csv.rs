@@ -73,7 +73,9 @@ impl<W: Write> Sink for Csv<W> {
         let mut digits = zmij::Buffer::new();
         for row in rows.chunks_exact(self.columns) {
             for (place, &number) in row.iter().enumerate() {
-                self.text.push_str(if place == 0 { "" } else { "," });
+                if place > 0 {
+                    self.text.push(',');
+                }
                 if is_written_alike(number) {
                     self.text.push_str(digits.format_finite(number));
                 } else {
@@ -91,6 +93,7 @@ impl<W: Write> Sink for Csv<W> {
 }
 
 /// Whether the faster way writes a number in the form in which the standard library does: elsewhere its exponent is another.
+#[inline]
 fn is_written_alike(number: f64) -> bool {
     let size = number.abs();
     size < 1e-5 || (1e-4..1e16).contains(&size)

@@ -224,6 +224,7 @@ where
         self.quantities.push(Box::new(move |now| quantity(now).into()));
         if self.stage == Stage::Begun {
             self.stage = Stage::Late(self.columns.len() - 1);
+            self.block.truncate(self.filled);
         }
         self
     }
@@ -251,44 +252,57 @@ where
     /// [`RecordError`] with the first row where two columns have one name or the table can't be begun, and later where a
     /// column was added or a full block of rows can't be written. After an error of the sink each further row is one, too.
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
-        if self.stage != Stage::Begun {
-            self.begin()?;
-        }
         let end = self.filled + self.columns.len();
+        // There is none before the table has begun, and after it has failed.
         if self.block.len() < end {
-            self.make_room(end);
+            self.make_room(end)?;
         }
-        let (time, mut own) = self.block[self.filled..end].split_at_mut(1);
-        time.fill(now.time().into());
+        let Some((time, own)) = self.block[self.filled..end].split_first_mut() else { return Ok(()) };
+        *time = now.time().into();
         if self.shows_motion {
-            now.attitude.write_numbers(&mut self.attitude);
-            let (attitude, behind) = own.split_at_mut(self.attitude.len());
-            let numbers = self.attitude.iter().map(|&number| number.into());
-            // Quickly where the compiler knows the length: of a quaternion.
-            if let Ok(four) = <&mut [f64; 4]>::try_from(&mut *attitude) {
-                four.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
-            } else {
-                attitude.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
-            }
-            let (motion, behind) = behind.split_at_mut(2 * <I::Group as LieGroup>::DIMENSION + 2);
+            let behind = match (<&mut [_; 4]>::try_from(self.attitude.as_mut_slice()), own.split_first_chunk_mut()) {
+                // Quickly where the compiler knows the length: of a quaternion.
+                (Ok(numbers), Some((places, behind))) => {
+                    now.attitude.write_numbers(numbers);
+                    *places = numbers.map(Into::into);
+                    behind
+                }
+                _ => write_attitude(&now.attitude, &mut self.attitude, own),
+            };
             let (velocity, energy) = now.integrator().velocity_and_energy(now, self.inertia.as_ref());
-            let mut places = motion.iter_mut();
+            let mut places = behind[..2 * <I::Group as LieGroup>::DIMENSION + 2].iter_mut();
             let mut write = |number: ScalarIn<I>| places.next().map_or((), |place| *place = number.into());
             velocity.each(&mut write);
             now.momentum.each(&mut write);
             write(energy);
             write(now.attitude.defect());
-            own = behind;
         }
-        own.iter_mut().zip(&mut self.quantities).for_each(|(place, quantity)| *place = quantity(now));
+        if !self.quantities.is_empty() || end >= self.full {
+            return self.end_row(now, end);
+        }
+        self.filled = end;
+        Ok(())
+    }
+
+    /// What stands last in a row that ends here, and what comes after the last of a block.
+    #[inline(never)]
+    fn end_row(&mut self, now: &Moment<'_, I>, end: usize) -> Result<(), RecordError> {
+        let places = &mut self.block[end - self.quantities.len()..end];
+        places.iter_mut().zip(&mut self.quantities).for_each(|(place, quantity)| *place = quantity(now));
         self.filled = end;
         if end >= self.full { self.flush() } else { Ok(()) }
     }
 
-    /// A block as long as this, and longer as more rows come: of very many rows that are asked for there may be few.
+    /// A block as long as this, and longer as more rows come: of very many rows that are asked for there may be few. The
+    /// table begins with the first.
     #[cold]
-    fn make_room(&mut self, end: usize) {
-        self.block.resize(end.max(2 * self.block.len()).min(self.full.max(end)), 0.0);
+    #[inline(never)]
+    fn make_room(&mut self, end: usize) -> Result<(), RecordError> {
+        self.begin()?;
+        if self.block.len() < end {
+            self.block.resize(end.max(2 * self.block.len()).min(self.full.max(end)), 0.0);
+        }
+        Ok(())
     }
 
     /// Writes what is left, and returns what was written to.
@@ -324,9 +338,10 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
             Stage::Begun => return Ok(()),
             Stage::Failed => return Err(RecordError::Sink { cause: "it has failed before".into() }),
             Stage::Late(column) => {
-                // The rows have the columns that the sink knows.
+                // The rows have the columns that the sink knows, and no more come.
+                let block = core::mem::take(&mut self.block);
                 if let Some(mut sink) = self.sink.take() {
-                    let rows = &self.block[..core::mem::take(&mut self.filled)];
+                    let rows = &block[..core::mem::take(&mut self.filled)];
                     let written = if rows.is_empty() { Ok(()) } else { sink.write(rows) };
                     written.and_then(|()| sink.end()).map_err(|cause| self.failed(cause))?;
                 }
@@ -352,8 +367,22 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
 
     fn failed(&mut self, cause: SinkError) -> RecordError {
         self.stage = Stage::Failed;
+        self.block = Vec::new();
         RecordError::Sink { cause }
     }
+}
+
+/// Writes the numbers of an attitude over those of the row before and into a row; returns what is behind them there.
+#[inline(never)]
+fn write_attitude<'a, G: LieGroup<Scalar: Into<f64>>>(
+    attitude: &G,
+    numbers: &mut [G::Scalar],
+    row: &'a mut [f64],
+) -> &'a mut [f64] {
+    attitude.write_numbers(numbers);
+    let (places, behind) = row.split_at_mut(numbers.len());
+    places.iter_mut().zip(numbers).for_each(|(place, number)| *place = (*number).into());
+    behind
 }
 
 /// The sink is there until the recorder is gone.

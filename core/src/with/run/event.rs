@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::crossing::{Looks, zeros};
 use super::error::{Ended, Reason, RunError};
-use super::{Observer, Run, show};
+use super::{Observer, Run, show, unless_it_goes_on};
 use crate::motion::{Answer, Integrator, Moment, Motion, ScalarIn};
 use crate::numbers::{real, reported};
 
@@ -145,7 +145,7 @@ where
         self.watched.push(Watched {
             event,
             function: Box::new(move |now| function(now).into()),
-            then: Box::new(move |now: &Moment<'_, I>| then(now).verdict()),
+            then: Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(then(now))),
             value: 0.0,
             above: None,
         });

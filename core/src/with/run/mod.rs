@@ -28,7 +28,8 @@ use nalgebra::ComplexField as _;
 
 /// What an observer answers.
 type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
-type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Verdict + 'a>;
+/// Most answers are to go on, which is none here: a pointer comes back in a register, the answer itself by memory.
+type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Option<Box<Verdict>> + 'a>;
 type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 
 /// A run that is to be observed, by [`Stepper::observed`]; generic code makes it by [`Run::new`].
@@ -158,7 +159,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// Zero is never.
     pub fn every<R: Answer>(mut self, steps: u64, mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a) -> Self {
         if steps > 0 {
-            let observer = Box::new(move |now: &Moment<'_, I>| observer(now).verdict());
+            let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
             self.observers.regular.push(Regular { every: steps, due: 0, observer });
         }
         self
@@ -283,7 +284,9 @@ impl<I: Integrator> Observers<'_, I> {
         for Regular { every, due, observer } in &mut self.regular {
             if *due == made {
                 *due = due.saturating_add(*every);
-                stops |= show(observer, now, ended)?;
+                if let Some(verdict) = observer(now) {
+                    stops |= stopped(verdict, reported(now.time()), ended)?;
+                }
             }
             next = next.min(*due);
         }
@@ -340,7 +343,7 @@ where
         mut observer: impl FnMut(&Moment<'_, I>) -> R + 'a,
     ) -> Self {
         let times: Box<dyn Iterator<Item = f64> + 'a> = Box::new(times.into_iter());
-        let observer = Box::new(move |now: &Moment<'_, I>| observer(now).verdict());
+        let observer = Box::new(move |now: &Moment<'_, I>| unless_it_goes_on(observer(now)));
         self.timed.push(Timed { times: times.peekable(), shown: None, observer });
         self
     }
@@ -370,22 +373,28 @@ where
     }
 }
 
-/// Shows a moment; returns whether the observer stops the run.
+/// An answer, but for that to go on.
 #[inline(always)]
+fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
+    match answer.verdict() {
+        Ok(ControlFlow::Continue(())) => None,
+        verdict => Some(Box::new(verdict)),
+    }
+}
+
+/// Shows a moment; returns whether the observer stops the run.
 fn show<I: Integrator>(
     observer: &mut Observer<'_, I>,
     now: &Moment<'_, I>,
     ended: &mut Ended,
 ) -> Result<bool, RunError> {
-    match observer(now) {
-        Ok(ControlFlow::Continue(())) => Ok(false),
-        verdict => stopped(verdict, reported(now.time()), ended),
-    }
+    observer(now).map_or(Ok(false), |verdict| stopped(verdict, reported(now.time()), ended))
 }
 
 #[cold]
 #[inline(never)]
-fn stopped(verdict: Verdict, time: f64, ended: &mut Ended) -> Result<bool, RunError> {
+#[allow(clippy::boxed_local)] // so that its memory is freed here, too
+fn stopped(verdict: Box<Verdict>, time: f64, ended: &mut Ended) -> Result<bool, RunError> {
     let _ = verdict.map_err(|cause| RunError::Observer { time, cause })?;
     ended.reason = Reason::Stopped { time };
     Ok(true)
