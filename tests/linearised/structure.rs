@@ -1,8 +1,8 @@
 //! What structure-preserving steps alone have: symplectic transition matrices, and adjoints by steps of `−h`.
 
 use liestep::effects::{Gravity, PrincipalBody};
-use liestep::mechanics::{DiagonalNonstandardInertia, Sum};
-use liestep::methods::CompositionScheme;
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
+use liestep::methods::{CompositionScheme, Split, SplittingScheme, SymmetricBody};
 use liestep::motion::linearised::{Cotangent, Gradient, Linearisable, Tape};
 use liestep::{SO3, StepError, Stepper};
 use nalgebra::{SMatrix, Vector3};
@@ -35,7 +35,24 @@ fn form(momentum: &Vector3<f64>) -> Matrix6 {
 
 #[test]
 fn the_transition_matrix_keeps_the_symplectic_form() {
-    let stepper = Stepper::new(top(), 0.01).expect("a stepper");
+    assert_symplectic(&Stepper::new(top(), 0.01).expect("a stepper"), 10.0);
+    for beside in [0.0, 0.2] {
+        assert_symplectic(&symmetric(beside), 5.0);
+    }
+}
+
+/// A splitting with an exact flow; on the axis, its spin is made apart.
+fn symmetric(beside: f64) -> Stepper<Top, Split<Top, SymmetricBody>> {
+    let moments = Vector3::new(3.0, 3.0, 4.5);
+    let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments).expect("a body") };
+    let scene = body + Gravity { rho: Vector3::new(beside, 0.0, 0.4), ..top().second };
+    let flow =
+        SymmetricBody::new(&Inertia::from_principal_moments(moments).expect("a body")).expect("a symmetric body");
+    Stepper::split(scene, 0.01, flow, SplittingScheme::NYSTROM_6).expect("a stepper")
+}
+
+/// At entries of this size.
+fn assert_symplectic<P: Linearisable<Top>>(stepper: &Stepper<Top, P>, size: f64) {
     let linear = stepper.linearised().expect("derivatives");
     let (attitude, momentum) = start();
     let mut state = stepper.start_with_momentum(attitude, momentum).expect("a start");
@@ -51,7 +68,7 @@ fn the_transition_matrix_keeps_the_symplectic_form() {
     let kept = transition.transpose() * form(&state.momentum()) * transition;
     let defect = (kept - form(&momentum)).amax();
     println!("defect {defect:e}, entries up to {:e}", transition.amax());
-    assert!(transition.amax() > 10.0 && defect < 1e-12, "{defect:e}");
+    assert!(transition.amax() > size && defect < 1e-12, "{defect:e}");
 }
 
 /// A gradient by steps of `−h` and its distance from that by the tape, relative to the largest entry.
@@ -84,6 +101,13 @@ fn steps_back_give_the_gradient_of_the_tape() {
     let stepper = Stepper::new(top(), 0.01).expect("a stepper");
     assert!(parting(&stepper, 1_000) < 1e-12);
     assert!(parting(&stepper, 100_000) < 1e-10);
+}
+
+#[test]
+fn steps_back_of_a_splitting() {
+    for beside in [0.0, 0.2] {
+        assert!(parting(&symmetric(beside), 1_000) < 1e-12);
+    }
 }
 
 #[test]

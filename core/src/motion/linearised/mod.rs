@@ -78,7 +78,7 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use recorded::Change;
-pub use stage::{Cotangent, Pass, Stage};
+pub use stage::{Cotangent, Flown, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
 use alloc::vec::Vec;
@@ -91,6 +91,7 @@ use crate::motion::declared::Declared;
 use crate::motion::plan::Plan;
 use crate::motion::report::StepReport;
 use crate::motion::stepper::{StateOf, Stepper};
+use crate::motion::summation::Summation;
 use crate::numbers::{Kernel, Vectors, dispatch};
 use recorded::Recorded;
 
@@ -124,6 +125,21 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
 
     /// How many changes a step makes.
     fn stages(&self) -> usize;
+
+    /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order.
+    ///
+    /// # Errors
+    ///
+    /// As [`Plan::step`].
+    #[inline(always)]
+    fn record<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        self.step(scene, motion, kept)
+    }
 
     /// Shows the stage that has made the change of this number to a pass.
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
@@ -261,7 +277,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
         let mut recorded = Recorded { motion: state.motion, events };
-        match plan.step(scene, &mut recorded, &mut state.kept) {
+        match plan.record(scene, &mut recorded, &mut state.kept) {
             Ok(report) => {
                 state.motion = recorded.motion;
                 Ok(report)
