@@ -3,7 +3,7 @@
 use liestep::effects::{CayleyBody, Dipole, Drag, GeodesicBody, Gravity, GravityGradient, MagneticDamping};
 use liestep::effects::{PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Sum};
-use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
+use liestep::methods::{CompositionScheme, ExactBody, SplittingScheme, SymmetricBody};
 use liestep::{SetupError, Stepper};
 use nalgebra::{Matrix3, RealField, Vector3};
 use num_dual::Dual64;
@@ -198,6 +198,60 @@ fn assert_symmetric(beside: f64, h: f64, scheme: SplittingScheme) {
         let linear = stepper.linearised().expect("derivatives");
         assert_eq!(linear.numbers(2, "axial"), Some(18..19));
         assert_linearised(&stepper, split, seed);
+    }
+}
+
+/// The axes of the moments, and how they turn for a unit of each of the flow's last three parameters.
+fn exact_flow<T: RealField + Copy>(axes: &Matrix3<f64>, varied: Option<(usize, T)>) -> ExactBody<T> {
+    let lift = |value: f64| nalgebra::convert::<f64, T>(value);
+    let mut n = Numbers::new(varied);
+    // Beside the diagonal less than a rounding, as what is zero there isn't looked at.
+    let (moments, zero) = (MOMENTS.map(|moment| n.number(moment)), varied.map_or(T::zero(), |_| lift(1e-100)));
+    let turn = [0, 1, 2].map(|_| n.number(0.0));
+    let axes = axes.map(lift);
+    let inertia = axes * Matrix3::from_diagonal(&Vector3::from(moments)) * axes.transpose();
+    let turn = Vector3::from(turn).cross_matrix();
+    let inertia = inertia + turn * inertia - inertia * turn;
+    let inertia = (inertia + inertia.transpose()) * lift(0.5);
+    let beside = Matrix3::from_fn(|i, j| if i == j { T::zero() } else { zero });
+    ExactBody::new(&Inertia::new(inertia + beside).expect("a body"))
+}
+
+/// The largest, the least, the middle one.
+const MOMENTS: [f64; 3] = [3.5, 2.5, 3.0];
+
+fn heavy<T: RealField + Copy>(axes: &Matrix3<f64>, varied: Option<(usize, T)>) -> Sum<RigidBody<T>, Gravity<T>> {
+    let mut n = Numbers::new(varied);
+    let inertia = axes * Matrix3::from_diagonal(&Vector3::from(MOMENTS)) * axes.transpose();
+    let J_d = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
+    RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_d)).expect("a body") } + gravity(&mut n)
+}
+
+/// Short and long drifts, along the axes of the body and along others.
+#[test]
+fn a_splitting_with_the_flow_of_any_body() {
+    let turned = nalgebra::Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner();
+    // The middle moment about the first axis, so that the moments have other places.
+    let cyclic = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    let (own, other) = ([0, 1, 2, 3, 4, 5], [2, 0, 1, 3, 4, 5]);
+    let cases = [
+        (Matrix3::identity(), STEP, own),
+        (cyclic, STEP, other),
+        (turned, STEP, own),
+        (turned, 0.7, own),
+        (turned, 4.0, own),
+    ];
+    for (axes, h, places) in cases {
+        let scheme = SplittingScheme::NYSTROM_6;
+        let split = |number: Option<usize>| {
+            let of_flow = number.filter(|&number| number >= 17).map(|number| places[number - 17]);
+            let scene = heavy(&axes, unit(number.filter(|&number| number < 17)));
+            Stepper::split(scene, h.into(), exact_flow(&axes, unit(of_flow)), scheme).expect("a stepper")
+        };
+        for seed in SEEDS {
+            let stepper = Stepper::split(heavy(&axes, None), h, exact_flow(&axes, None), scheme).expect("a stepper");
+            assert_linearised(&stepper, split, seed);
+        }
     }
 }
 

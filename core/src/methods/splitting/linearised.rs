@@ -12,7 +12,8 @@ use crate::motion::linearised::{Change, Flown, Linearisable, Pass, Stage};
 use crate::motion::{Plan, StepReport, Summation};
 use crate::numbers::{Real, real};
 
-/// A kinetic flow that can be differentiated: [`SymmetricBody`], and every one that is declared with `gradients`.
+/// A kinetic flow that can be differentiated: [`SymmetricBody`], [`ExactBody`](super::ExactBody), and every one that is
+/// declared with `gradients`.
 ///
 /// A flow written elsewhere can't be one, as only the library makes what is shown to a [`Pass`].
 ///
@@ -20,8 +21,8 @@ use crate::numbers::{Real, real};
 /// inertia, not by the scene's. What depends on both, as an inertia that the two share, sums both derivatives.
 #[diagnostic::on_unimplemented(
     message = "the derivatives of the flow `{Self}` aren't known",
-    label = "neither declared with `gradients` nor `SymmetricBody`",
-    note = "take a declared body for the flow, as `RigidBody`, `PrincipalBody` or `GeodesicBody` of `liestep::effects`"
+    label = "neither declared with `gradients` nor exact",
+    note = "take `SymmetricBody`, `ExactBody`, or a declared body, as `RigidBody` or `PrincipalBody` of `liestep::effects`"
 )]
 pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
     /// How many scalars its parameters have.
@@ -85,7 +86,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
 
 /// A turn by `F`, whose increment this is, of a body with this momentum before it.
 #[inline(always)]
-fn flown<'a, T: Real>(
+pub(super) fn flown<'a, T: Real>(
     turn_by_momentum: Matrix3<T>,
     increment: &Matrix3<T>,
     momentum: &Vector3<T>,
