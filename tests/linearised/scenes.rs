@@ -220,11 +220,17 @@ fn exact_flow<T: RealField + Copy>(axes: &Matrix3<f64>, varied: Option<(usize, T
 /// The largest, the least, the middle one.
 const MOMENTS: [f64; 3] = [3.5, 2.5, 3.0];
 
-fn heavy<T: RealField + Copy>(axes: &Matrix3<f64>, varied: Option<(usize, T)>) -> Sum<RigidBody<T>, Gravity<T>> {
+fn heavy<T: RealField + Copy>(
+    axes: &Matrix3<f64>,
+    g: f64,
+    varied: Option<(usize, T)>,
+) -> Sum<RigidBody<T>, Gravity<T>> {
     let mut n = Numbers::new(varied);
     let inertia = axes * Matrix3::from_diagonal(&Vector3::from(MOMENTS)) * axes.transpose();
     let J_d = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
-    RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_d)).expect("a body") } + gravity(&mut n)
+    let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_d)).expect("a body") };
+    let (m, g) = (n.number(1.2), n.number(g));
+    body + Gravity { m, g, rho: n.vector(0.3, 0.2, 0.4), up: n.vector(0.0, 0.6, 0.8) }
 }
 
 /// Short and long drifts, along the axes of the body and along others.
@@ -235,21 +241,22 @@ fn a_splitting_with_the_flow_of_any_body() {
     let cyclic = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
     let (own, other) = ([0, 1, 2, 3, 4, 5], [2, 0, 1, 3, 4, 5]);
     let cases = [
-        (Matrix3::identity(), STEP, own),
-        (cyclic, STEP, other),
-        (turned, STEP, own),
-        (turned, 0.7, own),
-        (turned, 4.0, own),
+        (Matrix3::identity(), STEP, own, 9.81),
+        (cyclic, STEP, other, 9.81),
+        (turned, STEP, own, 9.81),
+        (turned, 0.7, own, 9.81),
+        // Drifts of radians, which are doubled.
+        (turned, 6.0, own, 1e-3),
     ];
-    for (axes, h, places) in cases {
+    for (axes, h, places, g) in cases {
         let scheme = SplittingScheme::NYSTROM_6;
         let split = |number: Option<usize>| {
             let of_flow = number.filter(|&number| number >= 17).map(|number| places[number - 17]);
-            let scene = heavy(&axes, unit(number.filter(|&number| number < 17)));
+            let scene = heavy(&axes, g, unit(number.filter(|&number| number < 17)));
             Stepper::split(scene, h.into(), exact_flow(&axes, unit(of_flow)), scheme).expect("a stepper")
         };
         for seed in SEEDS {
-            let stepper = Stepper::split(heavy(&axes, None), h, exact_flow(&axes, None), scheme).expect("a stepper");
+            let stepper = Stepper::split(heavy(&axes, g, None), h, exact_flow(&axes, None), scheme).expect("a stepper");
             assert_linearised(&stepper, split, seed);
         }
     }
