@@ -61,7 +61,7 @@ fn exact(scene: Top, h: f64) -> Stepper<Top, Split<Top, ExactBody>> {
 #[test]
 fn exact_flows_of_a_symmetric_body_agree() {
     let symmetric = symmetric(0.2);
-    let exact = exact(symmetric.scene().clone(), symmetric.step_size());
+    let exact = exact(*symmetric.scene(), symmetric.step_size());
     let (linear, other) = (symmetric.linearised().expect("derivatives"), exact.linearised().expect("derivatives"));
     let scene: Vec<usize> = (0..17).collect();
     // By both transverse moments, and by the axial one.

@@ -224,3 +224,37 @@ impl<T: Real> Number for Dual<T> {
         Self { value: nalgebra::SimdValue::select(T::zero(), mask, self.value), slopes: self.slopes }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Dual, Number};
+
+    /// Every operation, in both branches of those that have two.
+    fn function<N: Number>([x, y, z]: [N; 3]) -> N {
+        let root = (x * y / z + N::number(0.3)).simd_sqrt();
+        let sizes = (x - y).simd_abs() * (y - x).simd_abs() + (y - z).simd_max(x) * (x - z).simd_max(y);
+        let chosen = (root * z).select(x.simd_gt(y), -root) + (x / root).select(x.simd_ge(y), z / y);
+        chosen * sizes - root * N::number(2.0).vanishing(x.simd_gt(z))
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        const SMALL: f64 = 1e-5;
+        for at in [[0.7, 1.9, 1.1], [1.9, 0.7, 1.1], [1.2, 1.3, 0.4]] {
+            let found = function([0, 1, 2].map(|k| Dual::along(at[k], k)));
+            assert!((found.value - function(at)).abs() < 1e-15);
+            for k in 0..3 {
+                let moved = |by: f64| function([0, 1, 2].map(|j| if j == k { at[j] + by } else { at[j] }));
+                let slope = (moved(SMALL) - moved(-SMALL)) / (2.0 * SMALL);
+                assert!((found.slopes[k] - slope).abs() < 1e-8, "{at:?}, {k}: {}, not {slope}", found.slopes[k]);
+            }
+        }
+    }
+
+    /// What is zero but for a rounding still varies.
+    #[test]
+    fn what_vanishes_keeps_its_derivative() {
+        let varied = Dual::along(1e-20_f64, 1).vanishing(true);
+        assert_eq!((varied.value, varied.slopes), (0.0, [0.0, 1.0, 0.0]));
+    }
+}
