@@ -150,6 +150,7 @@ impl<T: Real> Mul for Dual<T> {
     type Output = Self;
 
     #[inline(always)]
+    #[allow(clippy::suspicious_arithmetic_impl)] // the rule for products has a sum
     fn mul(self, other: Self) -> Self {
         self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
     }

@@ -24,8 +24,12 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         let mut moments = flow.moments;
         flow.frame.places().into_iter().zip(flow.moments).for_each(|(place, moment)| moments[place] = moment);
-        moments.into_iter().for_each(|moment| visitor.parameter("moment", moment));
-        (0..3).for_each(|_| visitor.parameter("turn", T::zero()));
+        for moment in moments {
+            visitor.parameter("moment", moment);
+        }
+        for _ in 0..3 {
+            visitor.parameter("turn", T::zero());
+        }
     }
 
     #[inline(always)]
