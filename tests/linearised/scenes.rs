@@ -3,7 +3,7 @@
 use liestep::effects::{CayleyBody, Dipole, Drag, GeodesicBody, Gravity, GravityGradient, MagneticDamping};
 use liestep::effects::{PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Sum};
-use liestep::methods::{CompositionScheme, SplittingScheme};
+use liestep::methods::{CompositionScheme, ExactBody, SplittingScheme, SymmetricBody};
 use liestep::{SetupError, Stepper};
 use nalgebra::{Matrix3, RealField, Vector3};
 use num_dual::Dual64;
@@ -153,6 +153,112 @@ fn assert_split(scheme: SplittingScheme) {
         let scene = top::<f64>(None);
         let stepper = Stepper::split(scene, STEP, scene.first, scheme).expect("a stepper");
         assert_linearised(&stepper, split, seed);
+    }
+}
+
+/// Weights on the third axis of a symmetric body, where its spin is made apart, and beside it; short and long drifts. The
+/// dual numbers' weight is always beside, by less than a rounding: they would else be those of the spin that is made apart,
+/// and that is no derivative towards a weight beside the axis.
+#[test]
+fn a_splitting_with_the_flow_of_a_symmetric_body() {
+    for (scheme, h) in [
+        (SplittingScheme::STRANG, STEP),
+        (SplittingScheme::NYSTROM_6, 0.7),
+        (SplittingScheme::NEAR_INTEGRABLE_8_6_4, 0.2),
+    ] {
+        assert_symmetric(0.2, h, scheme);
+        assert_symmetric(0.0, h, scheme);
+    }
+}
+
+fn symmetric_top<T: RealField + Copy>(beside: f64, varied: Option<(usize, T)>) -> Sum<PrincipalBody<T>, Gravity<T>> {
+    let mut n = Numbers::new(varied);
+    let J_d = DiagonalNonstandardInertia::from_diagonal(n.diagonal(2.0, 2.0, 1.0)).expect("a body");
+    let (m, g) = (n.number(1.2), n.number(9.81));
+    let rho = n.vector(beside, -0.5 * beside, 0.4);
+    PrincipalBody { J_d } + Gravity { m, g, rho, up: n.vector(0.0, 0.6, 0.8) }
+}
+
+fn symmetric_flow<T: RealField + Copy>(varied: Option<(usize, T)>) -> SymmetricBody<T> {
+    let mut n = Numbers::new(varied);
+    let (transverse, axial) = (n.number(3.0), n.number(4.0));
+    let inertia = Inertia::from_principal_moments(Vector3::new(transverse, transverse, axial)).expect("a body");
+    SymmetricBody::new(&inertia).expect("a symmetric body")
+}
+
+fn assert_symmetric(beside: f64, h: f64, scheme: SplittingScheme) {
+    let split = |number: Option<usize>| {
+        let of_flow = number.filter(|&number| number >= 17).map(|number| number - 17);
+        let scene =
+            symmetric_top(if beside > 0.0 { beside } else { 1e-100 }, unit(number.filter(|&number| number < 17)));
+        Stepper::split(scene, h.into(), symmetric_flow(unit(of_flow)), scheme).expect("a stepper")
+    };
+    for seed in SEEDS {
+        let stepper = Stepper::split(symmetric_top(beside, None), h, symmetric_flow(None), scheme).expect("a stepper");
+        let linear = stepper.linearised().expect("derivatives");
+        assert_eq!(linear.numbers(2, "axial"), Some(18..19));
+        assert_linearised(&stepper, split, seed);
+    }
+}
+
+/// The axes of the moments, and how they turn for a unit of each of the flow's last three parameters.
+fn exact_flow<T: RealField + Copy>(axes: &Matrix3<f64>, varied: Option<(usize, T)>) -> ExactBody<T> {
+    let lift = |value: f64| nalgebra::convert::<f64, T>(value);
+    let mut n = Numbers::new(varied);
+    // Beside the diagonal less than a rounding, as what is zero there isn't looked at.
+    let (moments, zero) = (MOMENTS.map(|moment| n.number(moment)), varied.map_or(T::zero(), |_| lift(1e-100)));
+    let turn = [0, 1, 2].map(|_| n.number(0.0));
+    let axes = axes.map(lift);
+    let inertia = axes * Matrix3::from_diagonal(&Vector3::from(moments)) * axes.transpose();
+    let turn = Vector3::from(turn).cross_matrix();
+    let inertia = inertia + turn * inertia - inertia * turn;
+    let inertia = (inertia + inertia.transpose()) * lift(0.5);
+    let beside = Matrix3::from_fn(|i, j| if i == j { T::zero() } else { zero });
+    ExactBody::new(&Inertia::new(inertia + beside).expect("a body"))
+}
+
+/// The largest, the least, the middle one.
+const MOMENTS: [f64; 3] = [3.5, 2.5, 3.0];
+
+fn heavy<T: RealField + Copy>(
+    axes: &Matrix3<f64>,
+    g: f64,
+    varied: Option<(usize, T)>,
+) -> Sum<RigidBody<T>, Gravity<T>> {
+    let mut n = Numbers::new(varied);
+    let inertia = axes * Matrix3::from_diagonal(&Vector3::from(MOMENTS)) * axes.transpose();
+    let J_d = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
+    let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_d)).expect("a body") };
+    let (m, g) = (n.number(1.2), n.number(g));
+    body + Gravity { m, g, rho: n.vector(0.3, 0.2, 0.4), up: n.vector(0.0, 0.6, 0.8) }
+}
+
+/// Short and long drifts, along the axes of the body and along others.
+#[test]
+fn a_splitting_with_the_flow_of_any_body() {
+    let turned = nalgebra::Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner();
+    // The middle moment about the first axis, so that the moments have other places.
+    let cyclic = Matrix3::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+    let (own, other) = ([0, 1, 2, 3, 4, 5], [2, 0, 1, 3, 4, 5]);
+    let cases = [
+        (Matrix3::identity(), STEP, own, 9.81),
+        (cyclic, STEP, other, 9.81),
+        (turned, STEP, own, 9.81),
+        (turned, 0.7, own, 9.81),
+        // Drifts of radians, which are doubled.
+        (turned, 6.0, own, 1e-3),
+    ];
+    for (axes, h, places, g) in cases {
+        let scheme = SplittingScheme::NYSTROM_6;
+        let split = |number: Option<usize>| {
+            let of_flow = number.filter(|&number| number >= 17).map(|number| places[number - 17]);
+            let scene = heavy(&axes, g, unit(number.filter(|&number| number < 17)));
+            Stepper::split(scene, h.into(), exact_flow(&axes, unit(of_flow)), scheme).expect("a stepper")
+        };
+        for seed in SEEDS {
+            let stepper = Stepper::split(heavy(&axes, g, None), h, exact_flow(&axes, None), scheme).expect("a stepper");
+            assert_linearised(&stepper, split, seed);
+        }
     }
 }
 

@@ -132,6 +132,13 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     /// Adds to the momentum.
     fn push(&mut self, change: &G::Vector);
 
+    /// One after the other: a turn that carries the momentum along.
+    #[inline(always)]
+    fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
+        self.turn(increment);
+        self.push(change);
+    }
+
     /// Both, where the rounded sums are there already.
     fn proceed(&mut self, step: &Proceeded<G, A>);
 

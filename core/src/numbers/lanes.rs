@@ -67,12 +67,20 @@ pub trait Lanes: Sized {
 ///
 /// Scenes that are generic over their scalar can, and the methods [`Stepper::new`](crate::Stepper::new),
 /// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
-/// all of them [`compensated`](crate::Stepper::compensated). Bodies that are stepped by another method take their turns.
+/// all of them [`compensated`](crate::Stepper::compensated), and [`preprocessed`](crate::Stepper::preprocessed).
+///
+/// Of the others, bodies take their turns, as lanes would be other algorithms than these:
+///
+/// - Collocation has the stages of one body side by side in the registers already, with its matrices as tables of `f64`;
+///   with bodies side by side its stages would come one after the other, in other sums and so with other bits.
+/// - A remedy does something else in the steps that it finds amiss, a body at a time: what one of several does then, the
+///   others would do too, or wait for.
+/// - Chains and bodies in joints fill the registers with the bodies of one scene.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",
     note = "a declaration generic over its scalar can be: `struct Top<T> {{ weight: T, … }}`, and `Top<f64>` here",
-    note = "of methods the declared step can, compositions of it and splittings, all with compensated sums too; others go one by one"
+    note = "of methods the declared step can, compositions of it, splittings and preprocessed bodies, with compensated sums too; others go one by one"
 )]
 pub trait InLanes<W>: Sized {
     /// Several of them.

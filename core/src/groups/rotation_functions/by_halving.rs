@@ -5,7 +5,7 @@
 
 use nalgebra::SimdBool as _;
 
-use crate::numbers::{Real, real};
+use crate::numbers::Number;
 
 /// Up to here the polynomials are exact to a rounding.
 const SMALL: f64 = 0.5;
@@ -23,36 +23,36 @@ const FAR: f64 = 100.0;
 /// the absolute error, as the angle's own rounding does. What that adds to the length of `(cos θ, sin θ)` is taken out
 /// again, so that large angles are those of rotations, too; one without a digit left gives NaN.
 #[inline(always)]
-pub(crate) fn rotation_coefficients<T: Real>(q: T) -> (T, T) {
-    if q.simd_le(real(SMALL)).all() { small(q) } else { large(q) }
+pub(crate) fn rotation_coefficients<T: Number>(q: T) -> (T, T) {
+    if q.simd_le(T::number(SMALL)).all() { small(q) } else { large(q) }
 }
 
 #[inline(always)]
-fn small<T: Real>(q: T) -> (T, T) {
+fn small<T: Number>(q: T) -> (T, T) {
     const SINC: [f64; 8] = coefficients(1);
     const VERSINE: [f64; 8] = coefficients(2);
     let (q2, q4) = (q * q, q * q * (q * q));
     (polynomial(&SINC, q, q2, q4), polynomial(&VERSINE, q, q2, q4))
 }
 
-fn large<T: Real>(q: T) -> (T, T) {
-    let quarter = real::<T>(0.25);
+fn large<T: Number>(q: T) -> (T, T) {
+    let quarter = T::number(0.25);
     let mut reduced = q;
     let mut doublings = 0;
     // Lanes that are small already wait. A NaN never becomes small.
-    while doublings < MOST_DOUBLINGS && reduced.simd_gt(real(SMALL)).any() {
-        reduced = (reduced * quarter).select(reduced.simd_gt(real(SMALL)), reduced);
+    while doublings < MOST_DOUBLINGS && reduced.simd_gt(T::number(SMALL)).any() {
+        reduced = (reduced * quarter).select(reduced.simd_gt(T::number(SMALL)), reduced);
         doublings += 1;
     }
     let (mut sinc, mut versine) = small(reduced);
     for _ in 0..doublings {
         let behind = reduced.simd_lt(q);
-        let next = (sinc * (T::one() - reduced * versine), sinc * sinc * real(0.5));
+        let next = (sinc * (T::one() - reduced * versine), sinc * sinc * T::number(0.5));
         sinc = next.0.select(behind, sinc);
         versine = next.1.select(behind, versine);
-        reduced = (reduced * real(4.0)).select(behind, reduced);
+        reduced = (reduced * T::number(4.0)).select(behind, reduced);
     }
-    let far = q.simd_gt(real(FAR));
+    let far = q.simd_gt(T::number(FAR));
     if far.any() {
         let cosine = T::one() - q * versine;
         let length = (q * sinc * sinc + cosine * cosine).simd_sqrt();
@@ -60,8 +60,8 @@ fn large<T: Real>(q: T) -> (T, T) {
         versine = ((T::one() - cosine / length) / q).select(far, versine);
         let epsilon = T::simd_default_epsilon();
         let is_known = (q * epsilon * epsilon).simd_lt(T::one());
-        sinc = sinc.select(is_known, real(f64::NAN));
-        versine = versine.select(is_known, real(f64::NAN));
+        sinc = sinc.select(is_known, T::number(f64::NAN));
+        versine = versine.select(is_known, T::number(f64::NAN));
     }
     (sinc, versine)
 }
@@ -69,8 +69,8 @@ fn large<T: Real>(q: T) -> (T, T) {
 /// `Σ a_k q^k` in pairs, which don't wait for each other; the small ones first, or what is less than half of
 /// a rounding would be lost each time.
 #[inline(always)]
-fn polynomial<T: Real>(a: &[f64; 8], q: T, q2: T, q4: T) -> T {
-    let pair = |k: usize| real::<T>(a[k]) + q * real(a[k + 1]);
+fn polynomial<T: Number>(a: &[f64; 8], q: T, q2: T, q4: T) -> T {
+    let pair = |k: usize| T::number(a[k]) + q * T::number(a[k + 1]);
     pair(0) + (q2 * pair(2) + q4 * (pair(4) + q2 * pair(6)))
 }
 

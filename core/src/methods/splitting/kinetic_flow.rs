@@ -101,6 +101,11 @@ impl<T: Real> SymmetricBody<T> {
         }
         Ok(Self { transverse: j.m11, axial: j.m33 })
     }
+
+    /// `J_1` and `J_3`.
+    pub(super) fn moments(flow: &Self) -> (T, T) {
+        (flow.transverse, flow.axial)
+    }
 }
 
 /// `h/J_1` and `h (1/J_1 − 1/J_3)`.

@@ -1,6 +1,7 @@
 //! Splittings in lanes: shares are gathered as they were folded for each body alone.
 
-use super::{Kick, KineticFlow, Share, Spin, Split, Stage, Stages};
+use super::preprocessed_flow::PreprocessedDrift;
+use super::{Kick, KineticFlow, PreprocessedFlow, Share, Spin, Split, Stage, Stages};
 use crate::mechanics::{Effect, Scalar};
 use crate::numbers::{InLanes, Lanes, Real, lanes_of_fields};
 use nalgebra::SimdValue;
@@ -82,4 +83,16 @@ macro_rules! flow_in_lanes {
     )+};
 }
 
-flow_in_lanes!([] SymmetricBody<_>, [] ExactBody<_>, [const ROTATIONS: usize,] SplitBody<ROTATIONS, _>);
+flow_in_lanes!(
+    [] SymmetricBody<_>, [] ExactBody<_>, [] PreprocessedFlow<_>, [const ROTATIONS: usize,] SplitBody<ROTATIONS, _>
+);
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] PreprocessedFlow<T> => PreprocessedFlow<T::Element>, as PreprocessedFlow
+    { lanes: [inertia], scalars: [], shared: [order] }
+);
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] PreprocessedDrift<T> => PreprocessedDrift<T::Element>, as PreprocessedDrift
+    { lanes: [modified], scalars: [h], shared: [] }
+);

@@ -1,40 +1,100 @@
 //! The derivatives of a splitting: those of its kicks are the scene's, those of its drifts the flow's.
 
-use super::{Flow, KineticFlow, Split};
-use crate::error::SetupError;
+use nalgebra::{Matrix3, Vector3};
+
+use super::kinetic_flow::SymmetricBody;
+use super::{Flow, Kick, KineticFlow, Split};
+use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
+use crate::groups::rotation_functions::stumpff;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::linearised::{Change, Linearisable, Pass, Stage};
+use crate::motion::linearised::{Change, Flown, Linearisable, Pass, Stage};
+use crate::motion::{Plan, StepReport, Summation};
 use crate::numbers::{Real, real};
 
-/// A kinetic flow that can be differentiated: one that is declared with `gradients`.
+/// A kinetic flow that can be differentiated: [`SymmetricBody`], [`ExactBody`](super::ExactBody), and every one that is
+/// declared with `gradients`.
 ///
-/// Every such declaration is one; there is nothing to implement by hand.
+/// A flow written elsewhere can't be one, as only the library makes what is shown to a [`Pass`].
 ///
 /// Its parameters are behind those of the scene, as a term of their own: in a splitting the body moves by the flow's
 /// inertia, not by the scene's. What depends on both, as an inertia that the two share, sums both derivatives.
 #[diagnostic::on_unimplemented(
     message = "the derivatives of the flow `{Self}` aren't known",
-    label = "not declared with `gradients`",
-    note = "take a declared body for the flow, as `RigidBody`, `PrincipalBody` or `GeodesicBody` of `liestep::effects`"
+    label = "neither declared with `gradients` nor exact",
+    note = "take `SymmetricBody`, `ExactBody`, or a declared body, as `RigidBody` or `PrincipalBody` of `liestep::effects`"
 )]
 pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
-    /// The declaration.
-    type Declared: SecondDerivatives<Scalar = T, Group = SO3<T>, Advected = ()>;
+    /// How many scalars its parameters have.
+    const PARAMETERS: usize;
 
-    /// The declaration of a flow.
-    fn declared(flow: &Self) -> &Self::Declared;
+    /// Shows them.
+    fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>);
+
+    /// Shows a pass what the flow did in this time, s; its parameters are behind so many others.
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>);
 }
 
 impl<T: Real, L> DifferentiableFlow<T> for L
 where
     L: DiscreteLagrangian<Scalar = T, Group = SO3<T>, Advected = ()> + SecondDerivatives + Regular + Clone,
 {
-    type Declared = L;
+    const PARAMETERS: usize = <L as SecondDerivatives>::PARAMETERS;
 
-    fn declared(flow: &Self) -> &L {
-        flow
+    fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
+        Effect::describe(flow, visitor);
     }
+
+    #[inline(always)]
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>) {
+        pass.stage(&Stage::step(flow, time, event, ()).behind(first));
+    }
+}
+
+/// With `F = exp(t p̂) exp(−s p_3 E_3)`, where `t = h/J_1` and `s = h (1/J_1 − 1/J_3)`,
+///
+/// ```text
+/// ε = dexp(t p̂) δ(t p) − δ(s p_3) F e_3        dexp(x̂) = I + c₂(|x|²) x̂ + c₃(|x|²) x̂²
+/// ```
+impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
+    const PARAMETERS: usize = 2;
+
+    fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
+        Self::describe(flow, visitor);
+    }
+
+    #[inline(always)]
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>) {
+        let (transverse, axial) = Self::moments(flow);
+        let (momentum, increment) = (event.before.momentum, event.increment);
+        let t = time / transverse;
+        let s = t * ((axial - transverse) / axial);
+        // The second factor turns about the third axis.
+        let axis: Vector3<T> = increment.column(2) + Vector3::z();
+        let x = momentum * t;
+        let (q, hat) = (x.norm_squared(), x.cross_matrix());
+        let of_direction = (Matrix3::identity() + hat * stumpff::<T, 2>(q) + hat * hat * stumpff::<T, 3>(q)) * t;
+        let turn_by_momentum = of_direction - Matrix3::from_columns(&[Vector3::zeros(), Vector3::zeros(), axis * s]);
+        // Along p itself dexp is one.
+        let spin = axis * momentum.z;
+        let by_transverse = (spin - momentum) * (t / transverse);
+        let by_axial = spin * -(time / (axial * axial));
+        let by_parameters = [(first, by_transverse), (first + 1, by_axial)];
+        pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
+    }
+}
+
+/// A turn by `F`, whose increment this is, of a body with this momentum before it.
+#[inline(always)]
+pub(super) fn flown<'a, T: Real>(
+    turn_by_momentum: Matrix3<T>,
+    increment: &Matrix3<T>,
+    momentum: &Vector3<T>,
+    by_parameters: &'a [(usize, Vector3<T>)],
+) -> Flown<'a, SO3<T>> {
+    let turned_back = (increment + Matrix3::identity()).transpose();
+    let end_by_turn = turned_back * momentum.cross_matrix();
+    Flown { turn_by_momentum, turned_back, carried: turned_back, end_by_turn, by_parameters }
 }
 
 impl<S, K> Linearisable<S> for Split<S, K>
@@ -43,12 +103,12 @@ where
     K: DifferentiableFlow<Scalar<S>>,
 {
     fn parameters(&self) -> usize {
-        S::PARAMETERS + K::Declared::PARAMETERS
+        S::PARAMETERS + K::PARAMETERS
     }
 
     fn describe_parameters(&self, scene: &S, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         scene.describe(visitor);
-        Effect::describe(K::declared(&self.kinetic), visitor);
+        K::describe_parameters(&self.kinetic, visitor);
     }
 
     fn check_stages(&self) -> Result<(), SetupError> {
@@ -56,7 +116,35 @@ where
     }
 
     fn stages(&self) -> usize {
-        self.scheme.shares().map(|(flow, _)| changes(flow)).sum()
+        self.scheme.shares().count()
+    }
+
+    /// A turn about the axis that all drifts share is made once a step, after them, which is the same only for a potential
+    /// that is symmetric about it. Derivatives go to others, too, so the drifts are made with their turns for them.
+    #[inline(always)]
+    fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut (),
+    ) -> Result<StepReport, StepError> {
+        if self.spin.is_none() {
+            return self.step(scene, motion, kept);
+        }
+        let (mut whole, mut plain) = (*motion, *motion.now());
+        for (flow, part) in self.scheme.shares() {
+            let time = self.h * real(part);
+            match flow {
+                Flow::Kick => self.kick(&Kick { time, mobility: None }, &mut whole),
+                Flow::Drift => {
+                    let drift = K::drift(&self.kinetic, time).map_err(|_| StepError::NonFinite { what: "drift" })?;
+                    Self::drift(&drift, &mut whole, &mut 0)?;
+                }
+            }
+        }
+        let report = self.step(scene, &mut plain, kept)?;
+        motion.replace(plain);
+        Ok(report)
     }
 
     #[inline(always)]
@@ -67,27 +155,11 @@ where
         event: &Change<SO3<Scalar<S>>, S::Advected>,
         pass: &mut impl Pass<SO3<Scalar<S>>>,
     ) {
-        let mut before = 0;
-        for (flow, part) in self.scheme.shares() {
-            let time = self.h * real(part);
-            match flow {
-                Flow::Kick if before == index => pass.stage(&Stage::kick(scene, time, event)),
-                Flow::Drift if before == index => {
-                    let drift = Stage::step(K::declared(&self.kinetic), time, event, ());
-                    pass.stage(&drift.behind(S::PARAMETERS));
-                }
-                _ => {}
-            }
-            before += changes(flow);
+        let Some((flow, part)) = self.scheme.shares().nth(index) else { return };
+        let time = self.h * real(part);
+        match flow {
+            Flow::Kick => pass.stage(&Stage::kick(scene, time, event)),
+            Flow::Drift => K::visit(&self.kinetic, time, event, S::PARAMETERS, pass),
         }
-    }
-}
-
-/// How often a share changes the motion: a drift turns the body, and then turns the momentum in its axes, which is one
-/// stage.
-fn changes(flow: Flow) -> usize {
-    match flow {
-        Flow::Drift => 2,
-        Flow::Kick => 1,
     }
 }

@@ -329,9 +329,14 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         motion: &mut M,
         iterations: &mut u32,
     ) -> Result<(), StepError> {
-        let turn = K::advance(drift, &motion.now().momentum)?;
-        motion.turn(&turn.increment);
-        motion.push(&turn.change);
+        let momentum = motion.now().momentum;
+        // Builds with debug assertions are to be built soon: there it is called, and compiled once for all methods.
+        let turn = if const { cfg!(debug_assertions) } {
+            advance_called::<_, K>(drift, &momentum)?
+        } else {
+            K::advance(drift, &momentum)?
+        };
+        motion.turn_and_push(&turn.increment, &turn.change);
         *iterations += turn.iterations;
         Ok(())
     }
@@ -354,6 +359,12 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 }
 
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
+
+/// [`KineticFlow::advance`], not inlined.
+#[inline(never)]
+fn advance_called<T: Real, K: KineticFlow<T>>(drift: &K::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
+    K::advance(drift, momentum)
+}
 
 /// A share of this length, s, and if it is a kick with a gradient, s³.
 fn share_of<T: Real, K: KineticFlow<T>>(

@@ -19,8 +19,8 @@ use crate::numbers::{Real, real};
 /// flows, such as that of a Lagrangian of order 6, are Poisson at any step.
 #[derive(Clone, Copy, Debug)]
 pub struct PreprocessedFlow<T = f64> {
-    inertia: DiagonalNonstandardInertia<T>,
-    order: PreprocessedOrder,
+    pub(super) inertia: DiagonalNonstandardInertia<T>,
+    pub(super) order: PreprocessedOrder,
 }
 
 impl<T: Real> PreprocessedFlow<T> {
@@ -34,8 +34,8 @@ impl<T: Real> PreprocessedFlow<T> {
 /// A preprocessed flow over one share of the step.
 #[derive(Clone, Copy, Debug)]
 pub struct PreprocessedDrift<T> {
-    modified: ModifiedBody<T>,
-    h: T,
+    pub(super) modified: ModifiedBody<T>,
+    pub(super) h: T,
 }
 
 impl<T: Real> KineticFlow<T> for PreprocessedFlow<T> {

@@ -2,14 +2,14 @@
 
 use nalgebra::Matrix3;
 
-use crate::numbers::Real;
+use crate::numbers::{Number, Real};
 
 /// A real part and the parts along three axes.
 pub(super) type Quaternion<T> = [T; 4];
 
 /// The product: first the right one.
 #[inline(always)]
-pub(super) fn product<T: Real>([s, a, b, c]: Quaternion<T>, [w, x, y, z]: Quaternion<T>) -> Quaternion<T> {
+pub(super) fn product<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y, z]: Quaternion<T>) -> Quaternion<T> {
     [
         s * w - (a * x + (b * y + c * z)),
         s * x + (a * w + (b * z - c * y)),
@@ -20,7 +20,7 @@ pub(super) fn product<T: Real>([s, a, b, c]: Quaternion<T>, [w, x, y, z]: Quater
 
 /// The product with one that has no part along the third axis.
 #[inline(always)]
-pub(super) fn product_across<T: Real>([s, a, b, c]: Quaternion<T>, [w, x, y]: [T; 3]) -> Quaternion<T> {
+pub(super) fn product_across<T: Number>([s, a, b, c]: Quaternion<T>, [w, x, y]: [T; 3]) -> Quaternion<T> {
     [s * w - (a * x + b * y), (s * x + a * w) - c * y, (s * y + b * w) + c * x, c * w + (a * y - b * x)]
 }
 

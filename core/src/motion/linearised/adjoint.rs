@@ -9,7 +9,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup;
 use crate::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SecondDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
-use crate::motion::linearised::stage::{Cotangent, Pass, Stage};
+use crate::motion::linearised::stage::{Cotangent, Flown, Pass, Stage};
 use crate::motion::linearised::{Linearisable, Linearised};
 use crate::motion::stepper::{StateOf, Stepper};
 use crate::motion::summation::Motion;
@@ -47,6 +47,11 @@ impl<G: LieGroup> Pass<G> for Back<'_, G> {
     #[inline(always)]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         self.cotangent = stage.pull(&self.cotangent, self.gradient);
+    }
+
+    #[inline(always)]
+    fn flown(&mut self, flown: &Flown<'_, G>) {
+        self.cotangent = flown.pull(&self.cotangent, self.gradient);
     }
 }
 
@@ -253,9 +258,10 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         for n in (0..steps).rev() {
             inverse.recorded(&mut now, &events)?;
             let mut made = events.borrow_mut();
-            // Schemes are symmetric: the stages of a step back are those of a step, from the last to the first.
+            // The stages of a step back are those of a step, from the last to the first.
             let after = made.iter().skip(1).map(|event| event.before).chain([now.motion]).collect::<Vec<_>>();
-            for ((index, event), after) in made.drain(..).enumerate().zip(after) {
+            let indices = (0..made.len()).rev();
+            for ((index, event), after) in indices.zip(made.drain(..)).zip(after) {
                 let increment = Group::<S>::from_increment(&event.increment).inverse().increment();
                 let undone = Change { before: after, increment };
                 forwards.stepper.plan.visit(&forwards.stepper.scene, index, &undone, &mut back);

@@ -9,7 +9,7 @@
 //!
 //! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
 //! of fourth and sixth order. A scene without it has nothing of this in its program. They go with a scene's own step, on
-//! any group and with forces, with compositions, and with splittings whose flow is declared. `cargo bench --bench
+//! any group and with forces, with compositions, and with splittings whose flow is declared or exact. `cargo bench --bench
 //! gradients` has the costs.
 //!
 //! # Coordinates
@@ -38,6 +38,9 @@
 //! where `∂_ζ` is along `δw = −ζ·w` at fixed `F`. The blocks are [second derivatives](SecondDerivatives) of `l_d`, which
 //! the macro makes of the derived momenta. They add in a sum. Nothing is divided by `h` that cancels later: for (3.13) `A =
 //! (tr(F J_d) I − F J_d)/h`, and the potential is in `∂_ζ` alone.
+//!
+//! Of an exact flow, whose turn is a known function of the momentum, the first line is `ε = ∂_με δμ + ∂_θε δθ`: of a symmetric
+//! body in closed form, of any other by dual numbers through its closed form.
 //!
 //! # The adjoint
 //!
@@ -78,7 +81,7 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use recorded::Change;
-pub use stage::{Cotangent, Pass, Stage};
+pub use stage::{Cotangent, Flown, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
 use alloc::vec::Vec;
@@ -91,6 +94,7 @@ use crate::motion::declared::Declared;
 use crate::motion::plan::Plan;
 use crate::motion::report::StepReport;
 use crate::motion::stepper::{StateOf, Stepper};
+use crate::motion::summation::Summation;
 use crate::numbers::{Kernel, Vectors, dispatch};
 use recorded::Recorded;
 
@@ -100,7 +104,7 @@ use recorded::Recorded;
 #[diagnostic::on_unimplemented(
     message = "the derivatives of a step of `{Self}` aren't known",
     label = "not with this method",
-    note = "known are those of a scene's own step, of compositions, and of splittings whose flow is declared with `gradients`"
+    note = "known are those of a scene's own step, of compositions, and of splittings whose flow is exact or declared with `gradients`"
 )]
 pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// How many scalars the parameters have: those of the scene, and behind them those of what else the plan moves by.
@@ -124,6 +128,21 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
 
     /// How many changes a step makes.
     fn stages(&self) -> usize;
+
+    /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order.
+    ///
+    /// # Errors
+    ///
+    /// As [`Plan::step`].
+    #[inline(always)]
+    fn record<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        self.step(scene, motion, kept)
+    }
 
     /// Shows the stage that has made the change of this number to a pass.
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
@@ -261,7 +280,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
         let mut recorded = Recorded { motion: state.motion, events };
-        match plan.step(scene, &mut recorded, &mut state.kept) {
+        match plan.record(scene, &mut recorded, &mut state.kept) {
             Ok(report) => {
                 state.motion = recorded.motion;
                 Ok(report)

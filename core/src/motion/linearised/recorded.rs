@@ -56,6 +56,12 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
     }
 
     #[inline(always)]
+    fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
+        self.note(*increment);
+        self.motion.turn_and_push(increment, change);
+    }
+
+    #[inline(always)]
     fn proceed(&mut self, step: &Proceeded<G, A>) {
         self.note(step.increment);
         self.motion.proceed(step);

@@ -188,10 +188,58 @@ impl<V> Cotangent<V> {
     }
 }
 
+/// A change of the motion whose turn is a known function `F(μ)` of the momentum and of parameters: an exact flow.
+///
+/// ```text
+/// ε = ∂_με δμ + ∂_θε δθ        ζ⁺ = Ad_{F⁻¹}(ζ + ε)        δμ⁺ = Ad*_F(δμ + ad*_ε μ)
+/// ```
+///
+/// As a [`Stage`], it is made by the library's own plans and read by its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Flown<'a, G: LieGroup> {
+    /// `∂ε/∂μ`
+    pub(crate) turn_by_momentum: SquareOf<G>,
+    /// `Ad_{F⁻¹}`
+    pub(crate) turned_back: SquareOf<G>,
+    /// `Ad*_F`
+    pub(crate) carried: SquareOf<G>,
+    /// `∂μ⁺/∂ε`, which is `Ad*_F ad*_ε μ` along `ε`.
+    pub(crate) end_by_turn: SquareOf<G>,
+    /// `∂ε/∂θ` by the numbers of the parameters.
+    pub(crate) by_parameters: &'a [(usize, G::Vector)],
+}
+
+pub(crate) type SquareOf<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Square;
+
+impl<G: LieGroup> Flown<'_, G> {
+    /// Takes the gradient at the end to the beginning, and adds the parameters' shares.
+    #[inline(always)]
+    pub(super) fn pull(&self, end: &Cotangent<G::Vector>, gradient: &mut [G::Scalar]) -> Cotangent<G::Vector> {
+        let attitude = pulled::<G>(&self.turned_back, &end.attitude);
+        let by_turn = attitude + pulled::<G>(&self.end_by_turn, &end.momentum);
+        for (number, turn) in self.by_parameters {
+            if let Some(sum) = gradient.get_mut(*number) {
+                *sum += by_turn.dot(turn);
+            }
+        }
+        let momentum = pulled::<G>(&self.carried, &end.momentum) + pulled::<G>(&self.turn_by_momentum, &by_turn);
+        Cotangent { attitude, momentum }
+    }
+}
+
+/// `Mᵀ a`
+#[inline(always)]
+fn pulled<G: LieGroup>(matrix: &SquareOf<G>, a: &G::Vector) -> G::Vector {
+    G::Vector::of_four(&G::Vector::map_four(&G::Vector::transpose(matrix), &G::Vector::beside(&[*a; 4])), 0)
+}
+
 /// What is done with the stages of a step, one after the other: by the derivatives of the library's own plans.
 pub trait Pass<G: LieGroup> {
     /// Takes notice of a stage.
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>);
+
+    /// Takes notice of an exact flow.
+    fn flown(&mut self, flown: &Flown<'_, G>);
 }
 
 /// One of the scalars.

@@ -8,7 +8,7 @@ use crate::groups::LieGroup;
 use crate::mechanics::pattern;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
 use crate::motion::linearised::recorded::Change;
-use crate::motion::linearised::stage::{Kind, Pass, Stage};
+use crate::motion::linearised::stage::{Flown, Kind, Pass, Stage};
 use crate::numbers::{Coordinates, Entries as _, is_finite, real};
 use nalgebra::SimdComplexField as _;
 
@@ -229,6 +229,30 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
                     }
                 }
             }
+        }
+    }
+
+    #[inline(always)]
+    fn flown(&mut self, flown: &Flown<'_, G>) {
+        if !self.shares.is_empty() {
+            let zero = G::Vector::zero();
+            self.shares.fill((zero, zero));
+            for (number, turn) in flown.by_parameters {
+                if let Some(share) = self.shares.get_mut(*number) {
+                    share.0 = share.0 + *turn;
+                }
+            }
+        }
+        for k in 0..self.columns.len() {
+            let shares = self.shares_of(k);
+            let FourColumns { attitude, momentum } = &mut self.columns[k];
+            let mut turn = G::Vector::map_four(&flown.turn_by_momentum, momentum);
+            if let Some((of_parameters, _)) = shares {
+                turn = turn + of_parameters;
+            }
+            let carried = G::Vector::map_four(&flown.carried, momentum);
+            *momentum = carried + G::Vector::map_four(&flown.end_by_turn, &turn);
+            *attitude = G::Vector::map_four(&flown.turned_back, &(*attitude + turn));
         }
     }
 }

@@ -16,12 +16,12 @@
 //! as a quaternion of any length. Written with `K_a − ν = B (A a² + B b²)` and `K_b − ν = A (A a² + B b²)`, so that
 //! nothing cancels where a motion passes the middle axis and all are small.
 
+use super::series::{Functions, Invariants, LONG, long};
+use super::{Form, Turned, rotor};
+use crate::methods::splitting::quaternion::product;
 use nalgebra::SimdBool as _;
 
-use super::series::{Functions, Invariants, LONG, long};
-use super::{ExactDrift, Turned, rotor};
-use crate::methods::splitting::quaternion::product;
-use crate::numbers::{Mask, Real, real};
+use crate::numbers::Number;
 
 /// Enough for any angle of a double that has a digit of its direction left.
 const MOST_DOUBLINGS: u32 = 60;
@@ -42,7 +42,7 @@ struct About<T> {
 }
 
 /// What is doubled with.
-struct Curve<T: Real> {
+struct Curve<T: Number> {
     a: T,
     b: T,
     ka: T,
@@ -54,26 +54,26 @@ struct Curve<T: Real> {
     /// `|u|²`
     square: T,
     /// The roots `K_a ≥ K_b`, where `c` can't be less than zero.
-    c_is_larger: Mask<T>,
+    c_is_larger: T::Mask,
     /// On the separatrix `c = d`, and both go to zero.
-    is_separatrix: Mask<T>,
+    is_separatrix: T::Mask,
 }
 
-impl<T: Real> ExactDrift<T> {
+impl<T: Number> Form<T> {
     /// By the functions over a part of the drift that is short enough, doubled as often as it takes.
     pub(super) fn doubled(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
-        let (one, half, quarter) = (T::one(), real::<T>(0.5), real::<T>(0.25));
+        let (one, half, quarter) = (T::one(), T::number(0.5), T::number(0.25));
         let (size, [a, b, c]) = (invariants.size(), u);
         // Of half the drift, and the square of that; lanes that are short enough wait.
         let (mut root, mut part, mut doublings) = (half, quarter, 1);
-        while doublings < MOST_DOUBLINGS && (size * part).simd_gt(real(LONG)).any() {
-            let is_far = (size * part).simd_gt(real(LONG));
+        while doublings < MOST_DOUBLINGS && (size * part).simd_gt(T::number(LONG)).any() {
+            let is_far = (size * part).simd_gt(T::number(LONG));
             (root, part) = ((root * half).select(is_far, root), (part * quarter).select(is_far, part));
             doublings += 1;
         }
         // An angle without a digit left is none.
         let epsilon = T::simd_default_epsilon();
-        let part = part.select((size * epsilon * epsilon).simd_lt(one), real(f64::NAN));
+        let part = part.select((size * epsilon * epsilon).simd_lt(one), T::number(f64::NAN));
         let reduced = invariants.scaled(part);
         let Functions { n, integral, .. } = long(&reduced);
         let square = one / n;
@@ -86,7 +86,7 @@ impl<T: Real> ExactDrift<T> {
             let is_behind = reached.simd_lt(one);
             about = curve.turned_on(&about, &point).select(is_behind, &about);
             point = curve.doubled(&point).select(is_behind, &point);
-            reached = (reached * real(4.0)).select(is_behind, reached);
+            reached = (reached * T::number(4.0)).select(is_behind, reached);
         }
         let end = curve.doubled(&point);
         let (ss, sc, sd, cd) = (end.s * end.s, end.s * end.c, end.s * end.d, end.c * end.d);
@@ -98,7 +98,8 @@ impl<T: Real> ExactDrift<T> {
         let b_end = (b * end.c + self.a * (a * c) * sd) / den;
         let c_end = (c * cd + self.b_less_a * (a * b) * end.s) / den;
         let Point { s, c: of_c, d: of_d } = point;
-        let real_part = (one + self.c_squared * (c * c_end) * (s * s)) * (of_c * of_d * real(2.0)) / curve.base(&point);
+        let real_part =
+            (one + self.c_squared * (c * c_end) * (s * s)) * (of_c * of_d * T::number(2.0)) / curve.base(&point);
         let across = [real_part, s * self.a * (a + a_end), s * self.b * (b + b_end)];
         let more = curve.bend * part * integral;
         let turn = rotor([a + a * more, b + b * more, c + c * more]);
@@ -110,7 +111,7 @@ impl<T: Real> ExactDrift<T> {
         let Invariants { ka, kb, .. } = *invariants;
         let h = self.difference(u);
         let is_separatrix = (h * self.b_less_a).simd_abs().simd_le(invariants.size() * least::<T>() * least());
-        let h = T::zero().select(is_separatrix, h);
+        let h = h.vanishing(is_separatrix);
         let (bend, square) = (-(self.c_squared * h), a * a + (b * b + c * c));
         Curve { a: self.a, b: self.b, ka, kb, h, bend, square, c_is_larger: kb.simd_le(ka), is_separatrix }
     }
@@ -118,11 +119,11 @@ impl<T: Real> ExactDrift<T> {
 
 /// What `c` and `d` are clamped to on the separatrix, where they go to zero and their ratio doesn't: the square of a
 /// rounding, whose square a single has, too.
-fn least<T: Real>() -> T {
+fn least<T: Number>() -> T {
     T::simd_default_epsilon() * T::simd_default_epsilon()
 }
 
-impl<T: Real> Curve<T> {
+impl<T: Number> Curve<T> {
     /// `1 − K_a K_b s⁴`.
     fn base(&self, Point { s, c, d }: &Point<T>) -> T {
         let (ss, cc, dd) = (*s * *s, *c * *c, *d * *d);
@@ -134,7 +135,7 @@ impl<T: Real> Curve<T> {
         // c² − K_b s² d² = c² d² + (K_a − K_b) s², and the other with the other sign.
         let (both, apart) = ((c * d) * (c * d), (self.b - self.a) * self.h * (s * s));
         let (of_c, of_d) = ((both + apart) / base, (both - apart) / base);
-        let clamped = |x: T, is_clamped: Mask<T>| x.simd_max(least()).select(is_clamped, x);
+        let clamped = |x: T, is_clamped: T::Mask| x.simd_max(least()).select(is_clamped, x);
         let is_on = self.is_separatrix;
         Point {
             s: (s + s) * (c * d) / base,
@@ -164,15 +165,15 @@ impl<T: Real> Curve<T> {
     }
 }
 
-impl<T: Real> Point<T> {
-    fn select(&self, mask: Mask<T>, other: &Self) -> Self {
+impl<T: Number> Point<T> {
+    fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let Self { s, c, d } = *self;
         Self { s: s.select(mask, other.s), c: c.select(mask, other.c), d: d.select(mask, other.d) }
     }
 }
 
-impl<T: Real> About<T> {
-    fn select(&self, mask: Mask<T>, other: &Self) -> Self {
+impl<T: Number> About<T> {
+    fn select(&self, mask: T::Mask, other: &Self) -> Self {
         Self { w: self.w.select(mask, other.w), f: self.f.select(mask, other.f) }
     }
 }

@@ -33,6 +33,15 @@ impl<T: Real> Frame<T> {
         (moments, Self::Turned(axes))
     }
 
+    /// In which place among the body's axes each of these is; those of other bodies are in their own order.
+    pub(super) fn places(&self) -> [usize; 3] {
+        match self {
+            Self::Along(Axes::Yzx) => [1, 2, 0],
+            Self::Along(Axes::Zxy) => [2, 0, 1],
+            _ => [0, 1, 2],
+        }
+    }
+
     /// The components of a body's vector along the axes.
     #[inline(always)]
     pub(super) fn within(&self, v: &Vector3<T>) -> [T; 3] {

@@ -31,6 +31,7 @@
 
 mod doubling;
 mod frame;
+mod linearised;
 mod series;
 
 use nalgebra::{Matrix3, SimdBool as _, Vector3};
@@ -44,7 +45,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
-use crate::numbers::{Mask, Real, is_finite, lanes_of_fields, real, reported};
+use crate::numbers::{Number, Real, is_finite, lanes_of_fields, reported};
 
 /// The free motion of a body with any three moments, exactly: to rounding, over any time.
 ///
@@ -111,6 +112,12 @@ impl<T: Real> ExactBody<T> {
 #[derive(Clone, Copy, Debug)]
 pub struct ExactDrift<T> {
     frame: Frame<T>,
+    form: Form<T>,
+}
+
+/// Its constants about the principal axes.
+#[derive(Clone, Copy, Debug)]
+struct Form<T> {
     /// `h/(2 J_c)`, which makes `u` of the momentum.
     scale: T,
     a: T,
@@ -129,7 +136,12 @@ lanes_of_fields!(
 
 lanes_of_fields!(
     impl[T: Real<Element: Real>] ExactDrift<T> => ExactDrift<T::Element>, as ExactDrift
-    { lanes: [frame], scalars: [scale, a, b, b_less_a, c_squared, a_squared, b_squared], shared: [] }
+    { lanes: [frame, form], scalars: [], shared: [] }
+);
+
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] Form<T> => Form<T::Element>, as Form
+    { lanes: [], scalars: [scale, a, b, b_less_a, c_squared, a_squared, b_squared], shared: [] }
 );
 
 impl<T: Real> KineticFlow<T> for ExactBody<T> {
@@ -152,15 +164,11 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
-        let [of_a, of_b, of_c] = self.moments;
-        // Without cancellation.
-        let (a, b) = ((of_c - of_a) / of_a, (of_c - of_b) / of_b);
-        let (scale, b_less_a) = (h * real(0.5) / of_c, b - a);
-        let (a_squared, b_squared) = (-(a * b_less_a), b * b_less_a);
-        if !is_finite(scale + a_squared + b_squared) {
+        let form = Form::of(self.moments, h);
+        if !is_finite(form.scale + form.a_squared + form.b_squared) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        Ok(ExactDrift { frame: self.frame, scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared })
+        Ok(ExactDrift { frame: self.frame, form })
     }
 
     /// Which axis is which is decided once: a straight line of code for each case is faster than one that parts and meets
@@ -186,14 +194,33 @@ struct Half<T> {
     about: Quaternion<T>,
 }
 
-impl<T: Real> Half<T> {
-    fn select(&self, mask: Mask<T>, other: &Self) -> Self {
+impl<T: Number> Half<T> {
+    fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let about = core::array::from_fn(|k| self.about[k].select(mask, other.about[k]));
         Self { n: self.n.select(mask, other.n), mu: self.mu.select(mask, other.mu), about }
     }
 }
 
 impl<T: Real> ExactDrift<T> {
+    #[inline(always)]
+    fn turn(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
+        let turned = self.form.turned(frame.within(&(momentum * self.form.scale)));
+        let increment = scaled_increment(frame.back(turned.quaternion)) * turned.inverse_square;
+        let change = SO3::adjoint_transpose_increment(&increment, momentum);
+        Turn { increment, change, iterations: 0 }
+    }
+}
+
+impl<T: Number> Form<T> {
+    /// Of the moments about the three axes, the last the middle one, and the time, s.
+    fn of([of_a, of_b, of_c]: [T; 3], h: T) -> Self {
+        // Without cancellation.
+        let (a, b) = ((of_c - of_a) / of_a, (of_c - of_b) / of_b);
+        let (scale, b_less_a) = (h * T::number(0.5) / of_c, b - a);
+        let (a_squared, b_squared) = (-(a * b_less_a), b * b_less_a);
+        Self { scale, a, b, b_less_a, c_squared: -(a * b), a_squared, b_squared }
+    }
+
     #[inline(always)]
     fn invariants(&self, [a, b, c]: [T; 3]) -> Invariants<T> {
         let (aa, bb, cc) = (a * a, b * b, c * c);
@@ -208,22 +235,19 @@ impl<T: Real> ExactDrift<T> {
         self.a * (a * a) + self.b * (b * b)
     }
 
+    /// The drift, for the momentum in units of half of it.
     #[inline(always)]
-    fn turn(&self, frame: &Frame<T>, momentum: &Vector3<T>) -> Turn<T> {
-        let u = frame.within(&(momentum * self.scale));
+    fn turned(&self, u: [T; 3]) -> Turned<T> {
         let invariants = self.invariants(u);
         let size = invariants.size();
-        let (is_short, is_long) = (size.simd_le(real(SHORT)), size.simd_le(real(LONG)));
-        let turned = if is_short.all() {
+        let (is_short, is_long) = (size.simd_le(T::number(SHORT)), size.simd_le(T::number(LONG)));
+        if is_short.all() {
             self.whole(u, &invariants, &self.near(u, &short(&invariants)))
         } else if !is_short.any() && is_long.all() {
             self.whole(u, &invariants, &self.near(u, &long(&invariants)))
         } else {
             self.beyond(u, &invariants)
-        };
-        let increment = scaled_increment(frame.back(turned.quaternion)) * turned.inverse_square;
-        let change = SO3::adjoint_transpose_increment(&increment, momentum);
-        Turn { increment, change, iterations: 0 }
+        }
     }
 
     /// Where the functions are those of half the drift.
@@ -264,7 +288,7 @@ impl<T: Real> ExactDrift<T> {
     /// twice that of half the time and once more, by the tangent to the curve at the point; see [`doubling`].
     #[inline(always)]
     fn farther<const DOUBLINGS: usize>(&self, u: [T; 3], invariants: &Invariants<T>) -> Half<T> {
-        let k = real::<T>;
+        let k = T::number;
         let (difference, q) = (self.difference(u), dot(u));
         let bend = -(self.c_squared * difference);
         let mut root = k([1.0, 0.5, 0.25][DOUBLINGS]);
@@ -303,7 +327,7 @@ impl<T: Real> ExactDrift<T> {
     fn beyond(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
         let size = invariants.size();
         let [is_short, is_long, is_far, is_farther] =
-            [SHORT, LONG, FAR, FARTHER].map(|limit| size.simd_le(real(limit)));
+            [SHORT, LONG, FAR, FARTHER].map(|limit| size.simd_le(T::number(limit)));
         let mut half = Half { n: T::one(), mu: T::one(), about: [T::one(); 4] };
         if (is_farther & !is_far).any() {
             half = self.farther::<2>(u, invariants);
@@ -328,7 +352,7 @@ const FARTHER: f64 = 16.0 * LONG;
 
 /// `exp(2 (1 + I) û)` as a quaternion.
 #[inline(always)]
-fn rotor_and_more<T: Real>(u: [T; 3], more: T) -> Quaternion<T> {
+fn rotor_and_more<T: Number>(u: [T; 3], more: T) -> Quaternion<T> {
     let [w, f] = turn_and_more(dot(u), more);
     [w, f * u[0], f * u[1], f * u[2]]
 }
@@ -336,24 +360,24 @@ fn rotor_and_more<T: Real>(u: [T; 3], more: T) -> Quaternion<T> {
 /// `w` and `f` of the quaternion `(w, f u)` of `exp(2 (1 + I) û)` where `|u|² = q` and `I` is small: `I |u|` is less than
 /// 0.006, so that few terms of its sine and cosine do, and those of `|u|` needn't wait for it.
 #[inline(always)]
-fn turn_and_more<T: Real>(q: T, more: T) -> [T; 2] {
+fn turn_and_more<T: Number>(q: T, more: T) -> [T; 2] {
     let (sinc, versine) = rotation_coefficients(q);
     let cosine = T::one() - q * versine;
     let (sinc_q, square) = (sinc * q, (more * more) * q);
-    let less = square * (real::<T>(0.5) - square * real(1.0 / 24.0));
-    let more = more - (more * square) * (real::<T>(1.0 / 6.0) - square * real(1.0 / 120.0));
+    let less = square * (T::number(0.5) - square * T::number(1.0 / 24.0));
+    let more = more - (more * square) * (T::number(1.0 / 6.0) - square * T::number(1.0 / 120.0));
     [cosine - (cosine * less + sinc_q * more), sinc + (cosine * more - sinc * less)]
 }
 
 /// `|u|²`
 #[inline(always)]
-fn dot<T: Real>([a, b, c]: [T; 3]) -> T {
+fn dot<T: Number>([a, b, c]: [T; 3]) -> T {
     (a * a + b * b) + c * c
 }
 
 /// `exp(2v̂)` as a quaternion.
 #[inline(always)]
-fn rotor<T: Real>([x, y, z]: [T; 3]) -> Quaternion<T> {
+fn rotor<T: Number>([x, y, z]: [T; 3]) -> Quaternion<T> {
     let q = dot([x, y, z]);
     let (sinc, versine) = rotation_coefficients(q);
     [T::one() - q * versine, sinc * x, sinc * y, sinc * z]
@@ -367,7 +391,7 @@ struct Turned<T> {
     inverse_square: T,
 }
 
-impl<T: Real> Turned<T> {
+impl<T: Number> Turned<T> {
     /// A rotation about the momentum after one across the middle axis, both of any length.
     #[inline(always)]
     fn by(about: Quaternion<T>, across: [T; 3]) -> Self {
@@ -378,7 +402,7 @@ impl<T: Real> Turned<T> {
         Self { quaternion: product_across(about, across), inverse_square: T::one() / (square * length) }
     }
 
-    fn select(&self, mask: Mask<T>, other: &Self) -> Self {
+    fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let quaternion = core::array::from_fn(|k| self.quaternion[k].select(mask, other.quaternion[k]));
         Self { quaternion, inverse_square: self.inverse_square.select(mask, other.inverse_square) }
     }

@@ -1,6 +1,6 @@
 //! The elliptic functions of a free body over a short time, as polynomials.
 
-use crate::numbers::{Real, real};
+use crate::numbers::Number;
 
 /// What a motion keeps, in units of half the drift: none is negative, and all are zero where the drift is.
 #[derive(Clone, Copy, Debug)]
@@ -13,7 +13,7 @@ pub(super) struct Invariants<T> {
     pub(super) pole: T,
 }
 
-impl<T: Real> Invariants<T> {
+impl<T: Number> Invariants<T> {
     /// What tells how short the drift is.
     #[inline(always)]
     pub(super) fn size(&self) -> T {
@@ -45,8 +45,8 @@ pub(super) const LONG: f64 = 0.05;
 
 /// With `℘` to its fifth coefficient and the integral to its fifth; terms that are far below a rounding are left out.
 #[inline(always)]
-pub(super) fn short<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
-    let k = real::<T>;
+pub(super) fn short<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
+    let k = T::number;
     let Start { e, x, y, c } = start(invariants);
     let (w4, w5) = (x * x * k(1.0 / 3.0), x * y * k(3.0 / 11.0));
     let n = ((T::one() + e) + (x + y)) + (w4 + w5);
@@ -63,8 +63,8 @@ pub(super) fn short<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
 
 /// With `℘` to its ninth coefficient and the integral to its eighth, likewise.
 #[inline(always)]
-pub(super) fn long<T: Real>(invariants: &Invariants<T>) -> Functions<T> {
-    let k = real::<T>;
+pub(super) fn long<T: Number>(invariants: &Invariants<T>) -> Functions<T> {
+    let k = T::number;
     let Start { e, x, y, c } = start(invariants);
     let (xx, yy, xy) = (x * x, y * y, x * y);
     let (w4, w5) = (xx * k(1.0 / 3.0), xy * k(3.0 / 11.0));
@@ -103,9 +103,9 @@ struct Start<T> {
 }
 
 #[inline(always)]
-fn start<T: Real>(invariants: &Invariants<T>) -> Start<T> {
+fn start<T: Number>(invariants: &Invariants<T>) -> Start<T> {
     let Invariants { kb, ka, apart, pole } = *invariants;
-    let (k, sum) = (real::<T>, kb + ka);
+    let (k, sum) = (T::number, kb + ka);
     let x = (apart * apart) * k(1.0 / 15.0) + (kb * ka) * k(1.0 / 15.0);
     // Three times K_b − e and K_a − e.
     let y = (sum * k(-1.0 / 189.0)) * ((kb + apart) * (ka - apart));

@@ -1,0 +1,71 @@
+//! How the exact motion of a body depends on its momentum and on its inertia: by dual numbers through the closed form.
+//!
+//! The derivatives of elliptic functions by their invariants are quotients that vanish above and below for symmetric
+//! bodies and at the separatrix. The closed form has no such place, and its derivative hasn't either.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::super::linearised::{DifferentiableFlow, flown};
+use super::super::quaternion::product;
+use super::{ExactBody, Form};
+use crate::groups::SO3;
+use crate::mechanics::SceneVisitor;
+use crate::motion::linearised::{Change, Pass};
+use crate::numbers::{Dual, Real};
+
+/// The parameters are the three moments, kg m², and a turn of the principal axes about the body's three, rad: where two
+/// moments are the same, an entry of the inertia beside the diagonal has no derivative by which the axes turn.
+///
+/// Where the body's axes are the principal ones the moments are in their order; otherwise the largest is the first and the
+/// middle one the last.
+impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
+    const PARAMETERS: usize = 6;
+
+    fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
+        let mut moments = flow.moments;
+        flow.frame.places().into_iter().zip(flow.moments).for_each(|(place, moment)| moments[place] = moment);
+        for moment in moments {
+            visitor.parameter("moment", moment);
+        }
+        for _ in 0..3 {
+            visitor.parameter("turn", T::zero());
+        }
+    }
+
+    #[inline(always)]
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>) {
+        let (momentum, increment) = (event.before.momentum, event.increment);
+        let along = flow.frame.within(&momentum);
+        let (time, constant) = (Dual::constant(time), Dual::constant);
+        let fixed = Form::of(flow.moments.map(constant), time);
+        let turns = flow.turns(&fixed, |k| fixed.scale * Dual::along(along[k], k));
+        let inward = |k: usize| flow.frame.within(&Matrix3::identity().column(k).into_owned());
+        let turn_by_momentum =
+            Matrix3::from_columns(&turns) * Matrix3::from_columns(&[0, 1, 2].map(|k| Vector3::from(inward(k))));
+        let varied = Form::of(core::array::from_fn(|k| Dual::along(flow.moments[k], k)), time);
+        let by_moments = flow.turns(&varied, |k| varied.scale * constant(along[k]));
+        // F(R J Rᵀ, p) = R F(J, Rᵀ p) Rᵀ.
+        let by_axes = turn_by_momentum * momentum.cross_matrix() - increment;
+        let places = flow.frame.places();
+        let moment = |k: usize| (first + places[k], by_moments[k]);
+        let axis = |k: usize| (first + 3 + k, by_axes.column(k).into_owned());
+        let by_parameters = [moment(0), moment(1), moment(2), axis(0), axis(1), axis(2)];
+        pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
+    }
+}
+
+impl<T: Real> ExactBody<T> {
+    /// The turns `ε`, `δF = ε̂ F`, along three directions, in the body's axes.
+    #[inline(always)]
+    fn turns(&self, form: &Form<Dual<T>>, u: impl Fn(usize) -> Dual<T>) -> [Vector3<T>; 3] {
+        let turned = form.turned([u(0), u(1), u(2)]);
+        let [w, x, y, z] = turned.quaternion.map(|part| part.value);
+        let twice = turned.inverse_square.value + turned.inverse_square.value;
+        core::array::from_fn(|k| {
+            // ½ ε̂ is the change of the quaternion over itself.
+            let [_, a, b, c] = product(turned.quaternion.map(|part| part.slopes[k]), [w, -x, -y, -z]);
+            let [_, x, y, z] = self.frame.back([T::zero(), a, b, c]);
+            Vector3::new(x, y, z) * twice
+        })
+    }
+}

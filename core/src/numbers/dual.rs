@@ -1,0 +1,261 @@
+//! Numbers with their derivatives along three directions, for what is computed in closed form.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::numbers::scalar::{Mask, Real, real};
+use nalgebra::SimdBool;
+
+/// What a closed form is computed with: a scalar, or one with its derivatives.
+///
+/// It is less than a [`Real`], whose fifty functions a derivative would need to know, and has the names of that one's
+/// functions.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    type Mask: SimdBool;
+
+    fn number(value: f64) -> Self;
+    fn simd_default_epsilon() -> Self;
+    fn simd_sqrt(self) -> Self;
+    fn simd_abs(self) -> Self;
+    fn simd_max(self, other: Self) -> Self;
+    fn simd_lt(self, other: Self) -> Self::Mask;
+    fn simd_le(self, other: Self) -> Self::Mask;
+    fn select(self, mask: Self::Mask, other: Self) -> Self;
+
+    /// Zero in these lanes, where it is zero but for a rounding. A derivative stays.
+    fn vanishing(self, mask: Self::Mask) -> Self;
+
+    #[inline(always)]
+    fn zero() -> Self {
+        Self::number(0.0)
+    }
+
+    #[inline(always)]
+    fn one() -> Self {
+        Self::number(1.0)
+    }
+
+    #[inline(always)]
+    fn simd_gt(self, other: Self) -> Self::Mask {
+        other.simd_lt(self)
+    }
+
+    #[inline(always)]
+    fn simd_ge(self, other: Self) -> Self::Mask {
+        other.simd_le(self)
+    }
+}
+
+impl<T: Real> Number for T {
+    type Mask = Mask<T>;
+
+    #[inline(always)]
+    fn number(value: f64) -> Self {
+        real(value)
+    }
+
+    #[inline(always)]
+    fn simd_default_epsilon() -> Self {
+        <T as nalgebra::SimdRealField>::simd_default_epsilon()
+    }
+
+    #[inline(always)]
+    fn simd_sqrt(self) -> Self {
+        nalgebra::SimdComplexField::simd_sqrt(self)
+    }
+
+    #[inline(always)]
+    fn simd_abs(self) -> Self {
+        nalgebra::SimdComplexField::simd_abs(self)
+    }
+
+    #[inline(always)]
+    fn simd_max(self, other: Self) -> Self {
+        nalgebra::SimdPartialOrd::simd_max(self, other)
+    }
+
+    #[inline(always)]
+    fn simd_lt(self, other: Self) -> Self::Mask {
+        nalgebra::SimdPartialOrd::simd_lt(self, other)
+    }
+
+    #[inline(always)]
+    fn simd_le(self, other: Self) -> Self::Mask {
+        nalgebra::SimdPartialOrd::simd_le(self, other)
+    }
+
+    #[inline(always)]
+    fn select(self, mask: Self::Mask, other: Self) -> Self {
+        nalgebra::SimdValue::select(self, mask, other)
+    }
+
+    #[inline(always)]
+    fn vanishing(self, mask: Self::Mask) -> Self {
+        nalgebra::SimdValue::select(T::zero(), mask, self)
+    }
+}
+
+/// A number and its derivatives. It is compared by its value.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dual<T> {
+    pub(crate) value: T,
+    pub(crate) slopes: [T; 3],
+}
+
+impl<T: Real> Dual<T> {
+    /// What doesn't vary.
+    #[inline(always)]
+    pub(crate) fn constant(value: T) -> Self {
+        Self { value, slopes: [T::zero(); 3] }
+    }
+
+    /// What varies along one of the directions.
+    #[inline(always)]
+    pub(crate) fn along(value: T, direction: usize) -> Self {
+        Self { value, slopes: core::array::from_fn(|k| if k == direction { T::one() } else { T::zero() }) }
+    }
+
+    /// A function with this value, and this derivative by the number.
+    #[inline(always)]
+    fn chained(self, value: T, slope: T) -> Self {
+        Self { value, slopes: self.slopes.map(|own| own * slope) }
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, value: T, slope: impl Fn(T, T) -> T) -> Self {
+        Self { value, slopes: core::array::from_fn(|k| slope(self.slopes[k], other.slopes[k])) }
+    }
+}
+
+impl<T: Real> Add for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, self.value + other.value, |a, b| a + b)
+    }
+}
+
+impl<T: Real> Sub for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, self.value - other.value, |a, b| a - b)
+    }
+}
+
+impl<T: Real> Mul for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    #[allow(clippy::suspicious_arithmetic_impl)] // the rule for products has a sum
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
+    }
+}
+
+impl<T: Real> Div for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let (inverse, ratio) = (T::one() / other.value, self.value / other.value);
+        self.zip(other, ratio, |a, b| (a - ratio * b) * inverse)
+    }
+}
+
+impl<T: Real> Neg for Dual<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.chained(-self.value, -T::one())
+    }
+}
+
+impl<T: Real> Number for Dual<T> {
+    type Mask = Mask<T>;
+
+    #[inline(always)]
+    fn number(value: f64) -> Self {
+        Self::constant(real(value))
+    }
+
+    #[inline(always)]
+    fn simd_default_epsilon() -> Self {
+        Self::constant(<T as nalgebra::SimdRealField>::simd_default_epsilon())
+    }
+
+    #[inline(always)]
+    fn simd_sqrt(self) -> Self {
+        let root = nalgebra::SimdComplexField::simd_sqrt(self.value);
+        self.chained(root, real::<T>(0.5) / root)
+    }
+
+    #[inline(always)]
+    fn simd_abs(self) -> Self {
+        (-self).select(self.simd_lt(Self::zero()), self)
+    }
+
+    #[inline(always)]
+    fn simd_max(self, other: Self) -> Self {
+        other.select(self.simd_lt(other), self)
+    }
+
+    #[inline(always)]
+    fn simd_lt(self, other: Self) -> Self::Mask {
+        nalgebra::SimdPartialOrd::simd_lt(self.value, other.value)
+    }
+
+    #[inline(always)]
+    fn simd_le(self, other: Self) -> Self::Mask {
+        nalgebra::SimdPartialOrd::simd_le(self.value, other.value)
+    }
+
+    #[inline(always)]
+    fn select(self, mask: Self::Mask, other: Self) -> Self {
+        let value = nalgebra::SimdValue::select(self.value, mask, other.value);
+        self.zip(other, value, |a, b| nalgebra::SimdValue::select(a, mask, b))
+    }
+
+    #[inline(always)]
+    fn vanishing(self, mask: Self::Mask) -> Self {
+        Self { value: nalgebra::SimdValue::select(T::zero(), mask, self.value), slopes: self.slopes }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Dual, Number};
+
+    /// Every operation, in both branches of those that have two.
+    fn function<N: Number>([x, y, z]: [N; 3]) -> N {
+        let root = (x * y / z + N::number(0.3)).simd_sqrt();
+        let sizes = (x - y).simd_abs() * (y - x).simd_abs() + (y - z).simd_max(x) * (x - z).simd_max(y);
+        let chosen = (root * z).select(x.simd_gt(y), -root) + (x / root).select(x.simd_ge(y), z / y);
+        chosen * sizes - root * N::number(2.0).vanishing(x.simd_gt(z))
+    }
+
+    #[test]
+    fn derivatives_are_those_of_differences() {
+        const SMALL: f64 = 1e-5;
+        for at in [[0.7, 1.9, 1.1], [1.9, 0.7, 1.1], [1.2, 1.3, 0.4]] {
+            let found = function([0, 1, 2].map(|k| Dual::along(at[k], k)));
+            assert!((found.value - function(at)).abs() < 1e-15);
+            for k in 0..3 {
+                let moved = |by: f64| function([0, 1, 2].map(|j| if j == k { at[j] + by } else { at[j] }));
+                let slope = (moved(SMALL) - moved(-SMALL)) / (2.0 * SMALL);
+                assert!((found.slopes[k] - slope).abs() < 1e-8, "{at:?}, {k}: {}, not {slope}", found.slopes[k]);
+            }
+        }
+    }
+
+    /// What is zero but for a rounding still varies.
+    #[test]
+    fn what_vanishes_keeps_its_derivative() {
+        let varied = Dual::along(1e-20_f64, 1).vanishing(true);
+        assert_eq!((varied.value, varied.slopes), (0.0, [0.0, 1.0, 0.0]));
+    }
+}
