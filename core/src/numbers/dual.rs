@@ -241,9 +241,9 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_differences() {
         const SMALL: f64 = 1e-5;
-        for at in [[0.7, 1.9, 1.1], [1.9, 0.7, 1.1], [1.2, 1.3, 0.4]] {
-            let found = function([0, 1, 2].map(|k| Dual::along(at[k], k)));
-            assert!((found.value - function(at)).abs() < 1e-15);
+        for at in [[0.7_f64, 1.9, 1.1], [1.9, 0.7, 1.1], [1.2, 1.3, 0.4]] {
+            let found: Dual<f64> = function([0, 1, 2].map(|k| Dual::along(at[k], k)));
+            assert!((found.value - function::<f64>(at)).abs() < 1e-15);
             for k in 0..3 {
                 let moved = |by: f64| function([0, 1, 2].map(|j| if j == k { at[j] + by } else { at[j] }));
                 let slope = (moved(SMALL) - moved(-SMALL)) / (2.0 * SMALL);

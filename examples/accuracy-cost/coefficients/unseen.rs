@@ -70,7 +70,7 @@ impl Top {
 
     fn missed(&self, scheme: ProcessedScheme, steps: u64) -> Option<f64> {
         #[allow(clippy::cast_precision_loss)] // thousands
-        let stepper = Stepper::processed(self.scene, TIME / steps as f64, self.flow.clone(), scheme).ok()?;
+        let stepper = Stepper::processed(self.scene, TIME / steps as f64, self.flow, scheme).ok()?;
         let mut state = stepper.start(self.attitude, self.velocity).ok()?;
         stepper.run(&mut state, steps).ok()?;
         Some(error(&(*state.attitude().as_matrix(), stepper.velocity(&state)), &self.exact))

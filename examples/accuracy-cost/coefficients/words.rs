@@ -166,7 +166,7 @@ impl<T: Number> Words<T> {
         for (place, x) in self.0.iter().enumerate().skip(1) {
             let n = letters(place);
             let turned = (0..n).fold(1, |turned, k| turned << 1 | place >> k & 1);
-            inverse.0[turned] = if n % 2 == 0 { *x } else { -*x };
+            inverse.0[turned] = if n.is_multiple_of(2) { *x } else { -*x };
         }
         inverse
     }
