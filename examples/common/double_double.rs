@@ -77,22 +77,23 @@ pub fn long(number: f64) -> DoubleDouble {
     number.into()
 }
 
-/// Thirty digits after the point, as coefficients are written; those of numbers below one are all right.
+/// Thirty digits after the point, as coefficients are written; of numbers below one all are exact but the last.
 impl core::fmt::Display for DoubleDouble {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let mut rest = if self.high < 0.0 { -*self } else { *self };
-        // Half of the last digit, so that the digits are cut off.
+        let is_negative = self.high < 0.0;
+        let mut rest = if is_negative { -*self } else { *self };
+        // Half of the last digit, so that cutting off rounds.
         rest += (0..30).fold(long(0.5), |half, _| half / long(10.0));
         let whole = rest.floor();
         rest -= long(whole);
-        write!(f, "{}{whole}.", if self.high < 0.0 { "-" } else { "" })?;
+        let mut text = format!("{}{whole}.", if is_negative { "-" } else { "" });
         for _ in 0..30 {
             rest *= long(10.0);
             let digit = rest.floor();
             rest -= long(digit);
-            write!(f, "{digit}")?;
+            text += &digit.to_string();
         }
-        Ok(())
+        f.pad(&text)
     }
 }
 

@@ -11,8 +11,9 @@
 //! next order. Which of them is best that error doesn't tell: with `--unseen` they are tried on ten asymmetric tops that
 //! the seed draws, and what they cost there is printed beside those of the library.
 //!
-//! Without options those of the library are printed with 30 digits: the solutions that its numbers are the first digits
-//! of, or an error where there is none so near.
+//! Without options those of the library are printed with 30 digits, with which the equations of their order hold to
+//! 1e-30; or it is an error where no solution is as near as its numbers are rounded. Where solutions are a family, as
+//! those of most processors are, it is the one that is nearest.
 
 mod problem;
 mod search;
@@ -58,10 +59,12 @@ struct Arguments {
     keep: usize,
     seed: u64,
     unseen: bool,
+    /// Which of them were given.
+    given: Vec<String>,
 }
 
 fn main() -> ExitCode {
-    example(HELP, |words| {
+    example(HELP, |line| {
         let mut arguments = Arguments {
             kernel: None,
             processor: None,
@@ -72,31 +75,45 @@ fn main() -> ExitCode {
             keep: 5,
             seed: 1,
             unseen: false,
+            given: Vec::new(),
         };
-        while let Some(option) = words.option()? {
+        while let Some(option) = line.option()? {
             match option.as_str() {
-                "kernel" => arguments.kernel = Some(words.text()?),
-                "processor" => arguments.processor = Some(words.text()?),
-                "order" => arguments.order = words.one_of(&[("4", 4), ("6", 6)])?,
-                "stages" => arguments.stages = words.text()?.parse()?,
+                "kernel" => arguments.kernel = Some(line.text()?),
+                "processor" => arguments.processor = Some(line.text()?),
+                "order" => arguments.order = line.one_of(&[("4", 4), ("6", 6)])?,
+                "stages" => arguments.stages = line.count()?,
                 "kick-first" => arguments.kick_first = true,
-                "starts" => arguments.starts = words.text()?.parse()?,
-                "keep" => arguments.keep = words.text()?.parse()?,
-                "seed" => arguments.seed = words.text()?.parse()?,
+                "starts" => arguments.starts = line.count()?,
+                "keep" => arguments.keep = line.count()?,
+                "seed" => arguments.seed = line.count()?,
                 "unseen" => arguments.unseen = true,
-                _ => return Err(words.unknown()),
+                _ => return Err(line.unknown()),
             }
+            arguments.given.push(option);
         }
         find(&arguments)
     })
 }
 
 fn find(arguments: &Arguments) -> Result<(), Failure> {
+    let only = |allowed: &[&str]| match arguments.given.iter().find(|option| !allowed.contains(&option.as_str())) {
+        None => Ok(()),
+        Some(option) => Err(Failure::from(format!("'--{option}' isn't for what is looked for here; see --help"))),
+    };
     match (&arguments.kernel, &arguments.processor) {
-        (Some(half), None) => kernels(arguments, half),
-        (None, Some(name)) => processors(arguments, name),
-        (None, None) => library(),
-        (Some(_), Some(_)) => Err("a kernel or a processor is looked for, not both; see --help".into()),
+        (Some(half), _) => {
+            only(&["kernel", "order", "starts", "keep", "seed"])?;
+            kernels(arguments, half)
+        }
+        (None, Some(name)) => {
+            only(&["processor", "stages", "kick-first", "starts", "keep", "seed", "unseen"])?;
+            processors(arguments, name)
+        }
+        (None, None) => {
+            only(&[])?;
+            library()
+        }
     }
 }
 
@@ -120,13 +137,23 @@ fn form(half: &str) -> Result<Form, Failure> {
 
 fn kernels(arguments: &Arguments, half: &str) -> Result<(), Failure> {
     let problem = Problem::new(arguments.order, Wanted::Kernel(form(half)?));
-    let mut random = Random::new(arguments.seed);
-    for found in best(&problem, &mut random, arguments.starts, arguments.keep) {
-        if let Some(polished) = problem.polished(&found.unknowns) {
-            print(&format!("{:.4e} is left\n{}\n", found.left, text(&problem.parts(&polished))))?;
-        }
+    for (left, parts) in polished(&problem, arguments)? {
+        print(&format!("{left:.4e} is left\n{}\n", text(&parts)))?;
     }
     Ok(())
+}
+
+/// The best solutions with 30 digits, and what each leaves at the next order.
+fn polished(problem: &Problem, arguments: &Arguments) -> Result<Vec<(f64, Vec<Part<DoubleDouble>>)>, Failure> {
+    let found = best(problem, &mut Random::new(arguments.seed), arguments.starts, arguments.keep);
+    let polish = |found: &search::Found| Some((found.left, problem.parts(&problem.polished(&found.unknowns)?)));
+    let polished: Vec<_> = found.iter().filter_map(polish).collect();
+    if polished.is_empty() {
+        let (found, starts) = (found.len(), arguments.starts);
+        return Err(format!("{found} solutions from {starts} starts, of which none can be polished").into());
+    }
+    print(&format!("{} of the best {} solutions have 30 digits\n\n", polished.len(), found.len()))?;
+    Ok(polished)
 }
 
 /// A line for each part.
@@ -193,8 +220,7 @@ fn processors(arguments: &Arguments, name: &str) -> Result<(), Failure> {
     let (stages, kick_first) = (arguments.stages, arguments.kick_first);
     let wanted = Wanted::Processor { kernel: kernel(&scheme)?, stages, kick_first };
     let problem = Problem::new(order(&scheme)?, wanted);
-    let mut random = Random::new(arguments.seed);
-    let all = best(&problem, &mut random, arguments.starts, arguments.keep);
+    let all = polished(&problem, arguments)?;
     let tops = if arguments.unseen { Top::drawn(&mut Random::new(arguments.seed), 10)? } else { Vec::new() };
     if arguments.unseen {
         print(&format!("drifts to the errors {LEVELS:?}\n"))?;
@@ -202,10 +228,8 @@ fn processors(arguments: &Arguments, name: &str) -> Result<(), Failure> {
             print(&format!("{:<16}{}\n", scheme.name(), costs(&tops, scheme)))?;
         }
     }
-    for found in all {
-        let Some(polished) = problem.polished(&found.unknowns) else { continue };
-        let parts = problem.parts(&polished);
-        print(&format!("\n{:.4e} is left\n{}", found.left, text(&parts)))?;
+    for (left, parts) in all {
+        print(&format!("\n{left:.4e} is left\n{}", text(&parts)))?;
         if arguments.unseen {
             print(&format!("{:<16}{}\n", "", costs(&tops, as_scheme(&scheme, &parts))))?;
         }

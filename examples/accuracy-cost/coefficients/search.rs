@@ -74,6 +74,7 @@ pub(crate) fn solved(problem: &Problem, start: &[f64]) -> Option<Found> {
     let at = made_good(problem, start);
     let unknowns = minimized(Weighted { problem, weights: EXACT, at, first: 0 });
     let (within, next) = problem.missed(&unknowns);
+    // Rounding of sums of some hundred words.
     (within.norm() < 1e-12).then(|| Found { unknowns, left: next.norm() })
 }
 
@@ -107,7 +108,7 @@ pub(crate) fn best(problem: &Problem, random: &mut Random, starts: u64, keep: us
         progress.add(1, &format!("{} found", best.len()));
         let found = solved(problem, &start(problem, random)).and_then(|found| least(problem, found));
         let Some(found) = found else { continue };
-        let largest = found.unknowns.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let largest = found.unknowns[..problem.shares()].iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
         let is_known = best.iter().any(|other| (other.left - found.left).abs() < 1e-4 * found.left);
         if largest > LARGEST || is_known {
             continue;

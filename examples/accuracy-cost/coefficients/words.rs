@@ -57,7 +57,7 @@ impl Part<DoubleDouble> {
 }
 
 impl<T: Number> Part<T> {
-    /// Of a flow and its inverse the logarithms differ by the sign.
+    /// The logarithm, as words with their coefficients.
     fn terms(self) -> Vec<(usize, T)> {
         match self {
             Self::Drift(a) => vec![(A, a)],
@@ -269,4 +269,48 @@ fn independent(candidates: Vec<Element>, directions: &mut Vec<DVector<f64>>) -> 
         is_new
     };
     candidates.into_iter().filter(|candidate| is_new(candidate)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{A, Algebra, B, COUNT, Part, Words};
+
+    #[track_caller]
+    fn assert_equal(found: &Words<f64>, expected: &[(usize, f64)], longest: usize) {
+        for place in 1..2 << longest {
+            let expected = expected.iter().find(|(word, _)| *word == place).map_or(0.0, |(_, x)| *x);
+            assert!((found.0[place] - expected).abs() < 1e-15, "{place:b}: {}", found.0[place]);
+        }
+    }
+
+    /// `log(e^A e^B) = A + B + ½ [A, B] + 1/12 [A, [A, B]] + 1/12 [B, [B, A]] + …`, of Baker, Campbell and Hausdorff.
+    #[test]
+    fn two_flows_have_their_logarithm() {
+        let (ab, ba) = (0b101, 0b110);
+        let twelfth = 1.0 / 12.0;
+        let third = [(0b1001, 1.0), (0b1010, -2.0), (0b1100, 1.0), (0b1110, 1.0), (0b1101, -2.0), (0b1011, 1.0)];
+        let expected: Vec<_> = [(A, 1.0), (B, 1.0), (ab, 0.5), (ba, -0.5)]
+            .into_iter()
+            .chain(third.map(|(word, x)| (word, x * twelfth)))
+            .collect();
+        assert_equal(&Words::of(&[Part::Drift(1.0), Part::Kick(1.0, 0.0)]).logarithm(), &expected, 3);
+    }
+
+    #[test]
+    fn the_inverse_undoes() {
+        let flows = Words::of(&[Part::Drift(0.7), Part::Kick(-0.4, 0.2), Part::Drift(0.3)]);
+        for product in [flows.inverse().times(&flows), flows.times(&flows.inverse())] {
+            assert_equal(&product, &[(1, 1.0)], COUNT.ilog2() as usize - 1);
+        }
+    }
+
+    /// By Witt's formula there are 2, 1, 2, 3, 6, 9, 18 elements without what vanishes.
+    #[test]
+    fn the_algebra_has_its_dimensions() {
+        let algebra = Algebra::new();
+        let dimensions = |all: &[Vec<_>]| all.iter().skip(1).map(Vec::len).collect::<Vec<_>>();
+        let (basis, vanishing) = (dimensions(&algebra.basis), dimensions(&algebra.vanishing));
+        assert_eq!(basis.iter().zip(&vanishing).map(|(a, b)| a + b).collect::<Vec<_>>(), [2, 1, 2, 3, 6, 9, 18]);
+        assert_eq!(basis[..5], [2, 1, 2, 2, 4]);
+    }
 }
