@@ -74,7 +74,7 @@
 //!
 //! # By their velocities
 //!
-//! Such links by the velocities of both, in the order of the factors. `discretise` makes `l_d` of it, and `rate` hands the
+//! The same links by the velocities of both, in the order of the factors. `discretise` makes `l_d` of it, and `rate` hands the
 //! equations themselves to a solver:
 //!
 //! ```
