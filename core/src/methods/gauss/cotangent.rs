@@ -126,8 +126,8 @@ const MOST_ITERATIONS: u32 = 60;
 
 /// What several bodies, whose matrices are a tuple, don't have.
 #[diagnostic::on_unimplemented(
-    message = "`CotangentGauss` is of one group, of {N} × {N} matrices",
-    label = "this Lagrangian has matrices of another kind: `{Self}`",
+    message = "`CotangentGauss` integrates on one group, of {N} × {N} matrices",
+    label = "this Lagrangian is of several bodies, or of matrices of another size",
     note = "several bodies have no collocation: step them by `Stepper`; of one group `N` is the size of its matrices"
 )]
 pub trait MatrixOfOneGroup<const N: usize> {}
