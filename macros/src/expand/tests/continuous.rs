@@ -489,13 +489,13 @@ fn the_second_derivative_is_symmetric() {
 fn of_several_bodies() {
     expect![[r#"
         group
-            g = (F_1, F_2) in SO3 × SO3
-            w_1 = g⁻¹·a₀ in V*, seen from F_1
-            w_2 = g⁻¹·a₀ in V*, seen from F_2
-            Q is F_2 as F_1 sees it
+            g = (g_1, g_2) in SO3 × SO3, of F_1, F_2
+            w_1 = g_1⁻¹·a₀ in V*, seen from F_1
+            w_2 = g_2⁻¹·a₀ in V*, seen from F_2
+            Q = g_1⁻¹ g_2: the body of F_2 as that of F_1 sees it
         continuous
             ξ = (Omega_1, Omega_2) = g⁻¹ dg/dt
-            pairing: μ_k = ⟨μ, E_k⟩, of one factor after the other: of what turns the body momentum, of what is translated the momentum
+            pairing: (μ_a)_k = ⟨μ, E_k of factor a⟩: of what turns the momentum in its own axes, of what is translated that in the axes of space
             l(Omega_1, Omega_2, w_1, w_2, Q) = −g ⟨s_1, w_1⟩ − g ⟨s_2, w_2⟩ + (1/2) tr(J_1) ⟨Omega_1, Omega_1⟩ + (1/2) tr(J_2) ⟨Omega_2, Omega_2⟩ − ⟨rho, hat(Omega_1) Q hat(Omega_2) s_2⟩ − (1/2) ⟨Omega_1, J_1 Omega_1⟩ − (1/2) ⟨Omega_2, J_2 Omega_2⟩    [as declared, in normal form]
             μ = tr(J_1) Omega_1 + rho × (Q hat(Omega_2) s_2) − J_1 Omega_1;  tr(J_2) Omega_2 + s_2 × (Qᵀ hat(Omega_1) rho) − J_2 Omega_2    [∂l/∂ξ, (1.14)]
             ⟨𝕀η, ζ⟩ = tr(J_1) ⟨η_1, ζ_1⟩ + tr(J_2) ⟨η_2, ζ_2⟩ − ⟨rho, hat(η_1) Q hat(ζ_2) s_2⟩ − ⟨rho, hat(ζ_1) Q hat(η_2) s_2⟩ − ⟨η_1, J_1 ζ_1⟩ − ⟨η_2, J_2 ζ_2⟩    [∂²l/∂ξ², the inertia]
@@ -511,14 +511,14 @@ fn of_several_bodies() {
     "#]].assert_eq(&continuous_derivation(LINKS, OF_LINKS));
     expect![[r#"
         group
-            g = (F, t, d) in SO3 × R1 × R3
-            R is F as it is in space
-            x is t as it is in space
-            r is d as it is in space
-            w = g⁻¹·a₀ in V*, seen from F
+            g = (g_1, g_2, g_3) in SO3 × R1 × R3, of F, t, d
+            R = g_1: the body of F as it is in space
+            x = g_2: the place of t in space
+            r = g_3: the place of d in space
+            w = g_1⁻¹·a₀ in V*, seen from F
         continuous
             ξ = (Omega, u, v) = g⁻¹ dg/dt
-            pairing: μ_k = ⟨μ, E_k⟩, of one factor after the other: of what turns the body momentum, of what is translated the momentum
+            pairing: (μ_a)_k = ⟨μ, E_k of factor a⟩: of what turns the momentum in its own axes, of what is translated that in the axes of space
             l(Omega, u, v, R, x, r, w) = m u ⟨v, e1⟩ + (m u²/2) + m ⟨v, v⟩ + (m/2) ⟨v, e1⟩² − m sqrt(1 + ⟨r, r⟩) − x ⟨r, R w⟩ + (x²/2) ⟨Omega, J Omega⟩ + u ⟨s, w⟩ + ⟨s, hat(Rᵀ v) Omega⟩ + (1/2) ⟨Omega, J Omega⟩    [as declared, in normal form]
             μ = x² J Omega + s × (Rᵀ v) + J Omega;  m u + m ⟨v, e1⟩ + ⟨s, w⟩;  η_3 ↦ m u ⟨η_3, e1⟩ + 2 m ⟨v, η_3⟩ + m ⟨v, e1⟩ ⟨η_3, e1⟩ + ⟨s, hat(Rᵀ η_3) Omega⟩    [∂l/∂ξ, (1.14)]
             ⟨𝕀η, ζ⟩ = m η_2 ζ_2 + m η_2 ⟨ζ_3, e1⟩ + m ζ_2 ⟨η_3, e1⟩ + 2 m ⟨η_3, ζ_3⟩ + m ⟨η_3, e1⟩ ⟨ζ_3, e1⟩ + x² ⟨η_1, J ζ_1⟩ + ⟨s, hat(Rᵀ η_3) ζ_1⟩ + ⟨s, hat(Rᵀ ζ_3) η_1⟩ + ⟨η_1, J ζ_1⟩    [∂²l/∂ξ², the inertia]
@@ -529,6 +529,7 @@ fn of_several_bodies() {
             dx/dt = u    [(2.2): −ξ·w]
             dr/dt = v    [(2.2): −ξ·w]
             dw/dt = w × Omega    [(2.2): −ξ·w]
+            s(w) = 0;  ⟨s, w⟩;  0    [μ at rest]
             ξ = 𝕀(w)⁻¹ (μ − s(w))    [(1.14) inverted]
             h(μ, R, x, r, w) = ½ ⟨μ − s(w), 𝕀(w)⁻¹ (μ − s(w))⟩ + m sqrt(1 + ⟨r, r⟩) + x ⟨r, R w⟩    [(1.16)]
             kept = h(μ, R, x, r, w); ⟨Ad*_{g⁻¹} μ, η⟩ for η·a₀ = 0    [left and right symmetries]
