@@ -12,7 +12,7 @@ use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect,
 use liestep::methods::CompositionScheme;
 use liestep::with::{Recorder, Table};
 use liestep::{NonstandardInertia, SO3, Stepper};
-use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
 
 use super::{apart, attitudes_of, check_derived, check_symplectic, momentum, order, part};
 
