@@ -45,7 +45,7 @@
 //! | move a chain of links on ball joints | [`methods::ChainStepper`] |
 //! | hold bodies together by joints, loops among them | [`Stepper::jointed`](motion::Stepper#method.jointed) |
 //! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |
-//! | hand the equations of motion to an ODE solver, or integrate them on any group | [`motion::RightHandSide`], [`methods::CotangentGauss`] |
+//! | hand the equations of motion to an ODE solver, or integrate them on any matrix group, of one body | [`motion::RightHandSide`], [`methods::CotangentGauss`] |
 //! | step, run, force, save and resume a motion | [`Stepper`], [`State`] |
 //! | record a run, stop it, be called at given times | [`Stepper::observed`](motion::Stepper#method.observed), [`with::Recorder`] |
 //! | read a motion between its steps | [`motion::Integrator::state_at`] |

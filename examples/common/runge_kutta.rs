@@ -24,3 +24,10 @@ pub fn step(rate: impl Fn(&[f64], &mut [f64]), state: &mut [f64], h: f64) {
     });
     state.iter_mut().zip(&change).for_each(|(y, change)| *y += change);
 }
+
+/// As many steps, which take the time together.
+pub fn run(rate: impl Fn(&[f64], &mut [f64]), state: &mut [f64], time: f64, steps: u32) {
+    for _ in 0..steps {
+        step(&rate, state, time / f64::from(steps));
+    }
+}

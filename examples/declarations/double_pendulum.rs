@@ -1,7 +1,7 @@
 //! Two links on ball joints.
 
 use liestep::{NonstandardInertia, SO3, lagrangian};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A double pendulum of two rigid links: a ball joint at a fixed pivot, and one between them. The mass of the lower link
 /// counts at its joint, in `J_1` and `s_1`; `s_2` is the first moment of the lower one.
@@ -29,4 +29,16 @@ pub struct DoublePendulum {
     pub g: f64,
     /// The vertical, in space.
     pub up: Vector3<f64>,
+}
+
+impl DoublePendulum {
+    /// One without any symmetry.
+    pub fn asymmetric() -> Self {
+        let inertia = |x: f64, y: f64, z: f64| Matrix3::new(x, 0.02, -0.03, 0.02, y, 0.01, -0.03, 0.01, z);
+        let (rho, c_1, c_2, m_2) =
+            (Vector3::new(0.1, 0.2, -1.0), Vector3::new(0.1, 0.05, -0.5), Vector3::new(0.05, -0.1, -0.4), 0.7);
+        let J_1 = NonstandardInertia::new(inertia(0.3, 0.2, 0.4) + rho * rho.transpose() * m_2).unwrap();
+        let J_2 = NonstandardInertia::new(inertia(0.1, 0.15, 0.05) + c_2 * c_2.transpose() * m_2).unwrap();
+        Self { J_1, J_2, rho, s_1: c_1 + rho * m_2, s_2: c_2 * m_2, g: 9.81, up: Vector3::z() }
+    }
 }

@@ -93,8 +93,9 @@ mod program;
 ///
 /// Of several bodies `velocity(Omega_1, v)` names the velocities, one for each factor of `group(F_1 = SO3, d = R3)`, in their
 /// order: of what turns in its own axes, of what is translated in those of space. Methods take and give the components of all,
-/// one after the other. Where the kinetic energy depends on a relative configuration, `trapezoid` and `chord` alone aren't
-/// their own adjoints and are refused; `trapezoid(Cayley)` is.
+/// one after the other. Where the kinetic energy depends on a relative configuration, what `trapezoid` and `chord` make
+/// with the matrices `(F - I) / h` isn't its own adjoint, and is refused. What `trapezoid(Cayley)` and `chord(Cayley)`
+/// make is.
 ///
 /// # The parameters
 ///

@@ -112,9 +112,7 @@ fn discretisations_converge_to_the_continuous_motion() {
         let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.1, 0.0));
         let momentum = Vector3::new(1.5, 4.0, 7.0);
         let mut state = continuous.state(&SO3::from(attitude), &momentum);
-        for _ in 0..400 {
-            runge_kutta::step(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, 0.5 / 400.0);
-        }
+        runge_kutta::run(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, 0.5, 400);
         let error = |steps: u32| {
             let stepper = Stepper::new(make(), 0.5 / f64::from(steps)).unwrap();
             let mut body = stepper.start_with_momentum(attitude, momentum).unwrap();
@@ -249,9 +247,7 @@ fn a_fast_particle() {
     let particle = RelativisticParticle { m, c, q, field: Vector4::new(0.4, -1.0, 0.2, 0.0) };
     let system = RightHandSide::new(particle.clone()).unwrap();
     let mut state = system.state(&R3::default_place(), &Vector3::zeros());
-    for _ in 0..2000 {
-        runge_kutta::step(|y, rate| system.rate(y, rate).unwrap(), &mut state, 0.02);
-    }
+    runge_kutta::run(|y, rate| system.rate(y, rate).unwrap(), &mut state, 40.0, 2000);
     let (place, momentum) = system.parts(&state);
     let pull = Vector3::new(0.4, -1.0, 0.2) * q;
     assert!((momentum - pull * 40.0).norm() < 1e-11);
@@ -428,9 +424,7 @@ fn conserved_momenta() {
     };
     let before = kept(&state);
     assert_eq!(before.len(), 3);
-    for _ in 0..1000 {
-        runge_kutta::step(|y, rate| symmetric.rate(y, rate).unwrap(), &mut state, 1e-3);
-    }
+    runge_kutta::run(|y, rate| symmetric.rate(y, rate).unwrap(), &mut state, 1.0, 1000);
     for (before, after) in before.iter().zip(kept(&state)) {
         assert!((before - after).abs() < 1e-8 * (1.0 + before.abs()), "{before} and {after}");
     }

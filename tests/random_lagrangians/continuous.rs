@@ -157,10 +157,8 @@ where
     // The same motion as by a Runge–Kutta method on the right-hand side, which knows nothing of the matrices off the group.
     let numbers = RightHandSide::new(system.clone()).expect("regular at rest");
     let mut state = numbers.state(&identity, &momentum);
-    for _ in 0..100 {
-        let rate = |y: &[f64], rate: &mut [f64]| numbers.rate(y, rate).expect("a convex kinetic energy");
-        runge_kutta::step(rate, &mut state, 1e-3);
-    }
+    let rate = |y: &[f64], rate: &mut [f64]| numbers.rate(y, rate).expect("a convex kinetic energy");
+    runge_kutta::run(rate, &mut state, 0.1, 100);
     let (there, after) = numbers.parts(&state);
     let found = end::<L, 4, N, D>(&system, (identity, momentum), (0.1, 1)).expect("a short step");
     let apart = distance(&found, &(there.matrix(), after));

@@ -36,11 +36,8 @@ impl<const N: usize, const D: usize> Body<'_, N, D> {
         let numbers = |(g, momentum): Phase<N, D>| g.iter().chain(&momentum).copied().collect::<Vec<_>>();
         let phase = |y: &[f64]| (SMatrix::from_column_slice(&y[..N * N]), SVector::from_column_slice(&y[N * N..]));
         let mut state = numbers(start);
-        for _ in 0..steps {
-            let rate =
-                |y: &[f64], rate: &mut [f64]| rate.copy_from_slice(&numbers(self.rate::<G>(&inverse, &phase(y))));
-            runge_kutta::step(rate, &mut state, t / f64::from(steps));
-        }
+        let rate = |y: &[f64], rate: &mut [f64]| rate.copy_from_slice(&numbers(self.rate::<G>(&inverse, &phase(y))));
+        runge_kutta::run(rate, &mut state, t, steps);
         phase(&state)
     }
 }

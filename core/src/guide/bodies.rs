@@ -74,8 +74,8 @@
 //!
 //! # By their velocities
 //!
-//! The same links by the velocities of both, in the order of the factors. `l_d` is made of it by `discretise`, and a solver
-//! integrates the equations themselves:
+//! The same links by the velocities of both, in the order of the factors. `discretise` makes `l_d` of it, and `rate` hands the
+//! equations themselves to a solver:
 //!
 //! ```
 //! use liestep::motion::RightHandSide;
@@ -103,17 +103,25 @@
 //! }
 //!
 //! let down = -Vector3::z();
-//! let J_1 = Inertia::from_principal_moments(Vector3::new(1.35, 1.35, 0.02))?;
-//! let J_2 = Inertia::from_principal_moments(Vector3::new(0.35, 0.35, 0.02))?;
+//! let J_1 = NonstandardInertia::from_diagonal(Vector3::new(0.01, 0.01, 1.0 / 3.0 + 1.0))?.to_inertia();
+//! let J_2 = NonstandardInertia::from_diagonal(Vector3::new(0.01, 0.01, 1.0 / 3.0))?.to_inertia();
 //! let links = Links { J_1, J_2, rho: down, s_1: down * 1.5, s_2: down * 0.5, g: 9.81, up: Vector3::z() };
 //! let equations = RightHandSide::new(links.clone())?;
 //! let stepper = Stepper::new(links, 0.01)?;
 //! let mut state = stepper.start((SO3::identity(), SO3::identity()), Vector6::new(1.0, 0.0, 0.0, 2.0, 0.0, 0.0))?;
-//! let (_, force) = equations.rates(&state.attitude(), &state.momentum())?;
-//! assert!(force.norm() < 1e-12); // they hang, and turn in one plane
+//! let (_, rate) = equations.rates(&state.attitude(), &state.momentum())?; // of the momenta
+//! assert!(rate.norm() < 1e-12); // they hang, and turn in one plane
+//!
+//! // Numbers for a solver; here it is that of Euler, whose errors are of first order.
+//! let mut numbers = equations.state(&state.attitude(), &state.momentum());
+//! let mut rates = vec![0.0; numbers.len()];
+//! for _ in 0..1000 {
+//!     equations.rate(&numbers, &mut rates)?;
+//!     numbers.iter_mut().zip(&rates).for_each(|(number, rate)| *number += 1e-4 * rate);
+//! }
 //! stepper.run(&mut state, 10)?;
-//! let (_, force) = equations.rates(&state.attitude(), &state.momentum())?;
-//! assert!(force.norm() > 0.1);
+//! let (_, momentum) = equations.parts(&numbers);
+//! assert!((momentum - state.momentum()).norm() < 1e-2 * momentum.norm());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -126,7 +134,7 @@
 //! | [recording and events](super::recording) | yes; columns have the number of the body behind their names |
 //! | the effects of the library | not in such a declaration, as they are of one body; in a system they are put on bodies |
 //! | forces, splittings | no: those are of one body |
-//! | `l = …`, the continuous Lagrangian, and the continuous equations of an `l_d` | yes: [below](#by-their-velocities) |
+//! | `l = …`, the continuous Lagrangian, and the continuous equations of an `l_d` | yes: [by their velocities](#by-their-velocities), above |
 //! | collocation by [`CotangentGauss`](crate::methods::CotangentGauss) | no: that is of one group |
 //! | joints, and loops of them | [of a system](#joints), not of such a declaration |
 //! | contact, impacts | no |

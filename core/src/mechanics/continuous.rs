@@ -40,7 +40,8 @@ impl Legendre {
 /// `ξ = g⁻¹ġ` is the body velocity, in components of the declared basis `E_k` (on SO(3) in rad/s), `w = g⁻¹·a_0` the
 /// advected parameters as the body sees them. Covectors are components `μ_k = ⟨μ, E_k⟩`; on SO(3) these are body-frame
 /// angular momenta in kg m²/s. Of several bodies, on a product of groups, velocities and covectors have the components of
-/// all, one body after the other.
+/// all, one body after the other: of what is translated in the axes of space, in m/s and kg m/s, of what turns about a
+/// fixed axis, by `R1`, in rad/s and kg m²/s.
 ///
 /// [`lagrangian`](crate::lagrangian) implements it: of a declared `l` with its terms derived, and of a declared `l_d`
 /// with those of its limit `h → 0`, `l = ½ ξ·Jξ + s(w)·ξ − V(w)`. They add by `+`, with each other and with effects. What an
@@ -86,7 +87,7 @@ impl Legendre {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` isn't a Lagrangian with a continuous limit",
     label = "no `l(ξ, w)` is known of it",
-    note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none, nor has a system of many bodies, `Each` and `Along`"
+    note = "declare it by `#[lagrangian(… l = …)]` or `#[lagrangian(… l_d = …)]`; a force has none, nor has a system of many bodies, which `Each`, `On`, `Along`, `Between` and `Pairs` put together"
 )]
 pub trait ContinuousLagrangian: Term {
     /// What is known of the inverse Legendre transform.

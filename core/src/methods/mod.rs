@@ -7,7 +7,7 @@
 //! | [`Split`], by [`Stepper::split`](crate::Stepper::split) | 2 to 10 | SO(3), a potential apart | the same; nothing is solved with a closed [`KineticFlow`] |
 //! | [`Processed`], by [`Stepper::processed`](crate::Stepper::processed) | 4, 6 | the same, and kick derivatives | the same |
 //! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a potential apart, `f64` | the same |
-//! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any group, `f64` | the same |
+//! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on any one group, `f64` | the same |
 //! | [`ChainStepper`], a map of its own | 2 | links on ball joints, `f64` | Poisson structure, momentum about the vertical |
 //! | [`Jointed`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
 //! | [`Preprocessed`], by [`Stepper::preprocessed`](crate::Stepper::preprocessed) | 4 to 10 | a free body | energy, momentum maps |

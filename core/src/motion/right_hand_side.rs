@@ -103,6 +103,10 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
 
     /// `ġ = g ξ̂`, a matrix in 1/s, and `μ̇` in the body frame, on SO(3) in N m, \[RDAE, (1.5), (1.12) and (2.2)\].
     ///
+    /// Of several bodies a tuple of matrices, and of all bodies the rate of the momentum, one after the other. What is
+    /// translated has its velocity in the last column of its matrix, in m/s, and its rate in N; both are in the axes of
+    /// space.
+    ///
     /// # Errors
     ///
     /// As [`ContinuousLagrangian::velocity`].
@@ -145,7 +149,9 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
         left.chain(right).collect()
     }
 
-    /// A state as numbers: the attitude's matrix row by row, then the momentum.
+    /// A state as numbers: the attitude's matrix row by row, then the momentum. Of several bodies the matrices come first,
+    /// one after the other, then the momenta. Of what is translated the last column of the matrix is its place in space, m,
+    /// and the momentum is in the axes of space, kg m/s.
     pub fn state(&self, attitude: &L::Group, momentum: &Velocity<L>) -> Vec<L::Scalar> {
         let mut numbers = Vec::new();
         attitude.matrix().each(&mut |entry| numbers.push(entry));

@@ -92,6 +92,26 @@ pub(crate) struct Factor {
     pub(crate) path: Option<Path>,
 }
 
+/// How velocities of these factors may be named: `velocity = Omega`, or `velocity(Omega_1, v)`.
+pub(crate) fn named_velocities(factors: &[Factor]) -> String {
+    let letters = |factor: &Factor| if factor.group_name() == "SO3" { "Omega" } else { "v" };
+    let name = |(at, factor): (usize, &Factor)| {
+        let alike = |factors: &[Factor]| factors.iter().filter(|other| letters(other) == letters(factor)).count();
+        if alike(factors) == 1 {
+            letters(factor).to_owned()
+        } else {
+            format!("{}_{}", letters(factor), alike(&factors[..=at]))
+        }
+    };
+    match factors {
+        [] | [_] => "velocity = Omega".to_owned(),
+        several => {
+            let names: Vec<String> = several.iter().enumerate().map(name).collect();
+            format!("velocity({})", names.join(", "))
+        }
+    }
+}
+
 impl Factor {
     /// The group's name without what it is found in.
     pub(crate) fn group_name(&self) -> String {
@@ -163,9 +183,14 @@ impl Declaration {
         self.continuous.as_ref().map_or(&[], |continuous| &continuous.velocities)
     }
 
-    /// The name of the first velocity in `l`, which messages show.
-    pub(crate) fn velocity(&self) -> Option<&Ident> {
-        self.velocities().first()
+    /// The name of the velocity of a factor in `l`.
+    pub(crate) fn velocity(&self, factor: usize) -> Option<&Ident> {
+        self.velocities().get(factor)
+    }
+
+    /// The same for messages, which show one where none is named.
+    pub(crate) fn velocity_or_omega(&self, factor: usize) -> String {
+        self.velocity(factor).map_or_else(|| "Omega".to_owned(), ToString::to_string)
     }
 
     /// The name of the velocity of a factor in print.

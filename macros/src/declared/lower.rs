@@ -6,7 +6,7 @@ use std::rc::Rc;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{
-    Carried, Declared, DeclaredContinuous, Displacements, Let, OfVelocity, Seen, hat, linear_forms, unit,
+    Carried, Declared, DeclaredContinuous, Displacements, Element, Let, Seen, hat, linear_forms, unit,
 };
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
@@ -114,7 +114,7 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
     let group = declaration.group.clone();
     let mut velocities = Vec::new();
     for (factor, own) in group.factors().iter().enumerate() {
-        let velocity = OfVelocity::new(own, &declaration.name_of_velocity(factor), &mut symbols);
+        let velocity = Element::new(own, &declaration.name_of_velocity(factor), &mut symbols);
         names.insert(Name::Velocity(factor), velocity.components);
         velocities.push(velocity);
     }
@@ -404,14 +404,14 @@ impl Lowering<'_> {
                 self.closed(tree, value)
             }
             Kind::Vee(a) => self.expression(a)?.vee(&self.symbols),
-            Kind::Hat(a, _) if matches!(a.kind, Kind::Name(Name::Velocity(_))) && self.velocity_matrix.is_some() => {
-                let square = ambient(tree.shape);
-                self.velocity_matrix
-                    .map_or_else(|| Expression::zero(square), |id| Expression::symbol(id, &self.symbols))
-            }
             Kind::Hat(a, generators) => {
-                let components = self.expression(a)?;
-                hat(generators, tree.shape.rows(), &components, &self.symbols)
+                let is_velocity = matches!(a.kind, Kind::Name(Name::Velocity(_)));
+                if let Some(id) = self.velocity_matrix.filter(|_| is_velocity) {
+                    Expression::symbol(id, &self.symbols)
+                } else {
+                    let components = self.expression(a)?;
+                    hat(generators, tree.shape.rows(), &components, &self.symbols)
+                }
             }
             Kind::Components(a, forms) => {
                 let element = self.expression(a)?;

@@ -193,31 +193,36 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
     let group = names.collect::<Vec<_>>().join(" × ");
     let is_product = declaration.group.is_product();
     let increment = |factor: usize| declaration.factors.get(factor).map_or("F", |factor| factor.name.as_str());
+    // In the continuous setting there are no increments, and their names stand for the bodies.
+    let element = |factor: usize| if is_product { format!("g_{}", factor + 1) } else { "g".to_owned() };
     let advected = declaration.advected.iter().enumerate().map(|(index, w)| {
         let name = w.plain_name();
         let f = match w.seen {
             Seen::From(factor) => increment(factor),
-            Seen::Relative { of, from } if !is_discrete => {
-                return format!("    {name} is {} as {} sees it\n", increment(of), increment(from));
-            }
-            Seen::Configuration(of) if !is_discrete => {
-                return format!("    {name} is {} as it is in space\n", increment(of));
-            }
-            Seen::Relative { of, from } if declaration.group.factor(of).is_added => {
-                let (of, from) = (increment(of), increment(from));
-                return format!("    {name}⁺ = {name} + {of} − {from}: the place of {of} as {from} sees it\n");
-            }
-            Seen::Configuration(of) if declaration.group.factor(of).is_added => {
-                let of = increment(of);
-                return format!("    {name}⁺ = {name} + {of}: the place of {of} in space\n");
-            }
             Seen::Relative { of, from } => {
-                let (of, from) = (increment(of), increment(from));
-                return format!("    {name}⁺ = {from}⁻¹ {name} {of}: the body of {of} as that of {from} sees it\n");
+                let (one, other) = (increment(of), increment(from));
+                let (g, from) = (element(of), element(from));
+                return match (declaration.group.factor(of).is_added, is_discrete) {
+                    (true, true) => {
+                        format!("    {name}⁺ = {name} + {one} − {other}: the place of {one} as {other} sees it\n")
+                    }
+                    (true, false) => format!("    {name} = {g} − {from}: the place of {one} as {other} sees it\n"),
+                    (false, true) => {
+                        format!("    {name}⁺ = {other}⁻¹ {name} {one}: the body of {one} as that of {other} sees it\n")
+                    }
+                    (false, false) => {
+                        format!("    {name} = {from}⁻¹ {g}: the body of {one} as that of {other} sees it\n")
+                    }
+                };
             }
             Seen::Configuration(of) => {
-                let of = increment(of);
-                return format!("    {name}⁺ = {name} {of}: the body of {of} as it is in space\n");
+                let (one, g) = (increment(of), element(of));
+                return match (declaration.group.factor(of).is_added, is_discrete) {
+                    (true, true) => format!("    {name}⁺ = {name} + {one}: the place of {one} in space\n"),
+                    (true, false) => format!("    {name} = {g}: the place of {one} in space\n"),
+                    (false, true) => format!("    {name}⁺ = {name} {one}: the body of {one} as it is in space\n"),
+                    (false, false) => format!("    {name} = {g}: the body of {one} as it is in space\n"),
+                };
             }
         };
         let (space, moved) = match declaration.advected_kind(index).variance() {
@@ -232,21 +237,26 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
             let moved = with_names(moved, f, &name);
             format!("    {name}⁺ = {f}⁻¹·{name} = {moved} for {name} in {space}\n")
         } else if is_product {
-            format!("    {name} = g⁻¹·a₀ in {space}, seen from {f}\n")
+            let of = if let Seen::From(factor) = w.seen { element(factor) } else { String::new() };
+            format!("    {name} = {of}⁻¹·a₀ in {space}, seen from {f}\n")
         } else {
             format!("    {name} = g⁻¹·a₀ in {space}\n")
         }
     });
     let advected: String = advected.collect();
     let increments = declaration.factors.iter().map(|factor| factor.name.as_str()).collect::<Vec<_>>().join(", ");
-    let element = match (is_discrete, is_product) {
+    let whole = match (is_discrete, is_product) {
         (true, true) => format!("F = ({increments}) = g⁻¹ g⁺"),
         (true, false) if increments != "F" => format!("F = {increments} = g⁻¹ g⁺"),
         (true, false) => "F = g⁻¹ g⁺".to_owned(),
-        (false, true) => format!("g = ({increments})"),
+        (false, true) => {
+            let elements: Vec<String> = (0..declaration.factors.len()).map(element).collect();
+            format!("g = ({})", elements.join(", "))
+        }
         (false, false) => "g".to_owned(),
     };
-    format!("group\n    {element} in {group}\n{advected}")
+    let bodies = if is_product && !is_discrete { format!(", of {increments}") } else { String::new() };
+    format!("group\n    {whole} in {group}{bodies}\n{advected}")
 }
 
 /// `F⁻¹ w` with the names of an increment and of what it moves, which may have the letters of each other.

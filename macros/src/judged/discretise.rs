@@ -26,8 +26,8 @@ pub(super) enum Misfit {
     NoLogarithm,
     /// The group's matrices are too large for a Cayley transform in closed form.
     NoCayley,
-    /// The velocity stands where a matrix that isn't in the algebra can't.
-    NotInMatrix,
+    /// The velocity of this factor stands where a matrix that isn't in the algebra can't.
+    NotInMatrix(usize),
 }
 
 /// The discrete Lagrangian that is made of `l`; `None` where it doesn't fit, which has been reported.
@@ -66,7 +66,7 @@ fn discrete(declaration: &Declaration, tree: &Rc<Tree>, asked: Discretisation) -
         Quadrature::Midpoint => {
             let half = |factor: usize| {
                 let velocity = velocities.get(factor).cloned().flatten();
-                build.of(factor).half_increment(&velocity.ok_or(Misfit::NotInMatrix)?)
+                build.of(factor).half_increment(&velocity.ok_or(Misfit::NotInMatrix(factor))?)
             };
             let halves: Vec<[Rc<Tree>; 2]> = factors.map(half).collect::<Result<_, _>>()?;
             let middle = (0..number).map(|index| build.carried(index, &|factor| halves[factor].clone())).collect();
@@ -394,14 +394,17 @@ impl Substitution<'_> {
     }
 
     fn operation(&mut self, tree: &Rc<Tree>) -> Result<Rc<Tree>, Misfit> {
+        if let Kind::Hat(a, _) | Kind::CrossMatrix(a) = &tree.kind
+            && let Some(factor) = self.in_matrix(a)
+        {
+            return Ok(self.build.of(factor).difference_quotient());
+        }
         let kind = match &tree.kind {
             Kind::Name(Name::Advected(index)) => return Ok(self.carried[*index].clone()),
-            Kind::Name(Name::Velocity(factor)) => return self.velocity(*factor).ok_or(Misfit::NotInMatrix),
-            Kind::Number(_) | Kind::Identity | Kind::Name(_) => return Ok(tree.clone()),
-            Kind::Hat(a, _) | Kind::CrossMatrix(a) if self.in_matrix(a).is_some() => {
-                let factor = self.in_matrix(a).unwrap_or(0);
-                return Ok(self.build.of(factor).difference_quotient());
+            Kind::Name(Name::Velocity(factor)) => {
+                return self.velocity(*factor).ok_or(Misfit::NotInMatrix(*factor));
             }
+            Kind::Number(_) | Kind::Identity | Kind::Name(_) => return Ok(tree.clone()),
             Kind::Dot(a, b) => match self.form(a, b)? {
                 Some(form) => return Ok(form),
                 None => Kind::Dot(self.of(a)?, self.of(b)?),
@@ -425,8 +428,8 @@ impl Substitution<'_> {
             Kind::Entry(a, row, column) => Kind::Entry(self.of(a)?, *row, *column),
             Kind::Bound(name, a) => {
                 // Where the matrix stands for the velocity, another name of the velocity is none.
-                if self.in_matrix(a).is_some() {
-                    return Err(Misfit::NotInMatrix);
+                if let Some(factor) = self.in_matrix(a) {
+                    return Err(Misfit::NotInMatrix(factor));
                 }
                 Kind::Bound(name.clone(), self.of(a)?)
             }
@@ -441,16 +444,16 @@ impl Substitution<'_> {
 
     /// The factor whose velocity this is, where a matrix stands for it.
     fn in_matrix(&self, tree: &Tree) -> Option<usize> {
-        velocity_of(tree).filter(|&factor| self.velocity(factor).is_none())
+        match tree.kind {
+            Kind::Name(Name::Velocity(factor)) if self.velocity(factor).is_none() => Some(factor),
+            _ => None,
+        }
     }
 
     /// On SO(3), `(Aξ)·(Bξ)` as `tr(ξ̂ S_d ξ̂ᵀ)` with `S = AᵀB` and `S_d = ½ tr(S) I − S`, and `a·ξ` as `a·vee(ξ̂)`, which
     /// are the same in the algebra, and for the matrix `(F − I)/h` those of (3.13).
     fn form(&mut self, a: &Rc<Tree>, b: &Rc<Tree>) -> Result<Option<Rc<Tree>>, Misfit> {
-        let turns = |factor: usize| self.build.of(factor).group().is_so3 && self.velocity(factor).is_none();
-        let linear = |tree| linear(tree, self.build).filter(|(factor, _)| turns(*factor));
-        let (left, right) = (linear(a), linear(b));
-        match (left, right) {
+        match (self.linear(a), self.linear(b)) {
             // Of two bodies their product is none of one matrix.
             (Some((of_left, _)), Some((of_right, _))) if of_left != of_right => Ok(None),
             (Some((factor, left)), Some((_, right))) => {
@@ -470,10 +473,28 @@ impl Substitution<'_> {
                 let product = build.times(&build.times(&quotient, &nonstandard), &build.transposed(&quotient));
                 Ok(Some(build.trace(&product)))
             }
-            (Some((factor, form)), None) if !mentions_velocity(b) => self.paired((factor, &form), b).map(Some),
-            (None, Some((factor, form))) if !mentions_velocity(a) => self.paired((factor, &form), a).map(Some),
-            _ => Ok(None),
+            (Some((factor, form)), None) => self.paired((factor, &form), b).map(Some),
+            (None, Some((factor, form))) => self.paired((factor, &form), a).map(Some),
+            (None, None) => Ok(None),
         }
+    }
+
+    /// The factor of the group, one of SO(3) whose velocity a matrix stands for, and the matrices `A_1, A_2, …` of
+    /// `A_1 A_2 … ξ`.
+    fn linear(&self, tree: &Tree) -> Option<(usize, Vec<Rc<Tree>>)> {
+        if let Some(factor) = self.in_matrix(tree) {
+            return self.build.of(factor).group().is_so3.then(|| (factor, Vec::new()));
+        }
+        let Kind::Multiply(a, b) = &tree.kind else { return None };
+        let (factor, rest) = self.linear(b)?;
+        let own = self.build.of(factor);
+        // A product of matrices in parentheses is one matrix.
+        let matrix = match a.shape {
+            Shape::Scalar => own.scaled(a.clone(), own.identity()),
+            shape if shape == own.square() => a.clone(),
+            Shape::Matrix(..) => return None,
+        };
+        Some((factor, [vec![matrix], rest].concat()))
     }
 
     fn factors(&mut self, factors: &[Rc<Tree>]) -> Result<Vec<Rc<Tree>>, Misfit> {
@@ -486,36 +507,5 @@ impl Substitution<'_> {
         let vector = build.components(build.difference_quotient());
         let image = factors.iter().rev().fold(vector, |image, factor| build.times(factor, &image));
         Ok(build.scalar(Kind::Dot(image, other)))
-    }
-}
-
-/// The factor of the group whose velocity this is.
-fn velocity_of(tree: &Tree) -> Option<usize> {
-    match tree.kind {
-        Kind::Name(Name::Velocity(factor)) => Some(factor),
-        _ => None,
-    }
-}
-
-fn mentions_velocity(tree: &Rc<Tree>) -> bool {
-    velocity_of(tree).is_some() || tree.kind.operands().into_iter().flatten().any(mentions_velocity)
-}
-
-/// The factor of the group and the matrices `A_1, A_2, …` of `A_1 A_2 … ξ`.
-fn linear(tree: &Rc<Tree>, build: &Build) -> Option<(usize, Vec<Rc<Tree>>)> {
-    match &tree.kind {
-        Kind::Name(Name::Velocity(factor)) => Some((*factor, Vec::new())),
-        Kind::Multiply(a, b) if !mentions_velocity(a) => {
-            let (factor, rest) = linear(b, build)?;
-            let own = build.of(factor);
-            // A product of matrices in parentheses is one matrix.
-            let matrix = match a.shape {
-                Shape::Scalar => own.scaled(a.clone(), own.identity()),
-                shape if shape == own.square() => a.clone(),
-                Shape::Matrix(..) => return None,
-            };
-            Some((factor, [vec![matrix], rest].concat()))
-        }
-        _ => None,
     }
 }

@@ -128,18 +128,11 @@ pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, error
         KineticPart::Negative => {
             "the kinetic part is negative: check its sign, and the `.transpose()` in the square of `F - I`".to_owned()
         }
-        KineticPart::Singular(idle) => {
-            let which = if idle.is_empty() {
-                String::new()
-            } else {
-                let names: Vec<String> = idle.iter().map(|k| format!("E_{}", k + 1)).collect();
-                format!(": there is no kinetic energy along {}", names.join(", "))
-            };
-            format!(
-                "the kinetic part is singular at `F = I` whatever the parameters, so a momentum doesn't determine a \
-                 velocity{which}"
-            )
-        }
+        KineticPart::Singular(idle) => format!(
+            "the kinetic part is singular at `F = I` whatever the parameters, so a momentum doesn't determine a \
+             velocity{}",
+            without_energy(idle, declaration)
+        ),
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
@@ -154,27 +147,38 @@ pub(super) fn continuous_kinetic_part(
     let message = match found {
         KineticPart::Regular | KineticPart::NotStationary(_) => return Some(()),
         KineticPart::NotSmooth => {
-            let velocity = declaration.velocity().map_or_else(|| "Omega".to_owned(), ToString::to_string);
+            let (velocity, first) = (declaration.velocity_or_omega(0), declaration.group.factor(0));
+            let square = if first.is_added && first.dimension() == 1 { "powi(2)" } else { "norm_squared()" };
+            let of = if declaration.group.is_product() { "each velocity" } else { "the velocity" };
             format!(
-                "the kinetic part has no second derivative at rest: write it as a square of the velocity, such as \
-                 `{velocity}.norm_squared()`, without a root"
+                "the kinetic part has no second derivative at rest: write it as a square of {of}, such as \
+                 `{velocity}.{square}`, without a root"
             )
         }
         KineticPart::Negative => "the kinetic part is negative: check its sign".to_owned(),
-        KineticPart::Singular(idle) => {
-            let names: Vec<String> = idle.iter().map(|k| format!("E_{}", k + 1)).collect();
-            let along = match names.as_slice() {
-                [] => String::new(),
-                names => format!(": there is no kinetic energy along {}", names.join(", ")),
-            };
-            format!(
-                "the kinetic part is singular at rest whatever the parameters, so a momentum doesn't determine a \
-                 velocity{along}"
-            )
-        }
+        KineticPart::Singular(idle) => format!(
+            "the kinetic part is singular at rest whatever the parameters, so a momentum doesn't determine a velocity{}",
+            without_energy(idle, declaration)
+        ),
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
+}
+
+/// Along which generators there is no kinetic energy; those of several bodies count from one in each.
+fn without_energy(idle: &[usize], declaration: &Declaration) -> String {
+    if idle.is_empty() {
+        return String::new();
+    }
+    let name = |k: usize| {
+        let (factor, own) = declaration.group.factor_of(k);
+        match declaration.factors.get(factor) {
+            Some(increment) if declaration.group.is_product() => format!("E_{} of `{}`", own + 1, increment.name),
+            _ => format!("E_{}", k + 1),
+        }
+    };
+    let names: Vec<String> = idle.iter().map(|&k| name(k)).collect();
+    format!(": there is no kinetic energy along {}", names.join(", "))
 }
 
 /// Reports a discretisation that doesn't fit the group or the Lagrangian.
@@ -191,20 +195,22 @@ pub(super) fn misfit(misfit: Misfit, asked: Discretisation, declaration: &Declar
         Misfit::NoCayley => {
             "no closed inverse of the Cayley map is known on this group: declare `l_d` by hand".to_owned()
         }
-        Misfit::NotInMatrix => {
-            let velocity = declaration.velocity().map_or_else(|| "Omega".to_owned(), ToString::to_string);
-            let forms = if declaration.group.is_so3 {
+        Misfit::NotInMatrix(factor) => {
+            let velocity = declaration.velocity_or_omega(factor);
+            let increment = declaration.factors.get(factor).map_or("F", |factor| &factor.name);
+            let which = if declaration.group.is_product() { format!(" `{velocity}`") } else { String::new() };
+            let forms = if declaration.group.factor(factor).is_so3 {
                 format!("as `hat({velocity})`, in `{velocity}.dot(&(J * {velocity}))` or in `s.dot(&{velocity})`")
             } else {
                 format!("as `hat({velocity})`")
             };
             format!(
-                "`{name}` puts the matrix `(F - I) / h` in the place of the velocity, which may stand {forms} alone: write \
-                 `{instead}`"
+                "`{name}` puts the matrix `({increment} - I) / h` in the place of the velocity{which}, which may stand \
+                 {forms} alone: write `{instead}`"
             )
         }
     };
-    let message = if asked.coordinates == Coordinates::Ambient || !matches!(misfit, Misfit::NotInMatrix) {
+    let message = if asked.coordinates == Coordinates::Ambient || !matches!(misfit, Misfit::NotInMatrix(_)) {
         message
     } else {
         format!("`{name}` doesn't fit this Lagrangian: write `{instead}`")

@@ -83,6 +83,18 @@ impl Group {
         self.factors().iter().take(factor).map(Self::dimension).sum()
     }
 
+    /// The factor of a component, and which of its own it is.
+    pub(crate) fn factor_of(&self, component: usize) -> (usize, usize) {
+        let mut own = component;
+        for (at, factor) in self.factors().iter().enumerate() {
+            match own.checked_sub(factor.dimension()) {
+                Some(rest) => own = rest,
+                None => return (at, own),
+            }
+        }
+        (0, component)
+    }
+
     pub(crate) fn dimension(&self) -> usize {
         self.generators.len()
     }

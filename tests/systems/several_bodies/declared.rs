@@ -12,24 +12,11 @@ use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Effect,
 use liestep::methods::CompositionScheme;
 use liestep::with::{Recorder, Table};
 use liestep::{NonstandardInertia, SO3, Stepper};
-use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
+use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
 
 use super::{apart, attitudes_of, check_derived, check_symplectic, momentum, order, part};
 
 type Group = (SO3, SO3);
-
-/// A double pendulum without any symmetry.
-fn pendulum() -> DoublePendulum {
-    let inertia = |x: f64, y: f64, z: f64| {
-        let m = Matrix3::new(x, 0.02, -0.03, 0.02, y, 0.01, -0.03, 0.01, z);
-        NonstandardInertia::new(m).unwrap()
-    };
-    let (rho, c_1, c_2, m_2) =
-        (Vector3::new(0.1, 0.2, -1.0), Vector3::new(0.1, 0.05, -0.5), Vector3::new(0.05, -0.1, -0.4), 0.7);
-    let J_1 = NonstandardInertia::new(inertia(0.3, 0.2, 0.4).as_matrix() + rho * rho.transpose() * m_2).unwrap();
-    let J_2 = NonstandardInertia::new(inertia(0.1, 0.15, 0.05).as_matrix() + c_2 * c_2.transpose() * m_2).unwrap();
-    DoublePendulum { J_1, J_2, rho, s_1: c_1 + rho * m_2, s_2: c_2 * m_2, g: 9.81, up: Vector3::z() }
-}
 
 fn element(random: &mut Random, size: f64) -> Group {
     let xi: SVector<f64, 6> = random.sample();
@@ -38,7 +25,7 @@ fn element(random: &mut Random, size: f64) -> Group {
 
 #[test]
 fn what_is_derived_is_what_is_declared() {
-    check_derived::<_, 6>(&pendulum(), &mut Random::new(5));
+    check_derived::<_, 6>(&DoublePendulum::asymmetric(), &mut Random::new(5));
     const { assert!(!DoublePendulum::INERTIA_IS_CONSTANT) };
 }
 
@@ -46,14 +33,14 @@ fn what_is_derived_is_what_is_declared() {
 fn a_step_is_symplectic() {
     let mut random = Random::new(8);
     for h in [0.02, 0.1] {
-        check_symplectic::<_, 6>(pendulum(), h, element(&mut random, 1.0), &random.sample());
+        check_symplectic::<_, 6>(DoublePendulum::asymmetric(), h, element(&mut random, 1.0), &random.sample());
     }
 }
 
 /// What a step ends at is the momentum after it, and what it begins with that before.
 #[test]
 fn a_step_is_that_of_the_momentum_maps() {
-    let (l, h, mut random) = (pendulum(), 0.02, Random::new(6));
+    let (l, h, mut random) = (DoublePendulum::asymmetric(), 0.02, Random::new(6));
     let stepper = Stepper::new(l.clone(), h).unwrap();
     for _ in 0..5 {
         let g = element(&mut random, 1.0);
@@ -129,7 +116,7 @@ fn vertical(motion: &liestep::motion::Motion<Group, <DoublePendulum as Term>::Ad
 /// It is kept by increments that miss their equation by far.
 #[test]
 fn vertical_momentum_of_steps_solved_badly() {
-    let (l, h) = (pendulum(), 0.01);
+    let (l, h) = (DoublePendulum::asymmetric(), 0.01);
     let stepper = Stepper::new(Badly(l.clone()), h).unwrap();
     let attitude = element(&mut Random::new(7), 1.0);
     let mut state = stepper.start(attitude, Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5)).unwrap();
@@ -150,7 +137,7 @@ fn vertical_momentum_of_steps_solved_badly() {
 /// Along the vertical the momentum of both is kept; a step back undoes a step.
 #[test]
 fn vertical_momentum_and_energy() {
-    let stepper = Stepper::new(pendulum(), 0.01).unwrap();
+    let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();
     let attitude = element(&mut Random::new(7), 1.0);
     let mut state = stepper.start(attitude, Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5)).unwrap();
     let (before, energy) = (vertical(&state), stepper.energy(&state));
@@ -173,7 +160,7 @@ fn vertical_momentum_and_energy() {
 /// A table has the columns of each body, with its place behind their names.
 #[test]
 fn a_record_has_the_columns_of_each_body() {
-    let stepper = Stepper::new(pendulum(), 0.01).unwrap();
+    let stepper = Stepper::new(DoublePendulum::asymmetric(), 0.01).unwrap();
     let velocity = Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5);
     let mut state = stepper.start(element(&mut Random::new(8), 1.0), velocity).unwrap();
     let mut recorder = Recorder::new(&stepper, Table::new());

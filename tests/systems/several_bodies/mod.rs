@@ -155,9 +155,7 @@ where
     let continuous = RightHandSide::new(l.clone()).unwrap();
     let momentum = l.momentum(&velocity, &l.advected().seen_from(&attitude));
     let mut state = continuous.state(&attitude, &momentum);
-    for _ in 0..steps {
-        runge_kutta::step(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, time / f64::from(steps));
-    }
+    runge_kutta::run(|y, rate| continuous.rate(y, rate).unwrap(), &mut state, time, steps);
     let (attitude, momentum) = continuous.parts(&state);
     let w = l.advected().seen_from(&attitude);
     (attitude, continuous.velocity(&momentum, &w).unwrap())

@@ -1,6 +1,5 @@
 use liestep::methods::CotangentGauss;
 use liestep::{NonstandardInertia, SO3, lagrangian};
-use nalgebra::Vector6;
 
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
@@ -12,8 +11,7 @@ struct Bodies {
     J_2: NonstandardInertia,
 }
 
-fn motion(gauss: CotangentGauss<Bodies, 2, 6>, attitudes: (SO3, SO3), momentum: Vector6<f64>) {
-    let _ = gauss.step(&attitudes, &momentum);
+fn main() {
+    let J = NonstandardInertia::from_diagonal(nalgebra::Vector3::new(2.0, 2.0, 1.0)).unwrap();
+    let _ = CotangentGauss::<_, 2, 6>::new(Bodies { J_1: J, J_2: J }, 0.1);
 }
-
-fn main() {}

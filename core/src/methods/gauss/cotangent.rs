@@ -1,4 +1,4 @@
-//! Gauss collocation on the cotangent bundle of all matrices, for continuous Lagrangians on any matrix group.
+//! Gauss collocation on the cotangent bundle of all matrices, for continuous Lagrangians of one body on any matrix group.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -124,6 +124,16 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Where each iteration takes at least a factor of two, which is at the edge of convergence, they are enough.
 const MOST_ITERATIONS: u32 = 60;
 
+/// What several bodies, whose matrices are a tuple, don't have.
+#[diagnostic::on_unimplemented(
+    message = "`CotangentGauss` integrates on one group, of {N} × {N} matrices",
+    label = "this Lagrangian is of several bodies, or of matrices of another size",
+    note = "several bodies have no collocation: step them by `Stepper`; of one group `N` is the size of its matrices"
+)]
+pub trait MatrixOfOneGroup<const N: usize> {}
+
+impl<const N: usize> MatrixOfOneGroup<N> for SMatrix<f64, N, N> {}
+
 // Apart, so that what has no continuous limit gets one message, not another about its matrices.
 impl<L: ContinuousLagrangian<Scalar = f64>, const PAIRS: usize, const N: usize> CotangentGauss<L, PAIRS, N> {
     /// Checks the parameters and the step.
@@ -133,15 +143,14 @@ impl<L: ContinuousLagrangian<Scalar = f64>, const PAIRS: usize, const N: usize> 
     /// [`SetupError::Parameter`] for a parameter that can't be used, [`SetupError::NonFinite`] for an advected one,
     /// [`SetupError::SingularKinetic`] or [`SetupError::NegativeKinetic`] where a momentum doesn't determine a velocity
     /// at rest, [`SetupError::InvalidStep`] for a step that isn't finite.
-    pub fn new(lagrangian: L, h: f64) -> Result<Self, SetupError> {
+    pub fn new(lagrangian: L, h: f64) -> Result<Self, SetupError>
+    where
+        Matrix<L>: MatrixOfOneGroup<N>,
+    {
         const {
             assert!(
                 PAIRS > 0 && PAIRS <= 8,
                 "collocation needs a pair of stages, and doubles have no use for more than 8"
-            );
-            assert!(
-                size_of::<Matrix<L>>() == size_of::<SMatrix<f64, N, N>>(),
-                "N is the size of the group's matrices, of one group: several bodies have no collocation"
             );
         }
         lagrangian.validate()?;

@@ -9,7 +9,7 @@ use super::Checker;
 use super::functions::FUNCTIONS;
 use super::methods::METHODS;
 use crate::declared::errors::suggestion;
-use crate::declared::{AdvectedParameter, Field, Shape};
+use crate::declared::{AdvectedParameter, Field, Shape, named_velocities};
 
 impl Checker<'_> {
     /// Behind `… isn't known here`, for a name.
@@ -27,9 +27,17 @@ impl Checker<'_> {
                 "; {noun} has no time: declare what changes with it by `given(u = field)`, and go on by `step_with`"
             ),
             "omega" | "Omega" | "xi" | "velocity" if self.declaration.continuous.is_some() => {
-                match self.declaration.velocity() {
-                    Some(velocity) => format!("; the velocity is called `{velocity}`"),
-                    None => format!("; name the velocity by `velocity = {name}`"),
+                let is_product = self.declaration.group.is_product();
+                match self.declaration.velocities() {
+                    [] if is_product => {
+                        format!("; name the velocities by `{}`", named_velocities(&self.declaration.factors))
+                    }
+                    [] => format!("; name the velocity by `velocity = {name}`"),
+                    [one] => format!("; the velocity is called `{one}`"),
+                    several => {
+                        let names: Vec<String> = several.iter().map(|name| format!("`{name}`")).collect();
+                        format!("; the velocities are called {}", names.join(", "))
+                    }
                 }
             }
             "omega" | "Omega" | "xi" | "velocity" => {

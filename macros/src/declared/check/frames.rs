@@ -1,9 +1,9 @@
 //! From which body a vector is seen: the one mistake among several bodies that shapes don't show.
 //!
-//! What is known is an increment or a velocity, which is seen from its own body, what a body sees, and a relative configuration, which
-//! brings a vector from one body to another. Fields may belong to any, and so may what is seen from space: where the
-//! attitude of one body is given relative to another, that is the other. Only two bodies that are known and differ are a
-//! mistake.
+//! Of an increment and of a velocity it is known that its own body sees it, of what a body sees that this body does. A
+//! relative configuration is known to bring a vector from one body to another. Fields may belong to any body, and so may
+//! what is seen from space: where the attitude of one body is given relative to another, that is the other. Only two
+//! bodies that are known and differ are a mistake.
 //!
 //! Turns have an axis and an angle of their own, so they may be compared without a frame in common: how much two bodies
 //! turn, each in its axes, as in `vee(F_1) - vee(F_2)`, or a relative configuration with its transpose. For the same reason

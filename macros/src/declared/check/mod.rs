@@ -18,7 +18,7 @@ use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
 use crate::declared::errors::Errors;
-use crate::declared::{Declaration, Kind, Name, Role, Shape, Spelling, Tree};
+use crate::declared::{Declaration, Kind, Name, Role, Shape, Spelling, Tree, named_velocities};
 use crate::mathematics::group::{Group, built_in};
 use crate::mathematics::symbolic::Rational;
 use closures::Closure;
@@ -438,48 +438,48 @@ impl Checker<'_> {
             (1, 1) if self.declaration.group.factor(factor).is_added => Shape::Scalar,
             (rows, columns) => Shape::Matrix(rows, columns),
         };
-        let (shape, found) = match name.as_str() {
-            "I" => return Some(Tree::new(span, square, Kind::Identity)),
-            "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
-            _ if increment.is_some() && self.declaration.continuous.is_some() => return self.of_a_step(&name, span),
-            _ if increment.is_some() => {
-                let factor = increment.unwrap_or(0);
-                (of_increment(factor), Name::Increment(factor))
+        let (shape, found) = if let Some(factor) = increment {
+            if self.declaration.continuous.is_some() {
+                return self.of_a_step(&name, Some(factor), span);
             }
-            "h" => (Shape::Scalar, Name::Step),
-            _ if velocity.is_some() => {
-                let factor = velocity.unwrap_or(0);
-                let own = self.declaration.group.factor(factor);
-                let is_scalar = own.is_added && own.dimension() == 1;
-                let shape = if is_scalar { Shape::Scalar } else { Shape::Matrix(own.dimension(), 1) };
-                (shape, Name::Velocity(factor))
-            }
-            "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
-            "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
-            _ => {
-                if let Some(index) = advected(self.declaration) {
-                    (self.declaration.advected_kind(index).shape(), Name::Advected(index))
-                } else if let Some(index) = field(self.declaration) {
-                    if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
-                        let (plain, is_given) = (w.plain_name(), w.is_given);
-                        let message = if is_given {
-                            format!("`{name}` is the value of `{plain}` until another is given: write `{plain}`")
-                        } else {
-                            format!(
-                                "`{name}` is the spatial value of `{plain}`: write `{plain}`, which is what the body sees"
-                            )
-                        };
-                        self.errors.push(span, message);
+            (of_increment(factor), Name::Increment(factor))
+        } else if let Some(factor) = velocity {
+            let own = self.declaration.group.factor(factor);
+            let is_scalar = own.is_added && own.dimension() == 1;
+            let shape = if is_scalar { Shape::Scalar } else { Shape::Matrix(own.dimension(), 1) };
+            (shape, Name::Velocity(factor))
+        } else {
+            match name.as_str() {
+                "I" => return Some(Tree::new(span, square, Kind::Identity)),
+                "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, None, span),
+                "h" => (Shape::Scalar, Name::Step),
+                "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
+                "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
+                _ => {
+                    if let Some(index) = advected(self.declaration) {
+                        (self.declaration.advected_kind(index).shape(), Name::Advected(index))
+                    } else if let Some(index) = field(self.declaration) {
+                        if let Some(w) = self.declaration.advected.iter().find(|w| w.field == Some(index)) {
+                            let (plain, is_given) = (w.plain_name(), w.is_given);
+                            let message = if is_given {
+                                format!("`{name}` is the value of `{plain}` until another is given: write `{plain}`")
+                            } else {
+                                format!(
+                                    "`{name}` is the spatial value of `{plain}`: write `{plain}`, which is what the body sees"
+                                )
+                            };
+                            self.errors.push(span, message);
+                            return None;
+                        }
+                        (self.declaration.fields[index].kind.shape(), Name::Field(index))
+                    } else {
+                        // Once is enough, however often it is used.
+                        if !self.declaration.unreadable.contains(&name) && self.unknown.insert(name.clone()) {
+                            let advice = self.advice_on_name(&name);
+                            self.errors.push(span, format!("`{name}` isn't known here{advice}"));
+                        }
                         return None;
                     }
-                    (self.declaration.fields[index].kind.shape(), Name::Field(index))
-                } else {
-                    // Once is enough, however often it is used.
-                    if !self.declaration.unreadable.contains(&name) && self.unknown.insert(name.clone()) {
-                        let advice = self.advice_on_name(&name);
-                        self.errors.push(span, format!("`{name}` isn't known here{advice}"));
-                    }
-                    return None;
                 }
             }
         };
@@ -488,20 +488,21 @@ impl Checker<'_> {
         Some(Tree::seen(span, shape, found, seen))
     }
 
-    /// A continuous Lagrangian knows no step.
-    fn of_a_step(&mut self, name: &str, span: Span) -> Option<Rc<Tree>> {
+    /// A continuous Lagrangian knows no step: neither the increment of a factor, nor `h`.
+    fn of_a_step(&mut self, name: &str, increment: Option<usize>, span: Span) -> Option<Rc<Tree>> {
         if self.unknown.insert(name.to_owned()) {
-            let velocity = match self.declaration.velocity() {
-                Some(velocity) => format!("`{}`", velocity.unraw()),
-                None => "`Omega`, named by `velocity = Omega`".to_owned(),
-            };
-            let what = if name == "h" {
+            let what = if let Some(factor) = increment {
+                let velocity = match self.declaration.velocity(factor) {
+                    Some(velocity) => format!("the velocity `{}`", velocity.unraw()),
+                    None if self.declaration.group.is_product() => {
+                        format!("its velocity, named by `{}`", named_velocities(&self.declaration.factors))
+                    }
+                    None => "the velocity `Omega`, named by `velocity = Omega`".to_owned(),
+                };
+                format!("`{name}` is the increment of a step, and `l` has no steps: write it in {velocity}")
+            } else {
                 "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
                     .to_owned()
-            } else {
-                format!(
-                    "`{name}` is the increment of a step, and `l` has no steps: write it in the velocity {velocity}"
-                )
             };
             self.errors.push(span, format!("{what}, or declare `l_d = …`"));
         }

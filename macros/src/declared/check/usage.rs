@@ -24,12 +24,12 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
             declaration.velocities().iter().enumerate().filter(unused).map(|(_, name)| name).collect();
         if !unused.is_empty() {
             for velocity in unused {
-                let advice = if declaration.group.is_product() {
-                    "that body would not move; leave its factor out, or use it".to_owned()
+                let message = if declaration.group.is_product() {
+                    forgotten(&velocity.to_string())
                 } else {
-                    format!("remove `velocity = {velocity}`, or use it")
+                    format!("`{velocity}` isn't used in the Lagrangian: remove `velocity = {velocity}`, or use it")
                 };
-                errors.push(velocity.span(), format!("`{velocity}` isn't used in the Lagrangian: {advice}"));
+                errors.push(velocity.span(), message);
             }
         } else if !used.iter().any(|name| matches!(name, Name::Velocity(_) | Name::Advected(_))) {
             errors.push_over(
@@ -50,16 +50,16 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
     if declaration.group.is_product() {
         for (index, factor) in declaration.factors.iter().enumerate() {
             if !used.contains(&Name::Increment(index)) {
-                let name = &factor.name;
-                let message = format!(
-                    "the Lagrangian doesn't depend on `{name}`: that body would not move; leave it out, or add its kinetic \
-                     part"
-                );
-                errors.push(factor.place, message);
+                errors.push(factor.place, forgotten(&factor.name));
             }
         }
     }
     check_names(declaration, used, errors);
+}
+
+/// Of an increment or a velocity among several.
+fn forgotten(name: &str) -> String {
+    format!("the Lagrangian doesn't depend on `{name}`: leave its factor out, or add its kinetic part")
 }
 
 fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {

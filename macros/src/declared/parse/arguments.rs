@@ -205,6 +205,13 @@ fn velocities(key: &Ident, input: ParseStream) -> syn::Result<Vec<Ident>> {
         return names.map(|names| names.into_iter().collect()).map_err(|error| syn::Error::new(error.span(), message));
     }
     equals(key, input)?;
+    if input.peek(syn::token::Paren) {
+        let group: proc_macro2::Group = input.parse()?;
+        return Err(syn::Error::new(
+            group.span(),
+            format!("of several velocities leave the `=` away: `velocity{group}`"),
+        ));
+    }
     without_quotes(key, input)?;
     Ok(vec![input.call(Ident::parse_any)?])
 }

@@ -13,7 +13,8 @@ use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};
 
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{
-    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature, Role,
+    AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature,
+    Role, named_velocities,
 };
 use crate::mathematics::derive::Seen;
 use crate::mathematics::group::Group;
@@ -227,7 +228,11 @@ fn velocities(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &m
         let increments: Vec<String> = factors.iter().map(|factor| format!("`{}`", factor.name)).collect();
         let message = match increments.as_slice() {
             [_] => "one group has one velocity: write `velocity = Omega`".to_owned(),
-            several => format!("name the velocities of {}, in this order: {} names", several.join(", "), several.len()),
+            several => format!(
+                "write `{}`: each of {} has a velocity, in this order",
+                named_velocities(factors),
+                several.join(", ")
+            ),
         };
         errors.push_decisive(key.span(), message);
     }

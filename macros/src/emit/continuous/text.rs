@@ -3,7 +3,7 @@
 use crate::declared::{Declaration, FieldKind};
 use crate::emit::docs::{Equation, setting};
 use crate::judged::Equations;
-use crate::mathematics::derive::{Carried, Continuous, Inverse, OfVelocity, Seen};
+use crate::mathematics::derive::{Carried, Continuous, Element, Inverse, Seen};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Variance, matrix_text, monomial_contains, text, vector_text};
 
@@ -71,6 +71,9 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
     }
     list.push(momentum_rate(derived, has_moved));
     list.extend(advected_rates(declaration, derived));
+    if derived.has_kinetic() && derived.inverse != Inverse::Nonlinear && without_bias(derived) == UNWRITTEN_BIAS {
+        list.push(paired("momentum", "s(w)", &derived.bias(), "μ at rest"));
+    }
     list.push(inverse(derived));
     list.push(hamiltonian(derived, &hamiltonian_of(&w)));
     list.push(kept(declaration, equations));
@@ -79,7 +82,7 @@ pub(super) fn equations(declaration: &Declaration, equations: &Equations) -> Vec
 
 /// The covectors of several bodies, in their order.
 fn of_bodies(derived: &Continuous, expression: &Expression) -> String {
-    let of_body = |(factor, directions): (usize, &[OfVelocity; 2])| {
+    let of_body = |(factor, directions): (usize, &[Element; 2])| {
         let own = of_factor(derived, factor, expression);
         let found = vector_text(&own, directions[0].components, &derived.symbols);
         let found = found.unwrap_or_else(|| format!("η_{} ↦ {}", factor + 1, text(&own, &derived.symbols)));
@@ -135,8 +138,12 @@ fn momentum_rates(derived: &Continuous) -> String {
 /// (1.4) with (2.2), on SO(3) in cross products.
 fn momentum_rate(derived: &Continuous, has_moved: bool) -> Equation {
     if derived.group.is_product() {
-        let right = momentum_rates(derived);
-        return Equation::new("momentum_rate", "dμ/dt", right, "(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w, of each");
+        let source = if has_moved {
+            "(1.4) and (2.2): ad*_ξ μ + ∂l/∂w ⋄ w, of each"
+        } else {
+            "(1.4): ad*_ξ μ, of each"
+        };
+        return Equation::new("momentum_rate", "dμ/dt", momentum_rates(derived), source);
     }
     let xi = velocity(derived);
     let momentum = covector(derived, &derived.momentum);
@@ -192,13 +199,16 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
     names(declaration).into_iter().enumerate().filter_map(|(index, name)| rate(index, name)).collect()
 }
 
+/// Of a momentum at rest that has a line of its own.
+const UNWRITTEN_BIAS: &str = "μ − s(w)";
+
 /// `μ − s(w)`.
 fn without_bias(derived: &Continuous) -> String {
     match covector(derived, &derived.bias()) {
         _ if derived.bias().is_zero() => "μ".to_owned(),
         Some(bias) if !bias.contains(" + ") && !bias.contains('−') => format!("μ − {bias}"),
         Some(bias) => format!("μ − ({bias})"),
-        None => "μ − s(w)".to_owned(),
+        None => UNWRITTEN_BIAS.to_owned(),
     }
 }
 
@@ -234,14 +244,15 @@ fn hamiltonian_of(w: &[String]) -> String {
     format!("h({})", arguments.join(", "))
 }
 
-/// A component of the momentum; of several bodies one of that of a body, which is the body's where it is alone.
+/// A component of the momentum, `μ_k`; of several bodies `(μ_a)_k`, or `μ_a` where body `a` has one component.
 fn component(group: &Group, k: usize) -> String {
-    let factors = group.factors().iter().enumerate();
-    let of_k = factors.map(|(factor, own)| (factor, own.dimension(), group.component_of(factor)));
-    match of_k.into_iter().find(|(_, dimension, first)| (*first..first + dimension).contains(&k)) {
-        Some((factor, 1, _)) if group.is_product() => format!("μ_{}", factor + 1),
-        Some((factor, _, first)) if group.is_product() => format!("(μ_{})_{}", factor + 1, k - first + 1),
-        _ => format!("μ_{}", k + 1),
+    if !group.is_product() {
+        return format!("μ_{}", k + 1);
+    }
+    let (factor, own) = group.factor_of(k);
+    match group.factor(factor).dimension() {
+        1 => format!("μ_{}", factor + 1),
+        _ => format!("(μ_{})_{}", factor + 1, own + 1),
     }
 }
 
@@ -289,12 +300,13 @@ pub(super) fn derivation(declaration: &Declaration, equations: &Equations) -> St
 pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations) -> String {
     let texts = self::equations(declaration, equations);
     let (xi, group) = (velocity(&equations.derived), &equations.derived.group);
-    let basis = if group.is_so3 {
-        "so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)"
+    let pairing = if group.is_so3 {
+        "μ_k = ⟨μ, E_k⟩, so that μ is the body momentum; the thesis' matrix, paired by tr(AᵀB), is half of hat(μ)"
     } else if group.is_product() {
-        "of one factor after the other: of what turns the body momentum, of what is translated the momentum"
+        "(μ_a)_k = ⟨μ, E_k of factor a⟩: of what turns the momentum in its own axes, of what is translated that in the \
+         axes of space"
     } else {
-        "with the generators E_k of the declaration"
+        "μ_k = ⟨μ, E_k⟩, with the generators E_k of the declaration"
     };
     let all = velocities(&equations.derived).join(", ");
     let named = if group.is_product() { format!("{xi} = ({all})") } else { xi.to_owned() };
@@ -304,7 +316,7 @@ pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations)
     } else {
         format!("    l_d(exp(h {xi}), w, h) = h l({xi}, w) + O(h²)\n")
     };
-    format!("continuous\n    {named} = g⁻¹ dg/dt\n{limit}    pairing: μ_k = ⟨μ, E_k⟩, {basis}\n{lines}")
+    format!("continuous\n    {named} = g⁻¹ dg/dt\n{limit}    pairing: {pairing}\n{lines}")
 }
 
 /// What the struct's own documentation says of the continuous equations.

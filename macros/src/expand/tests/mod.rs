@@ -3,6 +3,7 @@
 mod continuous;
 mod derivation;
 mod determinism;
+mod discretised_bodies;
 mod fuzz;
 mod higher_order;
 mod mutants;

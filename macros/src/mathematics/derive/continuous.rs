@@ -25,20 +25,20 @@ pub(crate) struct DeclaredContinuous {
     /// `l(ξ, w)`.
     pub(crate) expression: Expression,
     /// `ξ`, one for each factor of the group.
-    pub(crate) velocities: Vec<OfVelocity>,
+    pub(crate) velocities: Vec<Element>,
     /// The advected parameters `w`.
     pub(crate) advected: Vec<Carried>,
 }
 
-/// The velocity of a factor of the group, or a direction of it.
+/// An element of the algebra of a factor: its velocity, or a direction along which the velocity is varied.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OfVelocity {
+pub(crate) struct Element {
     pub(crate) components: SymbolId,
     /// The matrix `ξ̂`; none on SO(3), where it is that of a cross product, and where increments are added.
     pub(crate) matrix: Option<SymbolId>,
 }
 
-impl OfVelocity {
+impl Element {
     /// The symbols of these names for a factor.
     fn several<const N: usize>(group: &Group, names: [&str; N], stage: Stage, symbols: &mut Symbols) -> [Self; N] {
         let components = names.map(|name| symbols.add(name, (group.dimension(), 1), Structure::General, stage));
@@ -89,10 +89,10 @@ pub(crate) struct Continuous {
     pub(crate) group: Group,
     pub(crate) symbols: Symbols,
     /// One for each factor of the group, as all of these.
-    pub(crate) velocities: Vec<OfVelocity>,
+    pub(crate) velocities: Vec<Element>,
     pub(crate) advected: Vec<Carried>,
     /// `η` and `ζ`.
-    pub(crate) directions: Vec<[OfVelocity; 2]>,
+    pub(crate) directions: Vec<[Element; 2]>,
     pub(crate) lagrangian: Expression,
     /// `μ`.
     pub(crate) momentum: Expression,
@@ -100,8 +100,9 @@ pub(crate) struct Continuous {
     pub(crate) hessian: Expression,
     /// `∂l/∂w ⋄ w`.
     pub(crate) diamond: Expression,
-    /// The same along any matrices, which the symbols stand for; where increments are added, along vectors.
+    /// Any matrix of each factor; where increments are added, any vector.
     pub(crate) any: Vec<SymbolId>,
+    /// `∂l/∂w ⋄ w` along these.
     pub(crate) diamond_of_any: Expression,
     /// `(∂²l/∂w∂ξ)(ξ·w)`.
     pub(crate) advection: Expression,
@@ -146,7 +147,7 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
     for (factor, own) in group.factors().iter().enumerate() {
         let names = ["η", "ζ"].map(|name| numbered(name, factor));
         let names = [names[0].as_str(), names[1].as_str()];
-        directions.push(OfVelocity::several(own, names, Stage::Construction, &mut symbols));
+        directions.push(Element::several(own, names, Stage::Construction, &mut symbols));
     }
     let mut any = Vec::new();
     for (factor, own) in group.factors().iter().enumerate() {
@@ -156,7 +157,7 @@ pub(crate) fn continuous(declared: DeclaredContinuous) -> Result<Continuous, Ref
         let varied = variation(of, variations, &symbols);
         if is_crossed { varied.with_hats_resolved(&symbols) } else { varied }
     };
-    let element = |of: OfVelocity, factor: usize| of.element(group.factor(factor), &symbols);
+    let element = |of: Element, factor: usize| of.element(group.factor(factor), &symbols);
     let along_velocity = |of: &Expression, direction: usize| {
         let mut variations = Variations::new();
         for (factor, (velocity, directions)) in velocities.iter().zip(&directions).enumerate() {
@@ -227,7 +228,7 @@ pub(crate) fn of_limit(declared: &Declared, derived: &Derived) -> DeclaredContin
     for (factor, own) in group.factors().iter().enumerate() {
         let name = if own.is_so3 { "Ω" } else { "ξ" };
         let name = if group.is_product() { format!("{name}_{}", factor + 1) } else { name.to_owned() };
-        velocities.push(OfVelocity::new(own, &name, &mut symbols));
+        velocities.push(Element::new(own, &name, &mut symbols));
     }
     let directions = &derived.directions;
     let factors = directions.factors.iter().zip(&velocities).zip(group.factors());

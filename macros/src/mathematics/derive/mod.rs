@@ -25,7 +25,7 @@ pub(crate) use action::{Carried, Seen};
 pub(crate) use algebra::{hat, linear_forms, unit};
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
-pub(crate) use continuous::{Continuous, DeclaredContinuous, Inverse, OfVelocity, continuous, of_limit};
+pub(crate) use continuous::{Continuous, DeclaredContinuous, Element, Inverse, continuous, of_limit};
 pub(crate) use force::{Displacements, ForceError};
 pub(crate) use limit::{Discretised, Limit, LimitError};
 pub(crate) use self_adjoint::SelfAdjointness;

@@ -1,0 +1,17 @@
+use liestep::mechanics::Inertia;
+use liestep::{SO3, lagrangian};
+use nalgebra::Vector3;
+
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    velocity(Omega_1, Omega_2),
+    l = 0.5 * Omega_1.dot(&(J * Omega_1)) + 0.5 * Omega_2.dot(&(J * Omega_2)) + 0.5 * m * Omega_2.cross(&s).norm_squared(),
+    discretise = trapezoid,
+)]
+struct Bodies {
+    J: Inertia,
+    m: f64,
+    s: Vector3<f64>,
+}
+
+fn main() {}
