@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use declarations::HeavyTop;
 use liestep::groups::LieGroup;
-use liestep::motion::{AnyStepper, Integrator, Motion, ScalarIn, StepReport};
+use liestep::motion::{Integrator, Motion, ScalarIn, StepReport};
 use liestep::prelude::*;
 use liestep::with::{Ended, Event, Reason, RunError, sections};
 use nalgebra::{UnitQuaternion, Vector3};

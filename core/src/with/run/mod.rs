@@ -381,7 +381,6 @@ fn unless_it_goes_on(answer: impl Answer) -> Option<Box<Verdict>> {
 }
 
 /// Shows a moment; returns whether the observer stops the run.
-#[inline(always)]
 fn show<I: Integrator>(
     observer: &mut Observer<'_, I>,
     now: &Moment<'_, I>,
