@@ -4,9 +4,9 @@
 //! cargo run --release --example frame-times
 //! ```
 //!
-//! It spins at 300 rad/s, which is more than (3.13) can turn in a step of 60 Hz: such steps are divided. What is shown
-//! lies between two steps, and no frame changes them: the motion is the same at every rate, to the bit. An engine would
-//! call `advance` with the time of its frame, and give the quaternion to what it draws.
+//! It is the toy of the guide's chapter on recording, which says why its steps are divided and why no frame changes its
+//! motion. What is shown is a part of a step ahead of the last one made. An engine would call `advance` with the time of
+//! its frame, and give the quaternion to what it draws.
 
 use std::error::Error;
 use std::thread::sleep;
@@ -24,7 +24,7 @@ type Toy = Frames<AnyStepper<SO3<f32>, ()>>;
 /// The length of a step, s.
 const STEP: f32 = 1.0 / 60.0;
 
-/// 50 g, 3 cm high, tilted by 0.2 rad.
+/// 50 g, its centre of mass 3 cm above the tip, tilted by 0.2 rad.
 fn toy() -> Result<Toy, Box<dyn Error>> {
     // J_d about the tip, kg m².
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(1e-5, 1e-5, 5.5e-5))?;

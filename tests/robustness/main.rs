@@ -8,6 +8,7 @@ mod checkpoints;
 mod command_lines;
 mod long_drifts;
 mod observed;
+mod one_top;
 mod policies;
 mod random_inputs;
 mod recorded;

@@ -4,22 +4,12 @@ use std::cell::RefCell;
 
 use declarations::HeavyTop;
 use liestep::groups::LieGroup;
-use liestep::motion::{AnyStepper, Integrator, Motion, ScalarIn, StepReport};
+use liestep::motion::{Integrator, Motion, ScalarIn, StepReport};
 use liestep::prelude::*;
 use liestep::with::{Ended, Event, Reason, RunError, sections};
 use nalgebra::{UnitQuaternion, Vector3};
 
-pub(crate) const VELOCITY: Vector3<f64> = Vector3::new(0.5, 2.0, 12.0);
-
-pub(crate) type Top = AnyStepper<SO3, Vector3<f64>>;
-pub(crate) type TopState = liestep::motion::AnyState<SO3, Vector3<f64>>;
-
-/// One type of stepper for nearly all of what is asked here.
-pub(crate) fn top(h: f64) -> (Top, TopState) {
-    let stepper = Stepper::new(HeavyTop::thesis(), h).unwrap().into_any();
-    let state = stepper.start(UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0)), VELOCITY).unwrap();
-    (stepper, state)
-}
+use crate::one_top::{VELOCITY, top};
 
 #[test]
 fn a_run_ends_when_it_is_told_to() {

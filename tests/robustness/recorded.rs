@@ -16,7 +16,7 @@ use liestep::prelude::*;
 use liestep::with::{Background, Column, Csv, RecordError, Recorder, RunError, Sink, SinkError, Table};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::observed::{Top, TopState, VELOCITY, top};
+use crate::one_top::{Top, TopState, VELOCITY, top};
 
 fn csv_of(stepper: &Top, state: &mut TopState, every: u64, until: f64) -> String {
     let mut recorder = Recorder::new(stepper, Csv::new(Vec::new()));
@@ -298,14 +298,21 @@ fn a_sink_that_has_failed_gets_nothing_more() {
     }
 }
 
-/// Names with commas and quotes, numbers that aren't any, and a table without rows.
+/// Names with commas and quotes, numbers that aren't any, quantities in their order, and a table without rows.
 #[test]
 fn a_table_is_well_formed() {
     let (stepper, mut state) = top(0.01);
     let numbers = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -0.0, 1e300, 5e-324];
+    let asked = RefCell::new(Vec::new());
     let mut recorder = Recorder::bare(&stepper, Csv::new(Vec::new()))
-        .quantity("a, \"b\"", "", |now| numbers[usize::try_from(now.steps()).unwrap()])
-        .quantity("steps", "1", |now| u32::try_from(now.steps()).unwrap());
+        .quantity("a, \"b\"", "", |now| {
+            asked.borrow_mut().push(1);
+            numbers[usize::try_from(now.steps()).unwrap()]
+        })
+        .quantity("steps", "1", |now| {
+            asked.borrow_mut().push(2);
+            u32::try_from(now.steps()).unwrap()
+        });
     assert_eq!(recorder.columns()[2].unit, "1");
     stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(5).unwrap();
     let text = String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap();
@@ -313,6 +320,7 @@ fn a_table_is_well_formed() {
         text,
         "t,\"a, \"\"b\"\"\",steps\n0.0,NaN,0.0\n0.01,inf,1.0\n0.02,-inf,2.0\n0.03,-0.0,3.0\n0.04,1e300,4.0\n0.05,5e-324,5.0\n"
     );
+    assert_eq!(asked.take(), [1, 2].repeat(6));
     let empty = Recorder::bare(&stepper, Csv::new(Vec::new())).finish().unwrap().into_inner().unwrap();
     assert_eq!(empty, b"t\n");
     let table = Recorder::bare(&stepper, Table::new()).finish().unwrap();

@@ -301,6 +301,7 @@ impl<T: Real> LieGroup for SO3<T> {
         ["q_w", "q_x", "q_y", "q_z"].map(|name| (name.to_owned(), "1")).into()
     }
 
+    // Inlined, so that nothing checks a length that the caller's array has.
     #[inline(always)]
     fn write_numbers<'a>(&self, numbers: &'a mut [T]) -> &'a mut [T] {
         let quaternion = quaternion(&self.0);
@@ -317,6 +318,7 @@ impl<T: Real> LieGroup for SO3<T> {
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.
+    // Inlined into `restored`, which every step asks.
     #[inline(always)]
     fn defect(&self) -> T {
         let entry = |i: usize, j: usize| self.0.column(i).dot(&self.0.column(j));
@@ -328,8 +330,7 @@ impl<T: Real> LieGroup for SO3<T> {
 
     /// From 2¹¹ ε on, which a random walk reaches in some ten million steps: one Newton step of the polar
     /// decomposition, `½ R (3 I − RᵀR)`, which squares the defect.
-    ///
-    /// To look is inlined, so that it costs the same in a program with one scene and in one with many.
+    // Inlined, as the optimiser otherwise decides by the rest of the program.
     #[inline(always)]
     fn restored(&self) -> Option<(Self, Mask<T>)> {
         let far = self.defect().simd_gt(T::simd_default_epsilon() * real(2048.0));
@@ -348,45 +349,43 @@ impl<T: Real> SO3<T> {
     }
 }
 
-/// The unit quaternion of a rotation, real part first, from its largest part. Every lane has its own.
+/// The unit quaternion of a rotation, real part first, from a part whose square is a quarter at least. Every lane has its
+/// own.
 #[inline(always)]
 fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
-    // Four times the square of a part, and that part times all.
-    let ww = one + r.m11 + r.m22 + r.m33;
-    // Within 120° of the identity no other part need be asked: this one keeps all digits.
-    if ww.simd_ge(one).all() {
-        return scaled(ww, [ww, wx, wy, wz]);
-    }
     let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
+    // Four times the square of a part, and that part times all. The four squares have the sum four.
+    let ww = one + r.m11 + r.m22 + r.m33;
     let xx = one + r.m11 - r.m22 - r.m33;
     let yy = one - r.m11 + r.m22 - r.m33;
     let zz = one - r.m11 - r.m22 + r.m33;
-    let is_largest = |part: T, others: [T; 3]| others.into_iter().all(|other| part.simd_ge(other).all());
-    if is_largest(xx, [ww, yy, zz]) {
-        return scaled(xx, [wx, xx, xy, xz]);
-    }
-    if is_largest(yy, [ww, zz, xx]) {
-        return scaled(yy, [wy, xy, yy, yz]);
-    }
-    if is_largest(zz, [ww, xx, yy]) {
-        return scaled(zz, [wz, xz, yz, zz]);
-    }
-    // Lanes that differ.
-    let (mut largest, mut products) = (ww, [ww, wx, wy, wz]);
-    let others = [(xx, [wx, xx, xy, xz]), (yy, [wy, xy, yy, yz]), (zz, [wz, xz, yz, zz])];
-    for (square, others) in others {
-        let larger = square.simd_gt(largest);
-        largest = square.select(larger, largest);
-        for (product, part) in products.iter_mut().zip(others) {
-            *product = part.select(larger, *product);
-        }
-    }
-    scaled(largest, products)
+    let from_x = || scaled(xx, [wx, xx, xy, xz]);
+    let from_y = || scaled(yy, [wy, xy, yy, yz]);
+    let from_z = || scaled(zz, [wz, xz, yz, zz]);
+    // Within 120° of the identity no other part need be asked. Beyond, the largest of the others is large enough.
+    either(
+        ww.simd_ge(one),
+        || scaled(ww, [ww, wx, wy, wz]),
+        || either(xx.simd_ge(yy), || either(xx.simd_ge(zz), from_x, from_z), || either(yy.simd_ge(zz), from_y, from_z)),
+    )
 }
 
-/// A quaternion whose parts times one of them, four times, are these; that one times itself is `square`.
+/// One or the other in each lane; both are found only where lanes differ.
+#[inline(always)]
+fn either<T: Real>(is_one: Mask<T>, one: impl FnOnce() -> [T; 4], other: impl FnOnce() -> [T; 4]) -> [T; 4] {
+    if is_one.all() {
+        one()
+    } else if is_one.any() {
+        let (one, other) = (one(), other());
+        core::array::from_fn(|k| one[k].select(is_one, other[k]))
+    } else {
+        other()
+    }
+}
+
+/// The quaternion `q` from its part `p`: `products[k] = 4 p q_k` and `square = 4 p²`.
 #[inline(always)]
 fn scaled<T: Real>(square: T, products: [T; 4]) -> [T; 4] {
     let scale = real::<T>(0.5) / square.simd_sqrt();
@@ -436,6 +435,44 @@ mod tests {
             let moved = before.map_or(0.0, |before| (0..4).map(|k| (numbers[k] - before[k]).abs()).fold(0.0, f64::max));
             assert!(moved < 0.1, "it jumps");
             before = Some(numbers);
+        }
+    }
+
+    /// Lanes with a largest part each, and lanes that agree, have the bits of each alone.
+    #[test]
+    fn each_lane_has_its_own_quaternion() {
+        use crate::groups::LieGroup as _;
+        use crate::numbers::Lanes as _;
+        use simba::simd::{SimdValue as _, WideF64x4};
+        // The fifth has a real part that is enough, though another is larger.
+        let quaternions = [[2.0, 0.3, -0.2, 0.5], [0.3, 2.0, 0.5, -0.2], [-0.2, 0.5, 2.0, 0.3], [0.5, -0.2, 0.3, 2.0]]
+            .into_iter()
+            .chain([[0.6, 0.0, 0.8, 0.0]])
+            .map(|[w, x, y, z]| UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(w, x, y, z)));
+        let quaternions: alloc::vec::Vec<_> = quaternions.collect();
+        let together = [
+            [0, 1, 2, 3],
+            [3, 2, 1, 0],
+            [1, 3, 0, 2],
+            [1, 1, 1, 1],
+            [2, 2, 2, 2],
+            [3, 3, 3, 3],
+            [0, 3, 3, 3],
+            [4, 1, 2, 3],
+            [0, 4, 4, 3],
+        ];
+        for parts in together {
+            let alone = parts.map(|k| SO3::from(quaternions[k]));
+            let mut numbers = [WideF64x4::splat(0.0); 4];
+            SO3::<WideF64x4>::gathered(&alone).unwrap().write_numbers(&mut numbers);
+            for (lane, (attitude, k)) in alone.iter().zip(parts).enumerate() {
+                let mut expected = [0.0; 4];
+                attitude.write_numbers(&mut expected);
+                assert_eq!(numbers.map(|number| number.extract(lane)), expected, "{parts:?}");
+                let [w, x, y, z] = expected;
+                let error = nalgebra::Quaternion::new(w, x, y, z) - quaternions[k].into_inner();
+                assert!(error.norm() < 1e-15, "{error}");
+            }
         }
     }
 

@@ -84,8 +84,8 @@
 //! | [`work_precision`](crate::accuracy::work_precision) | the same with times; `seconds_to(error)` reads a cost off it |
 //!
 //! Both take what makes a stepper for a step, with its start; the time; the numbers of steps; and a
-//! [`Reference`](crate::accuracy::Reference), which is a state that is known or the finest run. What has a clock also takes an
-//! [`Effort`](crate::accuracy::Effort): how long runs may be, and how long each is repeated.
+//! [`Reference`](crate::accuracy::Reference), which is a state that is known or the finest run. `work_precision` also
+//! takes an [`Effort`](crate::accuracy::Effort): after which length no longer run is made, and how long each is repeated.
 //! [`to_csv`](crate::accuracy::Refinement::to_csv) and [`to_json`](crate::accuracy::Refinement::to_json) write what
 //! `println!` shows. What isn't an integrator of this crate, a Runge–Kutta method for example, comes into the same tables by
 //! [`Refinement::timed`](crate::accuracy::Refinement::timed). README's comparison with such methods is made by these:

@@ -89,7 +89,7 @@
 //!
 //! A renderer has times of its own: 16 ms, 17 ms, once 100 ms, and half of that in slow motion. [`Frames`](crate::with::Frames)
 //! makes the whole steps that are due and shows a part of the next one. Nothing lags, and the motion is the same at any frame
-//! rate, to the bit. A real toy spins at 100 to 300 rad/s, which is more than (3.13) can turn in a step of 60 Hz:
+//! rate, to the bit. A real toy spins at 100 to 300 rad/s, which is more than a step of 1/60 s can turn, 90°:
 //! `or_substeps` divides such steps. In single precision:
 //!
 //! ```
@@ -99,7 +99,7 @@
 //! use liestep::{NonstandardInertia, StepError, Stepper};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // A toy: 50 g, 3 cm high. J_d about the tip, kg m².
+//! // A toy: 50 g, its centre of mass 3 cm above the tip. J_d about the tip, kg m².
 //! let J_d = NonstandardInertia::from_diagonal(Vector3::new(1e-5_f32, 1e-5, 5.5e-5))?;
 //! let gravity = Gravity { m: 0.05, g: 9.81, rho: Vector3::new(0.0, 0.0, 0.03), up: Vector3::z() };
 //! let toy = Stepper::new(RigidBody { J_d } + gravity, 1.0 / 60.0)?.or_substeps(64);

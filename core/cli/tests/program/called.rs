@@ -41,6 +41,15 @@ pub(crate) fn simulate(folder: &Path, files: &[&str]) -> Output {
     Command::new(PROGRAM).current_dir(folder).args(["run", "--csv", "--out", "."]).args(files).output().unwrap()
 }
 
+/// The message for the top with one line replaced.
+pub(crate) fn mistake(folder: &Path, line: &str, by: &str) -> String {
+    assert_eq!(TOP.matches(line).count(), 1, "{line}");
+    fs::write(folder.join("top.toml"), TOP.replace(line, by)).unwrap();
+    let output = simulate(folder, &["top.toml"]);
+    assert!(!output.status.success() && output.stdout.is_empty(), "{by}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
 /// The rows of a scene's table, after a run of a text.
 pub(crate) fn rows(folder: &Path, text: &str) -> Vec<Vec<f64>> {
     fs::write(folder.join("scene.toml"), text).unwrap();

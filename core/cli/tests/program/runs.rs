@@ -14,7 +14,7 @@ use liestep::prelude::*;
 use liestep::with::{Csv, Recorder};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::called::{PROGRAM, TOP, folder, printed, rows, simulate, table};
+use crate::called::{PROGRAM, TOP, folder, mistake, printed, rows, simulate, table};
 
 /// A step that is too large is found out while running: with the file, the time and the largest step.
 #[test]
@@ -81,6 +81,7 @@ fn the_scenes_run() {
     let folder = folder("scenes");
     let output = simulate(&folder, &names);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mut compared = 0;
     for path in &files {
         let result = |ending| {
             let name = Path::new(path.file_name().unwrap()).with_extension(ending);
@@ -95,17 +96,27 @@ fn the_scenes_run() {
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap();
         assert!(gallery.contains(&format!("({name}.toml)")) && gallery.contains(&format!("/{name}.svg)")), "{name}");
         let kept = fs::read_to_string(scenes.join(format!("../figures/scenes/{name}.svg"))).unwrap();
-        assert_same_picture(&result("svg"), &kept, name);
+        if fs::read_to_string(path).unwrap().contains("\naccuracy = ") {
+            println!("skipped: the step of {name}.svg is chosen by runs whose rounding is the machine's");
+        } else {
+            assert_same_picture(&result("svg"), &kept, name);
+            compared += 1;
+        }
     }
+    assert!(compared >= 12, "{compared}");
 }
 
-/// But for a pixel. Charts of what is rounding are drawn by the sines of the machine that drew them.
+/// But for a pixel, which is two of a picture's units; and without the charts of what is rounding, which begins with the
+/// sines of the machine.
 fn assert_same_picture(made: &str, kept: &str, name: &str) {
-    if !cfg!(all(target_os = "linux", target_arch = "x86_64")) {
-        println!("skipped: {name}.svg was drawn with the sines of Linux on x86-64");
-        return;
-    }
+    // The scale of such a chart goes down to 10⁻¹⁰ at least.
+    let is_of_rounding = |chart: &str| {
+        chart.split("10⁻¹").skip(1).any(|behind| behind.starts_with(['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹']))
+    };
     let parts = |picture: &str| -> (String, Vec<f64>) {
+        // Each chart begins with its title, at this place.
+        let charts = picture.split("<text x=\"1072\" ").filter(|chart| !is_of_rounding(chart));
+        let picture: String = charts.collect();
         let is_of_number = |letter: char| letter.is_ascii_digit() || letter == '.' || letter == '-';
         let numbers = picture.split(|letter| !is_of_number(letter)).filter_map(|text| text.parse().ok());
         (picture.replace(is_of_number, ""), numbers.collect())
@@ -113,7 +124,7 @@ fn assert_same_picture(made: &str, kept: &str, name: &str) {
     let ((words, numbers), (kept_words, kept_numbers)) = (parts(made), parts(kept));
     assert!(words == kept_words && numbers.len() == kept_numbers.len() && numbers.len() > 500, "{name}");
     let moved = numbers.iter().zip(&kept_numbers).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(moved <= 1.0, "{name}: {moved}");
+    assert!(moved <= 2.0, "{name}: {moved}");
 }
 
 /// What a file's scene does is what the sum in a program does, bit for bit; and the units are those of SI.
@@ -174,24 +185,35 @@ fn a_file_may_have_every_effect() {
     assert_eq!(last[7].to_bits(), stepper.energy(&state).to_bits());
 }
 
-/// What the library has, files have: its table of effects names no other than those above, and the kinetic terms.
+/// Each effect that the library exports has the table of its name in scene files, and each body its `kinetic`: as the
+/// program lists them where it knows a name not.
 #[test]
 fn no_effect_is_without_a_table() {
-    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let read = |name: &str| fs::read_to_string(sources.join(name)).unwrap();
-    let (library, tables, kinetic) = (
-        read("src/effects/mod.rs"),
-        read("scene/src/effects.rs"),
-        read("scene/src/kinetic.rs") + &read("scene/src/choose.rs"),
-    );
+    let folder = folder("effects");
+    let listed = |line, by| -> Vec<String> {
+        let message = mistake(&folder, line, by);
+        let (_, names) = message.split_once(", expected one of ").unwrap();
+        names.trim().split(", ").map(|name| name.trim_matches('`').to_owned()).collect()
+    };
+    let tables = listed("[drag]", "[none]");
+    let kinetic = listed("moments = [3, 3, 4]", "moments = [3, 3, 4]\nkinetic = \"none\"");
+    let in_words = |name: &str, between: &str| {
+        name.chars().enumerate().fold(String::new(), |text, (place, letter)| {
+            let before = if place > 0 && letter.is_uppercase() { between } else { "" };
+            text + before + &letter.to_lowercase().to_string()
+        })
+    };
+    let effects = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src/effects/mod.rs");
+    let library = fs::read_to_string(effects).unwrap();
     let exported = library.lines().filter_map(|line| line.strip_prefix("pub use ")?.split_once("::"));
     let names: Vec<&str> = exported.flat_map(|(_, names)| names.trim_matches(['{', '}', ';']).split(", ")).collect();
     assert!(names.len() > 14, "{names:?}");
     for name in names {
-        let has = if name.ends_with("Body") {
-            kinetic.contains(&format!("{name} {{"))
-        } else {
-            tables.contains(&format!("-> {name} {{"))
+        let has = match name.strip_suffix("Body") {
+            // The rigid one, about its principal axes.
+            Some("Principal") => kinetic.contains(&"rigid".to_owned()),
+            Some(kind) => kinetic.contains(&in_words(kind, "-")),
+            None => tables.contains(&in_words(name, "_")),
         };
         assert!(has, "{name}");
     }

@@ -6,16 +6,7 @@ use std::process::Command;
 
 use expect_test::expect;
 
-use crate::called::{PROGRAM, TOP, folder, printed, rows, simulate};
-
-/// The message for the top with one line replaced.
-fn mistake(folder: &Path, line: &str, by: &str) -> String {
-    assert_eq!(TOP.matches(line).count(), 1, "{line}");
-    fs::write(folder.join("top.toml"), TOP.replace(line, by)).unwrap();
-    let output = simulate(folder, &["top.toml"]);
-    assert!(!output.status.success() && output.stdout.is_empty(), "{by}");
-    String::from_utf8(output.stderr).unwrap()
-}
+use crate::called::{PROGRAM, TOP, folder, mistake, printed, rows, simulate};
 
 /// A terminal isn't told to do anything, and the picture stays XML.
 #[test]

@@ -253,15 +253,15 @@ where
     /// column was added or a full block of rows can't be written. After an error of the sink each further row is one, too.
     pub fn record(&mut self, now: &Moment<'_, I>) -> Result<(), RecordError> {
         let end = self.filled + self.columns.len();
-        // There is none before the table has begun, and after it has failed.
+        // The block is empty before the table has begun, and after it has failed.
         if self.block.len() < end {
             self.make_room(end)?;
         }
-        let Some((time, own)) = self.block[self.filled..end].split_first_mut() else { return Ok(()) };
+        let Some((time, own)) = self.block[self.filled..end].split_first_mut() else { return Err(unreachable()) };
         *time = now.time().into();
         if self.shows_motion {
             let behind = match (<&mut [_; 4]>::try_from(self.attitude.as_mut_slice()), own.split_first_chunk_mut()) {
-                // Quickly where the compiler knows the length: of a quaternion.
+                // Quickly where the compiler knows the length: of four numbers, as a quaternion has.
                 (Ok(numbers), Some((places, behind))) => {
                     now.attitude.write_numbers(numbers);
                     *places = numbers.map(Into::into);
@@ -385,7 +385,7 @@ fn write_attitude<'a, G: LieGroup<Scalar: Into<f64>>>(
     behind
 }
 
-/// The sink is there until the recorder is gone.
+/// The sink is there until the recorder is gone, and a row has the time at least.
 fn unreachable() -> RecordError {
     RecordError::Sink { cause: "the table is finished".into() }
 }

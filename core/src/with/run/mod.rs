@@ -28,7 +28,7 @@ use nalgebra::ComplexField as _;
 
 /// What an observer answers.
 type Verdict = Result<ControlFlow<()>, Box<dyn core::error::Error + Send + Sync>>;
-/// Most answers are to go on, which is none here: a pointer comes back in a register, the answer itself by memory.
+/// `None` means go on: it comes back in a register, and a whole answer in memory.
 type Observer<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> Option<Box<Verdict>> + 'a>;
 type Condition<'a, I> = Box<dyn FnMut(&Moment<'_, I>) -> bool + 'a>;
 
@@ -284,9 +284,7 @@ impl<I: Integrator> Observers<'_, I> {
         for Regular { every, due, observer } in &mut self.regular {
             if *due == made {
                 *due = due.saturating_add(*every);
-                if let Some(verdict) = observer(now) {
-                    stops |= stopped(verdict, reported(now.time()), ended)?;
-                }
+                stops |= show(observer, now, ended)?;
             }
             next = next.min(*due);
         }
