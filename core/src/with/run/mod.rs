@@ -284,7 +284,10 @@ impl<I: Integrator> Observers<'_, I> {
         for Regular { every, due, observer } in &mut self.regular {
             if *due == made {
                 *due = due.saturating_add(*every);
-                stops |= show(observer, now, ended)?;
+                // As `show` does; by that a row costs two thirds of a hundredth of its ten steps more.
+                if let Some(verdict) = observer(now) {
+                    stops |= stopped(verdict, reported(now.time()), ended)?;
+                }
             }
             next = next.min(*due);
         }
