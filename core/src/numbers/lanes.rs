@@ -69,13 +69,13 @@ pub trait Lanes: Sized {
 /// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
 /// all of them [`compensated`](crate::Stepper::compensated), and [`preprocessed`](crate::Stepper::preprocessed).
 ///
-/// Of the others, bodies take their turns, as lanes would be other algorithms than these:
+/// With the others bodies take their turns, each of these for a reason of its own:
 ///
-/// - Collocation has the stages of one body side by side in the registers already, with its matrices as tables of `f64`;
-///   with bodies side by side its stages would come one after the other, in other sums and so with other bits.
-/// - A remedy does something else in the steps that it finds amiss, a body at a time: what one of several does then, the
-///   others would do too, or wait for.
-/// - Chains and bodies in joints fill the registers with the bodies of one scene.
+/// - Collocation has the stages of one body side by side in the registers already, with its matrices as tables of `f64`.
+///   With bodies side by side its sums would have another order, and a body other bits than alone.
+/// - A remedy does something else in the steps that it finds amiss, a body at a time. The other lanes would have to wait
+///   for it.
+/// - Chains and bodies in joints fill the registers with the bodies of one scene already. Lanes would make nothing faster.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",

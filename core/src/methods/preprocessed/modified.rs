@@ -7,7 +7,7 @@ use crate::effects::PrincipalBody;
 use crate::error::StepError;
 use crate::groups::SO3;
 use crate::mechanics::{DiagonalNonstandardInertia, Effect as _};
-use crate::numbers::{Lanes, Real, real};
+use crate::numbers::{Real, lanes_of_fields, real};
 use crate::solving::{Problem, Root, safe};
 
 /// A body and the series for its modified moments.
@@ -20,26 +20,10 @@ pub(crate) struct ModifiedBody<T> {
     d: [T; TERMS],
 }
 
-impl<T: Real<Element: Real>> Lanes for ModifiedBody<T> {
-    type Lane = ModifiedBody<T::Element>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        let ModifiedBody { inverse_moments, degree, s, d } = lane;
-        Self { inverse_moments: Lanes::splat(inverse_moments), degree: *degree, s: s.map(T::splat), d: d.map(T::splat) }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        let of = |all: &[T; TERMS]| all.map(|one| one.extract(k));
-        let inverse_moments = Lanes::lane(&self.inverse_moments, k);
-        ModifiedBody { inverse_moments, degree: self.degree, s: of(&self.s), d: of(&self.d) }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.s.iter_mut().zip(lane.s).for_each(|(own, one)| own.replace(k, one));
-        self.d.iter_mut().zip(lane.d).for_each(|(own, one)| own.replace(k, one));
-        self.degree == lane.degree && self.inverse_moments.set_lane(k, &lane.inverse_moments)
-    }
-}
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] ModifiedBody<T> => ModifiedBody<T::Element>, as ModifiedBody
+    { lanes: [inverse_moments, s, d], scalars: [], shared: [degree] }
+);
 
 impl<T: Real> ModifiedBody<T> {
     pub(crate) fn new(inertia: &DiagonalNonstandardInertia<T>, degree: usize) -> Self {

@@ -29,7 +29,8 @@ where
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] Spin<T> => Spin<T::Element>, as Spin { lanes: [], scalars: [angle], shared: [] }
+    impl[D: Lanes, T: Real<Element: Real>] Spin<D, T> => Spin<D::Lane, T::Element>, as Spin
+    { lanes: [outer, inner], scalars: [angle], shared: [] }
 );
 
 lanes_of_fields!(

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
-use super::{Flow, Kick, KineticFlow, Split};
+use super::{Flow, KineticFlow, Spin, Split};
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
@@ -15,7 +15,7 @@ use crate::numbers::{Real, real};
 /// A kinetic flow that can be differentiated: [`SymmetricBody`], [`ExactBody`](super::ExactBody), and every one that is
 /// declared with `gradients`.
 ///
-/// A flow written elsewhere can't be one, as only the library makes what is shown to a [`Pass`].
+/// A flow implemented by hand elsewhere can't be one, as only the library makes what is shown to a [`Pass`].
 ///
 /// Its parameters are behind those of the scene, as a term of their own: in a splitting the body moves by the flow's
 /// inertia, not by the scene's. What depends on both, as an inertia that the two share, sums both derivatives.
@@ -31,8 +31,9 @@ pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
     /// Shows them.
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>);
 
-    /// Shows a pass what the flow did in this time, s; its parameters are behind so many others.
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>);
+    /// Shows a pass what the flow did in this time, s. Its parameters are numbered from `first_parameter` on, among those
+    /// of the splitting.
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>);
 }
 
 impl<T: Real, L> DifferentiableFlow<T> for L
@@ -46,8 +47,8 @@ where
     }
 
     #[inline(always)]
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>) {
-        pass.stage(&Stage::step(flow, time, event, ()).behind(first));
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
+        pass.stage(&Stage::step(flow, time, event, ()).behind(first_parameter));
     }
 }
 
@@ -64,7 +65,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
     }
 
     #[inline(always)]
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>) {
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
         let (transverse, axial) = Self::moments(flow);
         let (momentum, increment) = (event.before.momentum, event.increment);
         let t = time / transverse;
@@ -79,7 +80,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         let spin = axis * momentum.z;
         let by_transverse = (spin - momentum) * (t / transverse);
         let by_axial = spin * -(time / (axial * axial));
-        let by_parameters = [(first, by_transverse), (first + 1, by_axial)];
+        let by_parameters = [(first_parameter, by_transverse), (first_parameter + 1, by_axial)];
         pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
     }
 }
@@ -119,8 +120,8 @@ where
         self.scheme.shares().count()
     }
 
-    /// A turn about the axis that all drifts share is made once a step, after them, which is the same only for a potential
-    /// that is symmetric about it. Derivatives go to others, too, so the drifts are made with their turns for them.
+    /// A step that turns about the axis once, after all drifts, is the same only for potentials that are symmetric about
+    /// it. The derivative with respect to the potential leaves those, so the drifts are made again with their own turns.
     #[inline(always)]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
@@ -128,20 +129,11 @@ where
         motion: &mut M,
         kept: &mut (),
     ) -> Result<StepReport, StepError> {
-        if self.spin.is_none() {
-            return self.step(scene, motion, kept);
-        }
+        let Some(Spin { outer, inner, .. }) = &self.spin else { return self.step(scene, motion, kept) };
         let (mut whole, mut plain) = (*motion, *motion.now());
-        for (flow, part) in self.scheme.shares() {
-            let time = self.h * real(part);
-            match flow {
-                Flow::Kick => self.kick(&Kick { time, mobility: None }, &mut whole),
-                Flow::Drift => {
-                    let drift = K::drift(&self.kinetic, time).map_err(|_| StepError::NonFinite { what: "drift" })?;
-                    Self::drift(&drift, &mut whole, &mut 0)?;
-                }
-            }
-        }
+        self.make(outer, &mut whole, &mut 0)?;
+        self.make_all(inner, &mut whole, &mut 0)?;
+        self.make(outer, &mut whole, &mut 0)?;
         let report = self.step(scene, &mut plain, kept)?;
         motion.replace(plain);
         Ok(report)

@@ -104,13 +104,16 @@ pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
     /// The last share of a step and the first of the next.
     joint: Share<K::Drift, Scalar<S>>,
     /// What all the drifts of a step turn about the third body axis, in units of `p_3`, where that can be done at once.
-    spin: Option<Spin<Scalar<S>>>,
+    spin: Option<Spin<K::Drift, Scalar<S>>>,
 }
 
-/// An angle in units of `p_3`.
-#[derive(Clone, Copy, Debug)]
-struct Spin<T> {
+/// What is turned once a step, and the shares with their own turns, which derivatives are of.
+#[derive(Clone, Debug)]
+struct Spin<D, T> {
+    /// In units of `p_3`.
     angle: T,
+    outer: Share<D, T>,
+    inner: Stages<D, T>,
 }
 
 /// A share of the step, its constants folded.
@@ -252,7 +255,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
             let Some(taken) = K::take_spin(drift) else { return };
             angle += taken * real(times);
         }
-        (self.outer, self.joint, self.inner, self.spin) = (outer, joint, inner, Some(Spin { angle }));
+        self.joint = joint;
+        let (outer, inner) = (core::mem::replace(&mut self.outer, outer), core::mem::replace(&mut self.inner, inner));
+        self.spin = Some(Spin { angle, outer, inner });
     }
 
     /// Why a step that began with this momentum didn't end with one.
@@ -330,7 +335,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         iterations: &mut u32,
     ) -> Result<(), StepError> {
         let momentum = motion.now().momentum;
-        // Builds with debug assertions are to be built soon: there it is called, and compiled once for all methods.
+        // The bits are the same either way. Builds with debug assertions, as those of tests, have to compile quickly: there
+        // the flow is called, and so compiled once, not again for each drift of each function that makes steps.
         let turn = if const { cfg!(debug_assertions) } {
             advance_called::<_, K>(drift, &momentum)?
         } else {
@@ -423,7 +429,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
             self.make_all(&self.inner, &mut next, &mut iterations)?;
             let last = if remaining == 0 { &self.outer } else { &self.joint };
             self.make(last, &mut next, &mut iterations)?;
-            if let Some(Spin { angle }) = self.spin {
+            if let &Some(Spin { angle, .. }) = &self.spin {
                 spin::turn(angle * next.now().momentum.z, &mut next);
                 if is_due(next.now().steps + 1) {
                     spin::make_good(angle * next.now().momentum.z, STEPS_BETWEEN_CHECKS, &mut next);

@@ -16,11 +16,11 @@
 //! as a quaternion of any length. Written with `K_a − ν = B (A a² + B b²)` and `K_b − ν = A (A a² + B b²)`, so that
 //! nothing cancels where a motion passes the middle axis and all are small.
 
-use super::series::{Functions, Invariants, LONG, long};
-use super::{Form, Turned, rotor};
-use crate::methods::splitting::quaternion::product;
 use nalgebra::SimdBool as _;
 
+use super::super::quaternion::product;
+use super::series::{Functions, Invariants, LONG, long};
+use super::{Form, Turned, rotor};
 use crate::numbers::Number;
 
 /// Enough for any angle of a double that has a digit of its direction left.

@@ -2,6 +2,10 @@
 //!
 //! The derivatives of elliptic functions by their invariants are quotients that vanish above and below for symmetric
 //! bodies and at the separatrix. The closed form has no such place, and its derivative hasn't either.
+//!
+//! On the separatrix, where `K_a = K_b = K`, [`doubling`](super::doubling) clamps the functions `c = d` to the square of a
+//! rounding `ε`, behind which their slopes are zero: from `2√K = ln(2/ε²)` on, which is 73 of a double's. There the motion
+//! has made `ε⁻²` of a deviation, and its derivative tells nothing of the next double.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -13,11 +17,7 @@ use crate::mechanics::SceneVisitor;
 use crate::motion::linearised::{Change, Pass};
 use crate::numbers::{Dual, Real};
 
-/// The parameters are the three moments, kg m², and a turn of the principal axes about the body's three, rad: where two
-/// moments are the same, an entry of the inertia beside the diagonal has no derivative by which the axes turn.
-///
-/// Where the body's axes are the principal ones the moments are in their order; otherwise the largest is the first and the
-/// middle one the last.
+/// The parameters are those of the docs of [`ExactBody`], under "Derivatives".
 impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     const PARAMETERS: usize = 6;
 
@@ -33,7 +33,7 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     }
 
     #[inline(always)]
-    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first: usize, pass: &mut impl Pass<SO3<T>>) {
+    fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
         let (momentum, increment) = (event.before.momentum, event.increment);
         let along = flow.frame.within(&momentum);
         let (time, constant) = (Dual::constant(time), Dual::constant);
@@ -47,8 +47,8 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
         // F(R J Rᵀ, p) = R F(J, Rᵀ p) Rᵀ.
         let by_axes = turn_by_momentum * momentum.cross_matrix() - increment;
         let places = flow.frame.places();
-        let moment = |k: usize| (first + places[k], by_moments[k]);
-        let axis = |k: usize| (first + 3 + k, by_axes.column(k).into_owned());
+        let moment = |k: usize| (first_parameter + places[k], by_moments[k]);
+        let axis = |k: usize| (first_parameter + 3 + k, by_axes.column(k).into_owned());
         let by_parameters = [moment(0), moment(1), moment(2), axis(0), axis(1), axis(2)];
         pass.flown(&flown(turn_by_momentum, &increment, &momentum, &by_parameters));
     }

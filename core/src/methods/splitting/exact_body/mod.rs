@@ -63,6 +63,16 @@ use crate::numbers::{Number, Real, is_finite, lanes_of_fields, reported};
 ///
 /// Body axes, which needn't be the principal ones; the inertia in kg m², momenta in kg m²/s.
 ///
+/// # Derivatives
+///
+/// By six [parameters](crate::motion::linearised::Linearised::parameters), not by the six entries of the inertia: where two
+/// moments are the same, the axes have no derivative by an entry beside the diagonal.
+///
+/// - Three with the name `moment`, kg m². Where the body's axes are the principal ones they are in the order of these;
+///   otherwise the largest is the first and the middle one the last.
+/// - Three with the name `turn`, rad: a small turn `t` of the principal axes about the body's three, `δJ = t̂ J − J t̂`.
+///   Their values are zero, as the axes are where they are.
+///
 /// # Examples
 ///
 /// A free body in one step of a minute, and back.
