@@ -511,7 +511,8 @@ const fn of_a_body(k: u32) -> (u32, u32) {
     let (x, s, inverse) = (k * column, product(k, 6, k), 2 * k * k * k);
     let (p, added) = (product(k, k, 6), product(6, k, 6) + 36);
     // `w`, `s`, what the parent gets, `p` and `y`.
-    let solution = column + (product(k, 6, 1) + k) + product(k, k, 1) + 2 * (product(6, k, 1) + 6) + product(k, 6, 1) + k;
+    let solution =
+        column + (product(k, 6, 1) + k) + product(k, k, 1) + 2 * (product(6, k, 1) + 6) + product(k, 6, 1) + k;
     // Turns of both ends' slopes; of the place the increment and the tangent, and both times the attitude.
     let (slopes, place) = (2 * product(k, 3, 3), 2 * 25 + 2 * product(3, 3, 3));
     let once = slopes + factors + x + s + inverse + p + added + solution;
