@@ -262,7 +262,7 @@ pub enum StepError {
     /// The iteration settled on a solution that doesn't continue the identity.
     WrongBranch {
         /// The determinant of the Jacobian there, or NaN. Its sign differs from that at the identity, or else the
-        /// trace's does.
+        /// trace's does. Of joined bodies it is that of the whole system, relative to its diagonal.
         determinant: f64,
     },
     /// The Jacobian is singular at an iterate.

@@ -4,8 +4,8 @@ use liestep::groups::R3;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A flyer, as a quadrotor, with a load on a cable that is always taut: what turns the cable is an attitude, of which the
-/// turn about the cable itself stays as it is. Rotors push in [`step_forced`](liestep::Stepper::step_forced).
+/// A flyer, as a quadrotor, with a load on a cable that is always taut. The load is fixed to the cable and turns with it;
+/// its spin about the cable is kept where `K` is symmetric about it. Rotors push in [`step_forced`](liestep::Stepper::step_forced).
 #[lagrangian(
     group(F = SO3, d = R3, C = SO3),
     advected(x = d.seen_from(space), R = C.seen_from(space)),

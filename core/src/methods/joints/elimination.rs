@@ -86,6 +86,8 @@ pub(super) struct Closing<const K: usize, const N: usize, const L: usize> {
     free: SVector<f64, K>,
     /// The least pivot, relative to that.
     pub(super) pivot: f64,
+    /// The determinant of what is left on the diagonal, relative to the size of that.
+    pub(super) of_joint: f64,
 }
 
 impl<const K: usize, const N: usize, const L: usize> Closing<K, N, L> {
@@ -99,6 +101,7 @@ impl<const K: usize, const N: usize, const L: usize> Closing<K, N, L> {
             row: [SMatrix::zeros(); L],
             free: SVector::zeros(),
             pivot: 1.0,
+            of_joint: 1.0,
         }
     }
 
@@ -185,7 +188,8 @@ fn close<const K: usize, const N: usize, const L: usize>(
         }
     }
     for k in 0..L {
-        (loops[k].row[k], loops[k].pivot, _) = inverted(&loops[k].row[k], &loops[k].free, loops[k].rows);
+        let closing = &mut loops[k];
+        (closing.row[k], closing.pivot, closing.of_joint) = inverted(&closing.row[k], &closing.free, closing.rows);
         let pivot_row = loops[k].row;
         for closing in &mut loops[k + 1..] {
             let factor = closing.row[k] * pivot_row[k];
@@ -282,7 +286,7 @@ fn solved<const C: usize>(factors: &Matrix6, right: &SMatrix<f64, 6, C>) -> SMat
 }
 
 /// The inverse, by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant relative
-/// to their absolute values. Behind the first `rows` there are no functions.
+/// to their absolute values; both are zero where a size is. Behind the first `rows` there are no functions.
 #[inline(always)]
 fn inverted<const K: usize>(
     matrix: &SMatrix<f64, K, K>,
@@ -295,7 +299,7 @@ fn inverted<const K: usize>(
         // Behind a pivot that isn't positive the others tell nothing.
         let relative = if sizes[k] == 0.0 { 0.0 } else { pivot / sizes[k] };
         least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
-        determinant *= pivot / sizes[k].abs();
+        determinant *= relative * sizes[k].signum();
         let inverse = 1.0 / pivot;
         a[(k, k)] = 1.0;
         for j in 0..K {

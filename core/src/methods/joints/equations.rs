@@ -231,13 +231,19 @@ impl<'a, C: Constraint<K>, const K: usize, const N: usize, const T: usize, const
         self.bodies[body].determinant
     }
 
-    /// Whether all that is left of bodies and joints has, with those of bodies being positive, a determinant of the wrong
-    /// sign, and then the first negative one of a joint. From rest to a step the whole doesn't vanish, so that the places
-    /// are others where joints are closed, too, as a strut has on its other side.
+    /// The determinant of the whole system, relative to its diagonal, where its sign is wrong with those of bodies being
+    /// positive. Along the branch that continues rest it never vanishes, so a solution where its sign has changed is on
+    /// another branch: a strut closes on either side. Signs of single joints may change, and which do depends on the joints
+    /// that are given apart; the sign of the whole doesn't.
     pub(super) fn reversed(&self) -> Option<f64> {
-        let mut negative = self.bodies.iter().map(|body| body.of_joint).filter(|&determinant| determinant < 0.0);
-        let first = negative.next()?;
-        negative.count().is_multiple_of(2).then_some(first)
+        let of_trees = self.bodies.iter().map(|body| body.of_joint);
+        let of_joints = of_trees.chain(self.loops.iter().map(|closing| closing.of_joint));
+        // Apart from the sizes, of which a product may be too small for a number.
+        let sign = |determinant: f64| if determinant == 0.0 { 0.0 } else { determinant.signum() };
+        // What isn't a number is wrong, too.
+        let is_right = of_joints.clone().map(sign).product::<f64>() > 0.0;
+        let of_bodies = self.bodies.iter().map(|body| body.determinant);
+        if is_right { None } else { Some(of_bodies.chain(of_joints).product()) }
     }
 
     /// The first joint that leaves itself or that the others leave nothing to do, by its number, and its pivot relative

@@ -465,12 +465,15 @@ where
         _kept: &mut Self::Kept,
         impulse: &Components<N>,
     ) -> Result<(), StepError> {
-        motion.push(impulse);
-        let now = *motion.now();
+        // A copy: after an error the motion has to be where it was.
+        let mut pushed = *motion;
+        pushed.push(impulse);
+        let now = *pushed.now();
         let places = Places::of(&now.attitude);
         let taken = Self::projection(&mut self.equations(), scene, &places, &now.advected, &now.momentum);
         let taken = taken.map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
-        motion.push(&(Bodies::zero() - taken));
+        pushed.push(&(Bodies::zero() - taken));
+        *motion = pushed;
         Ok(())
     }
 
@@ -499,12 +502,19 @@ where
 /// Operations of a body and its joint with `k` functions, beside those of the scene: in a step, which ends with a
 /// projection, and in an iteration. Those of loops aren't counted, nor is what a constraint computes.
 const fn of_a_body(k: u32) -> (u32, u32) {
-    // Factors of a matrix of six; the `w`, one column, by them; and the lines of the elimination's table.
-    let (factors, column) = (131, 66);
-    let matrices = k * column + 11 * k * k + 2 * k * k * k + 6 * k * (2 * k - 1) + 72 * k;
-    let solution = column + 12 * k + k * (2 * k - 1) + 12 * k + 12 * k + 12 * k;
-    // Slopes times attitudes or tangents at both ends; places, tangents and gaps.
-    let (slopes, places) = (2 * 15 * k, 140);
-    let iteration = factors + matrices + solution + slopes + places;
-    (2 * slopes + factors + matrices + solution, iteration)
+    const fn product(rows: u32, inner: u32, columns: u32) -> u32 {
+        rows * columns * (2 * inner - 1)
+    }
+    // Factors of `A`: of its six rows the inverse pivots, the fifteen entries below, and what these change. A column by them
+    // costs as much as by an inverse.
+    let (factors, column) = (6 + 15 + 2 * (25 + 16 + 9 + 4 + 1), product(6, 6, 1));
+    let (x, s, inverse) = (k * column, product(k, 6, k), 2 * k * k * k);
+    let (p, added) = (product(k, k, 6), product(6, k, 6) + 36);
+    // `w`, `s`, what the parent gets, `p` and `y`.
+    let solution =
+        column + (product(k, 6, 1) + k) + product(k, k, 1) + 2 * (product(6, k, 1) + 6) + product(k, 6, 1) + k;
+    // Turns of both ends' slopes; of the place the increment and the tangent, and both times the attitude.
+    let (slopes, place) = (2 * product(k, 3, 3), 2 * 25 + 2 * product(3, 3, 3));
+    let once = slopes + factors + x + s + inverse + p + added + solution;
+    (slopes + once, once + place)
 }
