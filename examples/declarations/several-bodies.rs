@@ -5,7 +5,7 @@
 //! cargo run --release --example several-bodies -- --out several-bodies
 //! ```
 //!
-//! 1. Two double pendulums that start a nanometre apart, as far as rods of a metre are long: they part as chaos does.
+//! 1. Two double pendulums whose lower rods start a nanoradian apart: they part as chaos does.
 //! 2. Two asteroids that attract each other, and turn each other by their shapes: the full two-body problem.
 //! 3. A quadrotor that carries a load on a cable to another place. Rotors push as a controller says, anew in each step.
 //!
@@ -47,6 +47,11 @@ fn main() -> ExitCode {
         print(&format!("{report}{output}"))?;
         Ok(())
     })
+}
+
+/// An error where this isn't below its bound, or isn't a number.
+fn check(what: &str, found: f64, bound: f64) -> Result<(), Failure> {
+    if found < bound { Ok(()) } else { Err(format!("{what}: {found:.1e}, at most {bound:.0e} is expected").into()) }
 }
 
 type Points = Vec<(f64, f64)>;
@@ -103,6 +108,8 @@ fn pendulums(output: &mut Output) -> Result<String, Failure> {
         stepper.step(&mut second)?;
     }
     let apart = parting.iter().map(|point| point.1).fold(0.0, f64::max);
+    // Of second order: `(hω)²`, with rods that turn at some 10 rad/s, of the 39 J between hanging and standing.
+    check("energy of a double pendulum, J", worst, 2e-2)?;
     let [one, other] = ways;
     let panels = [
         path("The lower ends, m", ["x", "z"], vec![line(ORANGE, other), line(BLUE, one)]),
@@ -112,7 +119,7 @@ fn pendulums(output: &mut Output) -> Result<String, Failure> {
     let about = "a nanoradian apart at the start, h = 2 ms";
     output.write("double-pendulum.svg", &figure("Two double pendulums in space", about, &names, &panels)?)?;
     Ok(format!(
-        "Double pendulums: up to {apart:.1} m apart in 24 s; the energy is within {worst:.1e} of {energy:.1} J.\n"
+        "Double pendulums: up to {apart:.1} m apart in 24 s; the energy is off by at most {worst:.1e} J of {energy:.1} J.\n"
     ))
 }
 
@@ -153,12 +160,15 @@ fn asteroids(output: &mut Output) -> Result<String, Failure> {
     }
     let worst = off.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
     let momentum = state.momentum_of::<1>() + state.momentum_of::<3>();
+    // Of second order: `(hω)²` at 0.95 rad/s. The momentum isn't touched but by one rounding for each step.
+    check("energy of the asteroids, relative", worst, 1e-4)?;
+    check("momentum of the asteroids", momentum.amax(), 1e-12)?;
     let [one, other] = ways;
     let panels = [
         path("Where they are", ["x", "y"], vec![line(BLUE, one), line(ORANGE, other)]),
         Panel::over_time("Energy, off its start", "relative", Vertical::Linear, vec![line(BLUE, off)]),
     ];
-    let names = [("1.3", BLUE), ("0.9", ORANGE)];
+    let names = [("mass 1.3", BLUE), ("mass 0.9", ORANGE)];
     let about = "masses 1.3 and 0.9, the constant of gravitation one, h = 0.01";
     output.write("asteroids.svg", &figure("Two asteroids", about, &names, &panels)?)?;
     Ok(format!("Asteroids: the energy is kept to {worst:.1e}, the momentum to {:.1e}.\n", momentum.amax()))
@@ -167,18 +177,23 @@ fn asteroids(output: &mut Output) -> Result<String, Failure> {
 /// Where the quadrotor is wanted, m.
 const WANTED: [f64; 3] = [3.0, 0.0, 1.0];
 
-/// Torque and thrust, by the geometric tracking control on SE(3): the thrust is along the third axis, which is turned to
-/// where it is wanted.
+/// Torque and thrust, by the proportional and derivative terms of the geometric tracking control on SE(3) of Lee, Leok and
+/// McClamroch (2010), without those that feed forward: the thrust is along the third axis, which is turned to where it is
+/// wanted. Gains are 2 N/m, 3 N s/m, 0.8 N m and 0.16 N m s.
 fn pushed(load: &SuspendedLoad, attitude: &SO3, x: Vector3<f64>, velocity: &SVector<f64, 9>) -> SVector<f64, 9> {
     let (turning, v) = (velocity.fixed_rows::<3>(0).into_owned(), velocity.fixed_rows::<3>(3).into_owned());
-    let wanted = (Vector3::from(WANTED) - x) * 2.0 - v * 3.0 + load.up * ((load.m + load.m_load) * load.g);
+    let weight = (load.m + load.m_load) * load.g;
+    let free = (Vector3::from(WANTED) - x) * 2.0 - v * 3.0 + load.up * weight;
+    // A fifth of the weight is always lifted: so it is neither zero nor along the first axis of space.
+    let wanted = free + load.up * (0.2 * weight - free.dot(&load.up)).max(0.0);
     let third = wanted.normalize();
     let second = third.cross(&Vector3::x()).normalize();
     let axes = Matrix3::from_columns(&[second.cross(&third), second, third]);
     let r = attitude.as_matrix();
     let error = SO3::vee(&(axes.transpose() * r - r.transpose() * axes)) * 0.5;
     let torque = error * -0.8 - turning * 0.16;
-    let thrust = r.column(2) * wanted.dot(&r.column(2));
+    // Rotors don't pull.
+    let thrust = r.column(2) * wanted.dot(&r.column(2)).max(0.0);
     SVector::from_fn(|k, _| match k {
         0..3 => torque[k],
         3..6 => thrust[k - 3],
@@ -218,6 +233,10 @@ fn load(output: &mut Output) -> Result<String, Failure> {
     let missed = (x.translation() - Vector3::from(WANTED)).norm();
     let unaccounted = (stepper.energy(&state) - energy - work).abs();
     let largest = swing.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    // The gains alone bring it there as `exp(-1.07 t)`, to some 1e-5 m; the load takes longer to hang still. It rests before
+    // and after, where the energy has no error of second order: a ten-millionth of the 14 J by which it is lifted is left.
+    check("way from the wanted place, m", missed, 1e-2)?;
+    check("energy beside the rotors' work, J", unaccounted, 1e-6)?;
     let [flyer, load] = ways;
     let mut lines = cables;
     lines.extend([line(ORANGE, load), line(BLUE, flyer)]);
@@ -225,7 +244,7 @@ fn load(output: &mut Output) -> Result<String, Failure> {
         path("Where they are, m", ["x", "z"], lines),
         Panel::over_time("The cable against the vertical", "degrees", Vertical::Linear, vec![line(BLUE, swing)]),
     ];
-    let names = [("quadrotor", BLUE), ("load", ORANGE), ("cable, each half second", GREEN)];
+    let names = [("quadrotor", BLUE), ("load", ORANGE), ("cable, each half second of the first 4 s", GREEN)];
     let about = "a control force for each step, h = 2 ms";
     output.write("load.svg", &figure("A load under a quadrotor", about, &names, &panels)?)?;
     Ok(format!(

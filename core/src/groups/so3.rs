@@ -468,7 +468,11 @@ mod tests {
             for (lane, (attitude, k)) in alone.iter().zip(parts).enumerate() {
                 let mut expected = [0.0; 4];
                 attitude.write_numbers(&mut expected);
-                assert_eq!(numbers.map(|number| number.extract(lane)), expected, "{parts:?}");
+                assert_eq!(
+                    numbers.map(|number| number.extract(lane).to_bits()),
+                    expected.map(f64::to_bits),
+                    "{parts:?}"
+                );
                 let [w, x, y, z] = expected;
                 let error = nalgebra::Quaternion::new(w, x, y, z) - quaternions[k].into_inner();
                 assert!(error.norm() < 1e-15, "{error}");

@@ -143,8 +143,11 @@ fn kernels(arguments: &Arguments, half: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The best solutions with 30 digits, and what each leaves at the next order.
-fn polished(problem: &Problem, arguments: &Arguments) -> Result<Vec<(f64, Vec<Part<DoubleDouble>>)>, Failure> {
+/// What a solution leaves at the next order, and its drifts and kicks with 30 digits.
+type Polished = (f64, Vec<Part<DoubleDouble>>);
+
+/// The best solutions.
+fn polished(problem: &Problem, arguments: &Arguments) -> Result<Vec<Polished>, Failure> {
     let found = best(problem, &mut Random::new(arguments.seed), arguments.starts, arguments.keep);
     let polish = |found: &search::Found| Some((found.left, problem.parts(&problem.polished(&found.unknowns)?)));
     let polished: Vec<_> = found.iter().filter_map(polish).collect();

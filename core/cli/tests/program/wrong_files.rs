@@ -1,7 +1,6 @@
 //! Scene files and command lines that are wrong: each mistake with its place; and what is printed.
 
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 use expect_test::expect;

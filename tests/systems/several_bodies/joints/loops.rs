@@ -299,6 +299,9 @@ fn a_singular_position_names_the_joint() {
     let error = stepper.step(&mut taken).unwrap_err();
     println!("{error}");
     assert!(matches!(error, StepError::SingularJoint { joint: 2, .. }) && taken == before);
+    // Nor can an impulse be shared out there.
+    let error = stepper.step_forced(&mut taken, &Bodies([Vector6::ith(5, 1.0); 2])).unwrap_err();
+    assert!(matches!(error, StepError::SingularJoint { joint: 2, .. }) && taken == before);
 }
 
 /// A planar linkage of pins alone: the others do a part of what the last is to do.
