@@ -1,5 +1,4 @@
-use liestep::effects::RigidBody;
-use liestep::methods::{Joined, Joints};
+use liestep::methods::Constraint;
 use nalgebra::Vector3;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -8,9 +7,10 @@ struct Rope {
     length: f64,
 }
 
-fn held(body: RigidBody, rope: Rope) {
-    let joints = Joints::tree([Joined::to_space(rope, 0)]);
-    let _ = liestep::Stepper::jointed(body, joints, 0.01);
+fn gap(joint: impl Constraint<1>) -> &'static str {
+    joint.name()
 }
 
-fn main() {}
+fn main() {
+    gap(Rope { above: Vector3::zeros(), length: 1.0 });
+}
