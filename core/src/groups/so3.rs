@@ -355,21 +355,22 @@ impl<T: Real> SO3<T> {
 fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
-    let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
     // Four times the square of a part, and that part times all. The four squares have the sum four.
     let ww = one + r.m11 + r.m22 + r.m33;
-    let xx = one + r.m11 - r.m22 - r.m33;
-    let yy = one - r.m11 + r.m22 - r.m33;
-    let zz = one - r.m11 - r.m22 + r.m33;
-    let from_x = || scaled(xx, [wx, xx, xy, xz]);
-    let from_y = || scaled(yy, [wy, xy, yy, yz]);
-    let from_z = || scaled(zz, [wz, xz, yz, zz]);
     // Within 120° of the identity no other part need be asked. Beyond, the largest of the others is large enough.
-    either(
-        ww.simd_ge(one),
-        || scaled(ww, [ww, wx, wy, wz]),
-        || either(xx.simd_ge(yy), || either(xx.simd_ge(zz), from_x, from_z), || either(yy.simd_ge(zz), from_y, from_z)),
-    )
+    let from_another = || {
+        let (xy, xz, yz) = (r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23);
+        let xx = one + r.m11 - r.m22 - r.m33;
+        let yy = one - r.m11 + r.m22 - r.m33;
+        let zz = one - r.m11 - r.m22 + r.m33;
+        let from_x = || scaled(xx, [wx, xx, xy, xz]);
+        let from_y = || scaled(yy, [wy, xy, yy, yz]);
+        let from_z = || scaled(zz, [wz, xz, yz, zz]);
+        let without_y = || either(xx.simd_ge(zz), from_x, from_z);
+        let without_x = || either(yy.simd_ge(zz), from_y, from_z);
+        either(xx.simd_ge(yy), without_y, without_x)
+    };
+    either(ww.simd_ge(one), || scaled(ww, [ww, wx, wy, wz]), from_another)
 }
 
 /// One or the other in each lane; both are found only where lanes differ.
