@@ -180,6 +180,7 @@ const WANTED: [f64; 3] = [3.0, 0.0, 1.0];
 /// Torque and thrust, by the proportional and derivative terms of the geometric tracking control on SE(3) of Lee, Leok and
 /// McClamroch (2010), without those that feed forward: the thrust is along the third axis, which is turned to where it is
 /// wanted. Gains are 2 N/m, 3 N s/m, 0.8 N m and 0.16 N m s.
+#[allow(clippy::doc_markdown)] // a name
 fn pushed(load: &SuspendedLoad, attitude: &SO3, x: Vector3<f64>, velocity: &SVector<f64, 9>) -> SVector<f64, 9> {
     let (turning, v) = (velocity.fixed_rows::<3>(0).into_owned(), velocity.fixed_rows::<3>(3).into_owned());
     let weight = (load.m + load.m_load) * load.g;
