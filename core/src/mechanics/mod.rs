@@ -7,6 +7,7 @@
 
 mod continuous;
 mod description;
+mod direction;
 mod effect;
 mod force;
 mod inertia;
