@@ -79,10 +79,13 @@ fn spherical_pendulum() {
         let mut state = stepper.start(attitude, velocity).unwrap();
         let energy = stepper.energy(&state);
         assert!((energy - number(&start["energy"])).abs() < 1e-13, "{energy}");
-        for _ in 0..steps / 10 {
-            stepper.run(&mut state, 10).unwrap();
+        for hundreds in 1..=steps / 100 {
+            stepper.run(&mut state, 100).unwrap();
             let momentum = state.momentum();
-            assert!(momentum[2].abs() < 1e-15 && momentum[5].abs() < 1e-15, "about the axes: {momentum}");
+            // What roundings of so many steps leave.
+            let allowed = 1e-15 * f64::from(u32::try_from(hundreds).unwrap());
+            let about_axes = momentum[2].abs().max(momentum[5].abs()) / momentum.norm();
+            assert!(about_axes < allowed, "about the axes: {about_axes:e}");
         }
         state.attitude()
     };

@@ -8,6 +8,7 @@ mod declared;
 mod joints;
 mod links;
 mod many;
+mod stiff;
 mod translated;
 
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
