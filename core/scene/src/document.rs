@@ -12,9 +12,9 @@ use crate::body::Kinetic;
 use crate::ensemble;
 use crate::file::{Origin, Pace, Places, SceneFile};
 use crate::method::{Method, Scheme as _};
-use crate::system::has_several;
 use crate::mistake::{Mistake, place_of};
 use crate::sweep;
+use crate::system::has_several;
 
 /// A text as tables.
 pub(crate) type Document<'a> = Spanned<DeTable<'a>>;

@@ -254,7 +254,6 @@ pub trait Pair: LieGroup {
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<Self::Body>; 2]; 2];
 }
 
-
 impl<G: LieGroup> Pair for (G, G)
 where
     (G, G): LieGroup<Scalar = G::Scalar, Matrix = (G::Matrix, G::Matrix), Vector = JoinedVector<G>>,

@@ -98,10 +98,8 @@ fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
     let missed = |found: Bodies<Vector6<f64>, N>, expected: Bodies<Vector6<f64>, N>| {
         found.0.iter().zip(&expected.0).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max)
     };
-    let errors = [
-        missed(l.legendre_minus(&f, &w, h), before.momentum()),
-        missed(l.legendre_plus(&f, &w, h), state.momentum()),
-    ];
+    let errors =
+        [missed(l.legendre_minus(&f, &w, h), before.momentum()), missed(l.legendre_plus(&f, &w, h), state.momentum())];
     println!("{errors:?}, {} iterations", report.iterations);
     assert!(errors.iter().all(|&error| error < 2e-13) && report.iterations < 8, "{errors:?}");
     // What is seen is that of the new places.
@@ -198,7 +196,10 @@ fn a_row_of_masses_moves_in_its_modes() {
     for number in [1.0, 2.0, 3.0] {
         let omega = 2.0 * (k / m).sqrt() * (number * core::f64::consts::PI / 8.0).sin();
         let phase = 2.0 * (0.5 * omega * h).atan();
-        let ends = [stepped(masses + springs, h, start(number), at_rest), stepped(springs + masses, h, start(number), at_rest)];
+        let ends = [
+            stepped(masses + springs, h, start(number), at_rest),
+            stepped(springs + masses, h, start(number), at_rest),
+        ];
         for (place, first) in start(number).iter().enumerate() {
             let expected = first.translation() * (25.0 * phase).cos();
             for end in &ends {

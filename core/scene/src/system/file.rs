@@ -218,7 +218,8 @@ impl System {
             1 => Some(format!("1 {one}")),
             count => Some(format!("{count} {one}s")),
         };
-        let bodies = if self.bodies.len() == 1 { Some("1 body".to_owned()) } else { counted(self.bodies.len(), "bodie") };
+        let bodies =
+            if self.bodies.len() == 1 { Some("1 body".to_owned()) } else { counted(self.bodies.len(), "bodie") };
         let gravity = self.gravity.is_some().then(|| "gravity".to_owned());
         let all = [bodies, gravity, counted(self.joints.len(), "joint"), counted(self.springs.len(), "spring")];
         all.into_iter().flatten().collect::<Vec<_>>().join(" + ")
@@ -243,7 +244,8 @@ fn of_table(table: SystemTable, path: &Path, places: Places) -> Result<System, W
     if bodies.is_empty() {
         return Err((0..0, "a system has a body at least".to_owned()));
     }
-    let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies)).collect::<Result<_, _>>()?;
+    let joints =
+        table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies)).collect::<Result<_, _>>()?;
     let springs = table.spring.into_iter().map(|spring| {
         let SpringTable { bodies: names, at, k, length } = spring.into_inner();
         let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
@@ -341,4 +343,3 @@ fn joint_of(joint: JointTable, bodies: &[Body]) -> Result<Between<Joint>, Wrong>
     };
     Ok(Between { bodies: between, of })
 }
-

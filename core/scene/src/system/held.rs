@@ -6,8 +6,8 @@
 use std::array::from_fn;
 
 use liestep::groups::{LieGroup as _, R3};
-use liestep::mechanics::{Each, Placed, Sum};
-use liestep::methods::{Constraint, Joined, Jointed, Joint, Joints, Place, Slope};
+use liestep::mechanics::{Each, Effect as _, Placed, Sum};
+use liestep::methods::{Constraint, Joined, Joint, Jointed, Joints, Place, Slope};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{SMatrix, SVector, Vector3, Vector6};
@@ -125,8 +125,10 @@ impl Arranged {
         let of_tree =
             |place: usize| tree.get(place).map_or_else(|| loose(free[place - tree.len()]), |&number| joined(number));
         let joints = Joints::tree(from_fn(of_tree));
-        let joints = joints.closed_by(from_fn(|place| loops.get(place).map_or_else(|| loose(0), |&number| joined(number))));
-        let numbers = (0..BODIES).map(|place| tree.get(place).copied()).chain(loops.iter().copied().map(Some)).collect();
+        let joints =
+            joints.closed_by(from_fn(|place| loops.get(place).map_or_else(|| loose(0), |&number| joined(number))));
+        let numbers =
+            (0..BODIES).map(|place| tree.get(place).copied()).chain(loops.iter().copied().map(Some)).collect();
         Ok(Self { joints, numbers })
     }
 
@@ -137,6 +139,13 @@ impl Arranged {
 }
 
 impl System {
+    /// What was derived of a body, and what springs add.
+    #[must_use]
+    pub fn derivation(&self) -> String {
+        let springs = if self.springs.is_empty() { "" } else { Springs::DERIVATION };
+        format!("{}{springs}", Heavy::DERIVATION)
+    }
+
     /// The joints, or the number of the first that closes one loop too many.
     pub(super) fn arranged(&self) -> Result<Arranged, usize> {
         Arranged::of(self)
@@ -155,7 +164,9 @@ impl System {
 
     pub(super) fn start(&self) -> (HeldBodies, Bodies<Vector6<f64>, BODIES>) {
         let at = |place: usize| {
-            let Some(body) = self.bodies.get(place) else { return ((SO3::identity(), R3::identity()), Vector6::zeros()) };
+            let Some(body) = self.bodies.get(place) else {
+                return ((SO3::identity(), R3::identity()), Vector6::zeros());
+            };
             let (turn, shift) = (body.start.velocity, body.moving);
             let velocity = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
             ((SO3::from(body.start.attitude), R3::from(body.position)), velocity)

@@ -77,7 +77,7 @@ impl System {
             let (header, body) = area.split_vertically(px(88));
             heading(&header, &self.title, &format!("{}, h = {} s", self.sum(), self.step))?;
             legend(&header, (16, 74), &names)?;
-            let (left, right) = body.split_horizontally(px(560));
+            let (left, right) = body.split_horizontally(px(520));
             ways.draw(&left)?;
             for (place, panel) in right.split_evenly((panels.len(), 1)).iter().zip(&panels) {
                 panel.draw(place)?;

@@ -71,7 +71,8 @@ impl SystemRun {
     pub fn summary(&self, system: &System) -> String {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
         let widest = self.samples.iter().map(|sample| sample.gap).fold(0.0, f64::max);
-        let joints = if system.joints.is_empty() { String::new() } else { format!(", joints open by {widest:.1e} m at most") };
+        let joints =
+            if system.joints.is_empty() { String::new() } else { format!(", joints open by {widest:.1e} m at most") };
         format!(
             "{}\n  {}, {} steps of {} s\n  energy {:.6} J → {:.6} J{joints}\n",
             system.title,
@@ -167,13 +168,12 @@ impl System {
         })?;
         let stepper = self.stepper(&arranged).map_err(|error| self.refused(&arranged, error))?;
         let (bodies, velocities) = self.start();
-        let started = if self.nearest {
-            stepper.start_nearest(bodies, velocities)
-        } else {
-            stepper.start(bodies, velocities)
-        };
+        let started =
+            if self.nearest { stepper.start_nearest(bodies, velocities) } else { stepper.start(bodies, velocities) };
         let mut state = started.map_err(|error| self.refused(&arranged, error))?;
-        let failed = |error: &dyn std::fmt::Display| Mistake::of_table(&self.path, format!("the table can't be written: {error}"));
+        let failed = |error: &dyn std::fmt::Display| {
+            Mistake::of_table(&self.path, format!("the table can't be written: {error}"))
+        };
         if let Some(table) = &mut table {
             table.begin(&self.columns()).map_err(|error| failed(&error))?;
         }
@@ -211,7 +211,8 @@ impl System {
 
     /// Why it can't be started, with the place of the body or the joint.
     fn refused(&self, arranged: &Arranged, error: SetupError) -> Mistake {
-        let of_joint = |joint: usize| arranged.number(joint).map_or(self.places.pace, |joint| self.places.joints[joint]);
+        let of_joint =
+            |joint: usize| arranged.number(joint).map_or(self.places.pace, |joint| self.places.joints[joint]);
         let (place, message) = match error {
             SetupError::OffConstraint { joint, by } => {
                 let message = format!(
@@ -231,7 +232,9 @@ impl System {
                 );
                 (of_joint(joint), message)
             }
-            SetupError::Joint { joint, .. } | SetupError::JointParameter { joint, .. } => (of_joint(joint), error.to_string()),
+            SetupError::Joint { joint, .. } | SetupError::JointParameter { joint, .. } => {
+                (of_joint(joint), error.to_string())
+            }
             SetupError::BodyParameter { body, .. } => {
                 (self.places.bodies.get(body).copied().unwrap_or(self.places.pace), error.to_string())
             }

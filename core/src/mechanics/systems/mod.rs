@@ -30,9 +30,7 @@ pub use seen::{Neighbours, SeenBetween, WhereAllAre};
 use crate::error::SetupError;
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{
-    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern,
-};
+use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
 use crate::mechanics::kinetic_part::KineticPart as _;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
