@@ -1,7 +1,8 @@
 //! Scenes from files: `read → choose → run → picture, page, table`.
 //!
 //! A file names a body, the effects on it, where the motion starts, the step or an accuracy, and what to draw and to
-//! keep; those in `examples/scenes` show the keys, and [`SceneFile`] lists them. Numbers are in SI units, or texts with a
+//! keep; those in `examples/scenes` show the keys, and [`SceneFile`] lists them. Files of several bodies are [`System`]s, and
+//! [`Scene`] reads either. Numbers are in SI units, or texts with a
 //! unit: `"30 deg"`. What is wrong in a file is reported with its line and column, as a [`Mistake`].
 //!
 //! ```

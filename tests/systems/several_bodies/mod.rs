@@ -6,6 +6,7 @@ mod attitudes;
 mod chain;
 mod declared;
 mod joints;
+mod lanes;
 mod links;
 mod many;
 mod stiff;
