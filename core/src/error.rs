@@ -90,6 +90,23 @@ pub enum SetupError {
         /// have with the inertia at rest. NaN where the velocity has no momentum, or its momentum no velocity.
         difference: f64,
     },
+    /// A vector that is to be of length one isn't.
+    NotUnit {
+        /// Which one.
+        what: &'static str,
+        /// Its length.
+        length: f64,
+    },
+    /// A body that is to move as a direction isn't symmetric about its axis.
+    NotAxisymmetric {
+        /// How far an entry of its nonstandard inertia is from that of a symmetric one at most, kg m².
+        difference: f64,
+    },
+    /// A body that is to move as a direction has a velocity about its axis.
+    Spin {
+        /// That part of the velocity, rad/s.
+        spin: f64,
+    },
     /// The initial attitude isn't in the group.
     NotInGroup {
         /// How far the matrix is from the relation of the group.
@@ -179,6 +196,17 @@ impl fmt::Display for SetupError {
             Self::AmbiguousVelocity { difference } => write!(
                 f,
                 "the momentum of the initial velocity is that of another velocity, too (relative difference {difference:e}): the kinetic part is singular between rest and it; choose a velocity nearer to rest"
+            ),
+            Self::NotUnit { what, length } => {
+                write!(f, "the {what} has the length {length:e}; give one of length one")
+            }
+            Self::NotAxisymmetric { difference } => write!(
+                f,
+                "the body isn't symmetric about the axis: an entry of its nonstandard inertia is {difference:e} kg m² from that of one that is; give its axis of symmetry, or start it by an attitude"
+            ),
+            Self::Spin { spin } => write!(
+                f,
+                "the velocity has the part {spin:e} rad/s about the direction, which doesn't move that; give one at right angles to it, or start the body by an attitude"
             ),
             Self::NotInGroup { defect } => {
                 write!(

@@ -42,6 +42,8 @@
 //! | declare a Lagrangian or a force of your own | [`lagrangian`], [`force`](macro@force) |
 //! | move two to four bodies that turn together, without forces, the effects or a splitting | [`lagrangian`] with `group(F_1 = SO3, F_2 = SO3)` |
 //! | move many bodies that feel each other's attitudes and positions | [`mechanics::Placed`]: terms on one body or on two, put at places ([`Each`](mechanics::Each), [`On`](mechanics::On), [`Along`](mechanics::Along), [`Between`](mechanics::Between), [`Pairs`](mechanics::Pairs)) |
+//! | step over the oscillations of stiff rods | [`mechanics::Coupled`] |
+//! | start a rod or a spherical pendulum by its direction | [`NonstandardInertia::pointing`] |
 //! | move a chain of links on ball joints | [`methods::ChainStepper`] |
 //! | hold bodies together by joints, loops among them | [`Stepper::jointed`](motion::Stepper#method.jointed) |
 //! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |

@@ -41,4 +41,23 @@ impl DoublePendulum {
         let J_2 = NonstandardInertia::new(inertia(0.1, 0.15, 0.05) + c_2 * c_2.transpose() * m_2).unwrap();
         Self { J_1, J_2, rho, s_1: c_1 + rho * m_2, s_2: c_2 * m_2, g: 9.81, up: Vector3::z() }
     }
+
+    /// Two point masses at the ends of thin rods, of the reference in `tests/data`. About its own axis a rod has any
+    /// moment, `spinning`, kg m²: nothing turns it.
+    pub fn spherical(spinning: f64) -> Self {
+        let ([m_1, m_2], [l_1, l_2], e) = ([1.0, 0.7], [1.0, 0.9], Vector3::z());
+        let rod = |moment: f64| {
+            let across = 0.5 * spinning;
+            NonstandardInertia::from_diagonal(Vector3::new(across, across, moment - across)).unwrap()
+        };
+        Self {
+            J_1: rod((m_1 + m_2) * l_1 * l_1),
+            J_2: rod(m_2 * l_2 * l_2),
+            rho: e * l_1,
+            s_1: e * ((m_1 + m_2) * l_1),
+            s_2: e * (m_2 * l_2),
+            g: 9.81,
+            up: e,
+        }
+    }
 }

@@ -9,7 +9,7 @@ use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Inertia, Lege
 use liestep::motion::RightHandSide;
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
-use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SVector, UnitQuaternion, Vector3, Vector6, convert};
+use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SVector, Vector3, Vector6, convert};
 use num_dual::{Dual64, HyperDual64};
 use workbench::runge_kutta;
 
@@ -296,34 +296,19 @@ fn two_links_are_the_limit_of_their_steps() {
 fn two_links_move_as_a_double_spherical_pendulum() {
     let data = &read("several bodies")["double_spherical_pendulum"];
     let (start, end) = (&data["states"][0], &data["states"][1]);
-    let (m_1, m_2, l_1, l_2, own, e) = (1.0, 0.7, 1.0, 0.9, 0.01, Vector3::z());
-    // About its axis a rod has some moment, which doesn't matter: nothing turns it.
-    let inertia =
-        |ml: f64| NonstandardInertia::from_diagonal(Vector3::new(0.5 * own, 0.5 * own, ml - 0.5 * own)).unwrap();
-    let links = Links {
-        J_1: inertia((m_1 + m_2) * l_1 * l_1),
-        J_2: inertia(m_2 * l_2 * l_2),
-        rho: e * l_1,
-        s_1: e * ((m_1 + m_2) * l_1),
-        s_2: e * (m_2 * l_2),
-        g: 9.81,
-        up: e,
-    };
+    let (links, e) = (Links::of(&DoublePendulum::spherical(0.01)), Vector3::z());
     let direction = |value: &serde_json::Value, k: usize| vector(&value["q"][k]);
-    let omega = [0, 1].map(|k| vector(&start["omega"][k]));
-    let turned = [0, 1].map(|k| UnitQuaternion::rotation_between(&e, &direction(start, k)).unwrap());
-    let attitude = (SO3::from(turned[0]), SO3::from(turned[1]));
-    let [first, second] = [0, 1].map(|k| turned[k].inverse_transform_vector(&omega[k]));
-    let velocity = Vector6::from_iterator(first.iter().chain(&second).copied());
+    let [first, second] = [(0, links.J_1), (1, links.J_2)]
+        .map(|(k, inertia)| inertia.pointing(&e, &direction(start, k), &vector(&start["omega"][k])).unwrap());
+    let attitude = (first.0, second.0);
+    let velocity = Vector6::from_iterator(first.1.iter().chain(&second.1).copied());
     let missed = |end_at: &(SO3, SO3)| {
         let [first, second] = [end_at.0, end_at.1].map(|attitude| attitude.as_matrix() * e);
         (first - direction(end, 0)).amax().max((second - direction(end, 1)).amax())
     };
     let time = 2.0;
     let continuous = RightHandSide::new(links.clone()).unwrap();
-    let w = (SeenFrom(turned[0].inverse() * e), SeenFrom(turned[1].inverse() * e), {
-        Relative(attitude.0.as_matrix().transpose() * attitude.1.as_matrix())
-    });
+    let w = links.advected().seen_from(&attitude);
     let momentum = links.momentum(&velocity, &w);
     let mut state = continuous.state(&attitude, &momentum);
     let energy = continuous.energy(&attitude, &momentum).unwrap();

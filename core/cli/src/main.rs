@@ -19,10 +19,10 @@ use std::process::ExitCode;
 use clap::ArgMatches;
 use liestep::with::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
-use liestep_scene::{Mistake, Run, SceneFile};
+use liestep_scene::{Mistake, Scene, SceneFile, System};
 
 use failure::Failure;
-use output::{Growing, Output, Progress, print};
+use output::{Output, Progress, print};
 
 fn main() -> ExitCode {
     // A wrong command line ends here, with its message and the code 2.
@@ -81,48 +81,86 @@ const ARROW_STREAM: &str = "arrows";
 
 fn run(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
-    let scenes = scenes(&paths)?;
+    let scenes: Vec<Scene> = paths.iter().map(Scene::read).collect::<Result<_, _>>()?;
     let mut output = folder(given)?;
     for (number, (path, scene)) in (1..).zip(paths.iter().zip(&scenes)) {
         if paths.len() > 1 {
             eprintln!("[{number}/{}] {}", paths.len(), path.display());
         }
-        let grows = |table: &&str| given.get_flag(table);
-        let kinds = ["csv", "arrow"].into_iter().filter(grows);
-        let tables: Vec<_> = kinds.map(|kind| if kind == "arrow" { ARROW_STREAM } else { kind }).collect();
-        let run = simulate(scene, tables.iter().map(|table| (*table, output.grows(&name(path, table)))))?;
-        let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
-        output.write(&name(path, "svg"), &picture)?;
-        for table in &tables {
-            output.grown(&name(path, table))?;
-        }
-        if given.get_flag("csv") && scene.events().next().is_some() {
-            let table = run.event_table(scene).map_err(|cause| Failure::Output(cause.to_string()))?;
-            output.write(&name(path, "events.csv"), &table)?;
-        }
-        if given.get_flag("html") {
-            output.write(&name(path, "html"), &scene.page(&run))?;
-        }
-        print(&run.summary(scene))?;
-        if let Some(sweep) = scene.sweep() {
-            eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points().len());
-        }
-        if let Some(ensemble) = scene.ensemble() {
-            eprintln!("note: `liestep ensemble` runs the {} members of the file's ensemble", ensemble.members());
+        match scene {
+            Scene::Body(scene) => run_body(given, path, scene, &mut output)?,
+            Scene::System(system) => run_system(given, path, system, &mut output)?,
         }
     }
     print(&output.to_string())
 }
 
+fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Output) -> Result<(), Failure> {
+    let run = simulate(given, path, output, |told, table| match table {
+        Some(table) => scene.run_recorded(told, table),
+        None => scene.run_told(told),
+    })?;
+    let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
+    output.write(&name(path, "svg"), &picture)?;
+    tables_have_grown(given, path, output)?;
+    if given.get_flag("csv") && scene.events().next().is_some() {
+        let table = run.event_table(scene).map_err(|cause| Failure::Output(cause.to_string()))?;
+        output.write(&name(path, "events.csv"), &table)?;
+    }
+    if given.get_flag("html") {
+        output.write(&name(path, "html"), &scene.page(&run))?;
+    }
+    print(&run.summary(scene))?;
+    if let Some(sweep) = scene.sweep() {
+        eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points().len());
+    }
+    if let Some(ensemble) = scene.ensemble() {
+        eprintln!("note: `liestep ensemble` runs the {} members of the file's ensemble", ensemble.members());
+    }
+    Ok(())
+}
+
+fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Output) -> Result<(), Failure> {
+    if given.get_flag("html") {
+        let message = format!("a page plays one body, and {} has several; leave --html out", path.display());
+        return Err(Failure::Command(message));
+    }
+    let run = simulate(given, path, output, |told, table| match table {
+        Some(table) => system.run_recorded(told, table),
+        None => system.run_told(told),
+    })?;
+    let picture = system.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
+    output.write(&name(path, "svg"), &picture)?;
+    tables_have_grown(given, path, output)?;
+    print(&run.summary(system))
+}
+
+/// The endings of the tables that are asked for.
+fn tables(given: &ArgMatches) -> impl Iterator<Item = &'static str> {
+    let kinds = ["csv", "arrow"].into_iter().filter(|table| given.get_flag(table));
+    kinds.map(|kind| if kind == "arrow" { ARROW_STREAM } else { kind })
+}
+
+fn tables_have_grown(given: &ArgMatches, path: &Path, output: &mut Output) -> Result<(), Failure> {
+    tables(given).try_for_each(|table| output.grown(&name(path, table)))
+}
+
 /// The run, with its tables as they grow.
-fn simulate<'a>(scene: &SceneFile, tables: impl Iterator<Item = (&'a str, Growing)>) -> Result<Run, Mistake> {
+fn simulate<R>(
+    given: &ArgMatches,
+    path: &Path,
+    output: &Output,
+    run: impl FnOnce(&mut dyn FnMut(f64), Option<&mut dyn Sink>) -> Result<R, Mistake>,
+) -> Result<R, Mistake> {
     let mut progress = Progress::new();
     let mut told = |share| progress.show(share);
-    let sink = |(kind, file): (&str, Growing)| -> Box<dyn Sink> {
+    let sink = |kind: &'static str| -> Box<dyn Sink> {
+        let file = output.grows(&name(path, kind));
         if kind == ARROW_STREAM { Box::new(ArrowStream::new(file)) } else { Box::new(Csv::new(file)) }
     };
-    let mut tables = Tables(tables.map(sink).collect());
-    if tables.0.is_empty() { scene.run_told(&mut told) } else { scene.run_recorded(&mut told, &mut tables) }
+    let mut tables = Tables(tables(given).map(sink).collect());
+    let has_tables = !tables.0.is_empty();
+    run(&mut told, has_tables.then_some(&mut tables as &mut dyn Sink))
 }
 
 /// Several tables of one run.
@@ -161,7 +199,13 @@ fn check(given: &ArgMatches) -> Result<(), Failure> {
 
 /// What a file has, of which every scene makes its first step.
 fn checked(path: &Path) -> Result<String, Failure> {
-    let scene = liestep_scene::read(path)?;
+    let scene = match Scene::read(path)? {
+        Scene::Body(scene) => scene,
+        Scene::System(system) => {
+            system.first(1)?;
+            return Ok(system.about());
+        }
+    };
     // A search for an accuracy takes as long as a run, and begins with the first step.
     if !scene.asks_for_accuracy() {
         scene.first(1)?;
@@ -181,7 +225,10 @@ fn derive(given: &ArgMatches) -> Result<(), Failure> {
         return print(&format!("{name}\n\n{text}"));
     }
     if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
-        return print(&liestep_scene::read(name)?.derivation());
+        return print(&match Scene::read(name)? {
+            Scene::Body(scene) => scene.derivation(),
+            Scene::System(system) => system.derivation(),
+        });
     }
     let names: Vec<_> = liestep_scene::derived().collect();
     let message = format!("'{name}' is neither a scene file (*.toml) nor one of {}", names.join(", "));

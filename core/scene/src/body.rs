@@ -75,7 +75,7 @@ enum Key {
     Kinetic,
 }
 
-const INERTIA: &str =
+pub(crate) const INERTIA: &str =
     "a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)";
 
 impl<'de> Deserialize<'de> for Body {
@@ -113,7 +113,7 @@ impl<'de> Visitor<'de> for BodyTable {
 /// Moments of inertia that a body can have.
 #[derive(Deserialize)]
 #[serde(try_from = "Triple<quantity::Inertia>")]
-struct Moments(DiagonalNonstandardInertia);
+pub(crate) struct Moments(pub(crate) DiagonalNonstandardInertia);
 
 impl TryFrom<Triple<quantity::Inertia>> for Moments {
     type Error = InertiaError;
@@ -126,7 +126,7 @@ impl TryFrom<Triple<quantity::Inertia>> for Moments {
 /// The same, nonstandard.
 #[derive(Deserialize)]
 #[serde(try_from = "Triple<quantity::Inertia>")]
-struct Nonstandard(DiagonalNonstandardInertia);
+pub(crate) struct Nonstandard(pub(crate) DiagonalNonstandardInertia);
 
 impl TryFrom<Triple<quantity::Inertia>> for Nonstandard {
     type Error = InertiaError;
@@ -139,7 +139,7 @@ impl TryFrom<Triple<quantity::Inertia>> for Nonstandard {
 /// The tensor of inertia in any axes, by its rows.
 #[derive(Deserialize)]
 #[serde(try_from = "Vec<Triple<quantity::Inertia>>")]
-struct Full(NonstandardInertia);
+pub(crate) struct Full(pub(crate) NonstandardInertia);
 
 impl TryFrom<Vec<Triple<quantity::Inertia>>> for Full {
     type Error = String;

@@ -174,8 +174,12 @@ impl TryFrom<i64> for Stride {
 }
 
 /// Columns of different names.
-fn different<'de, D: serde::Deserializer<'de>>(source: D) -> Result<Vec<Column>, D::Error> {
-    let columns = Vec::<Column>::deserialize(source)?;
+pub(crate) fn different<'de, D, C>(source: D) -> Result<Vec<C>, D::Error>
+where
+    D: serde::Deserializer<'de>,
+    C: Deserialize<'de> + PartialEq,
+{
+    let columns = Vec::<C>::deserialize(source)?;
     match (1..columns.len()).find(|&place| columns[..place].contains(&columns[place])) {
         Some(_) => Err(serde::de::Error::custom("a table has each of its columns once")),
         None => Ok(columns),

@@ -14,6 +14,7 @@ use crate::file::{Origin, Pace, Places, SceneFile};
 use crate::method::{Method, Scheme as _};
 use crate::mistake::{Mistake, place_of};
 use crate::sweep;
+use crate::system::has_several;
 
 /// A text as tables.
 pub(crate) type Document<'a> = Spanned<DeTable<'a>>;
@@ -30,6 +31,10 @@ pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, Mistake> {
     let path = path.as_ref();
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+    if has_several(document.get_ref()) {
+        let message = "the file has several bodies; only those of one body can be had here".to_owned();
+        return Err(located((span(&document, &["body"]), message)));
+    }
     let [sweep, drawn] = ["sweep", "ensemble"].map(|table| document.get_mut().remove(table));
     let read = |document: &Document<'_>| scene(path, text, document);
     let mut file = read(&document)?;

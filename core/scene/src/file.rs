@@ -96,7 +96,7 @@ pub(crate) struct Places {
 }
 
 /// A title with its control characters written out: a terminal would obey them, and SVG has no room for them.
-fn title<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
+pub(crate) fn title<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     let title = String::deserialize(deserializer)?;
     let visible = |character: char| {
         let escaped: Vec<char> =
@@ -144,7 +144,7 @@ impl TryFrom<ScheduleTable> for Schedule {
     fn try_from(table: ScheduleTable) -> Result<Self, String> {
         let duration = table.duration.value;
         let pace = match (table.step, table.accuracy) {
-            (Some(step), _) => equal_steps(step.value, duration)?,
+            (Some(step), _) => Pace::Step { step: step.value, steps: equal_steps(step.value, duration)? },
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
             (None, None) => return Err("a run has either a `step` or an `accuracy`".to_owned()),
         };
@@ -152,7 +152,8 @@ impl TryFrom<ScheduleTable> for Schedule {
     }
 }
 
-fn equal_steps(step: f64, duration: f64) -> Result<Pace, String> {
+/// The number of equal steps in a duration, s.
+pub(crate) fn equal_steps(step: f64, duration: f64) -> Result<u32, String> {
     let steps = (duration / step).round();
     if steps < 1.0 {
         let (duration, step) = (short(duration), short(step));
@@ -163,7 +164,7 @@ fn equal_steps(step: f64, duration: f64) -> Result<Pace, String> {
     }
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between the two
     let steps = steps as u32;
-    Ok(Pace::Step { step, steps })
+    Ok(steps)
 }
 
 impl SceneFile {

@@ -1,7 +1,8 @@
 //! Scenes from files: `read → choose → run → picture, page, table`.
 //!
 //! A file names a body, the effects on it, where the motion starts, the step or an accuracy, and what to draw and to
-//! keep; those in `examples/scenes` show the keys, and [`SceneFile`] lists them. Numbers are in SI units, or texts with a
+//! keep; those in `examples/scenes` show the keys, and [`SceneFile`] lists them. Files of several bodies are [`System`]s, and
+//! [`Scene`] reads either. Numbers are in SI units, or texts with a
 //! unit: `"30 deg"`. What is wrong in a file is reported with its line and column, as a [`Mistake`].
 //!
 //! ```
@@ -44,6 +45,7 @@ mod run;
 mod start;
 mod sweep;
 mod switched;
+mod system;
 mod tables;
 
 use std::fs::File;
@@ -62,23 +64,28 @@ pub use recording::Recording;
 pub use run::{Run, Sample};
 pub use sweep::Sweep;
 pub use switched::Switched;
+pub use system::{BodySample, Scene, System, SystemColumn, SystemRun, SystemSample};
 
 /// A scene is a few hundred bytes; more than this is another file, and may have no end.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// Reads a scene file.
+/// Reads the file of a scene with one body; [`Scene::read`] reads that of several, too.
 ///
 /// # Errors
 ///
 /// The first [`Mistake`] in it.
 pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Mistake> {
     let path = path.as_ref();
+    parse(path, &text(path)?)
+}
+
+/// What is in a file.
+pub(crate) fn text(path: &Path) -> Result<String, Mistake> {
     let bytes = beginning(path).map_err(|cause| Mistake::unreadable(path, &cause))?;
     if bytes.len() as u64 > MOST_BYTES {
         return Err(Mistake::too_large(path, MOST_BYTES));
     }
-    let text = String::from_utf8(bytes).map_err(|error| Mistake::not_text(path, &error))?;
-    parse(path, &text)
+    String::from_utf8(bytes).map_err(|error| Mistake::not_text(path, &error))
 }
 
 /// One byte more than the most, if there are so many.

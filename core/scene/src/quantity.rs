@@ -46,6 +46,7 @@ quantities! {
     Momentum: "an angular momentum" in "kg m²/s" 1.0;
     Number: "a number" in "" 1.0;
     Rate: "an angular velocity" in "rad/s" 1.0, "deg/s" DEGREE, "°/s" DEGREE, "rpm" 6.0 * DEGREE;
+    Speed: "a speed" in "m/s" 1.0, "km/h" 1.0 / 3.6, "km/s" 1e3;
     Stiffness: "a stiffness" in "N/m" 1.0;
     Torque: "a torque" in "N m" 1.0, "mN m" 1e-3, "µN m" 1e-6;
 }

@@ -5,8 +5,8 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::array::from_fn;
 
-use super::{Advected, Factor, LieGroup, Retraction};
-use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, filled, nowhere};
+use super::{Advected, Factor, LieGroup, Retraction, SquareOf};
+use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, Twice, filled, nowhere};
 use nalgebra::SimdBool as _;
 
 /// Increments of nothing.
@@ -249,12 +249,15 @@ pub trait Pair: LieGroup {
 
     /// The components of both.
     fn joined(first: &<Self::Body as LieGroup>::Vector, second: &<Self::Body as LieGroup>::Vector) -> Self::Vector;
+
+    /// The blocks of a matrix of both, row by row.
+    fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<Self::Body>; 2]; 2];
 }
 
 impl<G: LieGroup> Pair for (G, G)
 where
     (G, G): LieGroup<Scalar = G::Scalar, Matrix = (G::Matrix, G::Matrix), Vector = JoinedVector<G>>,
-    G::Vector: Join<G::Scalar, G::Vector>,
+    G::Vector: Twice<G::Scalar>,
 {
     type Body = G;
 
@@ -277,6 +280,11 @@ where
     fn joined(first: &G::Vector, second: &G::Vector) -> Self::Vector {
         first.join(second)
     }
+
+    #[inline(always)]
+    fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<G>; 2]; 2] {
+        G::Vector::blocks(matrix)
+    }
 }
 
 /// The components of two.
@@ -288,7 +296,7 @@ where
     B: LieGroup<Scalar = A::Scalar>,
     (A, B): LieGroup<Scalar = A::Scalar, Matrix = (A::Matrix, B::Matrix)> + Factor<0, Of = A> + Factor<1, Of = B>,
     A::Vector: Join<A::Scalar, B::Vector, Joined = <(A, B) as LieGroup>::Vector>,
-    <(A, B) as LieGroup>::Vector: Join<A::Scalar, <(A, B) as LieGroup>::Vector>,
+    <(A, B) as LieGroup>::Vector: Twice<A::Scalar>,
     Self: LieGroup<
             Scalar = A::Scalar,
             Matrix = (A::Matrix, B::Matrix, A::Matrix, B::Matrix),
@@ -315,6 +323,11 @@ where
     #[inline(always)]
     fn joined(first: &<(A, B) as LieGroup>::Vector, second: &<(A, B) as LieGroup>::Vector) -> Self::Vector {
         first.join(second)
+    }
+
+    #[inline(always)]
+    fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<(A, B)>; 2]; 2] {
+        <(A, B) as LieGroup>::Vector::blocks(matrix)
     }
 }
 

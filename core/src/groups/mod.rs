@@ -76,6 +76,9 @@ use nalgebra::Matrix3;
 
 use crate::numbers::{Blocks, Coordinates, Entries, Mask, Real, sum};
 
+/// Linear maps of a group's components.
+pub(crate) type SquareOf<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Square;
+
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
 /// Covectors are given by their components `μ_k = ⟨μ, E_k⟩`, so that no factor ½ appears anywhere.

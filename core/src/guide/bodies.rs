@@ -153,10 +153,12 @@
 //! | [`Each<N>`](crate::mechanics::Each), [`On<K, N>`](crate::mechanics::On) | one body: put at all, or at the body `K` |
 //! | [`Along<N>`](crate::mechanics::Along) | two bodies: put at neighbours in a row |
 //! | [`Between<A, B, N>`](crate::mechanics::Between), [`Pairs<N>`](crate::mechanics::Pairs) | two bodies: put at `A` and `B`, or at all pairs |
+//! | [`Coupled<N>`](crate::mechanics::Coupled) | two bodies, by a potential that depends on where both are within the step: put at neighbours in a row |
 //!
-//! [`Placed`](crate::mechanics::Placed) has a row of three as a listing. Between bodies only potentials of the ends of a step
-//! are possible, so that each body is solved by itself. A term that couples velocities doesn't compile there. Links on ball joints
-//! couple them, and have a stepper of their own, whose step takes a time proportional to their number:
+//! [`Placed`](crate::mechanics::Placed) has a row of three as a listing. With potentials of the ends of a step each body is
+//! solved by itself, and a step has to be short for the stiffest of them. With one of the middle, at `Coupled` places, the
+//! row is solved together, and what is stiff there, as a rod, doesn't bound the step. A term that couples velocities doesn't
+//! compile there. Links on ball joints couple them, and have a stepper of their own, whose step takes a time proportional to their number:
 //! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
 //!
 //! # Joints
@@ -179,6 +181,30 @@
 //!
 //! The step is that of the minimal form, so momenta and energy are kept as ever. A chain of links is faster in
 //! coordinates of its own, by [`ChainStepper`](crate::methods::ChainStepper).
+//!
+//! # Directions
+//!
+//! A spherical pendulum, or a rod in a chain, moves on the sphere S² of directions. It needs no group of its own: a body that is
+//! symmetric about its axis, and starts without spin, gets none. [`NonstandardInertia::of_rod`](crate::NonstandardInertia::of_rod)
+//! is the inertia of such a rod, and [`pointing`](crate::NonstandardInertia::pointing) makes attitude and velocity of
+//! where it points and of how fast. Alone, in a product, in a system or in a chain:
+//!
+//! ```
+//! use liestep::methods::{Chain, ChainStepper, Link};
+//! use liestep::numbers::Bodies;
+//! use liestep::prelude::*;
+//!
+//! // Uniform rods of one metre: about an end, a third of the mass at the other.
+//! let (down, up) = (-Vector3::z(), Vector3::z());
+//! let J_d = NonstandardInertia::of_rod(1.0 / 3.0, &down)?;
+//! let link = Link { J_d, m: 1.0, c: down * 0.5, rho: down };
+//! let stepper = ChainStepper::new(Chain { links: [link; 3], g: 9.81, up }, 0.002)?;
+//! let (attitude, velocity) = J_d.pointing(&down, &Vector3::x(), &(up * 2.0))?;
+//! let mut state = stepper.start([attitude; 3], Bodies([velocity; 3]))?;
+//! stepper.run(&mut state, 500)?;
+//! assert!(state.momentum().0.iter().all(|momentum| momentum.z.abs() < 1e-13));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! # Bodies that don't see each other
 //!

@@ -25,6 +25,9 @@ pub type Vector<E> = <Group<E> as LieGroup>::Vector;
 /// Linear maps of components.
 pub type Square<E> = <Vector<E> as Coordinates<Scalar<E>>>::Square;
 
+/// The blocks of its Newton matrix that join neighbours in a row of bodies.
+pub(crate) type Links<E> = <Vector<E> as Coordinates<Scalar<E>>>::Links;
+
 /// Which parts of a step an effect has a share in; the other shares are zero, whatever the parameters.
 ///
 /// It is known when the crate is built, so a sum adds no zeros and asks no questions at run time.
@@ -83,6 +86,19 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
         let (factors, det) = V::factorise_with(jacobian, pattern);
         Self { update: V::solve_again_with(&factors, det, pattern, residual), factors, det }
     }
+}
+
+/// One of Newton's iterations whose matrix joins neighbours. There are no factors for another update.
+#[inline(always)]
+pub(crate) fn linked_update<E: Effect + ?Sized>(
+    constants: &E::Constants,
+    terms: &E::StepTerms,
+    half: &Vector<E>,
+) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
+    let mut links = Vector::<E>::no_links();
+    let (residual, jacobian) = E::newton_linked(constants, terms, half, &mut links);
+    let (update, det) = Vector::<E>::solve_linked(&jacobian, &links, &residual);
+    NewtonUpdate { update, factors: jacobian, det }
 }
 
 /// What is known of the Newton matrix of an effect.
@@ -166,6 +182,10 @@ pub trait Effect: Term {
     /// but potentials of the ends of a step couples bodies, each is solved for itself. The blocks end where factors of the
     /// group end; one block is always right.
     const APART: Blocks = Blocks::WHOLE;
+
+    /// Whether the Jacobian of [`newton_system`](Self::newton_system) joins neighbours in a row of bodies: then
+    /// [`newton_linked`](Self::newton_linked) has all of it.
+    const LINKS_NEIGHBOURS: bool = false;
 
     /// How much arithmetic its share of a step is; the macro counts it.
     const OPERATIONS: Operations = Operations::UNCOUNTED;
@@ -254,8 +274,23 @@ pub trait Effect: Term {
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
+        if const { Self::LINKS_NEIGHBOURS } {
+            return linked_update::<Self>(constants, terms, half);
+        }
         let (residual, jacobian) = Self::newton_system(constants, terms, half);
         NewtonUpdate::of(&residual, &jacobian, pattern::<Self>())
+    }
+
+    /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that
+    /// are given.
+    #[inline(always)]
+    fn newton_linked(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+        _: &mut Links<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        Self::newton_system(constants, terms, half)
     }
 
     /// The residual of [`newton_system`](Self::newton_system) without its Jacobian.

@@ -2,6 +2,9 @@
 
 /// [`WithKinetic`] or [`WithoutKinetic`].
 pub trait KineticPart {
+    /// Whether there is one.
+    const IS_THERE: bool;
+
     /// Of a sum: with, if one of the two is.
     type Or<Other: KineticPart>: KineticPart;
 }
@@ -15,9 +18,13 @@ pub struct WithKinetic;
 pub struct WithoutKinetic;
 
 impl KineticPart for WithKinetic {
+    const IS_THERE: bool = true;
+
     type Or<Other: KineticPart> = Self;
 }
 
 impl KineticPart for WithoutKinetic {
+    const IS_THERE: bool = false;
+
     type Or<Other: KineticPart> = Other;
 }

@@ -7,6 +7,7 @@
 
 mod continuous;
 mod description;
+mod direction;
 mod effect;
 mod force;
 mod inertia;
@@ -27,7 +28,7 @@ pub use effect::{
     Vector,
 };
 pub(crate) use effect::{
-    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
+    check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia, linked_update,
     momentum_of_velocity, pattern, velocity_and_energy, velocity_of_momentum,
 };
 pub use force::Force;
@@ -39,5 +40,5 @@ pub use operations::Operations;
 pub use second_derivatives::{SecondDerivatives, StepDerivatives};
 pub use sum::{SharedBy, Sum};
 pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
-pub use systems::{Along, At, Between, Each, Neighbours, On, Pairs, Placed, Places, SeenBetween, WhereAllAre};
+pub use systems::{Along, At, Between, Coupled, Each, Neighbours, On, Pairs, Placed, Places, SeenBetween, WhereAllAre};
 pub use term::Term;

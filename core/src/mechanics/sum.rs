@@ -7,7 +7,9 @@ use core::ops::Add;
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Limit, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
+use crate::mechanics::effect::{
+    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, linked_update, pattern,
+};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
@@ -136,6 +138,14 @@ where
         (true, false) => A::APART,
         (false, _) => B::APART,
     };
+    const LINKS_NEIGHBOURS: bool = {
+        let links = A::LINKS_NEIGHBOURS || B::LINKS_NEIGHBOURS;
+        assert!(
+            !links || Self::DENOMINATORS == 0,
+            "a term with cleared denominators has another residual than what joins neighbours is added to"
+        );
+        links
+    };
     // The one unknown part's own kernel is run; two are added with their Jacobians.
     const JACOBIAN_IS_EXPENSIVE: bool = match (A::PARTS.unknown, B::PARTS.unknown) {
         (true, true) => false,
@@ -226,7 +236,9 @@ where
     #[inline(always)]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
         let zero = Vector::<Self>::zero();
-        let (first, second) = if A::PARTS.unknown { (a, &zero) } else { (&zero, a) };
+        // What only joins bodies would take it twice.
+        let only_joins = A::LINKS_NEIGHBOURS && !A::Kinetic::IS_THERE && B::PARTS.unknown;
+        let (first, second) = if A::PARTS.unknown && !only_joins { (a, &zero) } else { (&zero, a) };
         (A::step_terms(&constants.0, first, &w.0), B::step_terms(&constants.1, second, &w.1))
     }
 
@@ -257,12 +269,31 @@ where
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) if Self::LINKS_NEIGHBOURS => linked_update::<Self>(constants, terms, half),
             (true, true) => {
                 let (residual, jacobian) = Self::newton_system(constants, terms, half);
                 NewtonUpdate::of(&residual, &jacobian, pattern::<Self>())
             }
             (true, false) => A::newton_update(&constants.0, &terms.0, half),
             (false, _) => B::newton_update(&constants.1, &terms.1, half),
+        }
+    }
+
+    #[inline(always)]
+    fn newton_linked(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+        links: &mut Links<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        match (A::PARTS.unknown, B::PARTS.unknown) {
+            (true, true) => {
+                let first = A::newton_linked(&constants.0, &terms.0, half, links);
+                let second = B::newton_linked(&constants.1, &terms.1, half, links);
+                (first.0 + second.0, first.1 + second.1)
+            }
+            (true, false) => A::newton_linked(&constants.0, &terms.0, half, links),
+            (false, _) => B::newton_linked(&constants.1, &terms.1, half, links),
         }
     }
 

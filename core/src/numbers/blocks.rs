@@ -114,6 +114,24 @@ where
     }
 }
 
+/// Components of which those of two equal bodies are put side by side.
+pub trait Twice<T: Real>: Join<T, Self> {
+    /// The blocks of a matrix of both, row by row.
+    #[must_use]
+    fn blocks(joined: &<Self::Joined as Coordinates<T>>::Square) -> [[Self::Square; 2]; 2];
+}
+
+impl<T: Real, const A: usize, const C: usize> Twice<T> for SVector<T, A>
+where
+    Const<A>: DimAdd<Const<A>, Output = Const<C>>,
+{
+    #[inline(always)]
+    fn blocks(joined: &SMatrix<T, C, C>) -> [[SMatrix<T, A, A>; 2]; 2] {
+        let block = |row: usize, column: usize| joined.fixed_view::<A, A>(row, column).into_owned();
+        [[block(0, 0), block(0, A)], [block(A, 0), block(A, A)]]
+    }
+}
+
 /// What is known of a Newton matrix before it is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pattern {

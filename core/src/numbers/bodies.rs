@@ -152,6 +152,8 @@ pub(crate) fn most<T: Real>() -> T {
 /// `a bᵀ` has none of the blocks that would join bodies, so it is that map only where the rest isn't asked for.
 impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N> {
     type Square = BlockDiagonal<V::Square, N>;
+    /// For each body but the last its block with the next, and that of the next with it.
+    type Links = [[V::Square; 2]; N];
     type Four = Bodies<V::Four, N>;
 
     #[inline(always)]
@@ -251,6 +253,36 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
     #[inline(always)]
     fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self {
         Self(filled(right_side.0, |k| V::solve_apart(&factors.0[k], pattern, &right_side.0[k])))
+    }
+
+    #[inline(always)]
+    fn no_links() -> Self::Links {
+        let zero = V::zero();
+        [[zero.outer(&zero); 2]; N]
+    }
+
+    /// By elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
+    #[inline(always)]
+    fn solve_linked(matrix: &Self::Square, links: &Self::Links, right_side: &Self) -> (Self, T) {
+        let (mut solution, mut smallest) = (*right_side, most());
+        // `A_k⁻¹ U_k` of those behind which there is one.
+        let mut eliminated = matrix.0;
+        let mut of_body = matrix.0.first().copied();
+        for k in 0..N {
+            let Some(own) = of_body else { break };
+            let (factors, det) = V::factorise_apart(&own, WHOLE);
+            smallest = least(smallest, det);
+            solution.0[k] = V::solve_apart(&factors, WHOLE, &solution.0[k]);
+            let (Some(next), [upper, lower]) = (matrix.0.get(k + 1), &links[k]) else { break };
+            eliminated[k] = V::square(|column| V::solve_apart(&factors, WHOLE, &(*upper * V::axis(column))));
+            let taken = V::square(|column| *lower * (eliminated[k] * V::axis(column)));
+            of_body = Some(*next + taken * real::<T>(-1.0));
+            solution.0[k + 1] = solution.0[k + 1] - *lower * solution.0[k];
+        }
+        for k in (1..N).rev() {
+            solution.0[k - 1] = solution.0[k - 1] - eliminated[k - 1] * solution.0[k];
+        }
+        (solution, smallest)
     }
 
     fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T {

@@ -22,6 +22,9 @@ pub trait Coordinates<T: Real>:
         + Mul<T, Output = Self::Square>
         + Mul<Self, Output = Self>;
 
+    /// The blocks of a matrix that join neighbours in a row of bodies; `()` of a body alone.
+    type Links: Copy;
+
     /// Four of them side by side.
     type Four: Entries<T> + Debug + PartialEq + Add<Output = Self::Four> + Sub<Output = Self::Four>;
 
@@ -108,6 +111,13 @@ pub trait Coordinates<T: Real>:
     /// The solution from what [`factorise_apart`](Self::factorise_apart) has made.
     fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self;
 
+    /// Nothing that joins neighbours.
+    fn no_links() -> Self::Links;
+
+    /// The solution `z` of `A z = b` for a matrix with these blocks beside its diagonal, and the determinant of its
+    /// elimination as of [`factorise_with`](Self::factorise_with). What is apart otherwise isn't with these.
+    fn solve_linked(matrix: &Self::Square, links: &Self::Links, right_side: &Self) -> (Self, T);
+
     /// The least of the traces of the blocks.
     fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T;
 
@@ -141,6 +151,7 @@ pub trait Coordinates<T: Real>:
 
 impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     type Square = SMatrix<T, D, D>;
+    type Links = ();
     type Four = FourVectors<T, D>;
 
     #[inline(always)]
@@ -256,6 +267,14 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     #[inline(always)]
     fn solve_apart(factors: &SMatrix<T, D, D>, pattern: Pattern, b: &Self) -> Self {
         blocks::solve_again(factors, pattern, b)
+    }
+
+    #[inline(always)]
+    fn no_links() {}
+
+    #[inline(always)]
+    fn solve_linked(matrix: &SMatrix<T, D, D>, (): &(), right_side: &Self) -> (Self, T) {
+        Self::solve(matrix, right_side)
     }
 
     fn least_trace(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {

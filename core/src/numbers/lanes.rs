@@ -65,7 +65,7 @@ pub trait Lanes: Sized {
 
 /// What can be put into lanes of the scalar `W`, and what it is there.
 ///
-/// Scenes that are generic over their scalar can, and the methods [`Stepper::new`](crate::Stepper::new),
+/// Scenes that are generic over their scalar can, of one body or of several that are declared together and turn, and the methods [`Stepper::new`](crate::Stepper::new),
 /// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
 /// all of them [`compensated`](crate::Stepper::compensated), and [`preprocessed`](crate::Stepper::preprocessed).
 ///
@@ -75,7 +75,8 @@ pub trait Lanes: Sized {
 ///   With bodies side by side its sums would have another order, and a body other bits than alone.
 /// - A remedy does something else in the steps that it finds amiss, a body at a time. The other lanes would have to wait
 ///   for it.
-/// - Chains and bodies in joints fill the registers with the bodies of one scene already. Lanes would make nothing faster.
+/// - Systems of many bodies, chains, and bodies in joints fill the registers with the bodies of one scene already. Lanes would
+///   make nothing faster.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",

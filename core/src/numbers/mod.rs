@@ -13,7 +13,7 @@ mod lanes;
 mod scalar;
 mod simd;
 
-pub use blocks::{Blocks, Join, Pattern};
+pub use blocks::{Blocks, Join, Pattern, Twice};
 pub use bodies::{BlockDiagonal, Bodies};
 pub(crate) use bodies::{filled, least, most};
 pub use columns::FourVectors;

@@ -23,8 +23,9 @@ use nalgebra::{SimdBool as _, SimdRealField, SimdValue};
 ///   identity, and sines and cosines, which differ by roundings where the lanes compute them in their own way.
 /// - Every lane's step is solved, or the whole step is an error and the state of all lanes is what it was. An error's
 ///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is. In a `Batch` only the lane itself stops.
-/// - The group is [`SO3`](crate::groups::SO3), in Cayley coordinates: a [`MatrixGroup`](crate::groups::MatrixGroup) inverts matrices by
-///   pivots and asks for `RealField`, of which lanes aren't one.
+/// - The group is [`SO3`](crate::groups::SO3), or a product of these, in Cayley coordinates: a
+///   [`MatrixGroup`](crate::groups::MatrixGroup), translations among them, inverts matrices by pivots and asks for `RealField`, of
+///   which lanes aren't one.
 ///
 /// [`Stepper::step`](crate::motion::Stepper::step) finds out which vector instructions the machine has and takes them,
 /// up to [four `f64`](crate::numbers::Vectors::Four) a register, and so does every method's: a program needn't be compiled for one

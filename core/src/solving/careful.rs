@@ -6,12 +6,12 @@
 use core::marker::PhantomData;
 
 use super::iteration::{
-    LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SquareOf, System, is_positive,
+    Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SquareOf, System, is_positive,
 };
 use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
 use crate::groups::{LieGroup, Retraction};
-use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, pattern};
+use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, linked_update, pattern};
 use crate::numbers::{Coordinates as _, Mask, Pattern, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
@@ -45,8 +45,20 @@ impl<L: Effect> System<Group<L>> for Seldom<'_, L> {
         pattern::<L>()
     }
 
+    fn has_factors(&self) -> bool {
+        !L::LINKS_NEIGHBOURS
+    }
+
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         newton_system::<L>(self.problem.constants, &self.terms, half)
+    }
+
+    fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
+        if const { L::LINKS_NEIGHBOURS } {
+            return linked_update::<L>(self.problem.constants, &self.terms, half);
+        }
+        let (residual, jacobian) = self.newton_system(half);
+        NewtonUpdate::of(&residual, &jacobian, self.pattern())
     }
 
     fn residual(&self, half: &Vector<L>) -> Vector<L> {

@@ -28,6 +28,9 @@ pub(super) trait System<G: LieGroup> {
     /// What is known of the Jacobian.
     fn pattern(&self) -> Pattern;
 
+    /// Whether a Jacobian may serve for [another update](Self::simplified).
+    fn has_factors(&self) -> bool;
+
     /// The residual and the Jacobian at half the coordinates.
     fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
 

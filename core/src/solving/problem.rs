@@ -49,6 +49,11 @@ impl<L: Effect> System<Group<L>> for Usual<'_, L> {
     }
 
     #[inline(always)]
+    fn has_factors(&self) -> bool {
+        !L::LINKS_NEIGHBOURS
+    }
+
+    #[inline(always)]
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         L::newton_system(self.constants, &self.terms, half)
     }

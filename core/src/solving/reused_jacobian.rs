@@ -70,7 +70,7 @@ impl<G: LieGroup> Lanes<G> {
         made: &Iteration<G>,
         safe: G::Scalar,
     ) -> bool {
-        if !REUSE || !has_no_derivatives::<G::Scalar>() || self.settled.all() {
+        if !REUSE || !equation.has_factors() || !has_no_derivatives::<G::Scalar>() || self.settled.all() {
             return false;
         }
         let before = made.update.dot(&made.update);

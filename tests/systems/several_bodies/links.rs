@@ -121,7 +121,7 @@ fn two_links_are_the_declared_double_pendulum() {
 }
 
 /// Links without any symmetry.
-fn irregular<const N: usize>(random: &mut Random) -> Chain<N> {
+pub(super) fn irregular<const N: usize>(random: &mut Random) -> Chain<N> {
     let mut vector = |size: f64| -> Vector3<f64> {
         let vector: Vector3<f64> = random.sample();
         vector * size
@@ -228,7 +228,7 @@ fn a_step_back_undoes_a_step() {
 }
 
 /// Rods of one metre that hang along their axes, the last with another mass.
-fn rods<const N: usize>(last: f64) -> Chain<N> {
+pub(super) fn rods<const N: usize>(last: f64) -> Chain<N> {
     let e = Vector3::z();
     let rod = |m: f64| link(&(Matrix3::from_diagonal(&Vector3::new(0.005, 0.005, 1.0 / 12.0)) * m), m, -e * 0.5, -e);
     let mut links = [rod(1.0); N];
@@ -297,4 +297,36 @@ fn errors_name_the_link() {
     let error = stepper.step(&mut state).unwrap_err();
     assert!(matches!(error, StepError::UnsolvedBody { body: 2, .. }), "{error}");
     assert_eq!(state, before);
+}
+
+/// Rods that start without spin move as directions: none gets a momentum about its axis, and how large the moments about
+/// them are doesn't matter.
+#[test]
+fn rods_move_as_directions() {
+    let (e, l) = (-Vector3::z(), 1.2);
+    let along = e * l;
+    let slim = NonstandardInertia::of_rod(1.0 / 3.0, &along).unwrap();
+    let slimmer = NonstandardInertia::from_diagonal(Vector3::new(1e-4, 1e-4, l * l / 3.0 - 1e-4)).unwrap();
+    let directions = [Vector3::x(), Vector3::new(0.6, 0.0, -0.8), Vector3::new(0.0, 0.8, 0.6), -Vector3::y()];
+    let rates = [0.3, -1.0, 2.0, 0.5].map(|rate| Vector3::new(0.5, 1.0, -0.3) * rate);
+    let ends = [slim, slimmer].map(|J_d| {
+        let links = [Link { J_d, m: 1.0, c: along * 0.5, rho: along }; 4];
+        let stepper = ChainStepper::new(Chain { links, g: 9.81, up: Vector3::z() }, 0.005).unwrap();
+        let started = [0, 1, 2, 3].map(|k| {
+            let q = directions[k];
+            J_d.pointing(&e, &q, &(rates[k] - q * q.dot(&rates[k]))).unwrap()
+        });
+        let velocities = Bodies(started.map(|(_, velocity)| velocity));
+        let mut state = stepper.start(started.map(|(attitude, _)| attitude), velocities).unwrap();
+        for _ in 0..20 {
+            stepper.run(&mut state, 10).unwrap();
+            let momenta = state.momentum().0;
+            let size = momenta.iter().map(Vector3::norm).fold(0.0, f64::max);
+            assert!(momenta.iter().all(|momentum| momentum.z.abs() < 1e-15 * size), "{momenta:?}");
+        }
+        state.attitude().map(|attitude| attitude.as_matrix() * e)
+    });
+    let off = ends[0].iter().zip(&ends[1]).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
+    println!("apart by {off:.1e}");
+    assert!(off < 1e-12 && (ends[0][3] - directions[3]).norm() > 0.5, "{off:e}");
 }

@@ -6,8 +6,10 @@ mod attitudes;
 mod chain;
 mod declared;
 mod joints;
+mod lanes;
 mod links;
 mod many;
+mod stiff;
 mod translated;
 
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};

@@ -231,10 +231,10 @@ pub(super) struct Free {
         + (r + d_2 - d_1 + R_2 * F_2 * b - R_1 * F_1 * a).norm_squared()),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Tied {
-    k: f64,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
+pub(super) struct Tied {
+    pub(super) k: f64,
+    pub(super) a: Vector3<f64>,
+    pub(super) b: Vector3<f64>,
 }
 
 /// As a system, of bodies and of what is between them, they move as the oscillator that they are, and turn freely.

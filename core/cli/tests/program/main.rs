@@ -9,4 +9,5 @@ mod mutated;
 mod page;
 mod readme;
 mod runs;
+mod several;
 mod wrong_files;

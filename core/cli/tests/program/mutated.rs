@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use liestep_scene::{Drawn, Mistake, Spread, parse};
+use nalgebra::Vector3;
+
+use liestep_scene::{Drawn, Mistake, Scene, Spread, System};
 
 /// Marsaglia's xorshift.
 struct Random(u64);
@@ -38,10 +40,19 @@ fn seeds() -> Vec<String> {
     let split = "title = \"split\"\n[body]\nmoments = [1, 2, 2.5]\n[dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
                  [start]\neuler = [0, 0, 0]\neuler_rates = [0, 1, 0]\n[run]\nstep = 0.01\nduration = 1\n\
                  method = { splitting = \"Nyström 6-4\" }\n";
+    let held = "title = \"held\"\n[gravity]\ng = 9.81\nup = [0, 0, 1]\n\
+                [[body]]\nname = \"a\"\nm = 1\nmoments = [1, 2, 2.5]\nposition = [0, 0, 0.5]\nmoving = [0, -0.5, 0]\n\
+                start.euler = [0, 0, 0]\nstart.velocity = [1, 0, 0]\n[[body]]\nname = \"b\"\nm = 2\n\
+                J = [[3, 0.1, 0], [0.1, 4, 0], [0, 0, 5]]\nposition = [0, 0, 2]\nstart.quaternion = [1, 0, 0, 0]\n\
+                start.velocity = [0, 0, 0]\n[[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"a\"]\n\
+                at = [[0, 0, 0], [0, 0, -0.5]]\naxes = [[1, 0, 0], [1, 0, 0]]\n[[spring]]\nbodies = [\"a\", \"b\"]\n\
+                at = [[0, 0, 0.5], [0, 0.1, -0.5]]\nk = 30\nlength = 0.4\n[[joint]]\nkind = \"ball\"\n\
+                bodies = [\"b\", \"space\"]\nat = [[0, 0, 0.5], [0, 0, 2.5]]\n[run]\nstep = 0.01\nduration = 1\nnearest = true\n\
+                [picture]\nplane = \"yz\"\n[output]\ncolumns = [\"position\", \"momentum\", \"angular-momentum\"]\nevery = 2\n";
     // A search for an accuracy that takes no time.
     let short = |text: String| text.replace("accuracy = 1e-9", "accuracy = 1e-6").replace("\"60 s\"", "0.1");
     let files = paths.iter().map(|path| short(fs::read_to_string(path).unwrap()));
-    files.chain([all.to_owned(), split.to_owned()]).collect()
+    files.chain([all.to_owned(), split.to_owned(), held.to_owned()]).collect()
 }
 
 /// What a slip of the hand leaves, and what a number can't be.
@@ -153,12 +164,31 @@ fn make_members(drawn: &Drawn, text: &str, random: &mut Random) {
     }
 }
 
-/// Runs so many files, and returns how many of them ran, and of how many members were made.
-fn survive(cases: usize, seed: u64) -> [usize; 2] {
-    let (seeds, mut random, mut ran, mut drawn) = (seeds(), Random(seed), 0, 0);
+/// Makes some steps of a system, and draws them.
+fn make_system(system: &System, text: &str, draws: bool) -> Result<(), Mistake> {
+    let run = system.first(30)?;
+    for sample in run.samples() {
+        let bodies = sample.bodies.iter().flat_map(|body| [body.position, body.velocity, body.moving]);
+        let is_finite = |vector: Vector3<f64>| vector.iter().all(|number| number.is_finite());
+        assert!(sample.energy.is_finite() && bodies.into_iter().all(is_finite), "{text}");
+    }
+    assert!(!draws || system.picture(&run).unwrap().contains("</svg>"));
+    Ok(())
+}
+
+/// Runs so many files, and returns how many of them ran, of how many members were made, and how many had several bodies.
+fn survive(cases: usize, seed: u64) -> [usize; 3] {
+    let (seeds, mut random, mut ran, mut drawn, mut several) = (seeds(), Random(seed), 0, 0, 0);
     for case in 0..cases {
         let text = mutated(&seeds[random.below(seeds.len())], &mut random);
-        let answer = parse("mutated.toml", &text).and_then(|scene| {
+        let answer = Scene::parse("mutated.toml", &text).and_then(|scene| {
+            let scene = match scene {
+                Scene::Body(scene) => scene,
+                Scene::System(system) => {
+                    several += 1;
+                    return make_system(&system, &text, case % 20 == 0);
+                }
+            };
             if let Some(ensemble) = scene.ensemble() {
                 make_members(ensemble, &text, &mut random);
                 drawn += 1;
@@ -179,18 +209,18 @@ fn survive(cases: usize, seed: u64) -> [usize; 2] {
             Err(mistake) => assert_placed(&mistake, &text),
         }
     }
-    [ran, drawn]
+    [ran, drawn, several]
 }
 
 #[test]
 fn mutated_files_are_refused_or_run() {
-    let [ran, drawn] = survive(1000, 0x9e37_79b9_7f4a_7c15);
-    assert!((100..900).contains(&ran) && drawn > 20, "{ran} {drawn}");
+    let [ran, drawn, several] = survive(1000, 0x9e37_79b9_7f4a_7c15);
+    assert!((100..900).contains(&ran) && drawn > 20 && several > 20, "{ran} {drawn} {several}");
 }
 
 #[test]
 #[ignore = "a minute: cargo test --release -p liestep-cli -- --ignored"]
 fn ten_thousand_mutated_files_are_refused_or_run() {
-    let [ran, drawn] = survive(10_000, 0x2545_f491_4f6c_dd1d);
-    assert!((1000..9000).contains(&ran) && drawn > 200, "{ran} {drawn}");
+    let [ran, drawn, several] = survive(10_000, 0x2545_f491_4f6c_dd1d);
+    assert!((1000..9000).contains(&ran) && drawn > 200 && several > 200, "{ran} {drawn} {several}");
 }

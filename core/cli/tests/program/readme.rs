@@ -15,6 +15,8 @@ fn its_scenes_run() {
     let more = blocks.iter().find(|block| block.starts_with("[[event]]")).unwrap();
     let run = liestep_scene::parse("README.md", scene).unwrap().run().unwrap();
     assert_eq!((run.steps(), run.samples().len()), (2000, 2001));
+    let several = blocks.iter().find(|block| block.contains("[[body]]")).unwrap();
+    liestep_scene::System::parse("README.md", several).unwrap().run().unwrap();
     let varied = liestep_scene::parse("README.md", &format!("{scene}{more}")).unwrap();
     assert_eq!(varied.sweep().unwrap().points().len(), 6);
     assert_eq!(varied.events().collect::<Vec<_>>(), ["fallen"]);

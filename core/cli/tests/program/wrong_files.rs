@@ -207,7 +207,7 @@ fn files_of_another_kind() {
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: large.toml: has more than 1048576 bytes, so it is no scene
-        error: table.toml:1:1: invalid type: sequence, expected a table with an inertia
+        error: table.toml:1:1: missing field `name`
     "]].assert_eq(&messages.concat());
 }
 

@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 
 use super::Advected;
 use crate::groups::{Factor, LieGroup};
-use crate::numbers::{Entries, Real, is_finite};
+use crate::numbers::{Entries, Lanes, Real, is_finite};
 
 /// What the body that is the factor `A` of a product sees; the others don't move it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,8 +39,25 @@ impl<const B: usize, T: Real, const N: usize> Default for Configuration<B, SMatr
     }
 }
 
-macro_rules! entries {
+/// Entries and lanes are those of the value.
+macro_rules! of_its_value {
     ($type:ident, $($place:ident),+) => {
+        impl<$(const $place: usize,)+ W: Lanes> Lanes for $type<$($place,)+ W> {
+            type Lane = $type<$($place,)+ W::Lane>;
+
+            fn splat(lane: &Self::Lane) -> Self {
+                Self(W::splat(&lane.0))
+            }
+
+            fn lane(&self, k: usize) -> Self::Lane {
+                $type(self.0.lane(k))
+            }
+
+            fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+                self.0.set_lane(k, &lane.0)
+            }
+        }
+
         impl<$(const $place: usize,)+ S, W: Entries<S>> Entries<S> for $type<$($place,)+ W> {
             fn from_entries(next: &mut impl FnMut() -> S) -> Self {
                 Self(Entries::from_entries(next))
@@ -59,9 +76,9 @@ macro_rules! entries {
     };
 }
 
-entries!(SeenFrom, A);
-entries!(Relative, A, B);
-entries!(Configuration, B);
+of_its_value!(SeenFrom, A);
+of_its_value!(Relative, A, B);
+of_its_value!(Configuration, B);
 
 impl<const A: usize, G: Factor<A>, W: Advected<G::Of>> Advected<G> for SeenFrom<A, W> {
     #[inline]

@@ -10,10 +10,12 @@
 //! | [`Along<N>`](Along) | two bodies, `(G, G)`; `(A, B, A, B)` where `G` is `(A, B)` |
 //! | [`Between<A, B, N>`](Between) | two bodies |
 //! | [`Pairs<N>`](Pairs) | two bodies |
+//! | [`Coupled<N>`](Coupled) | two bodies: a potential that depends on where both are within the step |
 //!
-//! Between bodies only potentials of the ends of a step are possible: then the Newton matrix is block diagonal, and each
-//! body's equation is solved by its own block. A term on two bodies that couples velocities doesn't compile here; a chain
-//! of links on ball joints is a [system of its own](crate::methods::ChainStepper).
+//! Between bodies potentials of the ends of a step leave the Newton matrix block diagonal, and each body's equation is
+//! solved by its own block. A potential of the middle of a step, as of a stiff rod, is put at [`Coupled`] places, and the
+//! equations of the row are solved together, in time proportional to `N`. A term on two bodies that couples velocities
+//! doesn't compile here; a chain of links on ball joints is a [system of its own](crate::methods::ChainStepper).
 
 mod places;
 mod seen;
@@ -22,13 +24,14 @@ use alloc::string::String;
 use core::fmt::Debug;
 use core::ops::Add;
 
-pub use places::{Along, At, Between, Each, On, Pairs, Places};
+pub use places::{Along, At, Between, Coupled, Each, On, Pairs, Places};
 pub use seen::{Neighbours, SeenBetween, WhereAllAre};
 
 use crate::error::SetupError;
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Limit, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
+use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
+use crate::mechanics::kinetic_part::KineticPart as _;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::mechanics::sum::{SharedBy, Sum};
@@ -122,6 +125,7 @@ macro_rules! of {
 of!([const N: usize] Each<N>);
 of!([const K: usize, const N: usize] On<K, N>);
 of!([const N: usize] Along<N>);
+of!([const N: usize] Coupled<N>);
 of!([const A: usize, const B: usize, const N: usize] Between<A, B, N>);
 of!([const N: usize] Pairs<N>);
 
@@ -217,17 +221,27 @@ where
 
     const PARTS: Parts = {
         assert!(
-            P::AT_ONE_BODY || !E::PARTS.unknown,
-            "between the bodies of a system only potentials of the ends of a step are possible: this term couples their \
-             velocities, or depends on where they are within the step; declare all of these bodies as one product, \
-             `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::ChainStepper`"
+            P::AT_ONE_BODY || !E::PARTS.unknown || !E::Kinetic::IS_THERE,
+            "between the bodies of a system only potentials are possible: this term couples their velocities; declare all of \
+             these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::ChainStepper`"
+        );
+        assert!(
+            P::AT_ONE_BODY || P::LINKS_NEIGHBOURS || !E::PARTS.unknown,
+            "this potential depends on where two bodies are within the step: put it at neighbours in a row, by \
+             `Coupled::<N>::of`, or take the means of what it has at the ends of the step"
+        );
+        assert!(
+            !P::LINKS_NEIGHBOURS || (E::IS_QUADRATIC && E::DENOMINATORS == 0),
+            "a term with cleared denominators, or one that isn't quadratic in the velocity, can't join neighbours"
         );
         E::PARTS
     };
     const DENOMINATORS: u32 = E::DENOMINATORS;
     const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
     const IS_QUADRATIC: bool = E::IS_QUADRATIC;
-    const APART: Blocks = E::APART;
+    // What lies between neighbours isn't in the blocks of bodies, which elimination fills.
+    const APART: Blocks = if P::LINKS_NEIGHBOURS { Blocks::WHOLE } else { E::APART };
+    const LINKS_NEIGHBOURS: bool = P::LINKS_NEIGHBOURS;
     const OPERATIONS: Operations = Operations {
         step: E::OPERATIONS.step.saturating_mul(places_of::<P, E>()),
         iteration: E::OPERATIONS.iteration.saturating_mul(places_of::<P, E>()),
@@ -321,6 +335,19 @@ where
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
         P::system(|at| {
+            let (constants, _) = &constants[term_at::<M>(at.place)];
+            E::newton_system(constants, &terms.as_ref()[at.place], &P::components(half, at))
+        })
+    }
+
+    #[inline(always)]
+    fn newton_linked(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+        links: &mut Links<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        P::linked(links, |at| {
             let (constants, _) = &constants[term_at::<M>(at.place)];
             E::newton_system(constants, &terms.as_ref()[at.place], &P::components(half, at))
         })

@@ -4,7 +4,7 @@ use core::array::from_fn;
 use core::marker::PhantomData;
 
 use super::seen::{Neighbours, SeenBetween, WhereAllAre};
-use crate::groups::{Advected, LieGroup, Pair, SeenFrom};
+use crate::groups::{Advected, LieGroup, Pair, SeenFrom, SquareOf};
 use crate::mechanics::effect::{Effect, Group, Matrix, NewtonUpdate, Square, Vector};
 use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _, Pattern, filled, least, most};
 
@@ -20,7 +20,8 @@ pub struct At {
 /// The components of all bodies.
 type All<V, const N: usize> = Bodies<V, N>;
 
-/// Where the terms `E` of a [`Placed`](super::Placed) are: [`Each`], [`On`], [`Along`], [`Between`] or [`Pairs`].
+/// Where the terms `E` of a [`Placed`](super::Placed) are: [`Each`], [`On`], [`Along`], [`Coupled`],
+/// [`Between`] or [`Pairs`].
 pub trait Places<E: Effect> {
     /// The group of the system.
     type Group: LieGroup<Scalar = E::Scalar>;
@@ -33,6 +34,8 @@ pub trait Places<E: Effect> {
     const PLACES: usize;
     /// Whether each place is at one body: what couples velocities there stays within its block of the Newton matrix.
     const AT_ONE_BODY: bool;
+    /// Whether what is between two bodies there depends on where both are within the step. They are neighbours then.
+    const LINKS_NEIGHBOURS: bool = false;
     /// What they are, for a description, and the bodies if they are fixed.
     const NAME: (&'static str, [usize; 2]);
 
@@ -68,6 +71,15 @@ pub trait Places<E: Effect> {
         (Self::sum(|at| of(at).0), Self::squares(|at| of(at).1))
     }
 
+    /// The same, with the blocks that join neighbours added to those that are given.
+    #[inline(always)]
+    fn linked(
+        _: &mut LinksOf<Self::Group>,
+        of: impl FnMut(At) -> (Vector<E>, Square<E>),
+    ) -> (<Self::Group as LieGroup>::Vector, SquareOf<Self::Group>) {
+        Self::system(of)
+    }
+
     /// One of Newton's iterations, from residual and Jacobian of each place.
     #[inline(always)]
     fn newton_update(
@@ -79,8 +91,8 @@ pub trait Places<E: Effect> {
     }
 }
 
-/// Linear maps of a group's components.
-pub(crate) type SquareOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordinates<<G as LieGroup>::Scalar>>::Square;
+/// What joins neighbours in a row of bodies.
+type LinksOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordinates<<G as LieGroup>::Scalar>>::Links;
 
 /// At each of `N` bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +105,56 @@ pub struct On<const K: usize, const N: usize>;
 /// At each two neighbours of `N` bodies in a row: the first with the second, the second with the third, and so on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Along<const N: usize>;
+
+/// At each two neighbours of `N` bodies in a row, as [`Along`], for potentials that depend on where both are within the
+/// step: the means of what they are at its ends, or functions of these.
+///
+/// The momentum equations of the row are solved together, by elimination from the first body to the last, in time
+/// proportional to `N`. What is stiff there doesn't bound the step: with means a linear spring moves as by the implicit
+/// midpoint rule. At [`Along`] places, with half of a potential at either end, a step has to be below `2/ω` of the fastest
+/// oscillation.
+///
+/// # Examples
+///
+/// Bodies that are translated, tied by springs so stiff that at both ends of a step they would be torn apart.
+///
+/// ```
+/// use liestep::groups::R3;
+/// use liestep::mechanics::{Coupled, Each};
+/// use liestep::numbers::Bodies;
+/// use liestep::{Stepper, lagrangian};
+/// use nalgebra::Vector3;
+///
+/// #[lagrangian(group(d = R3), l_d = m * d.norm_squared() / (2.0 * h))]
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct Mass {
+///     m: f64,
+/// }
+///
+/// #[lagrangian(
+///     group(d_1 = R3, d_2 = R3),
+///     advected(r = d_2.seen_from(d_1)),
+///     l_d = -0.5 * h * k * (r + 0.5 * (d_2 - d_1)).norm_squared(),
+/// )]
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct Tied {
+///     k: f64,
+/// }
+///
+/// let h = 0.1;
+/// let row = Each::<3>::of([Mass { m: 1.0 }]) + Coupled::<3>::of([Tied { k: 1e6 }]); // ω h is above 100
+/// let stepper = Stepper::new(row, h)?;
+/// let place = |x: f64| R3::from(Vector3::new(x, 0.0, 0.0));
+/// let mut state = stepper.start([place(0.0), place(0.01), place(0.0)], Bodies([Vector3::y(); 3]))?;
+/// let energy = stepper.energy(&state);
+/// for _ in 0..1000 {
+///     stepper.step(&mut state)?;
+///     assert!((stepper.energy(&state) - energy).abs() < 1e-9 * energy);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Coupled<const N: usize>;
 
 /// At the bodies `A` and `B` of `N`, counted from zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -247,13 +309,8 @@ type BodyVector<E> = <Body<E> as LieGroup>::Vector;
 macro_rules! at_two_bodies {
     () => {
         type Group = [Body<E>; N];
-        type Of<T: Copy> = [T; 0];
 
         const AT_ONE_BODY: bool = false;
-
-        fn gather<T: Copy>(_: impl FnMut(At) -> T) -> [T; 0] {
-            []
-        }
 
         #[inline(always)]
         fn matrix(all: &[BodyMatrix<E>; N], at: At) -> Matrix<E> {
@@ -268,13 +325,19 @@ macro_rules! at_two_bodies {
         #[inline(always)]
         fn sum(mut of: impl FnMut(At) -> Vector<E>) -> All<BodyVector<E>, N> {
             let mut all = [BodyVector::<E>::zero(); N];
-            <Self as Places<E>>::visit(|at| {
-                let parts = Group::<E>::parts(&of(at));
-                for (body, part) in at.bodies.into_iter().zip(parts) {
-                    all[body] = all[body] + part;
-                }
-            });
+            <Self as Places<E>>::visit(|at| add_parts::<E, N>(&mut all, at, &of(at)));
             Bodies(all)
+        }
+    };
+}
+
+/// What such places have in common whose momentum equations have no part there.
+macro_rules! of_ends {
+    () => {
+        type Of<T: Copy> = [T; 0];
+
+        fn gather<T: Copy>(_: impl FnMut(At) -> T) -> [T; 0] {
+            []
         }
 
         /// A term that has no unknown part has none.
@@ -285,30 +348,91 @@ macro_rules! at_two_bodies {
     };
 }
 
-impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Along<N> {
-    type Advected = Neighbours<Group<E>, E::Advected, N>;
+/// What is where neighbours are.
+macro_rules! neighbours {
+    ($name:literal) => {
+        type Advected = Neighbours<Group<E>, E::Advected, N>;
 
-    const PLACES: usize = N - 1;
-    const NAME: (&'static str, [usize; 2]) = ("along the row", [0, N]);
+        const PLACES: usize = N - 1;
+        const NAME: (&'static str, [usize; 2]) = ($name, [0, N]);
+
+        #[inline(always)]
+        fn visit(mut each: impl FnMut(At)) {
+            const { assert!(N > 1, "neighbours are two bodies at least") };
+            for place in 0..N - 1 {
+                each(At { place, bodies: [place, place + 1] });
+            }
+        }
+
+        fn spatial(of: impl Fn(usize) -> E::Advected) -> Self::Advected {
+            // The last has no next.
+            Neighbours(from_fn(|place| of(place.min(N - 2))), PhantomData)
+        }
+
+        #[inline(always)]
+        fn seen(all: &Self::Advected, _: &E::Advected, at: At) -> E::Advected {
+            all.0[at.place]
+        }
+    };
+}
+
+/// Adds the part of each of the two bodies.
+#[inline(always)]
+fn add_parts<E: Effect<Group: Pair>, const N: usize>(all: &mut [BodyVector<E>; N], at: At, both: &Vector<E>) {
+    for (body, part) in at.bodies.into_iter().zip(Group::<E>::parts(both)) {
+        all[body] = all[body] + part;
+    }
+}
+
+impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Along<N> {
+    at_two_bodies!();
+    of_ends!();
+    neighbours!("along the row");
+}
+
+impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
+    /// Behind them there is one more, which isn't used.
+    type Of<T: Copy> = [T; N];
+
+    const LINKS_NEIGHBOURS: bool = true;
 
     at_two_bodies!();
+    neighbours!("coupled along the row");
 
     #[inline(always)]
-    fn visit(mut each: impl FnMut(At)) {
-        const { assert!(N > 1, "neighbours are two bodies at least") };
-        for place in 0..N - 1 {
-            each(At { place, bodies: [place, place + 1] });
+    fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
+        let mut all = [make(At { place: 0, bodies: [0, 1] }); N];
+        for place in 1..N - 1 {
+            all[place] = make(At { place, bodies: [place, place + 1] });
         }
+        all
     }
 
-    fn spatial(of: impl Fn(usize) -> E::Advected) -> Self::Advected {
-        // The last has no next.
-        Neighbours(from_fn(|place| of(place.min(N - 2))), PhantomData)
+    fn squares(mut of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group> {
+        <Self as Places<E>>::system(|at| (Vector::<E>::zero(), of(at))).1
+    }
+
+    fn system(of: impl FnMut(At) -> (Vector<E>, Square<E>)) -> (All<BodyVector<E>, N>, SquareOf<Self::Group>) {
+        <Self as Places<E>>::linked(&mut All::<BodyVector<E>, N>::no_links(), of)
     }
 
     #[inline(always)]
-    fn seen(all: &Self::Advected, _: &E::Advected, at: At) -> E::Advected {
-        all.0[at.place]
+    fn linked(
+        links: &mut LinksOf<Self::Group>,
+        mut of: impl FnMut(At) -> (Vector<E>, Square<E>),
+    ) -> (All<BodyVector<E>, N>, SquareOf<Self::Group>) {
+        let zero = BodyVector::<E>::zero();
+        let (mut vectors, mut squares) = ([zero; N], [zero.outer(&zero); N]);
+        for place in 0..N - 1 {
+            let at = At { place, bodies: [place, place + 1] };
+            let (both, matrix) = of(at);
+            add_parts::<E, N>(&mut vectors, at, &both);
+            let [[first, upper], [lower, second]] = Group::<E>::blocks(&matrix);
+            squares[place] = squares[place] + first;
+            squares[place + 1] = squares[place + 1] + second;
+            links[place] = [links[place][0] + upper, links[place][1] + lower];
+        }
+        (Bodies(vectors), BlockDiagonal(squares))
     }
 }
 
@@ -319,6 +443,7 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
     const NAME: (&'static str, [usize; 2]) = ("between two bodies", [A, B]);
 
     at_two_bodies!();
+    of_ends!();
 
     #[inline(always)]
     fn visit(mut each: impl FnMut(At)) {
@@ -343,6 +468,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     const NAME: (&'static str, [usize; 2]) = ("at all pairs", [N, N]);
 
     at_two_bodies!();
+    of_ends!();
 
     #[inline(always)]
     fn visit(mut each: impl FnMut(At)) {

@@ -133,7 +133,7 @@ pub(super) fn factorise<const K: usize, const N: usize, const L: usize>(
     bodies: &mut [Body<K>; N],
     loops: &mut [Closing<K, N, L>; L],
 ) {
-    for closing in loops.iter_mut() {
+    for closing in loops.iter_mut().filter(|closing| closing.rows > 0) {
         closing.free = SVector::zeros();
         for side in 0..2 {
             let Some(body) = closing.bodies[side] else { continue };
@@ -170,7 +170,7 @@ fn close<const K: usize, const N: usize, const L: usize>(
     bodies: &[Body<K>; N],
     loops: &mut [Closing<K, N, L>; L],
 ) {
-    for closing in loops.iter_mut() {
+    for closing in loops.iter_mut().filter(|closing| closing.rows > 0) {
         closing.columns = [SMatrix::zeros(); N];
         closing.multipliers = [SMatrix::zeros(); N];
         for (side, body) in closing.bodies.into_iter().enumerate() {

@@ -146,6 +146,10 @@ where
                 S::DENOMINATORS == 0,
                 "a term with cleared denominators has another residual than joints are added to"
             );
+            assert!(
+                !S::LINKS_NEIGHBOURS,
+                "bodies in joints can't be coupled within the step; put the potential at its ends"
+            );
             assert!(S::IS_QUADRATIC, "joints hold bodies whose continuous limit is quadratic in the velocity");
         }
         // The scene without joints has to be one that can be stepped.

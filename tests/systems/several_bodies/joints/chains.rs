@@ -4,12 +4,13 @@ use core::array::from_fn;
 
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::Random;
-use liestep::methods::{BallJoint, Chain, ChainStepper, Joined, Joints, Link, PinJoint};
+use liestep::methods::{BallJoint, Chain, ChainStepper, Joined, Joints, PinJoint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
-use nalgebra::{Matrix3, Vector3, Vector6};
+use nalgebra::{Vector3, Vector6};
 
 use super::super::apart;
+use super::super::links::{irregular, rods};
 use super::{Body, Components, EPSILON, Free, Held, halves, row, scene, six, whole};
 
 /// The same chain with a joint for each link, its bodies about their centres of mass.
@@ -47,21 +48,6 @@ fn placed<const N: usize>(
     (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
 }
 
-/// Links without any symmetry.
-fn irregular<const N: usize>(random: &mut Random) -> Chain<N> {
-    let mut vector = |size: f64| -> Vector3<f64> {
-        let vector: Vector3<f64> = random.sample();
-        vector * size
-    };
-    let links = [(); N].map(|()| {
-        let shape = Matrix3::from_columns(&[vector(0.3), vector(0.3), vector(0.3)]);
-        let central = shape * shape.transpose() + Matrix3::from_diagonal_element(0.01);
-        let (m, c) = (0.5 + vector(0.4).x.abs(), vector(0.5));
-        Link { J_d: NonstandardInertia::new(central + c * c.transpose() * m).unwrap(), m, c, rho: vector(1.0) }
-    });
-    Chain { links, g: 9.81, up: vector(1.0).normalize() }
-}
-
 /// Joints with multipliers and the minimal form are one integrator: they part by rounding alone.
 #[test]
 fn a_chain_moves_as_in_its_minimal_form() {
@@ -95,19 +81,6 @@ fn a_chain_moves_as_in_its_minimal_form() {
         println!("iterations: {iterations:?}");
         assert!(iterations[1] < 2 * iterations[0]);
     }
-}
-
-/// Rods of one metre that hang along their axes, the last with another mass.
-fn rods<const N: usize>(last: f64) -> Chain<N> {
-    let e = Vector3::z();
-    let rod = |m: f64| {
-        let central = Matrix3::from_diagonal(&Vector3::new(0.005, 0.005, 1.0 / 12.0)) * m;
-        let J_d = NonstandardInertia::new(central + e * e.transpose() * (0.25 * m)).unwrap();
-        Link { J_d, m, c: -e * 0.5, rho: -e }
-    };
-    let mut links = [rod(1.0); N];
-    links[N - 1] = rod(last);
-    Chain { links, g: 9.81, up: e }
 }
 
 /// A hundred links are let go horizontally, and the last has up to ten thousand times the mass of the others: as in

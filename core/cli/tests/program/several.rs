@@ -1,0 +1,312 @@
+//! Files of several bodies: what programs of one's own do, to the bit; springs, loops, and mistakes with their places.
+
+use std::fs;
+use std::process::Command;
+
+use expect_test::expect;
+use liestep::groups::R3;
+use liestep::mechanics::Each;
+use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
+use liestep::numbers::Bodies;
+use liestep::prelude::*;
+use liestep_scene::{Scene, System};
+use nalgebra::{UnitQuaternion, Vector3, Vector6};
+
+use crate::called::{PROGRAM, TOP, folder, printed, simulate};
+
+const HELD: &str = r#"title = "Two bodies that are held"
+
+[gravity]
+g = 9.81
+up = [0, 0, 1]
+
+[[body]]
+name = "upper"
+m = 1.5
+moments = [0.2, 0.3, 0.25]
+position = [0, 0, -0.5]
+moving = [0, "50 cm/s", 0]
+start.euler = [0, 0, 0]
+start.velocity = [1, 0, 0]
+
+[[body]]
+name = "lower"
+m = "700 g"
+J = [[0.1, 0.01, 0], [0.01, 0.12, 0], [0, 0, 0.11]]
+position = [0.3, 0, -1]
+moving = [0, 1, 0]
+start.quaternion = [1, 0, 0, 0]
+start.velocity = [1, 0, 0]
+
+[[joint]]
+kind = "pin"
+bodies = ["upper", "space"]
+at = [[0, 0, 0.5], [0, 0, 0]]
+axes = [[1, 0, 0], [2, 0, 0]]
+
+[[joint]]
+kind = "ball"
+bodies = ["upper", "lower"]
+at = [[0, 0, -0.5], [-0.3, 0, 0]]
+
+[run]
+step = "5 ms"
+duration = 2
+
+[output]
+columns = ["position", "quaternion", "velocity", "moving", "energy", "gap"]
+every = 1
+"#;
+
+/// A body and its weight.
+#[liestep::lagrangian(
+    group(F = SO3, d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+        - 0.5 * h * m * g * (x + x + d).dot(&up),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Heavy {
+    J_d: NonstandardInertia,
+    m: f64,
+    g: f64,
+    up: Vector3<f64>,
+}
+
+fn system(text: &str) -> System {
+    match Scene::parse("several.toml", text).unwrap() {
+        Scene::System(system) => *system,
+        Scene::Body(_) => panic!("one body"),
+    }
+}
+
+/// The rest of the system that a file's bodies are stepped in changes no bit.
+#[test]
+fn a_file_is_what_a_program_makes() {
+    let folder = folder("held");
+    fs::write(folder.join("held.toml"), HELD.replace("50 cm/s", "0.5 m/s")).unwrap();
+    printed(&folder, &["run", "held.toml", "--csv", "--out", "."]);
+    let table = fs::read_to_string(folder.join("held.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        table.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 401);
+    let names: Vec<_> = table.lines().next().unwrap().split(',').collect();
+    assert_eq!((names[4], names[10], names[14], names[24]), ("lower_x", "upper_q_z", "lower_q_z", "lower_moving_x"));
+
+    let (g, up) = (9.81, Vector3::z());
+    let first = NonstandardInertia::from_principal_moments(Vector3::new(0.2, 0.3, 0.25)).unwrap();
+    let full = nalgebra::Matrix3::new(0.1, 0.01, 0.0, 0.01, 0.12, 0.0, 0.0, 0.0, 0.11);
+    let second = liestep::mechanics::Inertia::new(full).unwrap().to_nonstandard();
+    let scene = Each::<2>::of([Heavy { J_d: first, m: 1.5, g, up }, Heavy { J_d: second, m: 700.0 * 1e-3, g, up }]);
+    let axis = Vector3::x();
+    let pivot = PinJoint { above: Vector3::zeros(), below: up * 0.5, axis_above: axis, axis_below: axis };
+    let joint = BallJoint { above: up * -0.5, below: axis * -0.3 };
+    let joints = [Joined::to_space(Joint::Pin(pivot), 0), Joined::between(Joint::Ball(joint), 0, 1)];
+    let stepper = Stepper::jointed(scene, Joints::tree(joints), 5.0 * 1e-3).unwrap();
+    let place = |x: f64, z: f64| (SO3::from(UnitQuaternion::identity()), R3::from(Vector3::new(x, 0.0, z)));
+    let moving = |y: f64| Vector6::new(1.0, 0.0, 0.0, 0.0, y, 0.0);
+    let mut state = stepper.start([place(0.0, -0.5), place(0.3, -1.0)], Bodies([moving(0.5), moving(1.0)])).unwrap();
+    for (step, row) in rows.iter().enumerate() {
+        let (bodies, velocities) = (state.attitude(), stepper.velocity(&state).0);
+        for body in 0..2 {
+            assert_eq!(row[1 + 3 * body..][..3], *bodies[body].1.translation().as_slice(), "{step}");
+            assert_eq!(row[15 + 3 * body..][..3], velocities[body].as_slice()[..3], "{step}");
+            assert_eq!(row[21 + 3 * body..][..3], velocities[body].as_slice()[3..], "{step}");
+        }
+        assert_eq!(row[27..], [stepper.energy(&state), stepper.widest_gap(&state)], "{step}");
+        stepper.step(&mut state).unwrap();
+    }
+}
+
+fn free(name: &str, position: [f64; 3], rest: &str) -> String {
+    format!(
+        "[[body]]\nname = \"{name}\"\nm = 2\nmoments = [0.3, 0.4, 0.5]\nposition = {position:?}\nstart.euler = [0, 0, 0]\n\
+         {rest}\n"
+    )
+}
+
+/// Two bodies on a spring oscillate as half a kick, a drift and half a kick do: `sin(θ/2) = ω h/2` of each step's phase.
+#[test]
+fn bodies_on_a_spring() {
+    let still = "start.velocity = [0, 0, 0]";
+    let spring = "[[spring]]\nbodies = [\"a\", \"b\"]\nat = [[0, 0, 0], [0, 0, 0]]\nk = 30\nlength = \"40 cm\"\n";
+    let bodies = free("a", [0.0, 0.0, 0.0], still) + &free("b", [0.5, 0.0, 0.0], still);
+    let run = "[run]\nstep = 0.02\nduration = 4\n";
+    let run_of = system(&format!("title = \"spring\"\n{bodies}{spring}{run}")).run().unwrap();
+    let phase = 2.0 * (0.5 * 30.0_f64.sqrt() * 0.02).asin();
+    for (step, sample) in (0_u32..).zip(run_of.samples()) {
+        let apart = sample.bodies[1].position - sample.bodies[0].position;
+        let expected = Vector3::new(0.4 + 0.1 * (f64::from(step) * phase).cos(), 0.0, 0.0);
+        assert!((apart - expected).amax() < 1e-13, "{step}: {apart}");
+    }
+    assert_eq!(run_of.steps(), 200);
+
+    // Away from their centres they turn each other, a third one hangs on a joint, and all momentum is kept.
+    let turning = "start.velocity = [0.4, -0.2, 1]\nmoving = [0.2, 0.1, 0]";
+    let bodies = free("a", [0.0; 3], turning) + &free("b", [0.9, 0.0, 0.1], still) + &free("c", [0.9, 0.6, 0.1], still);
+    let springs = "[[spring]]\nbodies = [\"a\", \"b\"]\nat = [[0.2, 0.1, 0], [-0.1, 0, 0.2]]\nk = 30\nlength = 0.3\n\
+                   [[spring]]\nbodies = [\"c\", \"a\"]\nat = [[0, 0.1, 0], [0, 0, 0.2]]\nk = 5\nlength = 0\n";
+    let joint = "[[joint]]\nkind = \"ball\"\nbodies = [\"b\", \"c\"]\nat = [[0, 0.3, 0], [0, -0.3, 0]]\n";
+    let run_of = system(&format!("title = \"springs\"\n{bodies}{springs}{joint}{}", run.replace("0.02", "0.005")))
+        .run()
+        .unwrap();
+    let (first, last) = (&run_of.samples()[0], run_of.samples().last().unwrap());
+    let moved = [(last.momentum - first.momentum).norm(), (last.angular_momentum - first.angular_momentum).norm()];
+    let off = run_of.samples().iter().map(|sample| (sample.energy - first.energy).abs()).fold(0.0, f64::max);
+    println!("momenta {moved:?}, energy {} within {off:e}", first.energy);
+    assert!(moved.iter().all(|&moved| moved < 1e-12) && off < 1e-3 * first.energy, "{moved:?} {off:e}");
+    assert!((last.bodies[0].position - first.bodies[0].position).norm() > 0.1 && last.gap < 1e-14);
+    // A spring to space holds what it is tied to.
+    let tied = "[[spring]]\nbodies = [\"space\", \"a\"]\nat = [[0, 0, 1], [0, 0, 0]]\nk = 30\nlength = 0\n";
+    let body = free("a", [0.0; 3], still);
+    let run_of = system(&format!("title = \"tied\"\n{body}{tied}{run}")).run().unwrap();
+    let phase = 2.0 * (0.5 * 15.0_f64.sqrt() * 0.02).asin();
+    let last = run_of.samples().last().unwrap();
+    assert!((last.bodies[0].position.z - (1.0 - (200.0 * phase).cos())).abs() < 1e-12);
+}
+
+/// Four rods between two pivots: joints that close a loop are found, whatever their order.
+#[test]
+fn a_loop() {
+    let rods = (0..4).map(|k| {
+        let tilt = [0.8, 0.3, -0.3, -0.8][k];
+        let [x, z] = [[0.3, -0.4], [1.1, -0.9], [1.9, -0.9], [2.7, -0.4]][k];
+        format!(
+            "[[body]]\nname = \"rod-{k}\"\nm = 1\nJ_d = [0.0833, 0.001, 0.001]\nposition = [{x}, 0, {z}]\n\
+             start.quaternion = [{}, 0, {}, 0]\nstart.velocity = [0, 0.3, 0]\n",
+            f64::cos(tilt / 2.0),
+            f64::sin(tilt / 2.0)
+        )
+    });
+    let rods: String = rods.collect();
+    let joint = |bodies: [&str; 2], at: [[f64; 3]; 2]| {
+        format!("[[joint]]\nkind = \"ball\"\nbodies = {bodies:?}\nat = {at:?}\n")
+    };
+    let (left, right) = ([-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]);
+    let mut joints = vec![
+        joint(["space", "rod-0"], [[0.0; 3], left]),
+        joint(["rod-0", "rod-1"], [right, left]),
+        joint(["rod-2", "rod-1"], [left, right]),
+        joint(["rod-2", "rod-3"], [right, left]),
+        joint(["rod-3", "space"], [right, [3.0, 0.0, 0.0]]),
+    ];
+    let gravity = "title = \"garland\"\n[gravity]\ng = 9.81\nup = [0, 0, 1]\n";
+    let run = "[run]\nstep = 0.01\nduration = 2\nnearest = true\n";
+    let ends = [0, 1].map(|_| {
+        joints.reverse();
+        let run_of = system(&format!("{gravity}{rods}{}{run}", joints.concat())).run().unwrap();
+        let start = run_of.samples()[0].energy;
+        for sample in run_of.samples() {
+            assert!(sample.gap < 4e-15 && (sample.energy - start).abs() < 1e-2 * start.abs(), "{}", sample.gap);
+        }
+        run_of.samples().last().unwrap().bodies[2].position
+    });
+    assert!((ends[0] - ends[1]).norm() < 1e-10, "{}", ends[0] - ends[1]);
+}
+
+/// The message of a file with one line replaced.
+fn mistake(line: &str, by: &str) -> String {
+    assert!(HELD.matches(line).count() >= 1, "{line}");
+    let text = HELD.replace("50 cm/s", "0.5 m/s").replacen(line, by, 1);
+    let mistake = match Scene::parse("held.toml", &text) {
+        Ok(Scene::System(system)) => system.first(1000).map(|_| ()).unwrap_err(),
+        Ok(Scene::Body(_)) => panic!("one body"),
+        Err(mistake) => mistake,
+    };
+    format!("{mistake}\n")
+}
+
+#[test]
+fn mistakes_have_places() {
+    let many = "[[body]]\nname = \"b\"\nm = 1\nmoments = [1, 1, 1]\nposition = [0, 0, 0]\nstart.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\n";
+    let eighth: String = (0..7).map(|k| many.replace("\"b\"", &format!("\"b{k}\""))).collect();
+    let messages = [
+        ("name = \"lower\"", "name = \"upper\""),
+        ("name = \"lower\"", "name = \"lo wer\""),
+        ("name = \"lower\"", "name = \"space\""),
+        ("name = \"lower\"\n", ""),
+        ("m = 1.5", "m = 0"),
+        ("moments = [0.2, 0.3, 0.25]", "moments = [0.2, 0.3, 0.25]\nJ_d = [1, 1, 1]"),
+        ("moments = [0.2, 0.3, 0.25]\n", ""),
+        ("position = [0, 0, -0.5]", "position = [0, 0, \"1 kg\"]"),
+        ("moving = [0, 1, 0]", "moving = [0, \"1 m\", 0]"),
+        ("start.velocity = [1, 0, 0]", "start.velocities = [1, 0, 0]"),
+        ("bodies = [\"upper\", \"lower\"]", "bodies = [\"upper\", \"lowest\"]"),
+        ("bodies = [\"upper\", \"lower\"]", "bodies = [\"upper\", \"upper\"]"),
+        ("bodies = [\"upper\", \"lower\"]", "bodies = [\"upper\"]"),
+        ("kind = \"ball\"", "kind = \"hinge\""),
+        ("kind = \"ball\"", "kind = \"pin\""),
+        ("kind = \"pin\"", "kind = \"ball\""),
+        ("axes = [[1, 0, 0], [2, 0, 0]]", "axes = [[1, 0, 0], [0, 0, 0]]"),
+        ("at = [[0, 0, -0.5], [-0.3, 0, 0]]", "at = [[0, 0, -0.4], [-0.3, 0, 0]]"),
+        ("axes = [[1, 0, 0], [2, 0, 0]]", "axes = [[1, 0, 0], [0, 1, 0]]"),
+        ("moving = [0, 1, 0]", "moving = [0, 1.5, 0]"),
+        (
+            "[run]",
+            "[[joint]]\nkind = \"ball\"\nbodies = [\"upper\", \"lower\"]\nat = [[0, 0, -0.5], [-0.3, 0, 0]]\n[run]",
+        ),
+        ("step = \"5 ms\"", "step = 5"),
+        ("step = \"5 ms\"", "accuracy = 1e-6"),
+        ("step = \"5 ms\"", "step = \"400 ms\""),
+        ("columns = [\"position\"", "columns = [\"place\""),
+        ("every = 1", "every = 0"),
+        ("[run]", &(eighth + "[run]")),
+        ("[run]", "[sweep]\ngravity.g = [1, 2]\n[run]"),
+    ]
+    .map(|(line, by)| mistake(line, by));
+    expect![[r#"
+        held.toml:17:8: there are two bodies called `upper`
+        held.toml:17:8: the `name` of a body has letters, digits, - and _ only
+        held.toml:17:8: `space` is what bodies move in; give the body another name
+        held.toml:16:1: missing field `name`
+        held.toml:9:5: must be above zero
+        held.toml:7:1: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
+        held.toml:7:1: a body has one of `moments` (of inertia, principal), `J_d` (nonstandard, principal), `J` (of inertia, 3 by 3)
+        held.toml:11:19: a length isn't in `kg` but in `m`, `cm`, `mm`, `km`
+        held.toml:21:14: a speed isn't in `m` but in `m/s`, `km/h`, `km/s`
+        held.toml:14:7: unknown field `velocities`, expected one of `euler`, `quaternion`, `velocity`, `euler_rates`
+        held.toml:33:20: there is no body `lowest`; there are `upper`, `lower`, and `space`
+        held.toml:33:10: two different ones are joined, of which one may be `space`
+        held.toml:33:10: invalid length 1, expected an array of length 2
+        held.toml:32:8: unknown variant `hinge`, expected `ball` or `pin`
+        held.toml:32:8: a pin has `axes`: that of each of its bodies, in that body's frame
+        held.toml:29:8: a ball joint turns about any axis; leave `axes` out, or make it a `pin`
+        held.toml:29:8: a direction can't be zero
+        held.toml:31:1: this joint is open by 9.999999999999998e-2 m (of axes the cosine) at the start; give other places, or let `nearest = true` of `run` close the joints
+        held.toml:25:1: this joint is open by 1e0 m (of axes the cosine) at the start; give other places, or let `nearest = true` of `run` close the joints
+        held.toml:31:1: the velocities open this joint by 4.999999999999998e-1 m/s (of axes the cosine per second); give others, or let `nearest = true` of `run` find those next to them
+        held.toml:36:1: the other joints, or its own functions, do a part of what this one is to do (pivot 0e0); leave it out, or make a `pin` a `ball`
+        held.toml:37:8: `duration` is 2 s, shorter than one `step` of 5 s
+        held.toml:37:1: unknown field `accuracy`, expected one of `step`, `duration`, `nearest`
+        held.toml:16:1: stopped at t = 0 s: no increment of the body 1 (from zero) that continues the identity: it would turn by 4.00e-1 rad, and its part of the Jacobian has the determinant -2.138501244042695e0; take smaller steps
+        held.toml:41:12: unknown variant `place`, expected one of `position`, `quaternion`, `velocity`, `moving`, `energy`, `momentum`, `angular-momentum`, `gap`
+        held.toml:42:9: must be a whole number of steps, above zero
+        held.toml:78:1: a file has up to 8 bodies; a program may have any number
+        held.toml:36:2: unknown field `sweep`, expected one of `title`, `body`, `gravity`, `joint`, `spring`, `run`, `picture`, `output`
+    "#]].assert_eq(&messages.concat());
+}
+
+/// What is of one body is refused with a place, or a way out.
+#[test]
+fn what_files_of_several_bodies_are_not_for() {
+    let folder = folder("several");
+    fs::write(folder.join("held.toml"), HELD.replace("50 cm/s", "0.5 m/s")).unwrap();
+    fs::write(folder.join("top.toml"), TOP).unwrap();
+    let refused = |arguments: &[&str], code: i32, message: &str| {
+        let output = Command::new(PROGRAM).current_dir(&folder).args(arguments).output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(text.starts_with("error: ") && text.contains(message), "{text}");
+        assert!(output.stdout.is_empty() && output.status.code() == Some(code), "{arguments:?}: {text}");
+    };
+    let one = "held.toml:7:1: the file has several bodies";
+    refused(&["sweep", "held.toml"], 1, one);
+    refused(&["ensemble", "held.toml"], 1, one);
+    refused(&["run", "held.toml", "--html"], 2, "a page plays one body, and held.toml has several; leave --html out");
+    let about = "held.toml: 2 bodies + gravity + 2 joints, 400 steps of 0.005 s\n";
+    assert_eq!(printed(&folder, &["check", "held.toml"]), about);
+    assert!(printed(&folder, &["derive", "held.toml"]).contains("momentum"));
+    // Beside one of one body.
+    let output = simulate(&folder, &["held.toml", "top.toml"]);
+    assert!(output.status.success() && folder.join("top.csv").exists());
+    assert!(fs::read_to_string(folder.join("held.svg")).unwrap().contains("Ways of the centres of mass"));
+}

@@ -1,0 +1,177 @@
+//! The bodies of a file in a system of one size: what is behind them rests, and joints that aren't there hold nothing.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use std::array::from_fn;
+
+use liestep::groups::{LieGroup as _, R3};
+use liestep::mechanics::{Each, Effect as _, Placed, Sum};
+use liestep::methods::{Constraint, Joined, Joint, Jointed, Joints, Place, Slope};
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
+use nalgebra::{SMatrix, SVector, Vector3, Vector6};
+
+use super::file::{BODIES, LOOPS, System};
+use super::springs::Springs;
+
+/// A body and its weight.
+#[lagrangian(
+    group(F = SO3, d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+        - 0.5 * h * m * g * (x + x + d).dot(&up),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Heavy {
+    /// About the centre of mass, kg m².
+    pub(super) J_d: NonstandardInertia,
+    /// kg.
+    pub(super) m: f64,
+    /// m/s².
+    pub(super) g: f64,
+    pub(super) up: Vector3<f64>,
+}
+
+type Parts = Sum<Placed<Each<BODIES>, Heavy, BODIES>, Springs>;
+pub(super) type Held = Stepper<Parts, Jointed<Parts, Link, 5, BODIES, BODIES, LOOPS>>;
+pub(super) type HeldBodies = [(SO3, R3); BODIES];
+
+/// A joint, or the place of one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Link {
+    Joint(Joint),
+    Loose,
+}
+
+impl Constraint<5> for Link {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Joint(joint) => joint.name(),
+            Self::Loose => "loose",
+        }
+    }
+
+    fn validate(&self) -> Result<(), SetupError> {
+        match self {
+            Self::Joint(joint) => joint.validate(),
+            Self::Loose => Ok(()),
+        }
+    }
+
+    fn rows(&self) -> usize {
+        match self {
+            Self::Joint(joint) => joint.rows(),
+            Self::Loose => 0,
+        }
+    }
+
+    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, 5> {
+        match self {
+            Self::Joint(joint) => joint.gap(above, below),
+            Self::Loose => SVector::zeros(),
+        }
+    }
+
+    fn slope(&self, above: &Place, below: &Place) -> [Slope<5>; 2] {
+        match self {
+            Self::Joint(joint) => joint.slope(above, below),
+            Self::Loose => [Slope { turn: SMatrix::zeros(), shift: SMatrix::zeros() }; 2],
+        }
+    }
+
+    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        if let Self::Joint(joint) = self {
+            joint.describe(visit);
+        }
+    }
+}
+
+/// Joints as the library takes them, each with its number in the file.
+pub(super) struct Arranged {
+    joints: Joints<Link, BODIES, LOOPS>,
+    /// Those of the tree, then those of loops.
+    numbers: Vec<Option<usize>>,
+}
+
+impl Arranged {
+    /// The first joints that lead to a body which none before leads to are those of trees, the others close loops; `Err`
+    /// has the number of the first that is too many.
+    fn of(system: &System) -> Result<Self, usize> {
+        let joined = |number: usize| {
+            let between = &system.joints[number];
+            let [above, below] = between.bodies;
+            Joined { joint: Link::Joint(between.of), above, below: below.unwrap_or_default() }
+        };
+        // Space is behind the last.
+        let mut group: [usize; BODIES + 1] = from_fn(|body| body);
+        let (mut tree, mut loops) = (Vec::new(), Vec::new());
+        for (number, between) in system.joints.iter().enumerate() {
+            let [one, other] = between.bodies.map(|body| group[body.unwrap_or(BODIES)]);
+            if one == other {
+                loops.push(number);
+            } else {
+                group.iter_mut().filter(|of| **of == other).for_each(|of| *of = one);
+                tree.push(number);
+            }
+        }
+        if let Some(&number) = loops.get(LOOPS) {
+            return Err(number);
+        }
+        // What no joint connects to space is held there by nothing, at one body of each such tree.
+        let free: Vec<usize> =
+            (0..BODIES).filter(|&body| group[body] != group[BODIES] && !group[..body].contains(&group[body])).collect();
+        let loose = |below: usize| Joined::to_space(Link::Loose, below);
+        let of_tree =
+            |place: usize| tree.get(place).map_or_else(|| loose(free[place - tree.len()]), |&number| joined(number));
+        let joints = Joints::tree(from_fn(of_tree));
+        let joints =
+            joints.closed_by(from_fn(|place| loops.get(place).map_or_else(|| loose(0), |&number| joined(number))));
+        let numbers =
+            (0..BODIES).map(|place| tree.get(place).copied()).chain(loops.iter().copied().map(Some)).collect();
+        Ok(Self { joints, numbers })
+    }
+
+    /// The number in the file of a joint that an error names.
+    pub(super) fn number(&self, joint: usize) -> Option<usize> {
+        self.numbers.get(joint).copied().flatten()
+    }
+}
+
+impl System {
+    /// What was derived of a body, and what springs add.
+    #[must_use]
+    pub fn derivation(&self) -> String {
+        let springs = if self.springs.is_empty() { "" } else { Springs::DERIVATION };
+        format!("{}{springs}", Heavy::DERIVATION)
+    }
+
+    /// The joints, or the number of the first that closes one loop too many.
+    pub(super) fn arranged(&self) -> Result<Arranged, usize> {
+        Arranged::of(self)
+    }
+
+    pub(super) fn stepper(&self, arranged: &Arranged) -> Result<Held, SetupError> {
+        let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
+        // What is behind the bodies is like the first, weighs nothing and rests.
+        let heavy = |place: usize| {
+            let (body, g) = self.bodies.get(place).map_or((&self.bodies[0], 0.0), |body| (body, g));
+            Heavy { J_d: body.J_d, m: body.m, g, up }
+        };
+        let parts = Each::<BODIES>::of(from_fn(heavy)) + Springs::of(&self.springs);
+        Stepper::jointed(parts, arranged.joints, self.step)
+    }
+
+    pub(super) fn start(&self) -> (HeldBodies, Bodies<Vector6<f64>, BODIES>) {
+        let at = |place: usize| {
+            let Some(body) = self.bodies.get(place) else {
+                return ((SO3::identity(), R3::identity()), Vector6::zeros());
+            };
+            let (turn, shift) = (body.start.velocity, body.moving);
+            let velocity = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
+            ((SO3::from(body.start.attitude), R3::from(body.position)), velocity)
+        };
+        let all: [_; BODIES] = from_fn(at);
+        (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
+    }
+}

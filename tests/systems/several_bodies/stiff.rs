@@ -1,0 +1,221 @@
+//! Elastic rods whose stiffness is taken in the middle of a step: the bodies of a row are solved together.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use core::array::from_fn;
+
+use liestep::groups::{Advected as _, LieGroup as _, R3};
+use liestep::laws::samples::Random;
+use liestep::mechanics::{Along, Coupled, DiscreteLagrangian, Each, Placed, Sum, Term as _};
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::{Vector3, Vector6};
+
+use super::check_derived;
+use super::translated::{Free, Tied};
+
+/// An element of a rod: the end `a` of one body is held at the end `b` of the next, and bent against it. Strains are the
+/// means of those at both ends of a step.
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
+    l_d = {
+        let shift = 0.5 * (R.transpose() * r + Q * b + F_1.transpose() * (R.transpose() * (r + d_2 - d_1) + Q * F_2 * b)) - a;
+        let bend = 0.5 * (vee(Q) + vee(F_1.transpose() * Q * F_2));
+        -0.5 * h * (k * shift.norm_squared() + c * bend.norm_squared())
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Element {
+    /// N/m.
+    k: f64,
+    /// N m.
+    c: f64,
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+}
+
+const N: usize = 6;
+type Rod = Sum<Placed<Each<N>, Free, 1>, Placed<Coupled<N>, Element, 1>>;
+type Body = (SO3, R3);
+type Start = ([Body; N], Bodies<Vector6<f64>, N>);
+
+/// Half of a body, m.
+const HALF: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
+
+/// Of uniform bodies of one metre and one kilogram.
+fn bodies() -> Placed<Each<N>, Free, 1> {
+    let K = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3)).unwrap();
+    Each::<N>::of([Free { m: 1.0, K }])
+}
+
+fn rod(k: f64, c: f64) -> Rod {
+    bodies() + Coupled::<N>::of([Element { k, c, a: HALF, b: -HALF }])
+}
+
+/// An arc, each body turned against the one before, that turns about itself and about an axis across.
+fn arc() -> Start {
+    let (mut corner, omega) = (Vector3::zeros(), Vector3::new(0.3, 0.2, 1.0));
+    let bodies = from_fn(|k| {
+        let attitude = SO3::exp(Vector3::new(0.1, 0.05, 0.2) * f64::from(u8::try_from(k).unwrap()));
+        let half = attitude.as_matrix() * HALF;
+        corner += half * 2.0;
+        (attitude, R3::from(corner - half))
+    });
+    let moving = bodies.map(|(attitude, place): Body| {
+        let (turn, shift) = (attitude.as_matrix().tr_mul(&omega), omega.cross(&place.translation()));
+        Vector6::from_fn(|k, _| if k < 3 { turn[k] } else { shift[k - 3] })
+    });
+    (bodies, Bodies(moving))
+}
+
+/// The momentum of all, and their angular momentum about the origin.
+fn whole(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>; 2] {
+    bodies.iter().zip(&momenta.0).fold([Vector3::zeros(); 2], |[p, l], (body, momentum)| {
+        let [turning, linear] = [0, 3].map(|first| momentum.fixed_rows::<3>(first).into_owned());
+        [p + linear, l + body.0.as_matrix() * turning + body.1.translation().cross(&linear)]
+    })
+}
+
+#[test]
+fn what_is_derived_of_an_element() {
+    let element = Element { k: 3.0, c: 2.0, a: Vector3::new(0.4, 0.1, -0.2), b: Vector3::new(-0.3, 0.2, 0.5) };
+    check_derived::<_, 12>(&element, &mut Random::new(12));
+}
+
+/// A step begins and ends with the momenta that the Lagrangian has there, along the whole row.
+#[test]
+fn a_step_of_a_rod_is_that_of_the_momentum_maps() {
+    let (l, h, (bodies, velocities)) = (rod(40.0, 3.0), 0.1, arc());
+    let stepper = Stepper::new(l, h).unwrap();
+    let mut state = stepper.start(bodies, velocities).unwrap();
+    stepper.run(&mut state, 5).unwrap();
+    let before = state;
+    let report = stepper.step(&mut state).unwrap();
+    let f = before.attitude().inverse().compose(&state.attitude()).matrix();
+    let w = before.advected();
+    let missed = |found: Bodies<Vector6<f64>, N>, expected: Bodies<Vector6<f64>, N>| {
+        found.0.iter().zip(&expected.0).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max)
+    };
+    let errors =
+        [missed(l.legendre_minus(&f, &w, h), before.momentum()), missed(l.legendre_plus(&f, &w, h), state.momentum())];
+    println!("{errors:?}, {} iterations", report.iterations);
+    assert!(errors.iter().all(|&error| error < 2e-13) && report.iterations < 8, "{errors:?}");
+    // What is seen is that of the new places.
+    let seen = l.advected().seen_from(&state.attitude());
+    assert!((state.advected().1.0[4].2.0 - seen.1.0[4].2.0).amax() < 1e-13);
+}
+
+/// Richardson's ratio of a rod whose oscillations are resolved.
+#[test]
+fn steps_of_a_rod_are_of_order_two() {
+    let (bodies, velocities) = arc();
+    let ends = [400_u32, 800, 1600].map(|steps| {
+        let stepper = Stepper::new(rod(100.0, 5.0), 1.0 / f64::from(steps)).unwrap();
+        let mut state = stepper.start(bodies, velocities).unwrap();
+        stepper.run(&mut state, steps.into()).unwrap();
+        state.attitude().map(|body| body.1.translation())
+    });
+    let apart = |a: &[Vector3<f64>; N], b: &[Vector3<f64>; N]| {
+        a.iter().zip(b).map(|(a, b)| (a - b).norm_squared()).sum::<f64>().sqrt()
+    };
+    let ratio = apart(&ends[0], &ends[1]) / apart(&ends[1], &ends[2]);
+    println!("ratio {ratio}, off by {:.1e}", apart(&ends[1], &ends[2]));
+    assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
+}
+
+/// At ten times the step up to which an element's fastest oscillation could be stepped over by halves of its potential at
+/// both ends. With these the energy grows without bound; with the means it stays where it was.
+#[test]
+fn a_stiff_rod_is_stepped_over_its_fast_oscillations() {
+    let (k, c) = (1e6, 20.0);
+    // Two uniform rods on a spring between their ends: ω² = 4k (1/m + (l/2)²/J) with J = m l²/12.
+    let omega = (4.0 * k * (1.0 + 3.0_f64)).sqrt();
+    let h = 10.0 * 2.0 / omega;
+    let (bodies_at, velocities) = arc();
+    let stepper = Stepper::new(rod(k, c), h).unwrap();
+    let mut state = stepper.start(bodies_at, velocities).unwrap();
+    let (energy, [p, l]) = (stepper.energy(&state), whole(&state.attitude(), &state.momentum()));
+    let (mut means, mut most, mut open, mut iterations) = ([0.0; 4], 0.0_f64, 0.0_f64, 0);
+    for mean in &mut means {
+        for _ in 0..2500 {
+            iterations += stepper.step(&mut state).unwrap().iterations;
+            let off = stepper.energy(&state) - energy;
+            *mean += off / 2500.0;
+            most = most.max(off.abs());
+            for pair in state.attitude().windows(2) {
+                let end = |body: &Body, point: Vector3<f64>| body.1.translation() + body.0.as_matrix() * point;
+                open = open.max((end(&pair[1], -HALF) - end(&pair[0], HALF)).norm());
+            }
+        }
+    }
+    let [p_now, l_now] = whole(&state.attitude(), &state.momentum());
+    let moved = [(p_now - p).norm() / p.norm(), (l_now - l).norm() / l.norm()];
+    println!("energy {energy:.3} within {most:.1e}, means {means:?}, ends apart by {open:.1e} m");
+    println!("momenta moved by {moved:?}, {iterations} iterations");
+    assert!(most < 0.02 * energy && open < 0.02, "{most:e} of {energy}, {open:e}");
+    let apart = means.iter().fold(0.0_f64, |most, mean| most.max((mean - means[0]).abs()));
+    assert!(apart < 0.005 * energy, "{means:?}");
+    assert!(moved[0] < 1e-12 && moved[1] < 1e-10, "{moved:?}");
+
+    let explicit = Stepper::new(bodies() + Along::<N>::of([Tied { k, a: HALF, b: -HALF }]), h).unwrap();
+    let mut state = explicit.start(bodies_at, velocities).unwrap();
+    let stays = (0..200).all(|_| explicit.step(&mut state).is_ok() && explicit.energy(&state) < 100.0 * energy);
+    assert!(!stays, "the step isn't too long for potentials of the ends");
+}
+
+/// A point mass.
+#[lagrangian(group(d = R3), l_d = m * d.norm_squared() / (2.0 * h))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mass {
+    m: f64,
+}
+
+/// Ties two of them in the middle of a step.
+#[lagrangian(
+    group(d_1 = R3, d_2 = R3),
+    advected(r = d_2.seen_from(d_1)),
+    l_d = -0.5 * h * k * (r + 0.5 * (d_2 - d_1)).norm_squared(),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Spring {
+    k: f64,
+}
+
+/// A row of masses moves by the implicit midpoint rule, mode by mode: a phase of `2 atan(ω h/2)` a step. The order of the
+/// terms makes no difference.
+#[test]
+fn a_row_of_masses_moves_in_its_modes() {
+    const M: usize = 4;
+    let (h, k, m) = (0.3, 50.0, 0.8);
+    let (masses, springs) = (Each::<M>::of([Mass { m }]), Coupled::<M>::of([Spring { k }]));
+    let mode = |place: u8, number: f64| (number * core::f64::consts::PI * (f64::from(place) + 0.5) / 4.0).cos();
+    let start = |number: f64| [0_u8, 1, 2, 3].map(|place| R3::from(Vector3::new(0.1, -0.2, 0.3) * mode(place, number)));
+    let at_rest = Bodies([Vector3::zeros(); M]);
+    for number in [1.0, 2.0, 3.0] {
+        let omega = 2.0 * (k / m).sqrt() * (number * core::f64::consts::PI / 8.0).sin();
+        let phase = 2.0 * (0.5 * omega * h).atan();
+        let ends = [
+            stepped(masses + springs, h, start(number), at_rest),
+            stepped(springs + masses, h, start(number), at_rest),
+        ];
+        for (place, first) in start(number).iter().enumerate() {
+            let expected = first.translation() * (25.0 * phase).cos();
+            for end in &ends {
+                let off = (end[place].translation() - expected).amax();
+                assert!(off < 1e-13, "{number}: {off:e}");
+            }
+        }
+    }
+}
+
+fn stepped<L, const M: usize>(l: L, h: f64, start: [R3; M], velocities: Bodies<Vector3<f64>, M>) -> [R3; M]
+where
+    L: liestep::mechanics::Regular<Scalar = f64, Group = [R3; M]>,
+{
+    let stepper = Stepper::new(l, h).unwrap();
+    let mut state = stepper.start(start, velocities).unwrap();
+    stepper.run(&mut state, 25).unwrap();
+    state.attitude()
+}
