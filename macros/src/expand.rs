@@ -30,6 +30,10 @@ pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
     let tree = check::check(&declaration, errors)?;
+    if role == Role::Constraint {
+        let held = judged::held(&declaration, &tree, errors)?;
+        return Some(emit::constraint(item, &declaration, &tree, &held));
+    }
     let declared = match declaration.continuous {
         Some(_) => Some(judged::of_declared(&declaration, &tree, errors)?),
         None => None,
@@ -57,8 +61,8 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, errors)?;
     let findings = judged::findings(&declaration, &discrete, &chosen, errors)?;
     let equations = match role {
-        Role::Lagrangian => Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?),
         Role::Force => None,
+        _ => Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?),
     };
     Some(emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings))
 }

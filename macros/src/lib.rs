@@ -153,6 +153,32 @@ pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) 
     expand::expand(declared::Role::Force, arguments.into(), &item.into()).into()
 }
 
+/// Derives the slopes of a holonomic constraint on two bodies: `impl Constraint` for the annotated struct, which
+/// `Stepper::jointed` holds as it holds the library's joints.
+///
+/// ```text
+/// #[constraint(
+///     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),    the body above, which may be space, and that below
+///     advected(R_1 = F_1.seen_from(space), …),            as for a Lagrangian of several bodies
+///     zero = …,                                           functions of where the bodies are
+///     crate = path,                                       where liestep is found, if not at `::liestep`
+/// )]
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct Name { … }                                       the parameters, over `f64`
+/// ```
+///
+/// What is zero is a scalar, a vector or several of them, `(a, b)`: one to six functions, each in a unit of its own. They
+/// are written in what `advected(…)` names: attitudes and places in space, how one body is seen from the other, and fields
+/// as a body sees them. Increments, velocities and the step have no meaning here. The functions become `gap` as they stand,
+/// and their derivatives along turns and shifts of either body `slope`.
+///
+/// A function whose derivatives vanish where it is zero holds nothing: of a distance take `|y|² − l²` and not the square of
+/// `|y| − l`, and of a line two functions across it, not a cross product, one component of which repeats the others.
+#[proc_macro_attribute]
+pub fn constraint(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand::expand(declared::Role::Constraint, arguments.into(), &item.into()).into()
+}
+
 /// Declares a matrix group of one's own: a type alias for it, and its generators, written once.
 ///
 /// ```text

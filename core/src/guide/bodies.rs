@@ -170,7 +170,7 @@
 //! | [`BallJoint`](crate::methods::BallJoint) | a point of one body is a point of another, or of space |
 //! | [`PinJoint`](crate::methods::PinJoint) | so is an axis, about which they turn |
 //! | [`Joint`](crate::methods::Joint) | either, where a system has both |
-//! | [`Constraint`](crate::methods::Constraint) | functions of the places of two bodies that are zero: a joint of your own, with a strut as a listing |
+//! | [`constraint`](macro@crate::constraint) | functions of the places of two bodies that are zero, declared: a joint of your own, with a strut as a listing at [`Constraint`](crate::methods::Constraint) |
 //!
 //! [`Joints`](crate::methods::Joints) takes those of trees and, apart, one of each loop. A motion starts where joints
 //! are closed and with velocities that keep them so; [`start_nearest`](crate::Stepper::start_nearest) finds such from

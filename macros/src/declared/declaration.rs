@@ -16,6 +16,8 @@ pub(crate) enum Role {
     Lagrangian,
     /// `#[force(… work = …)]`.
     Force,
+    /// `#[constraint(… zero = …)]`.
+    Constraint,
 }
 
 impl Role {
@@ -24,6 +26,7 @@ impl Role {
         match self {
             Self::Lagrangian => "l_d",
             Self::Force => "work",
+            Self::Constraint => "zero",
         }
     }
 
@@ -32,6 +35,7 @@ impl Role {
         match self {
             Self::Lagrangian => "a Lagrangian",
             Self::Force => "virtual work",
+            Self::Constraint => "a constraint",
         }
     }
 
@@ -40,6 +44,7 @@ impl Role {
         match self {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
+            Self::Constraint => "the constraint",
         }
     }
 
@@ -47,7 +52,7 @@ impl Role {
     /// with: what is compiled finds the one that was declared, whatever else has its name.
     pub(crate) fn reserved(self) -> &'static [&'static str] {
         match self {
-            Self::Lagrangian => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
+            Self::Lagrangian | Self::Constraint => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
             Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
         }
     }
@@ -57,6 +62,7 @@ impl Role {
         match self {
             Self::Lagrangian => "lagrangian",
             Self::Force => "force",
+            Self::Constraint => "constraint",
         }
     }
 }

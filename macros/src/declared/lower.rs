@@ -6,10 +6,11 @@ use std::rc::Rc;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{
-    Carried, Declared, DeclaredContinuous, Displacements, Element, Let, Seen, hat, linear_forms, unit,
+    Body, Carried, Declared, DeclaredConstraint, DeclaredContinuous, Displacements, Element, Let, Seen, hat,
+    linear_forms, unit,
 };
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of, substitute};
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
@@ -131,6 +132,35 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
             None
         }
     }
+}
+
+/// A constraint in symbols.
+pub(crate) struct LoweredConstraint {
+    pub(crate) declared: DeclaredConstraint,
+    pub(crate) names: BTreeMap<Name, SymbolId>,
+}
+
+/// The reading of a constraint, multiplied out, in the places of both bodies; `None` where it is too large, which has been
+/// reported.
+pub(crate) fn constraint(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<LoweredConstraint> {
+    let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
+    let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
+    let bodies = ["a", "b"].map(|body| Body::new(body, &mut symbols));
+    let mut lowering = Lowering { symbols, names: &names, known: BTreeMap::new(), lets: None, velocity_matrix: None };
+    let seen: Option<Vec<Expression>> = carried
+        .iter()
+        .enumerate()
+        .map(|(index, w)| {
+            let field = declaration.advected.get(index).and_then(|w| w.field);
+            let field = field.and_then(|field| names.get(&Name::Field(field)));
+            w.seen.at(&bodies, field.copied(), &lowering.symbols)
+        })
+        .collect();
+    let map = carried.iter().map(|w| w.symbol).zip(seen?).collect();
+    let expression = lowering.expression(tree).map_err(|failure| report(failure, tree, errors)).ok()?;
+    let symbols = lowering.symbols;
+    let expression = substitute(&expression, &map, &symbols);
+    Some(LoweredConstraint { declared: DeclaredConstraint { symbols, expression, bodies }, names })
 }
 
 /// The symbols of the fields and of the advected parameters, and how the latter are moved.
@@ -424,6 +454,18 @@ impl Lowering<'_> {
                 },
                 _ => Expression::zero(ambient(tree.shape)),
             },
+            Kind::Stack(a, b) => {
+                let rows = tree.shape.rows();
+                let mut all = Expression::zero((rows, 1));
+                for (part, first) in [(a, 0), (b, a.shape.rows())] {
+                    let (own, value) = (part.shape.rows(), self.expression(part)?);
+                    for k in 0..own {
+                        let row = unit(k, own, true, &self.symbols).times(&value, &self.symbols);
+                        all = all.plus(unit(first + k, rows, false, &self.symbols).times(&row, &self.symbols));
+                    }
+                }
+                all
+            }
             Kind::Entry(a, row, column) => {
                 let operand = self.expression(a)?;
                 let (rows, columns) = operand.shape();

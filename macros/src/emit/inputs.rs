@@ -101,7 +101,7 @@ impl Code<'_> {
         }
     }
 
-    fn field_entry(&self, index: usize, input: Input) -> TokenStream {
+    pub(super) fn field_entry(&self, index: usize, input: Input) -> TokenStream {
         let Some(field) = self.declaration.fields.get(index) else { return TokenStream::new() };
         // Where a type of that name isn't the one that is meant, the compiler shows it.
         let (name, span) = (&field.name, field.at.resolved_at(Span::mixed_site()));

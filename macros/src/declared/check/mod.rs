@@ -43,14 +43,17 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
         matrices,
         calls: 0,
         derived: BTreeSet::new(),
+        result: value(expression),
     };
     let tree = checker.expression(expression);
     let used = checker.used;
     let tree = tree?;
-    if tree.shape != Shape::Scalar {
+    if declaration.role == Role::Constraint {
+        functions_of(&tree, value(expression), errors)?;
+    } else if tree.shape != Shape::Scalar {
         let shape = tree.shape.describe();
         let advice = match declaration.role {
-            Role::Lagrangian => "take a `.trace()` or a `.dot(…)`",
+            Role::Lagrangian | Role::Constraint => "take a `.trace()` or a `.dot(…)`",
             Role::Force => "take its `.dot(…)` with a displacement",
         };
         let noun = declaration.role.noun();
@@ -62,6 +65,32 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
         usage::check(declaration, &used, errors);
     }
     errors.is_empty().then_some(tree)
+}
+
+/// What holds two bodies has no more than these, as they have so many coordinates against each other.
+const MOST_FUNCTIONS: usize = 6;
+
+/// A mistake where a constraint is no number or vector, or too many.
+fn functions_of(tree: &Tree, result: &Expr, errors: &mut Errors) -> Option<()> {
+    if tree.shape != Shape::Scalar && !tree.shape.is_vector() {
+        let shape = tree.shape.describe();
+        let message = format!(
+            "a constraint is a scalar or a vector, or several of them, `(a, b)`, but this is {shape}: of an attitude \
+             take what has to be zero, as in `(R_1 * e).dot(&(R_2 * n))`"
+        );
+        errors.push_over(result, message);
+        return None;
+    }
+    let rows = tree.shape.rows();
+    if rows > MOST_FUNCTIONS {
+        let message = format!(
+            "these are {rows} functions: two bodies have {MOST_FUNCTIONS} coordinates against each other, and more \
+             functions than that repeat what others say"
+        );
+        errors.push_over(result, message);
+        return None;
+    }
+    Some(())
 }
 
 /// What a block ends with, or the expression itself.
@@ -129,6 +158,8 @@ struct Checker<'a> {
     calls: usize,
     /// The names that `let`s and the parameters of functions have in the derivation, where each is one value's alone.
     derived: BTreeSet<String>,
+    /// What the whole expression comes to.
+    result: &'a Expr,
 }
 
 impl Checker<'_> {
@@ -187,6 +218,7 @@ impl Checker<'_> {
             Expr::Call(call) => self.call(call),
             Expr::Index(index) => self.index(index),
             Expr::Field(field) => self.component(field),
+            Expr::Tuple(tuple) if self.is_constraint() && std::ptr::eq(expression, self.result) => self.stacked(tuple),
             Expr::Cast(cast) => self.unknown(cast.as_token),
             Expr::Try(question) => self.unknown(question.question_token),
             Expr::Closure(closure) => {
@@ -233,6 +265,24 @@ impl Checker<'_> {
         };
         self.errors.push_over(argument, format!("`{function}` {advice}"));
         false
+    }
+
+    /// `(a, b)`: scalars and vectors one below the other.
+    fn stacked(&mut self, tuple: &syn::ExprTuple) -> Option<Rc<Tree>> {
+        let parts: Vec<Option<Rc<Tree>>> = tuple.elems.iter().map(|part| self.expression(part)).collect();
+        for (part, tree) in tuple.elems.iter().zip(&parts) {
+            if let Some(tree) = tree {
+                functions_of(tree, part, self.errors)?;
+            }
+        }
+        if parts.is_empty() {
+            self.errors.push_over(tuple, "these are no functions: write what has to be zero");
+        }
+        let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        parts.into_iter().reduce(|above, below| {
+            let shape = Shape::Matrix(above.shape.rows() + below.shape.rows(), 1);
+            Tree::new(above.span, shape, Kind::Stack(above, below))
+        })
     }
 
     /// The token, and not what it stands among, has no meaning.
@@ -439,7 +489,7 @@ impl Checker<'_> {
             (rows, columns) => Shape::Matrix(rows, columns),
         };
         let (shape, found) = if let Some(factor) = increment {
-            if self.declaration.continuous.is_some() {
+            if self.declaration.continuous.is_some() || self.is_constraint() {
                 return self.of_a_step(&name, Some(factor), span);
             }
             (of_increment(factor), Name::Increment(factor))
@@ -451,7 +501,9 @@ impl Checker<'_> {
         } else {
             match name.as_str() {
                 "I" => return Some(Tree::new(span, square, Kind::Identity)),
-                "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, None, span),
+                "h" if self.declaration.continuous.is_some() || self.is_constraint() => {
+                    return self.of_a_step(&name, None, span);
+                }
                 "h" => (Shape::Scalar, Name::Step),
                 "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
                 "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
@@ -488,10 +540,23 @@ impl Checker<'_> {
         Some(Tree::seen(span, shape, found, seen))
     }
 
-    /// A continuous Lagrangian knows no step: neither the increment of a factor, nor `h`.
+    /// A continuous Lagrangian knows no step, and a constraint none either: neither the increment of a factor, nor `h`.
     fn of_a_step(&mut self, name: &str, increment: Option<usize>, span: Span) -> Option<Rc<Tree>> {
-        if self.unknown.insert(name.to_owned()) {
-            let what = if let Some(factor) = increment {
+        if !self.unknown.insert(name.to_owned()) {
+            return None;
+        }
+        let message = match increment {
+            Some(factor) if self.is_constraint() => {
+                let place = if self.declaration.group.factor(factor).is_added { "x" } else { "R" };
+                format!(
+                    "a holonomic constraint is a function of positions: no increment may stand in it; name where the body \
+                     is, `advected({place} = {name}.seen_from(space))`"
+                )
+            }
+            None if self.is_constraint() => {
+                "a holonomic constraint is a function of positions: no step may stand in it".to_owned()
+            }
+            Some(factor) => {
                 let velocity = match self.declaration.velocity(factor) {
                     Some(velocity) => format!("the velocity `{}`", velocity.unraw()),
                     None if self.declaration.group.is_product() => {
@@ -499,14 +564,23 @@ impl Checker<'_> {
                     }
                     None => "the velocity `Omega`, named by `velocity = Omega`".to_owned(),
                 };
-                format!("`{name}` is the increment of a step, and `l` has no steps: write it in {velocity}")
-            } else {
-                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
+                format!(
+                    "`{name}` is the increment of a step, and `l` has no steps: write it in {velocity}, or declare \
+                     `l_d = …`"
+                )
+            }
+            None => {
+                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`, or \
+                     declare `l_d = …`"
                     .to_owned()
-            };
-            self.errors.push(span, format!("{what}, or declare `l_d = …`"));
-        }
+            }
+        };
+        self.errors.push(span, message);
         None
+    }
+
+    fn is_constraint(&self) -> bool {
+        self.declaration.role == Role::Constraint
     }
 
     fn is_force(&self) -> bool {

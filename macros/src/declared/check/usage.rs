@@ -18,6 +18,10 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         check_names(declaration, used, errors);
         return;
     }
+    if declaration.role == Role::Constraint {
+        check_names(declaration, used, errors);
+        return;
+    }
     if declaration.continuous.is_some() {
         let unused = |(factor, _): &(usize, &Ident)| !used.contains(&Name::Velocity(*factor));
         let unused: Vec<&Ident> =
@@ -68,7 +72,7 @@ fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
         if !used.contains(&Name::Advected(index)) {
             let (name, list) = (w.plain_name(), if w.is_given { "given" } else { "advected" });
             let consequence = match w.seen {
-                Seen::Relative { .. } => {
+                Seen::Relative { .. } if declaration.role != Role::Constraint => {
                     "; without it these bodies don't feel each other, and each may be a declaration of its own"
                 }
                 _ => "",

@@ -63,7 +63,10 @@ fn skip_argument(input: ParseStream) {
 }
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
-    let mut known = vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"];
+    let mut known = vec!["group", "advected", role.key(), "crate"];
+    if role != Role::Constraint {
+        known.extend(["given", "generators", "gradients"]);
+    }
     if role == Role::Lagrangian {
         known.extend(["l", "velocity", "discretise"]);
     }
@@ -125,19 +128,19 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             without_quotes(&key, input)?;
             arguments.discretisation = Some((key, discretisation(input)?));
         }
-        "gradients" => {
+        "gradients" if role != Role::Constraint => {
             once(arguments.gradients.is_some());
             if !input.is_empty() && !input.peek(Token![,]) {
                 return Err(syn::Error::new(input.span(), "`gradients` stands alone: remove what follows it"));
             }
             arguments.gradients = Some(key);
         }
-        "generators" => {
+        "generators" if role != Role::Constraint => {
             once(arguments.generators.is_some());
             equals(&key, input)?;
             arguments.generators = Some((key, group::array(input)?));
         }
-        pairs @ ("advected" | "given") => {
+        pairs @ ("advected" | "given") if role != Role::Constraint || pairs == "advected" => {
             let is_given = pairs == "given";
             if !input.peek(syn::token::Paren) {
                 let example = if is_given { "given(u = torque)" } else { "advected(w = up)" };

@@ -5,6 +5,7 @@ mod fields;
 mod group;
 mod own_group;
 mod size;
+mod two_bodies;
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
@@ -65,7 +66,11 @@ fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<Item
 pub(crate) fn declared_again(item: &ItemStruct) -> Option<&Path> {
     item.attrs.iter().map(syn::Attribute::path).find(|path| {
         let is_ours = path.segments.len() == 1 || path.segments.first().is_some_and(|first| first.ident == "liestep");
-        is_ours && path.segments.last().is_some_and(|last| last.ident == "lagrangian" || last.ident == "force")
+        is_ours
+            && path
+                .segments
+                .last()
+                .is_some_and(|last| ["lagrangian", "force", "constraint"].iter().any(|name| last.ident == name))
     })
 }
 
@@ -116,6 +121,7 @@ pub(crate) fn as_far_as_readable(
                  l = …` with one in `Omega`"
             }
             Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
+            Role::Constraint => "the constraint is missing: write `zero = …`, a function of where two bodies are",
         };
         errors.push(Span::call_site(), message);
     }
@@ -124,6 +130,9 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
+    if role == Role::Constraint && errors.is_empty() {
+        two_bodies::check(&factors, &fields, &scalar, &item, errors);
+    }
     let taken = group::Taken {
         fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
         advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),

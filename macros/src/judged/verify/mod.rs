@@ -4,6 +4,7 @@
 //! itself. First derivatives are compared with its central differences; what is built from them, with them.
 
 mod cayley;
+mod constraint;
 mod continuous;
 mod degree;
 mod dual;
@@ -34,6 +35,7 @@ use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 use crate::program::{Graph, Input, Kernel, NodeId};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
+pub(super) use constraint::constraint;
 #[cfg(test)]
 pub(crate) use continuous::energy_is_kept;
 pub(crate) use continuous::{
@@ -98,10 +100,10 @@ pub(super) fn verify(
 }
 
 /// The first points at which what was derived agrees with the declaration.
-fn confirmed<'a>(
-    draws: impl Iterator<Item = Sample<'a>>,
-    check: impl Fn(&Sample) -> Result<(), Fault>,
-) -> Result<Vec<Sample<'a>>, Unconfirmed> {
+fn confirmed<S>(
+    draws: impl Iterator<Item = S>,
+    check: impl Fn(&S) -> Result<(), Fault>,
+) -> Result<Vec<S>, Unconfirmed> {
     let (mut samples, mut nothing) = (Vec::new(), Unconfirmed::NoValue);
     for sample in draws {
         match check(&sample) {
