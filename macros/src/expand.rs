@@ -29,11 +29,12 @@ pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
 /// Every phase adds its mistakes to `errors`, and gives nothing where the next one couldn't go on.
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
-    let tree = check::check(&declaration, errors)?;
     if role == Role::Constraint {
-        let held = judged::held(&declaration, &tree, errors)?;
-        return Some(emit::constraint(item, &declaration, &tree, &held));
+        let functions = check::functions(&declaration, errors)?;
+        let held = judged::held(&declaration, functions, errors)?;
+        return Some(emit::constraint(item, &declaration, &held));
     }
+    let tree = check::check(&declaration, errors)?;
     let declared = match declaration.continuous {
         Some(_) => Some(judged::of_declared(&declaration, &tree, errors)?),
         None => None,

@@ -133,7 +133,8 @@
 //! | compositions to order 10, substeps, compensated sums, [gradients](super::gradients) | yes |
 //! | [recording and events](super::recording) | yes; columns have the number of the body behind their names |
 //! | the effects of the library | not in such a declaration, as they are of one body; in a system they are put on bodies |
-//! | forces, splittings | no: those are of one body |
+//! | forces by their virtual work | yes: [`force`](macro@crate::force) with `displacement(eta_1, s)`, a name for each factor |
+//! | splittings | no: those are of one body |
 //! | `l = …`, the continuous Lagrangian, and the continuous equations of an `l_d` | yes: [by their velocities](#by-their-velocities), above |
 //! | collocation by [`CotangentGauss`](crate::methods::CotangentGauss) | no: that is of one group |
 //! | joints, and loops of them | [of a system](#joints), not of such a declaration |

@@ -58,13 +58,14 @@ pub(crate) fn readings_without(
     }
     let advected = parameters(declaration, weaker, &mut symbols, &mut names);
     let displacements = (declaration.role == Role::Force).then(|| {
-        let mut displacement = |name: &str, place| {
-            let id = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
-            names.insert(place, id);
-            id
-        };
-        let before = displacement("η", Name::DisplacementBefore);
-        Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
+        let factors = declaration.group.factors().iter().enumerate();
+        let each = factors.map(|(factor, own)| {
+            let places = [Name::DisplacementBefore(factor), Name::DisplacementAfter(factor)];
+            let ids = ["η", "η⁺"].map(|name| symbols.add(name, (own.dimension(), 1), Structure::General, Stage::Step));
+            names.extend(places.into_iter().zip(ids));
+            ids
+        });
+        Displacements(each.collect())
     });
     let attempt = |lets| {
         let (symbols, known) = (symbols.clone(), BTreeMap::new());
@@ -83,7 +84,7 @@ pub(crate) fn readings_without(
             increments,
             step,
             advected,
-            displacements,
+            displacements: displacements.clone(),
             has_derivatives,
             discretised,
         };
@@ -142,7 +143,11 @@ pub(crate) struct LoweredConstraint {
 
 /// The reading of a constraint, multiplied out, in the places of both bodies; `None` where it is too large, which has been
 /// reported.
-pub(crate) fn constraint(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<LoweredConstraint> {
+pub(crate) fn constraint(
+    declaration: &Declaration,
+    functions: &[Rc<Tree>],
+    errors: &mut Errors,
+) -> Option<LoweredConstraint> {
     let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
     let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
     let bodies = ["a", "b"].map(|body| Body::new(body, &mut symbols));
@@ -157,10 +162,13 @@ pub(crate) fn constraint(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
         })
         .collect();
     let map = carried.iter().map(|w| w.symbol).zip(seen?).collect();
-    let expression = lowering.expression(tree).map_err(|failure| report(failure, tree, errors)).ok()?;
+    let lowered: Option<Vec<Expression>> = functions
+        .iter()
+        .map(|tree| lowering.expression(tree).map_err(|failure| report(failure, tree, errors)).ok())
+        .collect();
     let symbols = lowering.symbols;
-    let expression = substitute(&expression, &map, &symbols);
-    Some(LoweredConstraint { declared: DeclaredConstraint { symbols, expression, bodies }, names })
+    let functions = lowered?.iter().map(|function| substitute(function, &map, &symbols)).collect();
+    Some(LoweredConstraint { declared: DeclaredConstraint { symbols, functions, bodies }, names })
 }
 
 /// The symbols of the fields and of the advected parameters, and how the latter are moved.
@@ -454,18 +462,6 @@ impl Lowering<'_> {
                 },
                 _ => Expression::zero(ambient(tree.shape)),
             },
-            Kind::Stack(a, b) => {
-                let rows = tree.shape.rows();
-                let mut all = Expression::zero((rows, 1));
-                for (part, first) in [(a, 0), (b, a.shape.rows())] {
-                    let (own, value) = (part.shape.rows(), self.expression(part)?);
-                    for k in 0..own {
-                        let row = unit(k, own, true, &self.symbols).times(&value, &self.symbols);
-                        all = all.plus(unit(first + k, rows, false, &self.symbols).times(&row, &self.symbols));
-                    }
-                }
-                all
-            }
             Kind::Entry(a, row, column) => {
                 let operand = self.expression(a)?;
                 let (rows, columns) = operand.shape();

@@ -65,18 +65,6 @@ impl Tree {
         Rc::new(Self { span, end: span, shape, kind, depth, frames, is_of_turns })
     }
 
-    /// What is one below the other, from the top; else itself.
-    pub(crate) fn parts(&self) -> Vec<&Self> {
-        let (mut parts, mut rest) = (Vec::new(), self);
-        while let Kind::Stack(above, below) = &rest.kind {
-            parts.push(&**below);
-            rest = above;
-        }
-        parts.push(rest);
-        parts.reverse();
-        parts
-    }
-
     /// What a name stands for, seen from bodies.
     pub(crate) fn seen(span: Span, shape: Shape, name: Name, (frames, is_turn): (Frames, bool)) -> Rc<Self> {
         let is_of_turns = is_turn || shape == Shape::Scalar;
@@ -106,10 +94,10 @@ pub(crate) enum Name {
     Step,
     /// The components of the velocity in a continuous Lagrangian, of one factor of the group.
     Velocity(usize),
-    /// `eta`, the displacement at the beginning of the step.
-    DisplacementBefore,
+    /// `eta`, the displacement at the beginning of the step, of one factor of the group.
+    DisplacementBefore(usize),
     /// `eta_next`, the one at its end.
-    DisplacementAfter,
+    DisplacementAfter(usize),
     /// An advected parameter, by its place in `advected(…)`.
     Advected(usize),
     /// A field, by its place in the struct.
@@ -143,8 +131,6 @@ pub(crate) enum Kind {
     /// Of a parameter or of `F`.
     Inverse(Rc<Tree>),
     Entry(Rc<Tree>, usize, usize),
-    /// The rows of the one, and below them those of the other.
-    Stack(Rc<Tree>, Rc<Tree>),
     /// What a `let` has named.
     Bound(String, Rc<Tree>),
 }
@@ -186,8 +172,7 @@ impl Kind {
             | Self::Power(..)
             | Self::Apply(..)
             | Self::Components(..)
-            | Self::Entry(..)
-            | Self::Stack(..) => [None; 2],
+            | Self::Entry(..) => [None; 2],
         }
     }
 
@@ -212,8 +197,7 @@ impl Kind {
             | Self::Divide(a, b)
             | Self::Dot(a, b)
             | Self::Cross(a, b)
-            | Self::ComponentMultiply(a, b)
-            | Self::Stack(a, b) => [Some(a), Some(b)],
+            | Self::ComponentMultiply(a, b) => [Some(a), Some(b)],
         }
     }
 }

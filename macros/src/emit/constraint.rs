@@ -6,7 +6,7 @@ use syn::Ident;
 
 use super::inputs::entry;
 use super::{Code, Header, page, verbatim};
-use crate::declared::{AdvectedParameter, Declaration, FieldKind, Shape, Tree, check};
+use crate::declared::{AdvectedParameter, Declaration, FieldKind, Shape, check};
 use crate::judged::Held;
 use crate::mathematics::derive::{Body, Seen};
 use crate::mathematics::symbolic::{Expression, text};
@@ -16,14 +16,14 @@ use crate::program::{Input, Node, NodeId};
 const BODIES: [&str; 2] = ["above", "below"];
 
 /// The item with its implementation.
-pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, tree: &Tree, held: &Held) -> TokenStream {
+pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, held: &Held) -> TokenStream {
     let (header, span) = (Header::new(declaration), Span::mixed_site());
     let (private, symbols) = (&header.private, &held.lowered.declared.symbols);
     let code = Code { declaration, header: &header, names: &held.lowered.names, symbols, directions: None };
     let (checks, kind) = (code.checks(), syn::ext::IdentExt::unraw(&declaration.item.ident).to_string());
-    let functions = Literal::usize_unsuffixed(tree.shape.rows());
+    let functions = Literal::usize_unsuffixed(held.rows());
     let implementation = header.constraint(&functions);
-    let (gap, slope, describe) = (gap(declaration, &header, tree), code.slope(held, tree.shape.rows()), code.shown());
+    let (gap, slope, describe) = (gap(declaration, &header, held), code.slope(held), code.shown());
     let core = quote_spanned!(span=> #private::core);
     let places = quote_spanned!(span=> above: &#private::Place, below: &#private::Place);
     let implementation = quote_spanned! {span=>
@@ -48,16 +48,16 @@ pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, tree: &T
             }
         }
     };
-    let item = page::documented(item, &documentation(held, tree));
+    let item = page::documented(item, &documentation(held));
     let implementation = header.enclosing(implementation);
     quote_spanned!(span=> #item #implementation)
 }
 
 /// The declared functions, one below the other; the compiler checks the shapes that the macro found.
-fn gap(declaration: &Declaration, header: &Header, tree: &Tree) -> TokenStream {
+fn gap(declaration: &Declaration, header: &Header, held: &Held) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let expression = verbatim::declared(declaration, header);
-    let parts = tree.parts();
+    let parts = &held.functions;
     let names: Vec<Ident> = (0..parts.len()).map(|part| Ident::new(&format!("part{part}"), span)).collect();
     let scalar = quote_spanned!(span=> #private::core::primitive::f64);
     let types = parts.iter().map(|part| match part.shape {
@@ -118,8 +118,8 @@ pub(super) fn seen(declaration: &Declaration, header: &Header, w: &AdvectedParam
 
 impl Code<'_> {
     /// Both slopes in straight-line code.
-    fn slope(&self, held: &Held, functions: usize) -> TokenStream {
-        let (span, private) = (Span::mixed_site(), &self.header.private);
+    fn slope(&self, held: &Held) -> TokenStream {
+        let (span, private, functions) = (Span::mixed_site(), &self.header.private, held.rows());
         let bodies = &held.lowered.declared.bodies;
         let given = |id: NodeId| match held.graph.node(id) {
             Node::Input(input) => Some(self.entry_of_place(bodies, input).unwrap_or_else(|| self.input_token(input))),
@@ -168,18 +168,25 @@ impl Code<'_> {
 }
 
 /// What the struct's documentation says of it.
-fn documentation(held: &Held, tree: &Tree) -> String {
+fn documentation(held: &Held) -> String {
     let symbols = &held.lowered.declared.symbols;
-    let functions = tree.shape.rows();
-    let heading = if functions == 1 { "One function of".to_owned() } else { format!("{functions} functions of") };
-    let lines = BODIES.iter().zip(&held.slopes).flat_map(|(body, slopes)| {
-        let own = |(letter, slope): (&str, &Expression)| format!("{letter}, {body}: {}\n", text(slope, symbols));
-        [("turn", &slopes[0]), ("shift", &slopes[1])].map(own)
-    });
-    let slopes: String = lines.collect();
-    let function = text(&held.lowered.declared.expression, symbols);
+    let heading = match held.rows() {
+        1 => "One function".to_owned(),
+        rows => format!("{rows} functions"),
+    };
+    let mut lines = String::new();
+    for (part, function) in held.lowered.declared.functions.iter().enumerate() {
+        let mut line = |what: &str, expression: &Expression| {
+            lines = std::mem::take(&mut lines) + what + &text(expression, symbols) + "\n";
+        };
+        line("zero = ", function);
+        for (body, slopes) in BODIES.iter().zip(&held.slopes) {
+            line(&format!("    {body}, η: "), &slopes[0][part]);
+            line(&format!("    {body}, ξ: "), &slopes[1][part]);
+        }
+    }
     format!(
-        "\n# Derived constraint\n\n{heading} where the bodies above, `R_a` and `x_a`, and below, `R_b` and `x_b`, are, with \
-         their derivatives along `δR = hat(η) R` and `δx = ξ`:\n\n```text\nzero = {function}\n{slopes}```"
+        "\n# Derived constraint\n\n{heading} of where the bodies above, `R_a` and `x_a`, and below, `R_b` and `x_b`, are, \
+         with the derivatives along `δR = hat(η) R` and `δx = ξ`:\n\n```text\n{lines}```"
     )
 }

@@ -22,7 +22,7 @@ impl Code<'_> {
             Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),
             // Displacements are replaced by directions before.
-            Some(Name::DisplacementBefore | Name::DisplacementAfter) | None => self.derived_input(input),
+            Some(Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) | None => self.derived_input(input),
         }
     }
 

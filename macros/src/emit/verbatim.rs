@@ -57,11 +57,14 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
     }
     for (factor, name) in declaration.velocities().iter().enumerate() {
-        bind(&name.unraw().to_string(), velocity(declaration, header, factor));
+        let velocity = Ident::new("velocity", span);
+        bind(&name.unraw().to_string(), of_factor(declaration, header, &velocity, factor));
     }
-    if declaration.role == Role::Force {
-        bind("eta", quote_spanned!(span=> *eta));
-        bind("eta_next", quote_spanned!(span=> *eta_next));
+    for factor in 0..declaration.factors.len() {
+        let Some(names) = declaration.displacement(factor) else { continue };
+        for (name, components) in names.iter().zip(["eta", "eta_next"]) {
+            bind(name, of_factor(declaration, header, &Ident::new(components, span), factor));
+        }
     }
     bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
     bind("exp", quote_spanned!(span=> #private::rotation_exp::<#scalar>));
@@ -143,16 +146,16 @@ fn advected(declaration: &Declaration, header: &Header, index: usize, part: Toke
     }
 }
 
-/// The velocity of a factor, on a line a scalar.
-fn velocity(declaration: &Declaration, header: &Header, factor: usize) -> TokenStream {
+/// Of components, given as a reference, those of a factor, on a line a scalar.
+fn of_factor(declaration: &Declaration, header: &Header, components: &Ident, factor: usize) -> TokenStream {
     let (span, private, group) = (Span::mixed_site(), &header.private, &declaration.group);
     if !group.is_product() {
-        return quote_spanned!(span=> *velocity);
+        return quote_spanned!(span=> *#components);
     }
     let (own, first) = (group.factor(factor), group.component_of(factor));
     let entries = (first..first + own.dimension()).map(|row| {
         let row = proc_macro2::Literal::usize_unsuffixed(row);
-        quote_spanned!(span=> velocity.data.0[0][#row])
+        quote_spanned!(span=> #components.data.0[0][#row])
     });
     if own.dimension() == 1 {
         return entries.collect();

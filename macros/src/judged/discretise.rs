@@ -419,7 +419,6 @@ impl Substitution<'_> {
             Kind::Cross(a, b) => Kind::Cross(self.of(a)?, self.of(b)?),
             Kind::CrossMatrix(a) => Kind::CrossMatrix(self.of(a)?),
             Kind::ComponentMultiply(a, b) => Kind::ComponentMultiply(self.of(a)?, self.of(b)?),
-            Kind::Stack(a, b) => Kind::Stack(self.of(a)?, self.of(b)?),
             Kind::Power(a, exponent) => Kind::Power(self.of(a)?, *exponent),
             Kind::Apply(function, a) => Kind::Apply(*function, self.of(a)?),
             Kind::Vee(a) => Kind::Vee(self.of(a)?),

@@ -79,10 +79,11 @@ impl Checker<'_> {
         let fields = self.declaration.fields.iter().map(Field::plain_name);
         let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
         let bound = self.scopes.iter().flat_map(|scope| scope.keys().map(|bound| bound.letters.clone()));
-        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
+        let factors = 0..self.declaration.factors.len();
+        let displacements = factors.filter_map(|factor| self.declaration.displacement(factor)).flatten();
         let of_step: &[&str] =
             if self.declaration.continuous.is_some() || self.is_constraint() { &["I"] } else { &["F", "I", "h"] };
-        let builtin = of_step.iter().chain(displacements).map(|name| (*name).to_owned());
+        let builtin = of_step.iter().map(|name| (*name).to_owned()).chain(displacements);
         let velocity = self.declaration.velocities().iter().map(|velocity| velocity.unraw().to_string());
         builtin.chain(velocity).chain(advected).chain(fields).chain(bound).collect()
     }

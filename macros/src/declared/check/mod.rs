@@ -28,6 +28,11 @@ const DEEPEST: usize = 250;
 
 /// The declared expression as a tree; `None` after a mistake, be it one in the attribute or in the struct.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
+    functions(declaration, errors)?.into_iter().next()
+}
+
+/// The same; of a constraint what it has one below the other.
+pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<Rc<Tree>>> {
     let expression = declaration.expression.as_ref()?;
     let factors = || declaration.group.factors().iter();
     let turning = factors().find(|factor| !factor.is_added).cloned().or_else(|| built_in("SO3"));
@@ -44,17 +49,19 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
         calls: 0,
         derived: BTreeSet::new(),
         result: value(expression),
+        above: Vec::new(),
     };
     let tree = checker.expression(expression);
-    let used = checker.used;
+    let (used, mut functions) = (checker.used, checker.above);
     let tree = tree?;
+    functions.push(tree.clone());
     if declaration.role == Role::Constraint {
-        functions_of(&tree, value(expression), errors)?;
+        few(&functions, value(expression), errors)?;
     } else if tree.shape != Shape::Scalar {
         let shape = tree.shape.describe();
         let advice = match declaration.role {
-            Role::Lagrangian | Role::Constraint => "take a `.trace()` or a `.dot(…)`",
             Role::Force => "take its `.dot(…)` with a displacement",
+            _ => "take a `.trace()` or a `.dot(…)`",
         };
         let noun = declaration.role.noun();
         errors.push_over(value(expression), format!("{noun} is a scalar, but this is {shape}: {advice}"));
@@ -64,24 +71,29 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
     if errors.is_empty() {
         usage::check(declaration, &used, errors);
     }
-    errors.is_empty().then_some(tree)
+    errors.is_empty().then_some(functions)
 }
 
 /// What holds two bodies has no more than these, as they have so many coordinates against each other.
 const MOST_FUNCTIONS: usize = 6;
 
-/// A mistake where a constraint is no number or vector, or too many.
-fn functions_of(tree: &Tree, result: &Expr, errors: &mut Errors) -> Option<()> {
-    if tree.shape != Shape::Scalar && !tree.shape.is_vector() {
-        let shape = tree.shape.describe();
+/// A mistake where a constraint is of matrices, or of too many functions.
+fn few(functions: &[Rc<Tree>], result: &Expr, errors: &mut Errors) -> Option<()> {
+    let parts: Vec<&Expr> = match result {
+        Expr::Tuple(tuple) => tuple.elems.iter().collect(),
+        other => vec![other],
+    };
+    let is_function = |tree: &Tree| tree.shape == Shape::Scalar || tree.shape.is_vector();
+    if let Some((tree, part)) = functions.iter().zip(parts).find(|(tree, _)| !is_function(tree)) {
         let message = format!(
-            "a constraint is a scalar or a vector, or several of them, `(a, b)`, but this is {shape}: of an attitude \
-             take what has to be zero, as in `(R_1 * e).dot(&(R_2 * n))`"
+            "a constraint is a scalar or a vector, or several of them, `(a, b)`, but this is {}: of an attitude take what \
+             has to be zero, as in `(R_1 * e).dot(&(R_2 * n))`",
+            tree.shape.describe()
         );
-        errors.push_over(result, message);
+        errors.push_over(part, message);
         return None;
     }
-    let rows = tree.shape.rows();
+    let rows: usize = functions.iter().map(|tree| tree.shape.rows()).sum();
     if rows > MOST_FUNCTIONS {
         let message = format!(
             "these are {rows} functions: two bodies have {MOST_FUNCTIONS} coordinates against each other, and more \
@@ -160,6 +172,8 @@ struct Checker<'a> {
     derived: BTreeSet<String>,
     /// What the whole expression comes to.
     result: &'a Expr,
+    /// Of a constraint what stands above the last of several.
+    above: Vec<Rc<Tree>>,
 }
 
 impl Checker<'_> {
@@ -267,22 +281,16 @@ impl Checker<'_> {
         false
     }
 
-    /// `(a, b)`: scalars and vectors one below the other.
+    /// `(a, b)`: scalars and vectors one below the other; the last of them.
     fn stacked(&mut self, tuple: &syn::ExprTuple) -> Option<Rc<Tree>> {
         let parts: Vec<Option<Rc<Tree>>> = tuple.elems.iter().map(|part| self.expression(part)).collect();
-        for (part, tree) in tuple.elems.iter().zip(&parts) {
-            if let Some(tree) = tree {
-                functions_of(tree, part, self.errors)?;
-            }
-        }
         if parts.is_empty() {
             self.errors.push_over(tuple, "these are no functions: write what has to be zero");
         }
-        let parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
-        parts.into_iter().reduce(|above, below| {
-            let shape = Shape::Matrix(above.shape.rows() + below.shape.rows(), 1);
-            Tree::new(above.span, shape, Kind::Stack(above, below))
-        })
+        let mut parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        let last = parts.pop();
+        self.above = parts;
+        last
     }
 
     /// The token, and not what it stands among, has no meaning.
@@ -484,6 +492,7 @@ impl Checker<'_> {
         let square = Shape::Matrix(size, size);
         let increment = self.declaration.factors.iter().position(|factor| factor.name == name);
         let velocity = self.declaration.velocities().iter().position(|velocity| velocity.unraw() == name);
+        let displacement = self.displacement(&name);
         let of_increment = |factor: usize| match self.declaration.group.factor(factor).shape() {
             (1, 1) if self.declaration.group.factor(factor).is_added => Shape::Scalar,
             (rows, columns) => Shape::Matrix(rows, columns),
@@ -505,8 +514,7 @@ impl Checker<'_> {
                     return self.of_a_step(&name, None, span);
                 }
                 "h" => (Shape::Scalar, Name::Step),
-                "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
-                "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
+                _ if displacement.is_some() => displacement?,
                 _ => {
                     if let Some(index) = advected(self.declaration) {
                         (self.declaration.advected_kind(index).shape(), Name::Advected(index))
@@ -587,8 +595,19 @@ impl Checker<'_> {
         self.declaration.role == Role::Force
     }
 
-    /// A vector with a component for each generator.
-    fn displacement(&self) -> Shape {
-        Shape::Matrix(self.declaration.group.dimension(), 1)
+    /// A displacement of that name: a vector with a component for each generator of its factor, on a line a scalar.
+    fn displacement(&self, name: &str) -> Option<(Shape, Name)> {
+        let group = &self.declaration.group;
+        (0..group.factors().len()).find_map(|factor| {
+            let [before, after] = self.declaration.displacement(factor)?;
+            let own = group.factor(factor);
+            let is_scalar = own.is_added && own.dimension() == 1;
+            let shape = if is_scalar { Shape::Scalar } else { Shape::Matrix(own.dimension(), 1) };
+            match name {
+                _ if name == before => Some((shape, Name::DisplacementBefore(factor))),
+                _ if name == after => Some((shape, Name::DisplacementAfter(factor))),
+                _ => None,
+            }
+        })
     }
 }

@@ -8,8 +8,8 @@ use crate::mathematics::derive::Seen;
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     if declaration.role == Role::Force {
-        let displacements = [Name::DisplacementBefore, Name::DisplacementAfter];
-        if !used.iter().any(|name| displacements.contains(name)) {
+        let is_displacement = |name: &Name| matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_));
+        if !used.iter().any(is_displacement) {
             errors.push_over(
                 declaration.expression.as_ref().map(super::value),
                 "virtual work needs a displacement: `eta` at the beginning of the step, `eta_next` at its end",

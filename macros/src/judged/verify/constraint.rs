@@ -1,11 +1,10 @@
 //! The self-check of a constraint: its derivatives against dual numbers of the declared functions.
 
 use std::collections::BTreeMap;
-use std::rc::Rc;
 
 use super::dual::Dual;
 use super::{DRAWS, Evaluation, Fault, Unconfirmed, Value, confirmed, evaluated, parameter, stream};
-use crate::declared::{Declaration, FieldKind, Name, Tree};
+use crate::declared::{Declaration, FieldKind, Name};
 use crate::judged::constraint::Held;
 use crate::mathematics::derive::Seen;
 use crate::mathematics::symbolic::SymbolId;
@@ -17,13 +16,13 @@ const ROUNDING: f64 = 1e-9;
 type Place<T> = [Value<T>; 2];
 
 /// Checks the slopes of both bodies.
-pub(crate) fn constraint(declaration: &Declaration, tree: &Rc<Tree>, held: &Held) -> Result<(), Unconfirmed> {
+pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(), Unconfirmed> {
     let draws = (1..=DRAWS).map(|seed| Point::new(declaration, seed));
     let finite = draws.filter(|point| {
-        let value = point.value(tree, &point.places.each_ref().map(lifted));
-        value.entries.iter().all(|entry| entry.value.is_finite())
+        let value = point.value(held, &point.places.each_ref().map(lifted));
+        value.iter().all(|entry| entry.value.is_finite())
     });
-    confirmed(finite, |point| point.check(tree, held)).map(|_| ())
+    confirmed(finite, |point| point.check(held)).map(|_| ())
 }
 
 /// Where two bodies are, and the values of the fields.
@@ -56,7 +55,7 @@ impl<'a> Point<'a> {
     }
 
     /// The declared functions of bodies at these places.
-    fn value(&self, tree: &Rc<Tree>, places: &[Place<Dual<f64>>; 2]) -> Value<Dual<f64>> {
+    fn value(&self, held: &Held, places: &[Place<Dual<f64>>; 2]) -> Vec<Dual<f64>> {
         let mut values: BTreeMap<Name, Value<Dual<f64>>> =
             self.fields.iter().map(|(name, value)| (*name, constant(value))).collect();
         let place = |factor: usize| &places[factor / 2 % 2][factor % 2];
@@ -70,7 +69,8 @@ impl<'a> Point<'a> {
             };
             values.extend(seen.map(|seen| (Name::Advected(index), seen)));
         }
-        Evaluation::new(&values).of(tree)
+        let mut at = Evaluation::new(&values);
+        held.functions.iter().flat_map(|tree| at.of(tree).entries).collect()
     }
 
     fn inputs(&self, held: &Held) -> BTreeMap<SymbolId, Value> {
@@ -84,7 +84,7 @@ impl<'a> Point<'a> {
         inputs
     }
 
-    fn check(&self, tree: &Rc<Tree>, held: &Held) -> Result<(), Fault> {
+    fn check(&self, held: &Held) -> Result<(), Fault> {
         let inputs = self.inputs(held);
         for (body, slopes) in held.entries.iter().enumerate() {
             for (by, entries) in slopes.iter().enumerate() {
@@ -96,8 +96,8 @@ impl<'a> Point<'a> {
                     let moved = &mut places[body][by];
                     // exp(εη̂) R is R + εη̂ R.
                     *moved = if by == 0 { moved.plus(&Value::hat(&axis).times(moved)) } else { moved.plus(&axis) };
-                    let expected = self.value(tree, &places);
-                    for (row, expected) in expected.entries.iter().enumerate() {
+                    let expected = self.value(held, &places);
+                    for (row, expected) in expected.iter().enumerate() {
                         let off = found.get(3 * row + k).map_or(f64::NAN, |found| (found - expected.slope).abs());
                         if off.partial_cmp(&(ROUNDING * size)) != Some(std::cmp::Ordering::Less) {
                             return Err(Fault::Disagrees("slope"));

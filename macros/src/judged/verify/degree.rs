@@ -94,7 +94,7 @@ impl Degrees {
             | Kind::Components(a, _)
             | Kind::Entry(a, ..)
             | Kind::Bound(_, a) => self.of(a),
-            Kind::Add(a, b) | Kind::Subtract(a, b) | Kind::Stack(a, b) => self.of(a).plus(self.of(b)),
+            Kind::Add(a, b) | Kind::Subtract(a, b) => self.of(a).plus(self.of(b)),
             Kind::Multiply(a, b) | Kind::Dot(a, b) | Kind::Cross(a, b) | Kind::ComponentMultiply(a, b) => {
                 self.of(a).times(self.of(b))
             }

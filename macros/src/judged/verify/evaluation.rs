@@ -80,10 +80,6 @@ impl<'a, T: Number> Evaluation<'a, T> {
                 })
             }
             Kind::Inverse(a) => self.of(a).inverse(),
-            Kind::Stack(a, b) => {
-                let entries = [self.of(a).entries, self.of(b).entries].concat();
-                Value { rows: tree.shape.rows(), columns: 1, entries }
-            }
             Kind::Bound(_, a) => self.of(a),
             Kind::Entry(a, row, column) => Value::scalar(self.of(a).at(*row, *column)),
         }

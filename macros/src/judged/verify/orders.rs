@@ -10,8 +10,8 @@ use super::evaluation::Evaluation;
 use super::number::Number as _;
 use super::series::Series;
 use super::value::Value;
-use super::{exponential, increments, parameter, stream, velocities};
-use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
+use super::{displacements, exponential, increments, parameter, stream, velocities};
+use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::{Function, Rational};
 
 /// A sum may be taken apart as often; what is shared by `let`s is written down more often than a person would.
@@ -103,9 +103,7 @@ impl Points {
         let speeds: Vec<Series> = group.generators.iter().map(|_| number() + Series::constant(0.5)).collect();
         let velocity = Value::combination(group.size, &group.generators, &speeds);
         at_rest.extend(velocities(group, &speeds));
-        for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
-            at_rest.insert(name, parameter(FieldKind::Vector(group.dimension()), &mut number));
-        }
+        at_rest.extend(displacements(group, &mut number));
         let with_advected = |values: &Values, seed: u64| {
             let (mut values, mut number) = (values.clone(), numbers(seed));
             for index in 0..declaration.advected.len() {
@@ -116,8 +114,10 @@ impl Points {
         let at_rest = with_advected(&at_rest, 2);
         let is_force = declaration.role == Role::Force;
         let mut elsewhere = if is_force { at_rest.clone() } else { with_advected(&at_rest, 3) };
-        for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
-            elsewhere.entry(name).and_modify(|value| *value = value.plus(value));
+        for (name, value) in &mut elsewhere {
+            if matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) {
+                *value = value.plus(value);
+            }
         }
         let with_increment = |increment: Value<Series>| {
             let mut values = at_rest.clone();

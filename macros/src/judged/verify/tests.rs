@@ -23,15 +23,16 @@ struct Declared {
 }
 
 fn checked(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
-    checked_as(Role::Lagrangian, arguments, item)
+    let (declaration, trees) = checked_as(Role::Lagrangian, arguments, item);
+    (declaration, trees[0].clone())
 }
 
-fn checked_as(role: Role, arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
+fn checked_as(role: Role, arguments: &str, item: &str) -> (Declaration, Vec<Rc<Tree>>) {
     let mut errors = Errors::default();
     let [arguments, item] = [arguments, item].map(|text| text.parse().expect("tokens"));
     let declaration = parse::declaration(role, &arguments, &item, &mut errors).expect("a declaration");
-    let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
-    (declaration, tree)
+    let trees = check::functions(&declaration, &mut errors).expect("something declared");
+    (declaration, trees)
 }
 
 impl Declared {
@@ -163,15 +164,15 @@ fn a_wrong_slope_is_named() {
     let arguments = "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
         advected(R_1 = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
         zero = (R_1.transpose() * r + Q * below, (Q * below).dot(&axis).sin())";
-    let (declaration, tree) =
+    let (declaration, trees) =
         checked_as(Role::Constraint, arguments, "struct Joint { below: Vector3<f64>, axis: Vector3<f64> }");
-    let held = || held(&declaration, &tree, &mut Errors::default()).expect("a constraint");
-    assert!(constraint(&declaration, &tree, &held()).is_ok());
+    let held = || held(&declaration, trees.clone(), &mut Errors::default()).expect("a constraint");
+    assert!(constraint(&declaration, &held()).is_ok());
     for (body, by) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let mut held = held();
         let of = held.entries[body][by].iter().position(|&entry| !held.graph.is_zero(entry)).expect("a slope");
         held.entries[body][by][of] = held.graph.negate(held.entries[body][by][of]);
-        assert_eq!(constraint(&declaration, &tree, &held), Err(Unconfirmed::Disagrees("slope")), "{body} {by}");
+        assert_eq!(constraint(&declaration, &held), Err(Unconfirmed::Disagrees("slope")), "{body} {by}");
     }
 }
 

@@ -48,24 +48,24 @@ impl Seen {
 #[derive(Clone, Debug)]
 pub(crate) struct DeclaredConstraint {
     pub(crate) symbols: Symbols,
-    /// `g`, a column.
-    pub(crate) expression: Expression,
+    /// `g`, scalars and columns one below the other.
+    pub(crate) functions: Vec<Expression>,
     /// That above, and that below.
     pub(crate) bodies: [Body; 2],
 }
 
 impl DeclaredConstraint {
-    /// `G_R η` and `G_x ξ` of both bodies; nothing where a coefficient leaves the range of exact arithmetic.
-    pub(crate) fn slopes(&self) -> Option<[[Expression; 2]; 2]> {
+    /// `G_R η` and `G_x ξ` of both bodies, for each of the functions.
+    pub(crate) fn slopes(&self) -> [[Vec<Expression>; 2]; 2] {
         let symbols = &self.symbols;
-        let slopes = self.bodies.map(|body| {
+        self.bodies.map(|body| {
             let [turn, shift] = body.directions.map(|direction| Expression::symbol(direction, symbols));
             let turn = turn.hat(symbols).times(&Expression::symbol(body.attitude, symbols), symbols);
             [(body.attitude, turn), (body.position, shift)].map(|along| {
-                variation(&self.expression, &Variations::from([along]), symbols).with_hats_resolved(symbols)
+                let along = Variations::from([along]);
+                let varied = |function| variation(function, &along, symbols).with_hats_resolved(symbols);
+                self.functions.iter().map(varied).collect()
             })
-        });
-        let has_overflow = slopes.iter().flatten().chain([&self.expression]).any(Expression::has_overflow);
-        if has_overflow { None } else { Some(slopes) }
+        })
     }
 }
