@@ -40,12 +40,12 @@
 //! |---|---|
 //! | simulate a body with gravity, a spring, drag, … | [`effects`]: bodies and what acts on them; they add with `+` |
 //! | declare a Lagrangian or a force of your own | [`lagrangian`], [`force`](macro@force) |
-//! | move two to four bodies that turn together, without forces, the effects or a splitting | [`lagrangian`] with `group(F_1 = SO3, F_2 = SO3)` |
+//! | move two to four bodies that turn together, without the effects or a splitting | [`lagrangian`] and [`force`](macro@force) with `group(F_1 = SO3, F_2 = SO3)` |
 //! | move many bodies that feel each other's attitudes and positions | [`mechanics::Placed`]: terms on one body or on two, put at places ([`Each`](mechanics::Each), [`On`](mechanics::On), [`Along`](mechanics::Along), [`Between`](mechanics::Between), [`Pairs`](mechanics::Pairs)) |
 //! | step over the oscillations of stiff rods | [`mechanics::Coupled`] |
 //! | start a rod or a spherical pendulum by its direction | [`NonstandardInertia::pointing`] |
 //! | move a chain of links on ball joints | [`methods::ChainStepper`] |
-//! | hold bodies together by joints, loops among them | [`Stepper::jointed`](motion::Stepper#method.jointed) |
+//! | hold bodies together by joints, loops among them | [`Stepper::jointed`](motion::Stepper#method.jointed); joints of your own by [`constraint`](macro@constraint) |
 //! | begin with the continuous Lagrangian `l(ξ, w)` | [`lagrangian`] with `l = …`, [`mechanics::ContinuousLagrangian`] |
 //! | hand the equations of motion to an ODE solver, or integrate them on any matrix group, of one body | [`motion::RightHandSide`], [`methods::CotangentGauss`] |
 //! | step, run, force, save and resume a motion | [`Stepper`], [`State`] |
@@ -122,7 +122,7 @@ pub mod __private;
 
 pub use error::{SetupError, StepError};
 pub use groups::SO3;
-pub use liestep_macros::{force, lagrangian};
+pub use liestep_macros::{constraint, force, lagrangian};
 pub use mechanics::NonstandardInertia;
 pub use motion::{State, Stepper};
 pub use nalgebra;

@@ -4,7 +4,7 @@ pub use core;
 pub use nalgebra;
 
 // What asks a group of one's own for its generators, and declares it.
-pub use liestep_macros::{force, lagrangian, matrix_group};
+pub use liestep_macros::{constraint, force, lagrangian, matrix_group};
 
 // What a declaration becomes.
 pub use crate::error::SetupError;
@@ -16,6 +16,7 @@ pub use crate::mechanics::{
     ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
     Residual, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, Term, WithKinetic, WithoutKinetic,
 };
+pub use crate::methods::{Constraint, Place, Slope};
 pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Real, real};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};

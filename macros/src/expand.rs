@@ -29,6 +29,11 @@ pub(crate) fn matrix_group(tokens: TokenStream) -> TokenStream {
 /// Every phase adds its mistakes to `errors`, and gives nothing where the next one couldn't go on.
 fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, errors: &mut Errors) -> Option<TokenStream> {
     let declaration = parse::declaration(role, arguments, item, errors)?;
+    if role == Role::Constraint {
+        let functions = check::functions(&declaration, errors)?;
+        let held = judged::held(&declaration, functions, errors)?;
+        return Some(emit::constraint(item, &declaration, &held));
+    }
     let tree = check::check(&declaration, errors)?;
     let declared = match declaration.continuous {
         Some(_) => Some(judged::of_declared(&declaration, &tree, errors)?),
@@ -57,8 +62,8 @@ fn implementation(role: Role, arguments: &TokenStream, item: &TokenStream, error
     let chosen = judged::cheapest(readings, derive::derive, &declaration, &discrete, errors)?;
     let findings = judged::findings(&declaration, &discrete, &chosen, errors)?;
     let equations = match role {
-        Role::Lagrangian => Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?),
         Role::Force => None,
+        _ => Some(judged::continuous(declared, &declaration, [&tree, &discrete], &chosen, errors)?),
     };
     Some(emit::implementation(item, &declaration, &chosen, equations.as_ref(), &findings))
 }

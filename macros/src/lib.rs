@@ -65,9 +65,9 @@ mod program;
 /// What turns does so by `SO3`. What is translated by `R1`, `R2` or `R3` has a scalar or a vector for its increment, in the
 /// axes of space, which is added. A wheel's turn about its axis is one of `R1`, as in `examples/declarations/gyrostat.rs`.
 ///
-/// Two to four factors are declared together, by `l_d` or by `l`. No `#[force]` acts on them, and no effect of the library,
-/// as those are of one body; no splitting has their kinetic flow, and `CotangentGauss` is of one group. Compositions,
-/// substeps and the derivatives of a step are there for them.
+/// Two to four factors are declared together, by `l_d` or by `l`; a `#[force]` acts on them by their displacements. No
+/// effect of the library does, as those are of one body; no splitting has their kinetic flow, and `CotangentGauss` is of
+/// one group. Compositions, substeps and the derivatives of a step are there for them.
 ///
 /// # Continuous Lagrangians
 ///
@@ -135,6 +135,7 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 ///     advected(w = up, …),            as for a Lagrangian
 ///     given(u = torque, …),           as for a Lagrangian
 ///     work = …,                       the virtual work f⁻·eta + f⁺·eta_next, linear in the displacements
+///     displacement(eta_1, s),         the names of displacements of several bodies
 ///     gradients,                      as for a Lagrangian
 ///     crate = path,                   where liestep is found, if not at `::liestep`
 /// )]
@@ -148,9 +149,41 @@ pub fn lagrangian(arguments: proc_macro::TokenStream, item: proc_macro::TokenStr
 /// `0.5 * h * tau.dot(&(eta + eta_next))`. Work goes like `h` as `h → 0`, and `F - I` and `vee(F)` count as `h`: drag is
 /// `-c * vee(F).dot(&eta)`; work that vanishes faster says so by `h.powi(n)`. What `eta` is multiplied with enters the
 /// momentum equation, and its derivative the Newton Jacobian.
+///
+/// A force on several bodies has their group, `group(F_1 = SO3, d = R3)`, and names their displacements in that order,
+/// `displacement(eta_1, s)`; at the end of the step they are `eta_1_next` and `s_next`. Of what turns they are in the
+/// body's axes then, of what is translated in those of space. A motor's torque `u` between a body and its wheel, of turn
+/// `t` about the axis `a`, is `0.5 * h * u * (s + s_next)`, as that angle is against the body. It adds to
+/// Lagrangians of the same group.
 #[proc_macro_attribute]
 pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
     expand::expand(declared::Role::Force, arguments.into(), &item.into()).into()
+}
+
+/// Derives the slopes of a holonomic constraint on two bodies: `impl Constraint` for the annotated struct, which
+/// `Stepper::jointed` holds as it holds the library's joints.
+///
+/// ```text
+/// #[constraint(
+///     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),    the body above, which may be space, and that below
+///     advected(R_1 = F_1.seen_from(space), …),            as for a Lagrangian of several bodies
+///     zero = …,                                           functions of where the bodies are
+///     crate = path,                                       where liestep is found, if not at `::liestep`
+/// )]
+/// #[derive(Clone, Copy, Debug, PartialEq)]
+/// struct Name { … }                                       the parameters, over `f64`
+/// ```
+///
+/// What is zero is a scalar, a vector or several of them, `(a, b)`: one to six functions, each in a unit of its own. They
+/// are written in what `advected(…)` names: attitudes and places in space, how one body is seen from the other, and fields
+/// as a body sees them. Increments, velocities and the step have no meaning here. The functions become `gap` as they stand,
+/// and their derivatives along turns and shifts of either body `slope`.
+///
+/// A function whose derivatives vanish where it is zero holds nothing: of a distance take `|y|² − l²` and not the square of
+/// `|y| − l`, and of a line two functions across it, not a cross product, one component of which repeats the others.
+#[proc_macro_attribute]
+pub fn constraint(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand::expand(declared::Role::Constraint, arguments.into(), &item.into()).into()
 }
 
 /// Declares a matrix group of one's own: a type alias for it, and its generators, written once.

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Each source is the `main.rs` of a crate that depends on liestep: a file in `compile_time/`, or a declaration of the
-//! examples with the `main` of `compile_time/top.rs`. A number in it is changed, then the crate is checked or built
+//! examples with a `main` of its own. A number in it is changed, then the crate is checked or built
 //! without optimisation, as `cargo check` and `cargo build` do for the user; the whole command is timed, cargo and
 //! linker included. The crate `none` declares nothing: what a declaration costs is the difference. The first run
 //! compiles the dependencies. A new declaration is its line in [`DECLARATIONS`].
@@ -18,7 +18,7 @@ use std::{env, fs, io};
 const ROUNDS: u32 = 7;
 
 /// Name and source.
-const DECLARATIONS: [(&str, &str); 4] = [
+const DECLARATIONS: [(&str, &str); 5] = [
     ("none", include_str!("compile_time/none.rs")),
     ("(3.13)", include_str!("compile_time/heavy_top.rs")),
     (
@@ -35,6 +35,13 @@ const DECLARATIONS: [(&str, &str); 4] = [
             include_str!("../../examples/declarations/sixth_order_top.rs"),
             "type Top = SixthOrderTop;\n",
             include_str!("compile_time/top.rs")
+        ),
+    ),
+    (
+        "double pendulum",
+        concat!(
+            include_str!("../../examples/declarations/double_pendulum.rs"),
+            include_str!("compile_time/double_pendulum.rs")
         ),
     ),
 ];

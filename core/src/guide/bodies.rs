@@ -133,7 +133,8 @@
 //! | compositions to order 10, substeps, compensated sums, [gradients](super::gradients) | yes |
 //! | [recording and events](super::recording) | yes; columns have the number of the body behind their names |
 //! | the effects of the library | not in such a declaration, as they are of one body; in a system they are put on bodies |
-//! | forces, splittings | no: those are of one body |
+//! | forces by their virtual work | yes: [`force`](macro@crate::force) with `displacement(eta_1, s)`, a name for each factor |
+//! | splittings | no: those are of one body |
 //! | `l = …`, the continuous Lagrangian, and the continuous equations of an `l_d` | yes: [by their velocities](#by-their-velocities), above |
 //! | collocation by [`CotangentGauss`](crate::methods::CotangentGauss) | no: that is of one group |
 //! | joints, and loops of them | [of a system](#joints), not of such a declaration |
@@ -172,7 +173,7 @@
 //! | [`BallJoint`](crate::methods::BallJoint) | a point of one body is a point of another, or of space |
 //! | [`PinJoint`](crate::methods::PinJoint) | so is an axis, about which they turn |
 //! | [`Joint`](crate::methods::Joint) | either, where a system has both |
-//! | [`Constraint`](crate::methods::Constraint) | functions of the places of two bodies that are zero: a joint of your own, with a strut as a listing |
+//! | [`constraint`](macro@crate::constraint) | functions of the places of two bodies that are zero, declared: a joint of your own, with a strut as a listing at [`Constraint`](crate::methods::Constraint) |
 //!
 //! [`Joints`](crate::methods::Joints) takes those of trees and, apart, one of each loop. A motion starts where joints
 //! are closed and with velocities that keep them so; [`start_nearest`](crate::Stepper::start_nearest) finds such from

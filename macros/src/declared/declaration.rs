@@ -16,6 +16,8 @@ pub(crate) enum Role {
     Lagrangian,
     /// `#[force(… work = …)]`.
     Force,
+    /// `#[constraint(… zero = …)]`.
+    Constraint,
 }
 
 impl Role {
@@ -24,6 +26,7 @@ impl Role {
         match self {
             Self::Lagrangian => "l_d",
             Self::Force => "work",
+            Self::Constraint => "zero",
         }
     }
 
@@ -32,6 +35,7 @@ impl Role {
         match self {
             Self::Lagrangian => "a Lagrangian",
             Self::Force => "virtual work",
+            Self::Constraint => "a constraint",
         }
     }
 
@@ -40,6 +44,7 @@ impl Role {
         match self {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
+            Self::Constraint => "the constraint",
         }
     }
 
@@ -47,7 +52,7 @@ impl Role {
     /// with: what is compiled finds the one that was declared, whatever else has its name.
     pub(crate) fn reserved(self) -> &'static [&'static str] {
         match self {
-            Self::Lagrangian => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
+            Self::Lagrangian | Self::Constraint => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
             Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
         }
     }
@@ -57,6 +62,7 @@ impl Role {
         match self {
             Self::Lagrangian => "lagrangian",
             Self::Force => "force",
+            Self::Constraint => "constraint",
         }
     }
 }
@@ -75,6 +81,8 @@ pub(crate) struct Declaration {
     pub(crate) expression: Option<Expr>,
     /// Of a continuous Lagrangian `l`, what it is written and discretised with.
     pub(crate) continuous: Option<Continuous>,
+    /// Of a force on several bodies the names of the displacements, one for each factor of the group.
+    pub(crate) displacements: Vec<Ident>,
     /// Where the derivatives of a step are asked for.
     pub(crate) gradients: Option<Span>,
     pub(crate) fields: Vec<Field>,
@@ -94,7 +102,20 @@ pub(crate) struct Factor {
 
 /// How velocities of these factors may be named: `velocity = Omega`, or `velocity(Omega_1, v)`.
 pub(crate) fn named_velocities(factors: &[Factor]) -> String {
-    let letters = |factor: &Factor| if factor.group_name() == "SO3" { "Omega" } else { "v" };
+    match factors {
+        [] | [_] => "velocity = Omega".to_owned(),
+        several => format!("velocity({})", named(several, ["Omega", "v"])),
+    }
+}
+
+/// How displacements of these factors may be named: `displacement(eta_1, s)`.
+pub(crate) fn named_displacements(factors: &[Factor]) -> String {
+    format!("displacement({})", named(factors, ["eta", "s"]))
+}
+
+/// A name for each factor, by what turns and by what is translated.
+fn named(factors: &[Factor], [turn, shift]: [&'static str; 2]) -> String {
+    let letters = |factor: &Factor| if factor.group_name() == "SO3" { turn } else { shift };
     let name = |(at, factor): (usize, &Factor)| {
         let alike = |factors: &[Factor]| factors.iter().filter(|other| letters(other) == letters(factor)).count();
         if alike(factors) == 1 {
@@ -103,13 +124,7 @@ pub(crate) fn named_velocities(factors: &[Factor]) -> String {
             format!("{}_{}", letters(factor), alike(&factors[..=at]))
         }
     };
-    match factors {
-        [] | [_] => "velocity = Omega".to_owned(),
-        several => {
-            let names: Vec<String> = several.iter().enumerate().map(name).collect();
-            format!("velocity({})", names.join(", "))
-        }
-    }
+    factors.iter().enumerate().map(name).collect::<Vec<_>>().join(", ")
 }
 
 impl Factor {
@@ -181,6 +196,17 @@ impl Declaration {
     /// The names of the velocities in `l`.
     pub(crate) fn velocities(&self) -> &[Ident] {
         self.continuous.as_ref().map_or(&[], |continuous| &continuous.velocities)
+    }
+
+    /// Of a force, what a factor's displacements at both ends of a step are called; `None` where that is left out.
+    pub(crate) fn displacement(&self, factor: usize) -> Option<[String; 2]> {
+        let name = match self.displacements.get(factor) {
+            Some(name) => name.unraw().to_string(),
+            None if self.role == Role::Force && !self.group.is_product() => "eta".to_owned(),
+            None => return None,
+        };
+        let next = format!("{name}_next");
+        Some([name, next])
     }
 
     /// The name of the velocity of a factor in `l`.

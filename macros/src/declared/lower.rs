@@ -6,10 +6,11 @@ use std::rc::Rc;
 use crate::declared::errors::Errors;
 use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::derive::{
-    Carried, Declared, DeclaredContinuous, Displacements, Element, Let, Seen, hat, linear_forms, unit,
+    Body, Carried, Declared, DeclaredConstraint, DeclaredContinuous, Displacements, Element, Let, Seen, hat,
+    linear_forms, unit,
 };
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, Structure, SymbolId, Symbols, stage_of, substitute};
 
 /// Products of more terms than this take too long; a Lagrangian that a person writes has a tenth of it.
 const MOST_TERMS: usize = 2_000;
@@ -57,13 +58,14 @@ pub(crate) fn readings_without(
     }
     let advected = parameters(declaration, weaker, &mut symbols, &mut names);
     let displacements = (declaration.role == Role::Force).then(|| {
-        let mut displacement = |name: &str, place| {
-            let id = symbols.add(name, (declaration.group.dimension(), 1), Structure::General, Stage::Step);
-            names.insert(place, id);
-            id
-        };
-        let before = displacement("η", Name::DisplacementBefore);
-        Displacements { before, after: displacement("η⁺", Name::DisplacementAfter) }
+        let factors = declaration.group.factors().iter().enumerate();
+        let each = factors.map(|(factor, own)| {
+            let places = [Name::DisplacementBefore(factor), Name::DisplacementAfter(factor)];
+            let ids = ["η", "η⁺"].map(|name| symbols.add(name, (own.dimension(), 1), Structure::General, Stage::Step));
+            names.extend(places.into_iter().zip(ids));
+            ids
+        });
+        Displacements(each.collect())
     });
     let attempt = |lets| {
         let (symbols, known) = (symbols.clone(), BTreeMap::new());
@@ -82,7 +84,7 @@ pub(crate) fn readings_without(
             increments,
             step,
             advected,
-            displacements,
+            displacements: displacements.clone(),
             has_derivatives,
             discretised,
         };
@@ -131,6 +133,42 @@ pub(crate) fn continuous(declaration: &Declaration, tree: &Rc<Tree>, errors: &mu
             None
         }
     }
+}
+
+/// A constraint in symbols.
+pub(crate) struct LoweredConstraint {
+    pub(crate) declared: DeclaredConstraint,
+    pub(crate) names: BTreeMap<Name, SymbolId>,
+}
+
+/// The reading of a constraint, multiplied out, in the places of both bodies; `None` where it is too large, which has been
+/// reported.
+pub(crate) fn constraint(
+    declaration: &Declaration,
+    functions: &[Rc<Tree>],
+    errors: &mut Errors,
+) -> Option<LoweredConstraint> {
+    let (mut symbols, mut names) = (Symbols::default(), BTreeMap::new());
+    let carried = parameters(declaration, &|_, structure| structure, &mut symbols, &mut names);
+    let bodies = ["a", "b"].map(|body| Body::new(body, &mut symbols));
+    let mut lowering = Lowering { symbols, names: &names, known: BTreeMap::new(), lets: None, velocity_matrix: None };
+    let seen: Option<Vec<Expression>> = carried
+        .iter()
+        .enumerate()
+        .map(|(index, w)| {
+            let field = declaration.advected.get(index).and_then(|w| w.field);
+            let field = field.and_then(|field| names.get(&Name::Field(field)));
+            w.seen.at(&bodies, field.copied(), &lowering.symbols)
+        })
+        .collect();
+    let map = carried.iter().map(|w| w.symbol).zip(seen?).collect();
+    let lowered: Option<Vec<Expression>> = functions
+        .iter()
+        .map(|tree| lowering.expression(tree).map_err(|failure| report(failure, tree, errors)).ok())
+        .collect();
+    let symbols = lowering.symbols;
+    let functions = lowered?.iter().map(|function| substitute(function, &map, &symbols)).collect();
+    Some(LoweredConstraint { declared: DeclaredConstraint { symbols, functions, bodies }, names })
 }
 
 /// The symbols of the fields and of the advected parameters, and how the latter are moved.

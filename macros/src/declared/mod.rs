@@ -17,7 +17,7 @@ mod tree;
 
 pub(crate) use declaration::{
     AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature,
-    Role, Scalar, named_velocities,
+    Role, Scalar, named_displacements, named_velocities,
 };
 pub(crate) use spelling::Spelling;
 pub(crate) use tree::{Frames, Kind, Name, Shape, Tree};

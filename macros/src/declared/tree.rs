@@ -94,10 +94,10 @@ pub(crate) enum Name {
     Step,
     /// The components of the velocity in a continuous Lagrangian, of one factor of the group.
     Velocity(usize),
-    /// `eta`, the displacement at the beginning of the step.
-    DisplacementBefore,
+    /// `eta`, the displacement at the beginning of the step, of one factor of the group.
+    DisplacementBefore(usize),
     /// `eta_next`, the one at its end.
-    DisplacementAfter,
+    DisplacementAfter(usize),
     /// An advected parameter, by its place in `advected(…)`.
     Advected(usize),
     /// A field, by its place in the struct.

@@ -82,7 +82,7 @@ impl Code<'_> {
         self.columns(size, &(0..size).map(column).collect::<Vec<_>>())
     }
 
-    fn columns(&self, rows: usize, columns: &[Vec<TokenStream>]) -> TokenStream {
+    pub(super) fn columns(&self, rows: usize, columns: &[Vec<TokenStream>]) -> TokenStream {
         let (private, span, scalar) = (&self.header.private, Span::mixed_site(), &self.header.scalar);
         let nalgebra = quote_spanned!(span=> #private::nalgebra);
         let (rows, count) = (Literal::usize_unsuffixed(rows), Literal::usize_unsuffixed(columns.len()));

@@ -26,6 +26,9 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let declaration = parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent);
     let header = Header::new(&declaration);
     let private = &header.private;
+    if role == Role::Constraint {
+        return constraint(&header);
+    }
     let none = quote_spanned!(span=> ());
     let types = header.types(true, &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
@@ -72,7 +75,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
                 }
             }
         }
-        Role::Force => {
+        Role::Force | Role::Constraint => {
             let force = header.implementation("Force");
             quote_spanned! {span=>
                 #force {
@@ -121,6 +124,26 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         #lanes
     };
     header.enclosing(implementations)
+}
+
+/// One function: how many there are can't be known.
+fn constraint(header: &Header) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
+    let (core, implementation) =
+        (quote_spanned!(span=> #private::core), header.constraint(&proc_macro2::Literal::usize_unsuffixed(1)));
+    let real = quote_spanned!(span=> #core::primitive::f64);
+    let items = quote_spanned! {span=>
+        #[automatically_derived]
+        #[allow(clippy::all, clippy::pedantic)]
+        #implementation {
+            fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
+            fn name(&self) -> &'static #core::primitive::str { loop {} }
+            fn gap(&self, _: &#private::Place, _: &#private::Place) -> #private::nalgebra::SVector<#real, 1> { loop {} }
+            fn slope(&self, _: &#private::Place, _: &#private::Place) -> [#private::Slope<1>; 2] { loop {} }
+            fn describe(&self, _: &mut dyn #core::ops::FnMut(&'static #core::primitive::str, #real)) { loop {} }
+        }
+    };
+    header.enclosing(items)
 }
 
 /// Where the derivatives of a step are asked for.

@@ -183,6 +183,12 @@ impl Header {
         self.implementation_of(None, &quote_spanned!(Span::mixed_site()=> #private::#implemented))
     }
 
+    /// `impl … liestep::methods::Constraint<…> for …`.
+    pub(crate) fn constraint(&self, functions: &Literal) -> TokenStream {
+        let private = &self.private;
+        self.implementation_of(None, &quote_spanned!(Span::mixed_site()=> #private::Constraint<#functions>))
+    }
+
     /// `impl … Add<Other> for …`: the sum with any term of the same group.
     pub(crate) fn addition(&self) -> TokenStream {
         let (span, private, group) = (Span::mixed_site(), &self.private, self.group());

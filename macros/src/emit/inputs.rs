@@ -22,7 +22,7 @@ impl Code<'_> {
             Some(Name::Advected(index)) => self.advected_entry(&quote_spanned!(span=> w), index, input),
             Some(Name::Field(index)) => self.field_entry(index, input),
             // Displacements are replaced by directions before.
-            Some(Name::DisplacementBefore | Name::DisplacementAfter) | None => self.derived_input(input),
+            Some(Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) | None => self.derived_input(input),
         }
     }
 
@@ -101,7 +101,7 @@ impl Code<'_> {
         }
     }
 
-    fn field_entry(&self, index: usize, input: Input) -> TokenStream {
+    pub(super) fn field_entry(&self, index: usize, input: Input) -> TokenStream {
         let Some(field) = self.declaration.fields.get(index) else { return TokenStream::new() };
         // Where a type of that name isn't the one that is meant, the compiler shows it.
         let (name, span) = (&field.name, field.at.resolved_at(Span::mixed_site()));

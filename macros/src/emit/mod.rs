@@ -3,6 +3,7 @@
 //! The only room that quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
 
 mod code;
+mod constraint;
 mod continuous;
 mod docs;
 mod fallback;
@@ -28,6 +29,7 @@ use crate::mathematics::symbolic::{Expression, SymbolId, Symbols};
 use crate::program::{Given, Graph, Scalariser, components, square, with_lets};
 
 use code::Form;
+pub(crate) use constraint::constraint;
 pub(crate) use continuous::alone as continuous;
 pub(crate) use fallback::mistakes;
 use header::Header;
@@ -64,10 +66,9 @@ pub(crate) fn implementation(
     let span = Span::mixed_site();
     let types = header.types(derived.limit.has_kinetic, &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, kernel);
-    let (name, mathematics) = match declaration.role {
-        Role::Lagrangian => ("DiscreteLagrangian", mathematics),
-        Role::Force => ("Force", TokenStream::new()),
-    };
+    let is_force = declaration.role == Role::Force;
+    let (name, mathematics) =
+        if is_force { ("Force", TokenStream::new()) } else { ("DiscreteLagrangian", mathematics) };
     let (of_role, effect_of) = (header.implementation(name), header.implementation("Effect"));
     let term = emitter.term(&stages::same_generators(&emitter.code));
     let invariance = invariance(declaration, &header);
@@ -75,7 +76,7 @@ pub(crate) fn implementation(
     let lanes = lanes::lanes(&header, Some(&declaration.fields));
     let gradients = gradients::implementation(&emitter);
     let body = &stages.methods;
-    let self_adjoint = (declaration.role == Role::Lagrangian).then(|| {
+    let self_adjoint = (!is_force).then(|| {
         let is_self_adjoint = findings.self_adjointness.is_found();
         quote_spanned!(span=> const SELF_ADJOINT: #private::core::primitive::bool = #is_self_adjoint;)
     });
@@ -172,9 +173,10 @@ impl Emitter<'_> {
     /// The derived terms that don't know stages: those of a Lagrangian, those of any effect, and their equations.
     fn mathematics(&self) -> (TokenStream, TokenStream, Vec<docs::Equation>) {
         let d = self.derived;
-        let equations = match self.declaration.role {
-            Role::Lagrangian => docs::equations(d, &self.lowered.declared, self.equations),
-            Role::Force => docs::equations_of_force(d, &self.lowered.declared),
+        let equations = if self.declaration.role == Role::Force {
+            docs::equations_of_force(d, &self.lowered.declared)
+        } else {
+            docs::equations(d, &self.lowered.declared, self.equations)
         };
         let method = |(name, takes, form, expression)| self.method(name, takes, form, expression, &equations);
         let of_lagrangian = [

@@ -45,14 +45,12 @@ pub(super) fn page(
     continuous: Option<&Equations>,
     findings: &Findings,
 ) -> String {
-    let (derived, is_lagrangian) = (&chosen.derived, declaration.role == Role::Lagrangian);
+    let (derived, is_lagrangian) = (&chosen.derived, declaration.role != Role::Force);
     let has_kinetic = derived.limit.has_kinetic;
-    let heading = match declaration.role {
-        Role::Lagrangian if has_kinetic => {
-            "# Derived integrator\n\nThe momentum equation, solved for `F` in each step:"
-        }
-        Role::Lagrangian => "# Derived terms\n\nThe share in the momentum equation of a body that this is added to:",
-        Role::Force => "# Derived terms\n\nThe share in the momentum equation of a body that this force acts on:",
+    let heading = match is_lagrangian {
+        true if has_kinetic => "# Derived integrator\n\nThe momentum equation, solved for `F` in each step:",
+        true => "# Derived terms\n\nThe share in the momentum equation of a body that this is added to:",
+        false => "# Derived terms\n\nThe share in the momentum equation of a body that this force acts on:",
     };
     let shown = if is_lagrangian {
         ["legendre_minus", "kick_before", "kick_after"]

@@ -14,7 +14,7 @@ use syn::{Expr, Ident};
 use super::Header;
 use crate::declared::{Declaration, FieldKind, Role, Shape, Spelling};
 
-/// The Lagrangian's `l_d` or `l`, or a force's `virtual_work`.
+/// The Lagrangian's `l_d` or `l`, a force's `virtual_work`, or a constraint's `gap`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
     let (private, scalar, square) = (&header.private, &header.scalar, header.matrix());
@@ -30,6 +30,10 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         }
     };
     for (index, factor) in declaration.factors.iter().enumerate() {
+        // No increment may stand in a constraint.
+        if declaration.role == Role::Constraint {
+            break;
+        }
         let group = declaration.group.factor(index);
         let value = if declaration.group.is_product() {
             let index = syn::Index::from(index);
@@ -53,22 +57,29 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
     }
     for (factor, name) in declaration.velocities().iter().enumerate() {
-        bind(&name.unraw().to_string(), velocity(declaration, header, factor));
+        let velocity = Ident::new("velocity", span);
+        bind(&name.unraw().to_string(), of_factor(declaration, header, &velocity, factor));
     }
-    if declaration.role == Role::Force {
-        bind("eta", quote_spanned!(span=> *eta));
-        bind("eta_next", quote_spanned!(span=> *eta_next));
+    for factor in 0..declaration.factors.len() {
+        let Some(names) = declaration.displacement(factor) else { continue };
+        for (name, components) in names.iter().zip(["eta", "eta_next"]) {
+            bind(name, of_factor(declaration, header, &Ident::new(components, span), factor));
+        }
     }
     bind("log", quote_spanned!(span=> #private::rotation_log::<#scalar>));
     bind("exp", quote_spanned!(span=> #private::rotation_exp::<#scalar>));
     for (index, parameter) in declaration.advected.iter().enumerate() {
-        let part = if declaration.advected.len() == 1 {
-            quote_spanned!(span=> (*w))
+        let value = if declaration.role == Role::Constraint {
+            super::constraint::seen(declaration, header, parameter)
         } else {
-            let index = syn::Index::from(index);
-            quote_spanned!(span=> w.#index)
+            let part = if declaration.advected.len() == 1 {
+                quote_spanned!(span=> (*w))
+            } else {
+                let index = syn::Index::from(index);
+                quote_spanned!(span=> w.#index)
+            };
+            advected(declaration, header, index, part)
         };
-        let value = advected(declaration, header, index, part);
         bind(&parameter.plain_name(), value);
     }
     for field in &declaration.fields {
@@ -86,7 +97,15 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
     let imposed = names.iter().filter(|name| *name == "F" || *name == "I");
     let hidden: TokenStream = imposed.map(|name| quote_spanned!(span=> #[allow(dead_code)] fn #name() {})).collect();
     let traits = header.parameter.as_ref().map(|_| quote!(use #private::nalgebra::SimdComplexField as _;));
+    let declared = quote_spanned! {span=>
+        #traits
+        #hidden
+        // In one pattern, so that no name hides a value that a later one needs.
+        let (#(#names,)*) = (#(#values,)*);
+        #expression
+    };
     let signature = match declaration.role {
+        Role::Constraint => return declared,
         Role::Lagrangian if declaration.continuous.is_some() => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
@@ -108,13 +127,7 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         },
     };
     quote_spanned! {span=>
-        #signature {
-            #traits
-            #hidden
-            // In one pattern, so that no name hides a value that a later one needs.
-            let (#(#names,)*) = (#(#values,)*);
-            #expression
-        }
+        #signature { #declared }
     }
 }
 
@@ -133,16 +146,16 @@ fn advected(declaration: &Declaration, header: &Header, index: usize, part: Toke
     }
 }
 
-/// The velocity of a factor, on a line a scalar.
-fn velocity(declaration: &Declaration, header: &Header, factor: usize) -> TokenStream {
+/// Of components, given as a reference, those of a factor, on a line a scalar.
+fn of_factor(declaration: &Declaration, header: &Header, components: &Ident, factor: usize) -> TokenStream {
     let (span, private, group) = (Span::mixed_site(), &header.private, &declaration.group);
     if !group.is_product() {
-        return quote_spanned!(span=> *velocity);
+        return quote_spanned!(span=> *#components);
     }
     let (own, first) = (group.factor(factor), group.component_of(factor));
     let entries = (first..first + own.dimension()).map(|row| {
         let row = proc_macro2::Literal::usize_unsuffixed(row);
-        quote_spanned!(span=> velocity.data.0[0][#row])
+        quote_spanned!(span=> #components.data.0[0][#row])
     });
     if own.dimension() == 1 {
         return entries.collect();

@@ -237,6 +237,15 @@ pub(super) fn unconfirmed_term(term: &str, declaration: &Declaration, errors: &m
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
+/// Reports a constraint that leaves the body above free, or that below.
+pub(super) fn not_held(body: usize, declaration: &Declaration, errors: &mut Errors) {
+    let names: Vec<String> =
+        declaration.factors.iter().skip(2 * body).take(2).map(|factor| format!("`{}`", factor.name)).collect();
+    let rest = if body == 0 { ": what holds a body to space is on space as the body above, too" } else { "" };
+    let message = format!("this doesn't depend on where the body of {} is{rest}", names.join(" and "));
+    errors.push_over(declaration.expression.as_ref().map(check::value), message);
+}
+
 /// Reports what the self-check doesn't confirm.
 pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     let message = match unconfirmed {

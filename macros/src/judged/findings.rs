@@ -27,9 +27,11 @@ pub(crate) fn findings(
     if derived.limit.has_kinetic {
         explain::kinetic_part(&verify::kinetic_part(declaration, tree, lowered, derived), declaration, errors)?;
     }
-    let verified = match declaration.role {
-        Role::Lagrangian => verify::verify(declaration, tree, lowered, derived, kernel),
-        Role::Force => verify::force(declaration, tree, chosen).map(|()| SelfAdjointness::No),
+    let is_force = declaration.role == Role::Force;
+    let verified = if is_force {
+        verify::force(declaration, tree, chosen).map(|()| SelfAdjointness::No)
+    } else {
+        verify::verify(declaration, tree, lowered, derived, kernel)
     };
     match verified {
         Ok(self_adjointness) => {
@@ -38,10 +40,7 @@ pub(crate) fn findings(
                 explain::not_self_adjoint(asked, errors);
                 return None;
             }
-            let hypotheses = match declaration.role {
-                Role::Lagrangian => hypotheses::hypotheses(declaration, tree, lowered),
-                Role::Force => Vec::new(),
-            };
+            let hypotheses = if is_force { Vec::new() } else { hypotheses::hypotheses(declaration, tree, lowered) };
             Some(Findings { self_adjointness, hypotheses })
         }
         Err(unconfirmed) => {

@@ -7,9 +7,9 @@ use super::count::{Operations, count};
 use super::expand::expanded;
 use super::graph::{Graph, Input, Node, NodeId};
 use super::scalarise::{Entries, Scalariser};
-use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor};
+use crate::mathematics::derive::{Cleared, Continuous, Derived, OfFactor, unit};
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId};
+use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId, Symbols};
 
 /// A way to write the Newton system, with its operations an iteration.
 #[derive(Clone, Debug)]
@@ -108,6 +108,24 @@ pub(crate) fn components(graph: &mut Graph, derived: &Derived, given: &Given, co
             Scalariser { graph, symbols: &derived.symbols, given }.scalar(covector)
         })
         .collect()
+}
+
+/// The matrix of a column that is linear in a direction of three components, row by row.
+pub(crate) fn along_unit_vectors(
+    graph: &mut Graph,
+    symbols: &Symbols,
+    direction: SymbolId,
+    column: &Expression,
+) -> Vec<NodeId> {
+    let rows = column.shape().0;
+    let places = (0..rows).flat_map(|row| [0, 1, 2].map(|k| (row, k)));
+    let entry = |(row, k)| {
+        let (zero, one) = (graph.zero(), graph.one());
+        let along = Entries::new(3, 1, |at, _| if at == k { one } else { zero });
+        let of_row = unit(row, rows, true, symbols).times(column, symbols);
+        Scalariser { graph, symbols, given: Given::from([(direction, along)]) }.scalar(&of_row)
+    };
+    places.map(entry).collect()
 }
 
 /// The values of a continuous term: of rank 0 a scalar, of rank 1 the components of a covector, of rank 2 the entries of

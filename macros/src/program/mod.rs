@@ -21,6 +21,8 @@ mod tests;
 pub(crate) use closed::{Given, with_lets, with_values};
 pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
-pub(crate) use kernel::{Candidate, Kernel, along_directions, components, diamond_matrices, kernel, square};
+pub(crate) use kernel::{
+    Candidate, Kernel, along_directions, along_unit_vectors, components, diamond_matrices, kernel, square,
+};
 pub(crate) use scalarise::Scalariser;
 pub(crate) use tangent::Linearisation;

@@ -33,7 +33,7 @@ fuzz_target!(|bytes: &[u8]| {
     // What no lexer accepts never reaches a macro.
     let Ok(written) = text.parse::<TokenStream>() else { return };
     let item: TokenStream = ITEM.parse().expect("tokens");
-    let expansion = match kind % 4 {
+    let expansion = match kind % 5 {
         0 => expand::expand(Role::Lagrangian, written, &item),
         1 => {
             let arguments = format!("group = SO3, advected(w = up), l_d = {text}");
@@ -41,6 +41,7 @@ fuzz_target!(|bytes: &[u8]| {
             expand::expand(Role::Lagrangian, arguments, &item)
         }
         2 => expand::expand(Role::Force, written, &item),
+        3 => expand::expand(Role::Constraint, written, &item),
         _ => expand::matrix_group(written),
     };
     let shown = expansion.to_string();

@@ -5,6 +5,7 @@
 mod attitudes;
 mod chain;
 mod declared;
+mod forces;
 mod joints;
 mod lanes;
 mod links;

@@ -313,7 +313,7 @@ fn at_rest() -> WithWheels {
     (SO3::identity(), wheel, wheel, wheel)
 }
 
-fn gyrostat() -> Gyrostat {
+pub(super) fn gyrostat() -> Gyrostat {
     Gyrostat {
         J_d: NonstandardInertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).unwrap(),
         J_w: 0.2,

@@ -41,9 +41,9 @@ pub struct Slope<const K: usize> {
 
 /// A holonomic constraint on two bodies, or on a body and space: `K` functions of where they are, which are zero.
 ///
-/// [`BallJoint`], [`PinJoint`] and [`Joint`] are such. One of your own is held by the same
-/// [stepper](crate::Stepper::jointed); that its [`slope`](Self::slope) is the derivative of its [`gap`](Self::gap) is
-/// up to you.
+/// [`BallJoint`], [`PinJoint`] and [`Joint`] are such. [`constraint`](macro@crate::constraint) declares one of your own by
+/// its functions, and derives its [`slope`](Self::slope). By hand, as in `examples/declarations/strut.rs`, that this is the
+/// derivative of the [`gap`](Self::gap) is up to you.
 ///
 /// # Examples
 ///
@@ -52,53 +52,24 @@ pub struct Slope<const K: usize> {
 /// ```
 /// use liestep::groups::R3;
 /// use liestep::mechanics::Each;
-/// use liestep::methods::{Constraint, Joined, Joints, Place, Slope};
+/// use liestep::methods::{Joined, Joints};
 /// use liestep::numbers::Bodies;
-/// use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
-/// use nalgebra::{Vector1, Vector3, Vector6};
+/// use liestep::{NonstandardInertia, SO3, Stepper, constraint, lagrangian};
+/// use nalgebra::{Vector3, Vector6};
 ///
+/// #[constraint(
+///     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+///     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+///     zero = {
+///         let along = r + R_2 * below - R_1 * above;
+///         0.5 * (along.norm_squared() / length - length) // m
+///     },
+/// )]
 /// #[derive(Clone, Copy, Debug, PartialEq)]
 /// struct Strut {
 ///     above: Vector3<f64>, // m, in the axes of its body
 ///     below: Vector3<f64>,
 ///     length: f64, // m
-/// }
-///
-/// impl Strut {
-///     fn along(&self, above: &Place, below: &Place) -> Vector3<f64> {
-///         below.of(&self.below) - above.of(&self.above)
-///     }
-/// }
-///
-/// impl Constraint<1> for Strut {
-///     fn name(&self) -> &'static str {
-///         "strut"
-///     }
-///
-///     fn validate(&self) -> Result<(), SetupError> {
-///         let is_length = self.length > 0.0;
-///         if is_length { Ok(()) } else { Err(SetupError::Parameter { field: "length", cause: "is no length" }) }
-///     }
-///
-///     /// `(|y|² − l²)/2l`, m.
-///     fn gap(&self, above: &Place, below: &Place) -> Vector1<f64> {
-///         Vector1::new((self.along(above, below).norm_squared() / self.length - self.length) / 2.0)
-///     }
-///
-///     /// `y/l·(ξ + η × Rρ)` of the body below, and less that of the body above.
-///     fn slope(&self, above: &Place, below: &Place) -> [Slope<1>; 2] {
-///         let along = self.along(above, below) / self.length;
-///         let of = |place: &Place, point: &Vector3<f64>, side: f64| Slope {
-///             turn: (place.attitude * point).cross(&along).transpose() * side,
-///             shift: along.transpose() * side,
-///         };
-///         [of(above, &self.above, -1.0), of(below, &self.below, 1.0)]
-///     }
-///
-///     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
-///         self.above.iter().chain(&self.below).for_each(|&entry| visit("point", entry));
-///         visit("length", self.length);
-///     }
 /// }
 ///
 /// /// A body and its weight.
@@ -138,7 +109,7 @@ pub struct Slope<const K: usize> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constraint on two bodies",
     label = "not a joint",
-    note = "joints are `BallJoint`, `PinJoint` and `Joint`, which is either; see `liestep::methods::Constraint`"
+    note = "joints are `BallJoint`, `PinJoint`, `Joint`, which is either, and what `#[constraint(…)]` declares"
 )]
 pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
     /// Checks the parameters.

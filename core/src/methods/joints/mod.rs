@@ -16,8 +16,7 @@
 //! [`ChainStepper`](super::ChainStepper) has these for chains.
 //!
 //! What [`Stepper::jointed`](crate::Stepper::jointed) takes is a scene on bodies `(SO3, R3)`, of which terms may
-//! couple anything but velocities, and [`Joints`]. There are no limits, motors or contacts, and the derivatives of a
-//! [`Constraint`] of one's own are written by hand.
+//! couple anything but velocities, and [`Joints`]. There are no limits, motors or contacts.
 //!
 //! The unknowns of Newton's iteration are half the coordinates `y` of `F` and the multipliers, of which the residual
 //! is an affine function, so that none is kept from step to step.

@@ -40,6 +40,13 @@ impl Checker<'_> {
                     }
                 }
             }
+            "omega" | "Omega" | "xi" | "velocity" if self.is_constraint() => {
+                "; a holonomic constraint is a function of positions, and sees no velocity".to_owned()
+            }
+            "R" | "rotation" | "attitude" | "orientation" if self.is_constraint() => {
+                let body = self.declaration.factors.first().map_or("F_1", |factor| &factor.name);
+                format!("; declare it with `advected({name} = {body}.seen_from(space))`")
+            }
             "omega" | "Omega" | "xi" | "velocity" => {
                 let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
                 let continuous = if self.is_force() {
@@ -72,9 +79,11 @@ impl Checker<'_> {
         let fields = self.declaration.fields.iter().map(Field::plain_name);
         let advected = self.declaration.advected.iter().map(AdvectedParameter::plain_name);
         let bound = self.scopes.iter().flat_map(|scope| scope.keys().map(|bound| bound.letters.clone()));
-        let displacements: &[&str] = if self.is_force() { &["eta", "eta_next"] } else { &[] };
-        let of_step: &[&str] = if self.declaration.continuous.is_some() { &["I"] } else { &["F", "I", "h"] };
-        let builtin = of_step.iter().chain(displacements).map(|name| (*name).to_owned());
+        let factors = 0..self.declaration.factors.len();
+        let displacements = factors.filter_map(|factor| self.declaration.displacement(factor)).flatten();
+        let of_step: &[&str] =
+            if self.declaration.continuous.is_some() || self.is_constraint() { &["I"] } else { &["F", "I", "h"] };
+        let builtin = of_step.iter().map(|name| (*name).to_owned()).chain(displacements);
         let velocity = self.declaration.velocities().iter().map(|velocity| velocity.unraw().to_string());
         builtin.chain(velocity).chain(advected).chain(fields).chain(bound).collect()
     }

@@ -1,6 +1,6 @@
 //! From which body a vector is seen: the one mistake among several bodies that shapes don't show.
 //!
-//! Of an increment and of a velocity it is known that its own body sees it, of what a body sees that this body does. A
+//! Of an increment, of a velocity and of a displacement it is known that its own body sees it, of what a body sees that this body does. A
 //! relative configuration is known to bring a vector from one body to another. Fields may belong to any body, and so may
 //! what is seen from space: where the attitude of one body is given relative to another, that is the other. Only two
 //! bodies that are known and differ are a mistake.
@@ -22,7 +22,11 @@ pub(super) fn of(declaration: &Declaration, name: Name) -> Frames {
     let turns = |factor: usize| declaration.group.is_product() && !declaration.group.factor(factor).is_added;
     match name {
         Name::Increment(factor) if turns(factor) => [Some(factor); 2],
-        Name::Velocity(factor) if turns(factor) => [Some(factor), None],
+        Name::Velocity(factor) | Name::DisplacementBefore(factor) | Name::DisplacementAfter(factor)
+            if turns(factor) =>
+        {
+            [Some(factor), None]
+        }
         Name::Advected(index) => match declaration.advected.get(index).filter(|w| !w.is_given).map(|w| w.seen) {
             Some(Seen::From(factor)) if turns(factor) => {
                 let is_tensor = declaration.advected_kind(index).variance().is_tensor();

@@ -28,6 +28,11 @@ const DEEPEST: usize = 250;
 
 /// The declared expression as a tree; `None` after a mistake, be it one in the attribute or in the struct.
 pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>> {
+    functions(declaration, errors)?.into_iter().next()
+}
+
+/// The same; of a constraint what it has one below the other.
+pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<Rc<Tree>>> {
     let expression = declaration.expression.as_ref()?;
     let factors = || declaration.group.factors().iter();
     let turning = factors().find(|factor| !factor.is_added).cloned().or_else(|| built_in("SO3"));
@@ -43,15 +48,20 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
         matrices,
         calls: 0,
         derived: BTreeSet::new(),
+        result: value(expression),
+        above: Vec::new(),
     };
     let tree = checker.expression(expression);
-    let used = checker.used;
+    let (used, mut functions) = (checker.used, checker.above);
     let tree = tree?;
-    if tree.shape != Shape::Scalar {
+    functions.push(tree.clone());
+    if declaration.role == Role::Constraint {
+        few(&functions, value(expression), errors)?;
+    } else if tree.shape != Shape::Scalar {
         let shape = tree.shape.describe();
         let advice = match declaration.role {
-            Role::Lagrangian => "take a `.trace()` or a `.dot(…)`",
             Role::Force => "take its `.dot(…)` with a displacement",
+            _ => "take a `.trace()` or a `.dot(…)`",
         };
         let noun = declaration.role.noun();
         errors.push_over(value(expression), format!("{noun} is a scalar, but this is {shape}: {advice}"));
@@ -61,7 +71,38 @@ pub(crate) fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc
     if errors.is_empty() {
         usage::check(declaration, &used, errors);
     }
-    errors.is_empty().then_some(tree)
+    errors.is_empty().then_some(functions)
+}
+
+/// What holds two bodies has no more than these, as they have so many coordinates against each other.
+const MOST_FUNCTIONS: usize = 6;
+
+/// A mistake where a constraint is of matrices, or of too many functions.
+fn few(functions: &[Rc<Tree>], result: &Expr, errors: &mut Errors) -> Option<()> {
+    let parts: Vec<&Expr> = match result {
+        Expr::Tuple(tuple) => tuple.elems.iter().collect(),
+        other => vec![other],
+    };
+    let is_function = |tree: &Tree| tree.shape == Shape::Scalar || tree.shape.is_vector();
+    if let Some((tree, part)) = functions.iter().zip(parts).find(|(tree, _)| !is_function(tree)) {
+        let message = format!(
+            "a constraint is a scalar or a vector, or several of them, `(a, b)`, but this is {}: of an attitude take what \
+             has to be zero, as in `(R_1 * e).dot(&(R_2 * n))`",
+            tree.shape.describe()
+        );
+        errors.push_over(part, message);
+        return None;
+    }
+    let rows: usize = functions.iter().map(|tree| tree.shape.rows()).sum();
+    if rows > MOST_FUNCTIONS {
+        let message = format!(
+            "these are {rows} functions: two bodies have {MOST_FUNCTIONS} coordinates against each other, and more \
+             functions than that repeat what others say"
+        );
+        errors.push_over(result, message);
+        return None;
+    }
+    Some(())
 }
 
 /// What a block ends with, or the expression itself.
@@ -129,6 +170,10 @@ struct Checker<'a> {
     calls: usize,
     /// The names that `let`s and the parameters of functions have in the derivation, where each is one value's alone.
     derived: BTreeSet<String>,
+    /// What the whole expression comes to.
+    result: &'a Expr,
+    /// Of a constraint what stands above the last of several.
+    above: Vec<Rc<Tree>>,
 }
 
 impl Checker<'_> {
@@ -187,6 +232,7 @@ impl Checker<'_> {
             Expr::Call(call) => self.call(call),
             Expr::Index(index) => self.index(index),
             Expr::Field(field) => self.component(field),
+            Expr::Tuple(tuple) if self.is_constraint() && std::ptr::eq(expression, self.result) => self.stacked(tuple),
             Expr::Cast(cast) => self.unknown(cast.as_token),
             Expr::Try(question) => self.unknown(question.question_token),
             Expr::Closure(closure) => {
@@ -233,6 +279,18 @@ impl Checker<'_> {
         };
         self.errors.push_over(argument, format!("`{function}` {advice}"));
         false
+    }
+
+    /// `(a, b)`: scalars and vectors one below the other; the last of them.
+    fn stacked(&mut self, tuple: &syn::ExprTuple) -> Option<Rc<Tree>> {
+        let parts: Vec<Option<Rc<Tree>>> = tuple.elems.iter().map(|part| self.expression(part)).collect();
+        if parts.is_empty() {
+            self.errors.push_over(tuple, "these are no functions: write what has to be zero");
+        }
+        let mut parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        let last = parts.pop();
+        self.above = parts;
+        last
     }
 
     /// The token, and not what it stands among, has no meaning.
@@ -434,12 +492,13 @@ impl Checker<'_> {
         let square = Shape::Matrix(size, size);
         let increment = self.declaration.factors.iter().position(|factor| factor.name == name);
         let velocity = self.declaration.velocities().iter().position(|velocity| velocity.unraw() == name);
+        let displacement = self.displacement(&name);
         let of_increment = |factor: usize| match self.declaration.group.factor(factor).shape() {
             (1, 1) if self.declaration.group.factor(factor).is_added => Shape::Scalar,
             (rows, columns) => Shape::Matrix(rows, columns),
         };
         let (shape, found) = if let Some(factor) = increment {
-            if self.declaration.continuous.is_some() {
+            if self.declaration.continuous.is_some() || self.is_constraint() {
                 return self.of_a_step(&name, Some(factor), span);
             }
             (of_increment(factor), Name::Increment(factor))
@@ -451,10 +510,11 @@ impl Checker<'_> {
         } else {
             match name.as_str() {
                 "I" => return Some(Tree::new(span, square, Kind::Identity)),
-                "h" if self.declaration.continuous.is_some() => return self.of_a_step(&name, None, span),
+                "h" if self.declaration.continuous.is_some() || self.is_constraint() => {
+                    return self.of_a_step(&name, None, span);
+                }
                 "h" => (Shape::Scalar, Name::Step),
-                "eta" if self.is_force() => (self.displacement(), Name::DisplacementBefore),
-                "eta_next" if self.is_force() => (self.displacement(), Name::DisplacementAfter),
+                _ if displacement.is_some() => displacement?,
                 _ => {
                     if let Some(index) = advected(self.declaration) {
                         (self.declaration.advected_kind(index).shape(), Name::Advected(index))
@@ -488,10 +548,23 @@ impl Checker<'_> {
         Some(Tree::seen(span, shape, found, seen))
     }
 
-    /// A continuous Lagrangian knows no step: neither the increment of a factor, nor `h`.
+    /// A continuous Lagrangian knows no step, and a constraint none either: neither the increment of a factor, nor `h`.
     fn of_a_step(&mut self, name: &str, increment: Option<usize>, span: Span) -> Option<Rc<Tree>> {
-        if self.unknown.insert(name.to_owned()) {
-            let what = if let Some(factor) = increment {
+        if !self.unknown.insert(name.to_owned()) {
+            return None;
+        }
+        let message = match increment {
+            Some(factor) if self.is_constraint() => {
+                let place = if self.declaration.group.factor(factor).is_added { "x" } else { "R" };
+                format!(
+                    "a holonomic constraint is a function of positions: no increment may stand in it; name where the body \
+                     is, `advected({place} = {name}.seen_from(space))`"
+                )
+            }
+            None if self.is_constraint() => {
+                "a holonomic constraint is a function of positions: no step may stand in it".to_owned()
+            }
+            Some(factor) => {
                 let velocity = match self.declaration.velocity(factor) {
                     Some(velocity) => format!("the velocity `{}`", velocity.unraw()),
                     None if self.declaration.group.is_product() => {
@@ -499,22 +572,42 @@ impl Checker<'_> {
                     }
                     None => "the velocity `Omega`, named by `velocity = Omega`".to_owned(),
                 };
-                format!("`{name}` is the increment of a step, and `l` has no steps: write it in {velocity}")
-            } else {
-                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`"
+                format!(
+                    "`{name}` is the increment of a step, and `l` has no steps: write it in {velocity}, or declare \
+                     `l_d = …`"
+                )
+            }
+            None => {
+                "`h` is the length of a step, and `l` has no steps: leave it out; `discretise = …` makes `l_d`, or \
+                     declare `l_d = …`"
                     .to_owned()
-            };
-            self.errors.push(span, format!("{what}, or declare `l_d = …`"));
-        }
+            }
+        };
+        self.errors.push(span, message);
         None
+    }
+
+    fn is_constraint(&self) -> bool {
+        self.declaration.role == Role::Constraint
     }
 
     fn is_force(&self) -> bool {
         self.declaration.role == Role::Force
     }
 
-    /// A vector with a component for each generator.
-    fn displacement(&self) -> Shape {
-        Shape::Matrix(self.declaration.group.dimension(), 1)
+    /// A displacement of that name: a vector with a component for each generator of its factor, on a line a scalar.
+    fn displacement(&self, name: &str) -> Option<(Shape, Name)> {
+        let group = &self.declaration.group;
+        (0..group.factors().len()).find_map(|factor| {
+            let [before, after] = self.declaration.displacement(factor)?;
+            let own = group.factor(factor);
+            let is_scalar = own.is_added && own.dimension() == 1;
+            let shape = if is_scalar { Shape::Scalar } else { Shape::Matrix(own.dimension(), 1) };
+            match name {
+                _ if name == before => Some((shape, Name::DisplacementBefore(factor))),
+                _ if name == after => Some((shape, Name::DisplacementAfter(factor))),
+                _ => None,
+            }
+        })
     }
 }

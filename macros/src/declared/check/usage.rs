@@ -8,13 +8,17 @@ use crate::mathematics::derive::Seen;
 
 pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
     if declaration.role == Role::Force {
-        let displacements = [Name::DisplacementBefore, Name::DisplacementAfter];
-        if !used.iter().any(|name| displacements.contains(name)) {
+        let is_displacement = |name: &Name| matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_));
+        if !used.iter().any(is_displacement) {
             errors.push_over(
                 declaration.expression.as_ref().map(super::value),
                 "virtual work needs a displacement: `eta` at the beginning of the step, `eta_next` at its end",
             );
         }
+        check_names(declaration, used, errors);
+        return;
+    }
+    if declaration.role == Role::Constraint {
         check_names(declaration, used, errors);
         return;
     }
@@ -68,7 +72,7 @@ fn check_names(declaration: &Declaration, used: &[Name], errors: &mut Errors) {
         if !used.contains(&Name::Advected(index)) {
             let (name, list) = (w.plain_name(), if w.is_given { "given" } else { "advected" });
             let consequence = match w.seen {
-                Seen::Relative { .. } => {
+                Seen::Relative { .. } if declaration.role != Role::Constraint => {
                     "; without it these bodies don't feel each other, and each may be a declaration of its own"
                 }
                 _ => "",

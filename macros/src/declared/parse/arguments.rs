@@ -29,6 +29,8 @@ pub(super) struct Arguments {
     pub(super) root: Option<Path>,
     /// With its key.
     pub(super) generators: Option<(Ident, ExprArray)>,
+    /// The names of a force's displacements, with their key.
+    pub(super) displacement: Option<(Ident, Vec<Ident>)>,
     /// Its key.
     pub(super) gradients: Option<Ident>,
     /// Whether an argument has come without a name, which one message says.
@@ -63,9 +65,14 @@ fn skip_argument(input: ParseStream) {
 }
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
-    let mut known = vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"];
-    if role == Role::Lagrangian {
-        known.extend(["l", "velocity", "discretise"]);
+    let mut known = vec!["group", "advected", role.key(), "crate"];
+    if role != Role::Constraint {
+        known.extend(["given", "generators", "gradients"]);
+    }
+    match role {
+        Role::Lagrangian => known.extend(["l", "velocity", "discretise"]),
+        Role::Force => known.push("displacement"),
+        Role::Constraint => {}
     }
     let Some(key) = key(input, &known) else {
         if !arguments.has_nameless {
@@ -84,9 +91,6 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         "group" => {
             once(arguments.group.is_some() || !arguments.factors.is_empty());
             if input.peek(syn::token::Paren) {
-                if role == Role::Force {
-                    return Err(syn::Error::new(key.span(), "a force acts on one body: write `group = SO3`"));
-                }
                 let content;
                 parenthesized!(content in input);
                 let factors = factors(&content, errors);
@@ -119,25 +123,34 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             let names = velocities(&key, input)?;
             arguments.velocity = Some((key, names));
         }
+        "displacement" if role == Role::Force => {
+            once(arguments.displacement.is_some());
+            let message = "write `displacement(eta_1, eta_2)`: a name for each factor of the group, in their order";
+            if !input.peek(syn::token::Paren) {
+                return Err(syn::Error::new(key.span(), message));
+            }
+            let names = in_parentheses(input, message)?;
+            arguments.displacement = Some((key, names));
+        }
         "discretise" if role == Role::Lagrangian => {
             once(arguments.discretisation.is_some());
             equals(&key, input)?;
             without_quotes(&key, input)?;
             arguments.discretisation = Some((key, discretisation(input)?));
         }
-        "gradients" => {
+        "gradients" if role != Role::Constraint => {
             once(arguments.gradients.is_some());
             if !input.is_empty() && !input.peek(Token![,]) {
                 return Err(syn::Error::new(input.span(), "`gradients` stands alone: remove what follows it"));
             }
             arguments.gradients = Some(key);
         }
-        "generators" => {
+        "generators" if role != Role::Constraint => {
             once(arguments.generators.is_some());
             equals(&key, input)?;
             arguments.generators = Some((key, group::array(input)?));
         }
-        pairs @ ("advected" | "given") => {
+        pairs @ ("advected" | "given") if role != Role::Constraint || pairs == "advected" => {
             let is_given = pairs == "given";
             if !input.peek(syn::token::Paren) {
                 let example = if is_given { "given(u = torque)" } else { "advected(w = up)" };
@@ -198,11 +211,8 @@ fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group:
 /// `= Omega`, `(Omega_1, Omega_2)`.
 fn velocities(key: &Ident, input: ParseStream) -> syn::Result<Vec<Ident>> {
     if input.peek(syn::token::Paren) {
-        let content;
-        parenthesized!(content in input);
         let message = "write `velocity(Omega_1, Omega_2)`: a name for each factor of the group, in their order";
-        let names = Punctuated::<Ident, Token![,]>::parse_terminated(&content);
-        return names.map(|names| names.into_iter().collect()).map_err(|error| syn::Error::new(error.span(), message));
+        return in_parentheses(input, message);
     }
     equals(key, input)?;
     if input.peek(syn::token::Paren) {
@@ -214,6 +224,14 @@ fn velocities(key: &Ident, input: ParseStream) -> syn::Result<Vec<Ident>> {
     }
     without_quotes(key, input)?;
     Ok(vec![input.call(Ident::parse_any)?])
+}
+
+/// `(Omega_1, Omega_2)`.
+fn in_parentheses(input: ParseStream, message: &str) -> syn::Result<Vec<Ident>> {
+    let content;
+    parenthesized!(content in input);
+    let names = Punctuated::<Ident, Token![,]>::parse_terminated(&content);
+    names.map(|names| names.into_iter().collect()).map_err(|error| syn::Error::new(error.span(), message))
 }
 
 /// The name of an argument, known or followed by what it would be given.

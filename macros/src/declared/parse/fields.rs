@@ -17,6 +17,7 @@ pub(super) fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec
         let what = match role {
             Role::Lagrangian => "a Lagrangian",
             Role::Force => "a force",
+            Role::Constraint => "a constraint",
         };
         errors.push(item.ident.span(), format!("{what} is a struct with named fields: its parameters"));
         return Default::default();

@@ -154,7 +154,7 @@ pub(super) fn check_increments(factors: &[Factor], taken: &Taken, errors: &mut E
         } else if taken.advected.contains(name) {
             "is advected already"
         } else if taken.velocities.contains(name) {
-            "is the velocity already"
+            "is a velocity or a displacement already"
         } else {
             continue;
         };

@@ -5,6 +5,7 @@ mod fields;
 mod group;
 mod own_group;
 mod size;
+mod two_bodies;
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
@@ -14,7 +15,7 @@ use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{
     AdvectedParameter, Continuous, Coordinates, Declaration, Discretisation, Factor, Field, FieldKind, Quadrature,
-    Role, named_velocities,
+    Role, named_displacements, named_velocities,
 };
 use crate::mathematics::derive::Seen;
 use crate::mathematics::group::Group;
@@ -65,7 +66,11 @@ fn annotated(role: Role, item: &TokenStream, errors: &mut Errors) -> Option<Item
 pub(crate) fn declared_again(item: &ItemStruct) -> Option<&Path> {
     item.attrs.iter().map(syn::Attribute::path).find(|path| {
         let is_ours = path.segments.len() == 1 || path.segments.first().is_some_and(|first| first.ident == "liestep");
-        is_ours && path.segments.last().is_some_and(|last| last.ident == "lagrangian" || last.ident == "force")
+        is_ours
+            && path
+                .segments
+                .last()
+                .is_some_and(|last| ["lagrangian", "force", "constraint"].iter().any(|name| last.ident == name))
     })
 }
 
@@ -116,6 +121,7 @@ pub(crate) fn as_far_as_readable(
                  l = …` with one in `Omega`"
             }
             Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
+            Role::Constraint => "the constraint is missing: write `zero = …`, a function of where two bodies are",
         };
         errors.push(Span::call_site(), message);
     }
@@ -124,12 +130,16 @@ pub(crate) fn as_far_as_readable(
         points(&mut fields, &group, errors);
     }
     let scalar = scalar(&item, errors);
+    if role == Role::Constraint && errors.is_empty() {
+        two_bodies::check(&factors, &fields, &scalar, &item, errors);
+    }
     let taken = group::Taken {
         fields: fields.iter().map(Field::plain_name).chain(unreadable.iter().cloned()).collect(),
         advected: arguments.advected.iter().map(|(name, ..)| name.unraw().to_string()).collect(),
         velocities: arguments
             .velocity
             .iter()
+            .chain(&arguments.displacement)
             .flat_map(|(_, names)| names)
             .map(|name| name.unraw().to_string())
             .collect(),
@@ -143,6 +153,13 @@ pub(crate) fn as_far_as_readable(
         group_path.as_ref().map(|_| (&group, factors.as_slice())),
         errors,
     );
+    let displacements = match role {
+        Role::Force if errors.is_empty() => displacements(arguments.displacement.take(), &factors, errors),
+        _ => Vec::new(),
+    };
+    // Among several bodies `eta` is a name as any other.
+    let both = displacements.iter().flat_map(|name| [name.clone(), Ident::new(&format!("{name}_next"), name.span())]);
+    check_names(Role::Lagrangian, &both.collect::<Vec<_>>(), "a displacement", (&fields, &advected), errors);
     let (expression, continuous) = kind(role, &mut arguments, (&fields, &advected, &factors), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
@@ -154,6 +171,7 @@ pub(crate) fn as_far_as_readable(
         advected,
         expression: expression.filter(|_| has_meaning),
         continuous,
+        displacements,
         gradients: arguments.gradients.map(|key| key.span()),
         fields,
         unreadable,
@@ -194,17 +212,7 @@ fn kind(
         errors.push(key.span(), "`l` is given here");
     }
     let velocities = velocities(velocity, factors, errors);
-    for (at, name) in velocities.iter().enumerate() {
-        let plain = name.unraw().to_string();
-        check_free(role, name, errors);
-        if velocities[..at].contains(name) {
-            errors.push_decisive(name.span(), format!("`{plain}` is a velocity already: choose another name"));
-        } else if fields.iter().any(|field| field.plain_name() == plain) {
-            errors.push_decisive(name.span(), format!("`{plain}` is a field already: choose another name"));
-        } else if advected.iter().any(|w| w.plain_name() == plain) {
-            errors.push_decisive(name.span(), format!("`{plain}` is advected already: choose another name"));
-        }
-    }
+    check_names(role, &velocities, "a velocity", (fields, advected), errors);
     let discretisation = discretisation.map(|(_, discretisation)| discretisation);
     if let Some(Discretisation { quadrature: Quadrature::Midpoint, coordinates, place }) = discretisation
         && coordinates != Coordinates::Exponential
@@ -219,6 +227,57 @@ fn kind(
         errors.push_between(place, message);
     }
     (Some(l), Some(Continuous { velocities, discretisation }))
+}
+
+/// Mistakes where a name of this kind means something else.
+fn check_names(
+    role: Role,
+    names: &[Ident],
+    kind: &str,
+    (fields, advected): (&[Field], &[AdvectedParameter]),
+    errors: &mut Errors,
+) {
+    for (at, name) in names.iter().enumerate() {
+        let plain = name.unraw().to_string();
+        check_free(role, name, errors);
+        if names[..at].contains(name) {
+            errors.push_decisive(name.span(), format!("`{plain}` is {kind} already: choose another name"));
+        } else if fields.iter().any(|field| field.plain_name() == plain) {
+            errors.push_decisive(name.span(), format!("`{plain}` is a field already: choose another name"));
+        } else if advected.iter().any(|w| w.plain_name() == plain) {
+            errors.push_decisive(name.span(), format!("`{plain}` is advected already: choose another name"));
+        }
+    }
+}
+
+/// The names of a force's displacements, which several bodies need; none of one body, where they are `eta` and `eta_next`.
+fn displacements(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &mut Errors) -> Vec<Ident> {
+    let is_product = factors.len() > 1;
+    let Some((key, names)) = named else {
+        if let Some(factor) = factors.first().filter(|_| is_product) {
+            let message = format!(
+                "the displacements of several bodies have names: write `{}`; those at the end of the step are called the \
+                 same with `_next`",
+                named_displacements(factors)
+            );
+            errors.push_decisive(factor.place, message);
+        }
+        return Vec::new();
+    };
+    if !is_product {
+        errors.push_decisive(key.span(), "the displacements of one body are called `eta` and `eta_next`: remove this");
+        return Vec::new();
+    }
+    if names.len() != factors.len() {
+        let increments: Vec<String> = factors.iter().map(|factor| format!("`{}`", factor.name)).collect();
+        let message = format!(
+            "write `{}`: each of {} has a displacement, in this order",
+            named_displacements(factors),
+            increments.join(", ")
+        );
+        errors.push_decisive(key.span(), message);
+    }
+    names
 }
 
 /// The names of the velocities, one for each factor, or none.

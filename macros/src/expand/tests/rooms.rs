@@ -97,6 +97,14 @@ fn expansions_name_the_private_module_alone() {
     let work = "group = SO3, work = exp(a).trace() * log(F).dot(&(inverse(J) * eta))";
     let force =
         crate::expand::expand(Role::Force, tokens(work), &tokens("struct Push { a: Vector3<f64>, J: Inertia }"));
+    let held = crate::expand::expand(
+        Role::Constraint,
+        tokens(
+            "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
+            zero = (r.dot(&(A * r)) - l, vee(Q), exp(r).trace())",
+        ),
+        &tokens("struct Held { A: Matrix3<f64>, l: f64 }"),
+    );
     let generic =
         "struct Top<T: Real> { J_d: DiagonalNonstandardInertia<T>, m: T, g: T, rho: Vector3<T>, up: Vector3<T> }";
     let planar =
@@ -105,7 +113,7 @@ fn expansions_name_the_private_module_alone() {
     let fields = "struct Planar { J: Matrix3<f64>, up: Point2<f64>, P: Vector3<f64>, C: MixedTensor<f64, 3> }";
     let (top, planar) = (expanded(HEAVY_TOP, generic), expanded(planar, fields));
     let refused = expanded("group = SO3, l_d = rho", &super::top("Inertia"));
-    for (expansion, refused) in [(force, false), (top, false), (planar, false), (refused, true)] {
+    for (expansion, refused) in [(force, false), (held, false), (top, false), (planar, false), (refused, true)] {
         assert_eq!(super::is_refused(&expansion), refused, "{expansion}");
         let text = expansion.to_string();
         let mut named = text.split("liestep ::").skip(1);

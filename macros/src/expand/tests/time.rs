@@ -51,6 +51,7 @@ fn declarations_in(folder: &Path, found: &mut Vec<(String, Role, TokenStream, To
             let role = |attribute: &syn::Attribute| match attribute.path().segments.last()?.ident.to_string().as_str() {
                 "lagrangian" => Some(Role::Lagrangian),
                 "force" => Some(Role::Force),
+                "constraint" => Some(Role::Constraint),
                 _ => None,
             };
             if let Some(at) = item.attrs.iter().position(|attribute| role(attribute).is_some()) {

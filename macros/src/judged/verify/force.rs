@@ -4,10 +4,13 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{Evaluation, Fault, Sample, TOLERANCE, Unconfirmed, Value, compare, confirmed, evaluated, turn};
+use super::{
+    Evaluation, Fault, Sample, TOLERANCE, Unconfirmed, Value, compare, confirmed, evaluated, increments, turn,
+};
 use crate::declared::{Declaration, Name, Tree};
 use crate::judged::choose::Chosen;
 use crate::mathematics::derive::Derived;
+use crate::mathematics::group::Group;
 use crate::program::{Graph, components, square};
 
 /// Checks the derived terms of a force. The error is the first that disagrees.
@@ -39,8 +42,8 @@ fn check(
     // −f⁻_k at exp(tE_j) F.
     let expected = |k: usize, j: usize, t: f64| {
         let mut values = sample.values.clone();
-        values.insert(Name::Increment(0), turn(&derived.group, j, t).times(&sample.increment));
-        values.extend(displacements(dimension, k));
+        values.extend(increments(&derived.group, &turn(&derived.group, j, t).times(&sample.increment)));
+        values.extend(along(&derived.group, k));
         -Evaluation::new(&values).of(tree).first()
     };
     let size = 1.0 + jacobian.iter().chain(momentum).map(|x| x.abs()).sum::<f64>();
@@ -59,8 +62,15 @@ fn check(
     Ok(())
 }
 
-/// One along the axis `k` at the beginning of a step, and nothing at its end.
-pub(super) fn displacements(dimension: usize, k: usize) -> [(Name, Value); 2] {
-    let axis = |k: Option<usize>| Value::new(dimension, 1, |row, _| f64::from(u8::from(Some(row) == k)));
-    [(Name::DisplacementBefore, axis(Some(k))), (Name::DisplacementAfter, axis(None))]
+/// One along the component `k` at the beginning of a step, and nothing at its end.
+fn along(group: &Group, k: usize) -> Vec<(Name, Value)> {
+    let (of, own) = group.factor_of(k);
+    let factors = group.factors().iter().enumerate();
+    let each = factors.flat_map(|(factor, group)| {
+        let axis = |is_along| {
+            Value::new(group.dimension(), 1, |row, _| f64::from(u8::from(is_along && factor == of && row == own)))
+        };
+        [(Name::DisplacementBefore(factor), axis(true)), (Name::DisplacementAfter(factor), axis(false))]
+    });
+    each.collect()
 }

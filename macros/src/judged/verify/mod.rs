@@ -4,6 +4,7 @@
 //! itself. First derivatives are compared with its central differences; what is built from them, with them.
 
 mod cayley;
+mod constraint;
 mod continuous;
 mod degree;
 mod dual;
@@ -34,6 +35,7 @@ use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 use crate::program::{Graph, Input, Kernel, NodeId};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
+pub(super) use constraint::constraint;
 #[cfg(test)]
 pub(crate) use continuous::energy_is_kept;
 pub(crate) use continuous::{
@@ -98,10 +100,10 @@ pub(super) fn verify(
 }
 
 /// The first points at which what was derived agrees with the declaration.
-fn confirmed<'a>(
-    draws: impl Iterator<Item = Sample<'a>>,
-    check: impl Fn(&Sample) -> Result<(), Fault>,
-) -> Result<Vec<Sample<'a>>, Unconfirmed> {
+fn confirmed<S>(
+    draws: impl Iterator<Item = S>,
+    check: impl Fn(&S) -> Result<(), Fault>,
+) -> Result<Vec<S>, Unconfirmed> {
     let (mut samples, mut nothing) = (Vec::new(), Unconfirmed::NoValue);
     for sample in draws {
         match check(&sample) {
@@ -289,9 +291,7 @@ impl<'a, T: Number> Sample<'a, T> {
             values.insert(Name::Field(index), parameter(field.kind, &mut number));
         }
         if declaration.role == Role::Force {
-            for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
-                values.insert(name, parameter(FieldKind::Vector(declaration.group.dimension()), &mut number));
-            }
+            values.extend(displacements(&declaration.group, &mut number));
         }
         let mut advected = Vec::new();
         for index in 0..declaration.advected.len() {
@@ -373,6 +373,16 @@ fn increments<T: Number>(group: &Group, all: &Value<T>) -> Vec<(Name, Value<T>)>
         if group.factor(factor).is_added { translation(&own) } else { own }
     };
     (0..group.factors().len()).map(|factor| (Name::Increment(factor), value(factor))).collect()
+}
+
+/// Displacements of all factors, at the beginning of a step and at its end.
+fn displacements<T: Number>(group: &Group, number: &mut impl FnMut() -> T) -> Vec<(Name, Value<T>)> {
+    let factors = group.factors().iter().enumerate();
+    let of_factor = factors.flat_map(|(factor, own)| {
+        let names = [Name::DisplacementBefore(factor), Name::DisplacementAfter(factor)];
+        names.map(|name| (name, FieldKind::Vector(own.dimension())))
+    });
+    of_factor.map(|(name, kind)| (name, parameter(kind, number))).collect()
 }
 
 /// The velocities of all factors, of the components of all.

@@ -10,8 +10,8 @@ use super::evaluation::Evaluation;
 use super::number::Number as _;
 use super::series::Series;
 use super::value::Value;
-use super::{exponential, increments, parameter, stream, velocities};
-use crate::declared::{Declaration, FieldKind, Kind, Name, Role, Shape, Tree};
+use super::{displacements, exponential, increments, parameter, stream, velocities};
+use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
 use crate::mathematics::symbolic::{Function, Rational};
 
 /// A sum may be taken apart as often; what is shared by `let`s is written down more often than a person would.
@@ -103,9 +103,7 @@ impl Points {
         let speeds: Vec<Series> = group.generators.iter().map(|_| number() + Series::constant(0.5)).collect();
         let velocity = Value::combination(group.size, &group.generators, &speeds);
         at_rest.extend(velocities(group, &speeds));
-        for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
-            at_rest.insert(name, parameter(FieldKind::Vector(group.dimension()), &mut number));
-        }
+        at_rest.extend(displacements(group, &mut number));
         let with_advected = |values: &Values, seed: u64| {
             let (mut values, mut number) = (values.clone(), numbers(seed));
             for index in 0..declaration.advected.len() {
@@ -114,12 +112,12 @@ impl Points {
             values
         };
         let at_rest = with_advected(&at_rest, 2);
-        let mut elsewhere = match declaration.role {
-            Role::Lagrangian => with_advected(&at_rest, 3),
-            Role::Force => at_rest.clone(),
-        };
-        for name in [Name::DisplacementBefore, Name::DisplacementAfter] {
-            elsewhere.entry(name).and_modify(|value| *value = value.plus(value));
+        let is_force = declaration.role == Role::Force;
+        let mut elsewhere = if is_force { at_rest.clone() } else { with_advected(&at_rest, 3) };
+        for (name, value) in &mut elsewhere {
+            if matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_)) {
+                *value = value.plus(value);
+            }
         }
         let with_increment = |increment: Value<Series>| {
             let mut values = at_rest.clone();
@@ -180,14 +178,12 @@ impl Search<'_> {
     fn behaviour(&mut self, tree: &Rc<Tree>) -> Behaviour {
         self.kept.push(tree.clone());
         let [moving, value] = [&mut self.moving, &mut self.at_rest].map(|at| at.of(tree).first());
-        match self.role {
-            Role::Lagrangian => {
-                let [elsewhere, turned, further] =
-                    [&mut self.elsewhere, &mut self.turned, &mut self.turned_further].map(|at| at.of(tree).first());
-                Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further }
-            }
-            Role::Force => Behaviour { along: moving, at_rest: value, value, fixed: value },
+        if self.role == Role::Force {
+            return Behaviour { along: moving, at_rest: value, value, fixed: value };
         }
+        let [elsewhere, turned, further] =
+            [&mut self.elsewhere, &mut self.turned, &mut self.turned_further].map(|at| at.of(tree).first());
+        Behaviour { along: moving - value, at_rest: value - elsewhere, value, fixed: turned - further }
     }
 
     /// What keeps the limit `h → 0` from existing, if anything does. A first derivative of the kinetic part isn't meant.
@@ -197,13 +193,13 @@ impl Search<'_> {
             return None;
         }
         let is_low = |series: Series| series.order().filter(|&order| order < 1);
-        match self.role {
-            Role::Force => is_low(along).map(TermMistake::Work),
-            Role::Lagrangian => is_low(at_rest).map(TermMistake::Potential).or_else(|| {
-                let power = fixed.order().filter(|&power| power < -1)?;
-                is_low(along).map(|_| TermMistake::TooSingular(power))
-            }),
+        if self.role == Role::Force {
+            return is_low(along).map(TermMistake::Work);
         }
+        is_low(at_rest).map(TermMistake::Potential).or_else(|| {
+            let power = fixed.order().filter(|&power| power < -1)?;
+            is_low(along).map(|_| TermMistake::TooSingular(power))
+        })
     }
 
     /// Whether virtual work is linear in the displacements, as far as twice of them tell.
@@ -255,12 +251,12 @@ impl Search<'_> {
             _ if names.has_power => None,
             (Role::Force, Some(TermMistake::Potential(order))) => Some(TermMistake::Work(order)),
             (_, Some(mistake)) => Some(mistake),
+            (Role::Force, None) => None,
             // Unless it is there to be cancelled.
-            (Role::Lagrangian, None) => {
+            (_, None) => {
                 let is_constant = along.is_zero() && at_rest.is_zero() && names.has_increment;
                 (is_constant && is_low(value) && is_low(whole.value)).then_some(TermMistake::Constant)
             }
-            (Role::Force, None) => None,
         };
         self.found.extend(mistake.map(|mistake| (tree.clone(), mistake)));
     }

@@ -57,8 +57,8 @@ impl Sample<'_> {
                 Name::Increment(_)
                 | Name::Step
                 | Name::Velocity(_)
-                | Name::DisplacementBefore
-                | Name::DisplacementAfter => false,
+                | Name::DisplacementBefore(_)
+                | Name::DisplacementAfter(_) => false,
             };
             if is_vector && (value.rows, value.columns) == (group.size, 1) {
                 value.entries.pop();

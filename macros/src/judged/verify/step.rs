@@ -59,7 +59,8 @@ impl Step<'_> {
         Ok(())
     }
 
-    fn inputs(&self, sample: &Sample, f: &Value) -> BTreeMap<SymbolId, Value> {
+    /// Those of the terms, and the coordinates of the Newton system.
+    pub(super) fn inputs(&self, sample: &Sample, f: &Value) -> BTreeMap<SymbolId, Value> {
         let mut inputs = sample.inputs(f);
         if self.derived.group.rotates() {
             let group = &self.derived.group;

@@ -11,13 +11,13 @@ use crate::program::{Given, Graph, NodeId, Scalariser, components, square, with_
 
 /// The derived terms as operations, for all samples.
 pub(super) struct Terms {
-    graph: Graph,
-    right: Vec<NodeId>,
-    left: Vec<NodeId>,
-    diamond: Vec<NodeId>,
-    momentum: Vec<NodeId>,
-    jacobian: Vec<NodeId>,
-    energy: NodeId,
+    pub(super) graph: Graph,
+    pub(super) right: Vec<NodeId>,
+    pub(super) left: Vec<NodeId>,
+    pub(super) diamond: Vec<NodeId>,
+    pub(super) momentum: Vec<NodeId>,
+    pub(super) jacobian: Vec<NodeId>,
+    pub(super) energy: NodeId,
 }
 
 impl Terms {

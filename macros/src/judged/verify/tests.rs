@@ -1,13 +1,15 @@
-//! Each check fails on a broken term.
+//! Each check fails on a broken term; and what is derived for several bodies is right to rounding.
+
+mod products;
 
 use std::rc::Rc;
 
-use super::{KineticPart, Unconfirmed, degree, kinetic_part, verify};
+use super::{KineticPart, Unconfirmed, constraint, degree, kinetic_part, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
 use crate::declared::{Declaration, Role, Tree, check, parse};
 use crate::expand::tests::{HEAVY_TOP, top};
-use crate::judged::{Chosen, cheapest};
+use crate::judged::{Chosen, cheapest, held};
 use crate::mathematics::derive::{Derived, SelfAdjointness, derive};
 use crate::mathematics::symbolic::{Expression, Rational};
 use crate::program::{Kernel, kernel};
@@ -21,11 +23,16 @@ struct Declared {
 }
 
 fn checked(arguments: &str, item: &str) -> (Declaration, Rc<Tree>) {
+    let (declaration, trees) = checked_as(Role::Lagrangian, arguments, item);
+    (declaration, trees[0].clone())
+}
+
+fn checked_as(role: Role, arguments: &str, item: &str) -> (Declaration, Vec<Rc<Tree>>) {
     let mut errors = Errors::default();
     let [arguments, item] = [arguments, item].map(|text| text.parse().expect("tokens"));
-    let declaration = parse::declaration(Role::Lagrangian, &arguments, &item, &mut errors).expect("a declaration");
-    let tree = check::check(&declaration, &mut errors).expect("a Lagrangian");
-    (declaration, tree)
+    let declaration = parse::declaration(role, &arguments, &item, &mut errors).expect("a declaration");
+    let trees = check::functions(&declaration, &mut errors).expect("something declared");
+    (declaration, trees)
 }
 
 impl Declared {
@@ -34,7 +41,9 @@ impl Declared {
         let mut errors = Errors::default();
         let readings = readings(&declaration, &tree, &mut errors).expect("small");
         let chosen = cheapest(readings, derive, &declaration, &tree, &mut errors);
-        let Chosen { lowered, derived, .. } = chosen.expect("something to derive");
+        let Chosen { lowered, derived, .. } = chosen.unwrap_or_else(|| {
+            panic!("nothing to derive: {}", errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))
+        });
         Self { declaration, tree, lowered, derived }
     }
 
@@ -146,6 +155,24 @@ fn a_wrong_step_is_named() {
             }
         });
         assert_eq!(negative, Err("Newton residual"));
+    }
+}
+
+/// Of each slope of each body.
+#[test]
+fn a_wrong_slope_is_named() {
+    let arguments = "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+        advected(R_1 = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
+        zero = (R_1.transpose() * r + Q * below, (Q * below).dot(&axis).sin())";
+    let (declaration, trees) =
+        checked_as(Role::Constraint, arguments, "struct Joint { below: Vector3<f64>, axis: Vector3<f64> }");
+    let held = || held(&declaration, trees.clone(), &mut Errors::default()).expect("a constraint");
+    assert!(constraint(&declaration, &held()).is_ok());
+    for (body, by) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let mut held = held();
+        let of = held.entries[body][by].iter().position(|&entry| !held.graph.is_zero(entry)).expect("a slope");
+        held.entries[body][by][of] = held.graph.negate(held.entries[body][by][of]);
+        assert_eq!(constraint(&declaration, &held), Err(Unconfirmed::Disagrees("slope")), "{body} {by}");
     }
 }
 

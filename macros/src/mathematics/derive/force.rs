@@ -10,8 +10,6 @@
 //!
 //! so it has the stages of any effect, and a share in the Newton Jacobian.
 
-use std::collections::BTreeMap;
-
 use super::{Context, Declared, Derived, Limit, cayley, directions, momentum_equation, transport};
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 
@@ -22,22 +20,25 @@ pub(crate) enum ForceError {
     NotLinear,
 }
 
-/// The displacements `η` and `η⁺`.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Displacements {
-    pub(crate) before: SymbolId,
-    pub(crate) after: SymbolId,
-}
+/// The displacements `η` and `η⁺` of each factor of the group.
+#[derive(Clone, Debug)]
+pub(crate) struct Displacements(pub(crate) Vec<[SymbolId; 2]>);
 
 /// All that follows from the virtual work; what only a Lagrangian has is zero.
-pub(super) fn force(declared: &Declared, displacements: Displacements) -> Result<Derived, ForceError> {
+pub(super) fn force(declared: &Declared, Displacements(displacements): &Displacements) -> Result<Derived, ForceError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
     let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
-    let direction = context.components(&context.first(0));
+    let direction = |factor| match context.first(factor) {
+        e if context.is_added(factor) => e,
+        e => context.components_of(factor, &e),
+    };
     let work = |before: i128, after: i128| {
-        let along = |factor| direction.clone().scaled(Rational::integer(factor));
-        let map = BTreeMap::from([(displacements.before, along(before)), (displacements.after, along(after))]);
+        let of_factor = |(factor, ids): (usize, &[SymbolId; 2])| {
+            let along = |times| direction(factor).scaled(Rational::integer(times));
+            [(ids[0], along(before)), (ids[1], along(after))]
+        };
+        let map = displacements.iter().enumerate().flat_map(of_factor).collect();
         context.substituted(&declared.expression, &map)
     };
     let (before, after) = (work(1, 0), work(0, 1));

@@ -4,6 +4,7 @@ mod action;
 mod algebra;
 mod cayley;
 mod closed;
+mod constraint;
 mod continuous;
 mod diamond;
 mod energy;
@@ -25,6 +26,7 @@ pub(crate) use action::{Carried, Seen};
 pub(crate) use algebra::{hat, linear_forms, unit};
 pub(crate) use cayley::Cleared;
 pub(crate) use closed::{Closed, Let};
+pub(crate) use constraint::{Body, DeclaredConstraint};
 pub(crate) use continuous::{Continuous, DeclaredContinuous, Element, Inverse, continuous, of_limit};
 pub(crate) use force::{Displacements, ForceError};
 pub(crate) use limit::{Discretised, Limit, LimitError};
@@ -197,7 +199,7 @@ impl Derived {
 
 /// Derives everything, of a Lagrangian or of a force.
 pub(crate) fn derive(declared: &Declared) -> Result<Derived, Refusal> {
-    let derived = match declared.displacements {
+    let derived = match &declared.displacements {
         None => lagrangian(declared).map_err(Refusal::Limit)?,
         Some(displacements) => force::force(declared, displacements).map_err(Refusal::Force)?,
     };
@@ -342,12 +344,7 @@ impl Context<'_> {
         left.times(right, self.symbols)
     }
 
-    /// The components of an element of the algebra with respect to the generators.
-    fn components(&self, element: &Expression) -> Expression {
-        algebra::components(&self.declared.group, element, self.symbols)
-    }
-
-    /// The same of a factor.
+    /// The components of an element of a factor's algebra with respect to its generators.
     fn components_of(&self, factor: usize, element: &Expression) -> Expression {
         algebra::components(self.declared.group.factor(factor), element, self.symbols)
     }

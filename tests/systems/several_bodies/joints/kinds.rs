@@ -7,7 +7,7 @@ use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::{Random, derivative};
 use liestep::methods::{BallJoint, Constraint, Joined, Joint, Joints, PinJoint, Place, Slope};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper, constraint};
 use nalgebra::{Matrix3, SVector, Vector3, Vector6};
 
 use super::super::apart;
@@ -53,6 +53,148 @@ fn slopes_are_derivatives_of_gaps() {
         check_slopes(&pin, &mut random);
         check_slopes(&Joint::Ball(ball), &mut random);
         check_slopes(&Joint::Pin(pin), &mut random);
+    }
+}
+
+/// The library's ball joint, declared.
+#[constraint(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+    zero = r + R_2 * below - R_1 * above,
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct DeclaredBall {
+    above: Vector3<f64>,
+    below: Vector3<f64>,
+}
+
+/// The strut of `examples/declarations`, declared.
+#[constraint(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
+    zero = {
+        // As the body above sees it.
+        let along = R_1.transpose() * r + Q * below - above;
+        0.5 * (along.norm_squared() / length - length)
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct DeclaredStrut {
+    above: Vector3<f64>,
+    below: Vector3<f64>,
+    length: f64,
+}
+
+/// A sleeve on a rail: a point of the body below stays on a line of the body above, along which it also points.
+#[constraint(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), x = d_1.seen_from(space), y = d_2.seen_from(space)),
+    zero = {
+        let on = |e: Vector3<f64>| e.dot(&(R.transpose() * (y - x)));
+        let along = Q * axis;
+        (on(first), on(second), first.dot(&along), second.dot(&along))
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sleeve {
+    /// Across the rail, in the axes of the body above.
+    first: Vector3<f64>,
+    second: Vector3<f64>,
+    /// Along it, in those of the body below.
+    axis: Vector3<f64>,
+}
+
+/// Functions, fields that either body sees, and inverses; it holds nothing that one would build.
+#[constraint(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(w = up.seen_from(F_2), v = up.seen_from(F_1), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
+    zero = (
+        (Q * w).dot(&(A * v)) + k * (1.0 + r.norm_squared()).sqrt() - r[2].sin(),
+        vee(Q) - hat(v) * (Q * e).cross(&(Q * w)),
+        (Q * inverse(A)).trace() * (0.1 * w.y).exp(),
+    ),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Anything {
+    A: Matrix3<f64>,
+    k: f64,
+    e: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// What is derived of a declared constraint are the derivatives of what is declared; of the library's ball joint and of a
+/// strut by hand it is what they have, to rounding.
+#[test]
+fn declared_constraints() {
+    let mut random = Random::new(15);
+    for _ in 0..10 {
+        let mut next = || -> Vector3<f64> { random.sample() };
+        let (above, below) = (next(), next());
+        let ball = DeclaredBall { above, below };
+        let strut = DeclaredStrut { above, below, length: 0.7 };
+        let sleeve = Sleeve { first: next(), second: next(), axis: next() };
+        let anything = Anything {
+            A: Matrix3::identity() * 2.0 + Matrix3::from_columns(&[next(), next(), next()]) * 0.3,
+            k: 0.4,
+            e: next(),
+            up: next(),
+        };
+        check_slopes(&ball, &mut random);
+        check_slopes(&strut, &mut random);
+        check_slopes(&sleeve, &mut random);
+        check_slopes(&anything, &mut random);
+        let by_hand = Strut { called: "strut", above, below, length: 0.7 };
+        for _ in 0..10 {
+            let places: [Place; 2] = from_fn(|_| {
+                let (xi, position): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
+                Place { attitude: *<CayleyRetraction as Retraction<SO3>>::retract(&xi).as_matrix(), position }
+            });
+            are_alike(&ball, &BallJoint { above, below }, &places);
+            are_alike(&strut, &by_hand, &places);
+        }
+    }
+    let mut shown = Vec::new();
+    let strut = DeclaredStrut { above: Vector3::x(), below: Vector3::zeros(), length: 2.0 };
+    strut.describe(&mut |name, value| shown.push((name, value)));
+    assert_eq!((strut.name(), shown.len(), shown[0], shown[6]), ("DeclaredStrut", 7, ("above", 1.0), ("length", 2.0)));
+    let refused = DeclaredStrut { length: f64::NAN, ..strut }.validate();
+    assert_eq!(refused, Err(SetupError::Parameter { field: "length", cause: "is not finite" }));
+}
+
+/// On a sleeve on a rail that is tilted a body falls as on an inclined plane, and goes on turning about the rail. Of the
+/// parabola a step has no error.
+#[test]
+fn a_sleeve_on_a_rail() {
+    let (h, g, steps) = (0.01, 9.81, 400_u32);
+    let along = Vector3::new(2.0, 1.0, -2.0) / 3.0;
+    let [first, second] = [Vector3::new(1.0, -2.0, 0.0), Vector3::new(2.0, 1.0, 2.5)];
+    // The body's z axis, about which it is symmetric in no way, along the rail.
+    let attitude = SO3::from(nalgebra::UnitQuaternion::rotation_between(&Vector3::z(), &along).unwrap());
+    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.03, 0.04)).unwrap();
+    let joints = Joints::tree([Joined::to_space(Sleeve { first, second, axis: Vector3::z() }, 0)]);
+    let stepper = Stepper::jointed(scene([Free { m: 1.3, K }], g, Vector3::z()), joints, h).unwrap();
+    let (speed, rate) = (0.4, 3.0);
+    let start = [(attitude, R3::from(along * 0.2))];
+    let mut state = stepper.start(start, Bodies([six(&(Vector3::z() * rate), &(along * speed))])).unwrap();
+    stepper.run(&mut state, u64::from(steps)).unwrap();
+    let time = h * f64::from(steps);
+    let fallen = along * (0.2 + speed * time - 0.5 * g * along.z * time * time);
+    let [(turned, place)] = state.attitude();
+    // About a principal axis the turn of a step has the sine of h Ω.
+    let angle = f64::from(steps) * (h * rate).asin();
+    let expected = attitude.as_matrix() * SO3::exp(Vector3::z() * angle).as_matrix();
+    let errors = [(place.translation() - fallen).norm() / fallen.norm(), (turned.as_matrix() - expected).norm()];
+    println!("{errors:?}, gap {:.1e}", stepper.widest_gap(&state));
+    assert!(errors.iter().all(|&error| error < 1e-12), "{errors:?}");
+}
+
+/// Gaps and slopes are the same but for rounding.
+fn are_alike<A: Constraint<K>, B: Constraint<K>, const K: usize>(a: &A, b: &B, [above, below]: &[Place; 2]) {
+    let gaps = [a.gap(above, below), b.gap(above, below)];
+    assert!((gaps[0] - gaps[1]).amax() < 8.0 * EPSILON * (1.0 + gaps[0].amax()), "{a:?}: {gaps:?}");
+    for (a, b) in a.slope(above, below).iter().zip(&b.slope(above, below)) {
+        let off = (a.turn - b.turn).amax().max((a.shift - b.shift).amax());
+        assert!(off < 8.0 * EPSILON * (1.0 + a.turn.amax() + a.shift.amax()), "{a:?} {b:?}");
     }
 }
 

@@ -1,0 +1,61 @@
+//! A constraint with its derivatives, which are checked against the declared functions.
+
+use std::rc::Rc;
+
+use super::{explain, verify};
+use crate::declared::errors::Errors;
+use crate::declared::lower::{self, LoweredConstraint};
+use crate::declared::{Declaration, Tree};
+use crate::mathematics::derive::Refusal;
+use crate::mathematics::symbolic::Expression;
+use crate::program::{Graph, NodeId, along_unit_vectors};
+
+/// What is emitted of a constraint.
+pub(crate) struct Held {
+    /// Scalars and vectors one below the other.
+    pub(crate) functions: Vec<Rc<Tree>>,
+    pub(crate) lowered: LoweredConstraint,
+    /// Of either body by its turn and by its shift, linear in the directions.
+    pub(crate) slopes: [[Vec<Expression>; 2]; 2],
+    pub(crate) graph: Graph,
+    /// The same as matrices with a row for each function, row by row.
+    pub(crate) entries: [[Vec<NodeId>; 2]; 2],
+}
+
+impl Held {
+    /// How many functions there are.
+    pub(crate) fn rows(&self) -> usize {
+        self.functions.iter().map(|tree| tree.shape.rows()).sum()
+    }
+}
+
+/// `None` where something is wrong with it, which has been reported.
+pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: &mut Errors) -> Option<Held> {
+    let lowered = lower::constraint(declaration, &functions, errors)?;
+    let first = functions.first()?;
+    let slopes = lowered.declared.slopes();
+    let mut all = slopes.iter().flatten().flatten().chain(&lowered.declared.functions);
+    if all.any(Expression::has_overflow) {
+        explain::refusal(Refusal::Overflow, declaration, first, errors);
+        return None;
+    }
+    for (body, slopes) in slopes.iter().enumerate() {
+        if slopes.iter().flatten().all(Expression::is_zero) {
+            explain::not_held(body, declaration, errors);
+            return None;
+        }
+    }
+    let (mut graph, bodies, symbols) = (Graph::default(), &lowered.declared.bodies, &lowered.declared.symbols);
+    let entries = std::array::from_fn(|body| {
+        std::array::from_fn(|by| {
+            let mut of = |slope| along_unit_vectors(&mut graph, symbols, bodies[body].directions[by], slope);
+            slopes[body][by].iter().flat_map(&mut of).collect()
+        })
+    });
+    let held = Held { functions, lowered, slopes, graph, entries };
+    if let Err(unconfirmed) = verify::constraint(declaration, &held) {
+        explain::unconfirmed(unconfirmed, declaration, &held.functions[0], errors);
+        return None;
+    }
+    Some(held)
+}

@@ -1,0 +1,71 @@
+//! The derivatives of a holonomic constraint by the places of two bodies, in the axes of space.
+//!
+//! ```text
+//! G_R η = d/ds g(…, exp(sη̂) R, …)          G_x ξ = d/ds g(…, x + sξ, …)
+//! ```
+
+use super::Seen;
+use crate::mathematics::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variations, variation};
+
+/// The symbols of where a body is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    /// From the body's axes to those of space.
+    pub(crate) attitude: SymbolId,
+    pub(crate) position: SymbolId,
+    /// What its place is varied along: `η`, and `ξ`.
+    pub(crate) directions: [SymbolId; 2],
+}
+
+impl Body {
+    pub(crate) fn new(name: &str, symbols: &mut Symbols) -> Self {
+        let mut vector = |letter, stage| symbols.add(format!("{letter}_{name}"), (3, 1), Structure::General, stage);
+        let (position, directions) = (vector("x", Stage::Step), ["η", "ξ"].map(|d| vector(d, Stage::Construction)));
+        let attitude = symbols.add(format!("R_{name}"), (3, 3), Structure::Rotation, Stage::Step);
+        Self { attitude, position, directions }
+    }
+}
+
+impl Seen {
+    /// What two bodies, each of which turns by its first factor and is shifted by its second, see at their places; of a
+    /// field of the symbol. Nothing where the field is missing.
+    pub(crate) fn at(self, bodies: &[Body; 2], field: Option<SymbolId>, symbols: &Symbols) -> Option<Expression> {
+        let is_shift = |factor: usize| factor % 2 == 1;
+        let place = |factor: usize| {
+            let body = &bodies[factor / 2 % 2];
+            Expression::symbol(if is_shift(factor) { body.position } else { body.attitude }, symbols)
+        };
+        Some(match self {
+            Self::From(factor) => place(factor).transpose(symbols).times(&Expression::symbol(field?, symbols), symbols),
+            Self::Relative { of, from } if is_shift(of) => place(of).minus(place(from)),
+            Self::Relative { of, from } => place(from).transpose(symbols).times(&place(of), symbols),
+            Self::Configuration(of) => place(of),
+        })
+    }
+}
+
+/// A constraint with the symbols that it is written in.
+#[derive(Clone, Debug)]
+pub(crate) struct DeclaredConstraint {
+    pub(crate) symbols: Symbols,
+    /// `g`, scalars and columns one below the other.
+    pub(crate) functions: Vec<Expression>,
+    /// That above, and that below.
+    pub(crate) bodies: [Body; 2],
+}
+
+impl DeclaredConstraint {
+    /// `G_R η` and `G_x ξ` of both bodies, for each of the functions.
+    pub(crate) fn slopes(&self) -> [[Vec<Expression>; 2]; 2] {
+        let symbols = &self.symbols;
+        self.bodies.map(|body| {
+            let [turn, shift] = body.directions.map(|direction| Expression::symbol(direction, symbols));
+            let turn = turn.hat(symbols).times(&Expression::symbol(body.attitude, symbols), symbols);
+            [(body.attitude, turn), (body.position, shift)].map(|along| {
+                let along = Variations::from([along]);
+                let varied = |function| variation(function, &along, symbols).with_hats_resolved(symbols);
+                self.functions.iter().map(varied).collect()
+            })
+        })
+    }
+}
