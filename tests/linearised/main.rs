@@ -5,6 +5,7 @@
 mod declared;
 mod dual;
 mod exponents;
+mod force_gradients;
 mod free_body;
 mod products;
 mod random;

@@ -23,4 +23,4 @@ pub(crate) use count::count;
 pub(crate) use graph::{Graph, Input, Node, NodeId};
 pub(crate) use kernel::{Candidate, Kernel, along_directions, components, diamond_matrices, kernel, square};
 pub(crate) use scalarise::Scalariser;
-pub(crate) use tangent::Linearisation;
+pub(crate) use tangent::{Linearisation, WeightedGradient};

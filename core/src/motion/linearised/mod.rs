@@ -82,6 +82,7 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use recorded::Change;
+pub(crate) use stage::ForceGradient;
 pub use stage::{Cotangent, Flown, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
@@ -123,7 +124,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// # Errors
     ///
     /// [`SetupError::NoSecondDerivatives`] where one hasn't.
-    fn check_stages(&self) -> Result<(), SetupError> {
+    fn check_stages(&self, _scene: &S) -> Result<(), SetupError> {
         Ok(())
     }
 
@@ -147,6 +148,19 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
 
     /// Shows the stage that has made the change of this number to a pass.
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
+
+    /// The same of the stage that a change of this number, by a step of `−h`, has undone. Those of a symmetric plan are
+    /// undone by one another, the last by the first.
+    #[inline(always)]
+    fn visit_undone(
+        &self,
+        scene: &S,
+        index: usize,
+        event: &Change<Group<S>, S::Advected>,
+        pass: &mut impl Pass<Group<S>>,
+    ) {
+        self.visit(scene, index, event, pass);
+    }
 }
 
 impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
@@ -190,7 +204,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         S: SecondDerivatives,
         P: Linearisable<S>,
     {
-        self.plan.check_stages()?;
+        self.plan.check_stages(&self.scene)?;
         Ok(Linearised { stepper: self })
     }
 }
