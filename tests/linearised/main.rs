@@ -9,5 +9,6 @@ mod force_gradients;
 mod free_body;
 mod products;
 mod random;
+mod refused;
 mod scenes;
 mod structure;

@@ -85,7 +85,9 @@ pub(crate) fn gravity<T: RealField + Copy>(n: &mut Numbers<T>) -> Gravity<T> {
     Gravity { m, g, rho: n.vector(0.3, 0.2, 0.4), up: n.vector(0.0, 0.6, 0.8) }
 }
 
-fn top<T: RealField + Copy>(varied: Option<(usize, T)>) -> Sum<PrincipalBody<T>, Gravity<T>> {
+pub(crate) type Top<T> = Sum<PrincipalBody<T>, Gravity<T>>;
+
+pub(crate) fn top<T: RealField + Copy>(varied: Option<(usize, T)>) -> Top<T> {
     let mut n = Numbers::new(varied);
     let J_d = DiagonalNonstandardInertia::from_diagonal(n.diagonal(2.0, 1.5, 1.0)).expect("a body");
     PrincipalBody { J_d } + gravity(&mut n)

@@ -122,7 +122,6 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     }
 
     /// The derivatives of `μ` and `μ⁺` by all parameters; those of one that is visited again are added.
-    #[inline(always)]
     pub(super) fn forwards(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
         if self.gradient.is_some() {
             for axis in (0..Group::<E>::DIMENSION).map(Vector::<E>::axis) {
