@@ -129,7 +129,7 @@ pub enum SetupError {
     BiasMismatch,
     /// A splitting with force gradients needs the derivative of the torque.
     NoForceGradient,
-    /// The derivatives of force gradients aren't known, so such a splitting can't be linearised.
+    /// The derivatives of a splitting with force gradients need that of the torque's derivative.
     NoSecondDerivatives,
     /// One of the candidates for an accuracy is another scene than the first.
     PotentialMismatch,
@@ -236,7 +236,7 @@ impl fmt::Display for SetupError {
             ),
             Self::NoSecondDerivatives => write!(
                 f,
-                "the derivatives of force gradients aren't known, so a splitting with them can't be linearised; choose a scheme without them"
+                "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it"
             ),
             Self::PotentialMismatch => {
                 write!(

@@ -5,8 +5,10 @@
 mod declared;
 mod dual;
 mod exponents;
+mod force_gradients;
 mod free_body;
 mod products;
 mod random;
+mod refused;
 mod scenes;
 mod structure;

@@ -1,10 +1,10 @@
 //! Sums of the library's effects, with a force, and the methods that are made of their steps.
 
+use liestep::Stepper;
 use liestep::effects::{CayleyBody, Dipole, Drag, GeodesicBody, Gravity, GravityGradient, MagneticDamping};
 use liestep::effects::{PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia, Sum};
 use liestep::methods::{CompositionScheme, ExactBody, SplittingScheme, SymmetricBody};
-use liestep::{SetupError, Stepper};
 use nalgebra::{Matrix3, RealField, Vector3};
 use num_dual::Dual64;
 
@@ -80,12 +80,14 @@ fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> Damped<T> {
     body + gravity + spring + gradient + rotor + drag
 }
 
-fn gravity<T: RealField + Copy>(n: &mut Numbers<T>) -> Gravity<T> {
+pub(crate) fn gravity<T: RealField + Copy>(n: &mut Numbers<T>) -> Gravity<T> {
     let (m, g) = (n.number(1.2), n.number(9.81));
     Gravity { m, g, rho: n.vector(0.3, 0.2, 0.4), up: n.vector(0.0, 0.6, 0.8) }
 }
 
-fn top<T: RealField + Copy>(varied: Option<(usize, T)>) -> Sum<PrincipalBody<T>, Gravity<T>> {
+pub(crate) type Top<T> = Sum<PrincipalBody<T>, Gravity<T>>;
+
+pub(crate) fn top<T: RealField + Copy>(varied: Option<(usize, T)>) -> Top<T> {
     let mut n = Numbers::new(varied);
     let J_d = DiagonalNonstandardInertia::from_diagonal(n.diagonal(2.0, 1.5, 1.0)).expect("a body");
     PrincipalBody { J_d } + gravity(&mut n)
@@ -140,6 +142,7 @@ fn a_splitting() {
     assert_split(SplittingScheme::STRANG);
     assert_split(SplittingScheme::NYSTROM_6);
     assert_split(SplittingScheme::NEAR_INTEGRABLE_8_6_4);
+    assert_split(SplittingScheme::FORCE_GRADIENT_4);
 }
 
 fn assert_split(scheme: SplittingScheme) {
@@ -165,6 +168,7 @@ fn a_splitting_with_the_flow_of_a_symmetric_body() {
         (SplittingScheme::STRANG, STEP),
         (SplittingScheme::NYSTROM_6, 0.7),
         (SplittingScheme::NEAR_INTEGRABLE_8_6_4, 0.2),
+        (SplittingScheme::FORCE_GRADIENT_4, 0.2),
     ] {
         assert_symmetric(0.2, h, scheme);
         assert_symmetric(0.0, h, scheme);
@@ -277,13 +281,6 @@ fn parameters_have_their_fields_names() {
     assert_eq!(linear.numbers(5, "c").map(|numbers| parameters[numbers.start].value), Some(0.4));
     assert_eq!(linear.numbers(5, "rho"), None);
     assert_eq!(linear.numbers(6, "c"), None);
-}
-
-#[test]
-fn a_force_gradient_is_refused() {
-    let scene = top::<f64>(None);
-    let stepper = Stepper::split(scene, STEP, scene.first, SplittingScheme::FORCE_GRADIENT_4).expect("a stepper");
-    assert_eq!(stepper.linearised().err(), Some(SetupError::NoSecondDerivatives));
 }
 
 /// The tangent of a composition hasn't the parameters of a splitting's flow.

@@ -2,7 +2,9 @@
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Sum, Term as _};
-use liestep::methods::{CompositionScheme, ExactBody, Split, SplittingScheme, SymmetricBody};
+use liestep::methods::{
+    CompositionScheme, ExactBody, Processed, ProcessedScheme, Split, SplittingScheme, SymmetricBody,
+};
 use liestep::motion::linearised::{Cotangent, Gradient, Linearisable, Tape};
 use liestep::{SO3, StepError, Stepper};
 use nalgebra::{SMatrix, Vector3};
@@ -39,7 +41,10 @@ fn the_transition_matrix_keeps_the_symplectic_form() {
     for beside in [0.0, 0.2] {
         assert_symplectic(&symmetric(beside), 5.0);
     }
-    assert_symplectic(&exact(top(), 0.01), 10.0);
+    assert_symplectic(&exact(top(), 0.01, SplittingScheme::NYSTROM_6), 10.0);
+    assert_symplectic(&exact(top(), 0.01, SplittingScheme::FORCE_GRADIENT_5), 10.0);
+    assert_symplectic(&processed(ProcessedScheme::SIX_A), 10.0);
+    assert_symplectic(&processed(ProcessedScheme::FOUR_C), 10.0);
 }
 
 /// A splitting with an exact flow; on the axis, its spin is made apart.
@@ -52,16 +57,23 @@ fn symmetric(beside: f64) -> Stepper<Top, Split<Top, SymmetricBody>> {
     Stepper::split(scene, 0.01, flow, SplittingScheme::NYSTROM_6).expect("a stepper")
 }
 
-fn exact(scene: Top, h: f64) -> Stepper<Top, Split<Top, ExactBody>> {
-    let inertia = Inertia::new(Effect::inertia(&scene, &scene.advected())).expect("a body");
-    Stepper::split(scene, h, ExactBody::new(&inertia), SplittingScheme::NYSTROM_6).expect("a stepper")
+fn exact(scene: Top, h: f64, scheme: SplittingScheme) -> Stepper<Top, Split<Top, ExactBody>> {
+    Stepper::split(scene, h, exact_body(&scene), scheme).expect("a stepper")
+}
+
+fn processed(scheme: ProcessedScheme) -> Stepper<Top, Processed<Top, ExactBody>> {
+    Stepper::processed(top(), 0.01, exact_body(&top()), scheme).expect("a stepper")
+}
+
+fn exact_body(scene: &Top) -> ExactBody {
+    ExactBody::new(&Inertia::new(Effect::inertia(scene, &scene.advected())).expect("a body"))
 }
 
 /// Both are the motion of a symmetric body, in formulas that share nothing.
 #[test]
 fn exact_flows_of_a_symmetric_body_agree() {
     let symmetric = symmetric(0.2);
-    let exact = exact(*symmetric.scene(), symmetric.step_size());
+    let exact = exact(*symmetric.scene(), symmetric.step_size(), SplittingScheme::NYSTROM_6);
     let (linear, other) = (symmetric.linearised().expect("derivatives"), exact.linearised().expect("derivatives"));
     let scene: Vec<usize> = (0..17).collect();
     // By both transverse moments, and by the axial one.
@@ -141,7 +153,16 @@ fn steps_back_of_a_splitting() {
     for beside in [0.0, 0.2] {
         assert!(parting(&symmetric(beside), 1_000) < 1e-12);
     }
-    assert!(parting(&exact(top(), 0.01), 1_000) < 1e-12);
+    assert!(parting(&exact(top(), 0.01, SplittingScheme::NYSTROM_6), 1_000) < 1e-12);
+    assert!(parting(&exact(top(), 0.01, SplittingScheme::FORCE_GRADIENT_5), 1_000) < 1e-12);
+}
+
+/// Whose processor is that of steps of either sign.
+#[test]
+fn steps_back_of_a_processed_splitting() {
+    for scheme in [ProcessedScheme::SIX_A, ProcessedScheme::FOUR_A, ProcessedScheme::FOUR_C] {
+        assert!(parting(&processed(scheme), 1_000) < 1e-12);
+    }
 }
 
 #[test]

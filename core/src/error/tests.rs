@@ -84,7 +84,7 @@ fn setup_errors() {
             SetupError::VaryingInertia => &["inertia", "advected or given", "same everywhere"],
             SetupError::BiasMismatch => &["momentum at rest", "rotors"],
             SetupError::NoForceGradient => &["`kick_derivative`", "force gradient"],
-            SetupError::NoSecondDerivatives => &["derivatives", "force gradients"],
+            SetupError::NoSecondDerivatives => &["`kick_gradient`", "force gradient"],
             SetupError::PotentialMismatch => &["another potential"],
             SetupError::Unlike { .. } => &["lane 3", "another method"],
         };

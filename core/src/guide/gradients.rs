@@ -5,9 +5,9 @@
 //! # What there is
 //!
 //! A declaration with the word `gradients`, as the library's effects have it, knows the derivatives of its steps: on any
-//! group, in sums, with forces, through compositions, and through splittings with a declared flow, with
-//! [`SymmetricBody`](crate::methods::SymmetricBody) or with [`ExactBody`](crate::methods::ExactBody). They are those of the discrete map, to rounding, not of
-//! the continuous equations.
+//! group, in sums, with forces, through compositions, and through splittings, with force gradients and processed ones too,
+//! with a declared flow, with [`SymmetricBody`](crate::methods::SymmetricBody) or with
+//! [`ExactBody`](crate::methods::ExactBody). They are those of the discrete map, to rounding, not of the continuous equations.
 //!
 //! | you ask | |
 //! |---|---|

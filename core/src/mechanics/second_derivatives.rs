@@ -104,6 +104,27 @@ pub trait SecondDerivatives: Effect {
         ends: [&Vector<Self>; 2],
         visit: &mut impl FnMut(usize, Scalar<Self>),
     ) -> (Vector<Self>, Self::Advected);
+
+    /// The gradient of `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` for `weights = [u, r]`, where `τ` is the torque, the
+    /// [`kick_before`](Effect::kick_before) of a step of two seconds, `D_v τ` its
+    /// [derivative](Effect::kick_derivative) along the velocity `v`, and `J` the [inertia](Effect::inertia). `None` where
+    /// `D_v τ` isn't known, or its derivative.
+    ///
+    /// What is returned and visited is as by [`adjoint_gradient`](Self::adjoint_gradient). It is all that the derivatives
+    /// of a force gradient ask of a term: with `J u = τ` and `J r = D_v τ` it is the gradient of `⟨J⁻¹τ, D_v τ⟩`, which is
+    /// `⟨v, f⟩` for the torque `f` of the potential `−½ τ·J⁻¹τ`.
+    ///
+    /// On SO(3) `u` is in rad/s², `v` and `r` are those of a number in its unit per that of `f`, kg m²/s⁴, and per that of
+    /// `τ`, N m.
+    fn kick_gradient(
+        &self,
+        _w: &Self::Advected,
+        _velocity: &Vector<Self>,
+        _weights: [&Vector<Self>; 2],
+        _visit: &mut impl FnMut(usize, Scalar<Self>),
+    ) -> Option<(Vector<Self>, Self::Advected)> {
+        None
+    }
 }
 
 /// The derivatives of the momenta `μ` and `μ⁺` along turns `ε` and displacements `ζ`: entry `(k, j)` of each is that of
@@ -211,6 +232,20 @@ where
         let behind = &mut |number, share| visit(A::PARAMETERS + number, share);
         let (second, other) = self.second.adjoint_gradient(increment, &w.1, h, ends, behind);
         (first + second, (seen, other))
+    }
+
+    #[inline(always)]
+    fn kick_gradient(
+        &self,
+        w: &Self::Advected,
+        velocity: &Vector<Self>,
+        weights: [&Vector<Self>; 2],
+        visit: &mut impl FnMut(usize, Scalar<Self>),
+    ) -> Option<(Vector<Self>, Self::Advected)> {
+        let (first, seen) = self.first.kick_gradient(&w.0, velocity, weights, visit)?;
+        let behind = &mut |number, share| visit(A::PARAMETERS + number, share);
+        let (second, other) = self.second.kick_gradient(&w.1, velocity, weights, behind)?;
+        Some((first + second, (seen, other)))
     }
 }
 

@@ -1,14 +1,14 @@
 //! The derivatives of a step, where they are asked for: `SecondDerivatives`.
 
 use proc_macro2::{Literal, Span, TokenStream};
-use quote::quote_spanned;
+use quote::{ToTokens as _, quote_spanned};
 
 use super::code::Form;
 use super::inputs::entry;
 use super::{Emitter, stages};
 use crate::declared::{FieldKind, Name};
 use crate::mathematics::symbolic::SymbolId;
-use crate::program::{Linearisation, Node, NodeId};
+use crate::program::{Linearisation, Node, NodeId, WeightedGradient};
 
 /// One scalar of the parameters, by its number, with the entry that stands for it.
 #[derive(Clone, Copy)]
@@ -30,6 +30,7 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
     let advected = by_advected(emitter, &mut linearisation);
     let system = adjoint_system(emitter, &mut linearisation);
     let gradient = adjoint_gradient(emitter, &mut linearisation);
+    let of_kick = kick_gradient(emitter, &mut linearisation);
     let (usize, count) = (quote_spanned!(span=> #private::core::primitive::usize), parameter_count(emitter));
     let carried = carried_parameters(emitter);
     let (scalar, matrix, vector) = (&emitter.header.scalar, emitter.header.matrix(), emitter.header.vector());
@@ -76,6 +77,8 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
             ) -> (#vector, Self::Advected) {
                 #gradient
             }
+
+            #of_kick
         }
     })
 }
@@ -83,7 +86,8 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
 /// `∂μ/∂ε`, and `(∂μ⁺/∂ε)ᵀ p`.
 fn adjoint_system(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
     let [matrix, right_side] = linearisation.adjoint_system();
-    let (lets, values) = statements(emitter, linearisation, &[matrix.as_slice(), &right_side].concat());
+    let weights = [(linearisation.weights_of_end(), "at_end")];
+    let (lets, values) = statements(emitter, linearisation, &[matrix.as_slice(), &right_side].concat(), &weights);
     let (matrix, right_side) = values.split_at(matrix.len());
     let (matrix, right_side) = (emitter.assembled(Form::Square, matrix), emitter.assembled(Form::Vector, right_side));
     quote_spanned!(Span::mixed_site()=> #lets (#matrix, #right_side))
@@ -92,16 +96,48 @@ fn adjoint_system(emitter: &Emitter, linearisation: &mut Linearisation) -> Token
 /// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
 fn adjoint_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
     let gradient = linearisation.adjoint_gradient();
-    let by_place = linearisation.by_place(&gradient);
+    let weights = [(linearisation.weights_of_start(), "at_start"), (linearisation.weights_of_end(), "at_end")];
+    let (lets, found) = gradient_of(emitter, linearisation, &gradient, &weights);
+    quote_spanned!(Span::mixed_site()=> #lets #found)
+}
+
+/// That of `⟨u, D_v k⟩ + ⟨r, k − J u⟩`, where `k` is the torque: the kick of a step of two seconds.
+fn kick_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> Option<TokenStream> {
+    let gradient = linearisation.kick_gradient()?;
+    let [u, r] = linearisation.weights_of_kick();
+    let (lets, found) = gradient_of(emitter, linearisation, &gradient, &[(u, "acceleration"), (r, "multiplier")]);
+    let (span, private, scalar) = (Span::mixed_site(), &emitter.header.private, &emitter.header.scalar);
+    let (core, vector) = (quote_spanned!(span=> #private::core), emitter.header.vector());
+    Some(quote_spanned! {span=>
+        #[inline(always)]
+        fn kick_gradient(
+            &self, w: &Self::Advected, velocity: &#vector, [acceleration, multiplier]: [&#vector; 2],
+            visit: &mut impl #core::ops::FnMut(#core::primitive::usize, #scalar),
+        ) -> #core::option::Option<(#vector, Self::Advected)> {
+            let h: #scalar = #private::real(2.0);
+            #lets
+            #core::option::Option::Some(#found)
+        }
+    })
+}
+
+/// Statements that visit a gradient by the parameters, and that by the place and by what is advected.
+fn gradient_of(
+    emitter: &Emitter,
+    linearisation: &mut Linearisation,
+    gradient: &WeightedGradient,
+    weights: &[(SymbolId, &str)],
+) -> (TokenStream, TokenStream) {
+    let by_place = linearisation.by_place(gradient);
     let scalars = advected_scalars(emitter);
     let count = (0..emitter.declaration.advected.len()).map(|index| numbers(emitter.declaration.advected_kind(index)));
     let mut by_advected = vec![linearisation.graph.zero(); count.sum()];
     for (symbol, place) in scalars {
-        by_advected[place.number] = linearisation.gradient_by_entry(&gradient, symbol, place.row, place.column);
+        by_advected[place.number] = linearisation.gradient_by_entry(gradient, symbol, place.row, place.column);
     }
     let (mut by_parameters, mut numbers) = (Vec::new(), Vec::new());
     for (symbol, place) in parameter_scalars(emitter) {
-        let mut derivative = linearisation.gradient_by_entry(&gradient, symbol, place.row, place.column);
+        let mut derivative = linearisation.gradient_by_entry(gradient, symbol, place.row, place.column);
         if place.is_half {
             derivative = linearisation.halved(derivative);
         }
@@ -111,13 +147,13 @@ fn adjoint_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> Tok
         }
     }
     let outputs = [by_place.as_slice(), &by_advected, &by_parameters].concat();
-    let (lets, values) = statements(emitter, linearisation, &outputs);
+    let (lets, values) = statements(emitter, linearisation, &outputs, weights);
     let (by_place, values) = values.split_at(by_place.len());
     let (by_advected, by_parameters) = values.split_at(by_advected.len());
     let by_place = emitter.assembled(Form::Vector, by_place);
     let (private, scalar, span) = (&emitter.header.private, &emitter.header.scalar, Span::mixed_site());
     let count = Literal::usize_unsuffixed(by_advected.len());
-    quote_spanned! {span=>
+    let lets = quote_spanned! {span=>
         #lets
         #(visit(#numbers, #by_parameters);)*
         let by_advected: [#scalar; #count] = [#(#by_advected),*];
@@ -125,14 +161,14 @@ fn adjoint_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> Tok
         let by_advected = <Self::Advected as #private::Entries<#scalar>>::from_entries(&mut || {
             #private::core::iter::Iterator::next(&mut entries).unwrap_or(#private::real(0.0))
         });
-        (#by_place, by_advected)
-    }
+    };
+    (lets, quote_spanned!(span=> (#by_place, by_advected)))
 }
 
 fn step_derivatives(emitter: &Emitter, linearisation: &mut Linearisation) -> TokenStream {
     let [[start_by_turn, end_by_turn], [start_by_place, end_by_place]] = linearisation.blocks();
     let all = [start_by_turn, end_by_turn, start_by_place, end_by_place];
-    let (lets, values) = statements(emitter, linearisation, &all.concat());
+    let (lets, values) = statements(emitter, linearisation, &all.concat(), &[]);
     let (span, private) = (Span::mixed_site(), &emitter.header.private);
     let size = all.first().map_or(1, Vec::len).max(1);
     let blocks = values.chunks(size).map(|entries| emitter.assembled(Form::Square, entries));
@@ -144,15 +180,19 @@ fn step_derivatives(emitter: &Emitter, linearisation: &mut Linearisation) -> Tok
     quote_spanned!(span=> #lets #private::StepDerivatives { #(#fields),* })
 }
 
-/// The `let`s of these outputs, and what they are made of.
-fn statements(emitter: &Emitter, linearisation: &Linearisation, outputs: &[NodeId]) -> (TokenStream, Vec<TokenStream>) {
+/// The `let`s of these outputs, and what they are made of; some symbols stand for weights of these names.
+fn statements(
+    emitter: &Emitter,
+    linearisation: &Linearisation,
+    outputs: &[NodeId],
+    weights: &[(SymbolId, &str)],
+) -> (TokenStream, Vec<TokenStream>) {
     let (span, private, graph) = (Span::mixed_site(), &emitter.header.private, &linearisation.graph);
-    let weights = [linearisation.weights_of_start(), linearisation.weights_of_end()];
-    let given = |id: NodeId| match graph.node(id) {
-        Node::Input(input) if input.symbol == weights[0] => Some(entry(&quote_spanned!(span=> at_start), input)),
-        Node::Input(input) if input.symbol == weights[1] => Some(entry(&quote_spanned!(span=> at_end), input)),
-        Node::Input(input) => Some(emitter.input_token(input)),
-        _ => None,
+    let given = |id: NodeId| {
+        let Node::Input(input) = graph.node(id) else { return None };
+        let weight = weights.iter().find(|(symbol, _)| *symbol == input.symbol);
+        let weight = weight.map(|(_, name)| entry(&syn::Ident::new(name, span).to_token_stream(), input));
+        Some(weight.unwrap_or_else(|| emitter.input_token(input)))
     };
     let (lets, values) = emitter.statements(graph, outputs, &given);
     let factors = &emitter.derived.directions.factors;
@@ -165,7 +205,7 @@ fn statements(emitter: &Emitter, linearisation: &Linearisation, outputs: &[NodeI
 /// Visits of what isn't zero.
 fn visits(emitter: &Emitter, linearisation: &Linearisation, found: &[(usize, Vec<NodeId>)]) -> TokenStream {
     let outputs: Vec<NodeId> = found.iter().flat_map(|(_, nodes)| nodes.iter().copied()).collect();
-    let (lets, values) = statements(emitter, linearisation, &outputs);
+    let (lets, values) = statements(emitter, linearisation, &outputs, &[]);
     let dimension = emitter.declaration.group.dimension();
     let visits = found.iter().zip(values.chunks(2 * dimension)).map(|((number, _), values)| {
         let number = Literal::usize_unsuffixed(*number);

@@ -199,7 +199,7 @@ pub(super) fn generator(graph: &mut Graph, group: &Group, factor: usize, k: usiz
 }
 
 /// `Σ v_j E_j`.
-fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
+pub(super) fn velocity(graph: &mut Graph, derived: &Derived) -> Entries {
     matrix_of(graph, &derived.group, derived.directions.along)
 }
 

@@ -25,4 +25,4 @@ pub(crate) use kernel::{
     Candidate, Kernel, along_directions, along_unit_vectors, components, diamond_matrices, kernel, square,
 };
 pub(crate) use scalarise::Scalariser;
-pub(crate) use tangent::Linearisation;
+pub(crate) use tangent::{Linearisation, WeightedGradient};

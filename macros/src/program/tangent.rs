@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use super::closed::{Given, entries, with_lets};
 use super::gradient::{Gradient, gradient};
 use super::graph::{Graph, Input, Node, NodeId};
-use super::kernel::{by_increment, components, generator, with_inverse};
+use super::kernel::{by_increment, components, generator, square, velocity, with_inverse};
 use super::scalarise::Entries;
 use crate::mathematics::derive::{Derived, Ends};
 use crate::mathematics::symbolic::{Function, Rational, Stage, SymbolId};
@@ -36,8 +36,9 @@ pub(crate) struct Linearisation<'a> {
 /// The change of each input that changes.
 pub(super) type Changes = BTreeMap<NodeId, NodeId>;
 
-/// The gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment: what a step's adjoint ends with.
-pub(crate) struct AdjointGradient(Gradient);
+/// The gradient of a weighted sum: of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment, what a step's adjoint ends with, or of a
+/// kick.
+pub(crate) struct WeightedGradient(Gradient);
 
 impl<'a> Linearisation<'a> {
     pub(crate) fn new(derived: &'a Derived, ends: &'a Ends) -> Self {
@@ -50,15 +51,18 @@ impl<'a> Linearisation<'a> {
         let [start, end] = &ends.momenta;
         let momenta = [start, end].map(|momentum| components(&mut graph, derived, &given, momentum)).concat();
         let linearisation = Self { derived, ends, graph, momenta, increments };
-        debug_assert!(linearisation.weights_are_free(), "the weights of an adjoint are symbols of the momenta");
+        let weights = [linearisation.weights_of_start(), linearisation.weights_of_end()];
+        debug_assert!(
+            linearisation.are_free(weights, &linearisation.momenta),
+            "the weights are symbols of the momenta"
+        );
         linearisation
     }
 
-    /// Whether no momentum depends on the symbols that stand for weights.
-    fn weights_are_free(&self) -> bool {
-        let weights = [self.weights_of_start(), self.weights_of_end()];
+    /// Whether none of these depends on the symbols that stand for weights.
+    fn are_free(&self, weights: [SymbolId; 2], outputs: &[NodeId]) -> bool {
         let is_weight = |id| matches!(self.graph.node(id), Node::Input(input) if weights.contains(&input.symbol));
-        !self.graph.reachable(&self.momenta).into_iter().any(is_weight)
+        !self.graph.reachable(outputs).into_iter().any(is_weight)
     }
 
     /// The derivatives of `μ` and of `μ⁺` along each `ε = E_j`, then those along each `ζ = E_j`; matrices row by row.
@@ -96,17 +100,47 @@ impl<'a> Linearisation<'a> {
     }
 
     /// What it ends with: the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` at a fixed increment.
-    pub(crate) fn adjoint_gradient(&mut self) -> AdjointGradient {
+    pub(crate) fn adjoint_gradient(&mut self) -> WeightedGradient {
         let mut weighted = self.weighted(0, self.weights_of_start());
         for (_, weight) in &mut weighted {
             *weight = self.graph.negate(*weight);
         }
         weighted.extend(self.weighted(1, self.weights_of_end()));
-        AdjointGradient(gradient(&mut self.graph, &weighted))
+        WeightedGradient(gradient(&mut self.graph, &weighted))
+    }
+
+    /// The gradient of `⟨u, D_v k⟩ + ⟨r, k − J u⟩` for the kick `k`, its derivative `D_v k` and the inertia `J`: what the
+    /// derivatives of a force gradient are made of. `None` where `D_v k` isn't derived.
+    pub(crate) fn kick_gradient(&mut self) -> Option<WeightedGradient> {
+        let change = self.derived.kick_derivative.as_ref()?;
+        let velocity = velocity(&mut self.graph, self.derived);
+        let second = self.derived.directions.factors.first().map(|one| (one.second, velocity));
+        let change = components(&mut self.graph, self.derived, &second.into_iter().collect(), change);
+        let kick = components(&mut self.graph, self.derived, &Given::new(), &self.derived.kick_before);
+        let inertia = square(&mut self.graph, self.derived, &Given::new(), &self.derived.limit.inertia);
+        let weights = self.weights_of_kick();
+        let outputs = [change.as_slice(), &kick, &inertia].concat();
+        debug_assert!(self.are_free(weights, &outputs), "the weights are symbols of the kick");
+        let dimension = self.derived.group.dimension();
+        let [u, r] = weights.map(|symbol| (0..dimension).map(|row| self.entry(symbol, row, 0)).collect::<Vec<_>>());
+        let of_inertia = r.iter().flat_map(|&of_row| u.iter().map(move |&of_column| (of_row, of_column)));
+        let of_inertia: Vec<NodeId> = of_inertia
+            .map(|(of_row, of_column)| {
+                let product = self.graph.multiply(of_row, of_column);
+                self.graph.negate(product)
+            })
+            .collect();
+        let weighted = outputs.into_iter().zip([u, r, of_inertia].concat()).collect::<Vec<_>>();
+        Some(WeightedGradient(gradient(&mut self.graph, &weighted)))
+    }
+
+    /// The weights `u` and `r` of [`kick_gradient`](Self::kick_gradient): symbols that are free there.
+    pub(crate) fn weights_of_kick(&self) -> [SymbolId; 2] {
+        [self.derived.directions.target, self.derived.directions.coordinates]
     }
 
     /// Along displacements `ζ = E_j`.
-    pub(crate) fn by_place(&mut self, gradient: &AdjointGradient) -> Vec<NodeId> {
+    pub(crate) fn by_place(&mut self, gradient: &WeightedGradient) -> Vec<NodeId> {
         let dimension = self.derived.group.dimension();
         let displaced = |j| {
             let changes = self.displaced(j);
@@ -118,7 +152,7 @@ impl<'a> Linearisation<'a> {
     /// By an entry of a symbol.
     pub(crate) fn gradient_by_entry(
         &mut self,
-        gradient: &AdjointGradient,
+        gradient: &WeightedGradient,
         symbol: SymbolId,
         row: usize,
         column: usize,

@@ -3,12 +3,12 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
-use super::{Flow, KineticFlow, Spin, Split};
+use super::{Flow, KineticFlow, Length, Spin, Split};
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::linearised::{Change, Flown, Linearisable, Pass, Stage};
+use crate::motion::linearised::{Change, Flown, ForceGradient, Linearisable, Pass, Stage};
 use crate::motion::{Plan, StepReport, Summation};
 use crate::numbers::{Real, real};
 
@@ -112,8 +112,8 @@ where
         K::describe_parameters(&self.kinetic, visitor);
     }
 
-    fn check_stages(&self) -> Result<(), SetupError> {
-        if self.scheme.has_gradients() { Err(SetupError::NoSecondDerivatives) } else { Ok(()) }
+    fn check_stages(&self, scene: &S) -> Result<(), SetupError> {
+        if self.scheme.has_gradients() { Self::check_gradients(scene) } else { Ok(()) }
     }
 
     fn stages(&self) -> usize {
@@ -147,11 +147,41 @@ where
         event: &Change<SO3<Scalar<S>>, S::Advected>,
         pass: &mut impl Pass<SO3<Scalar<S>>>,
     ) {
-        let Some((flow, part)) = self.scheme.shares().nth(index) else { return };
-        let time = self.h * real(part);
-        match flow {
-            Flow::Kick => pass.stage(&Stage::kick(scene, time, event)),
-            Flow::Drift => K::visit(&self.kinetic, time, event, S::PARAMETERS, pass),
+        let mut lengths = self.scheme.shares().zip(self.scheme.gradients());
+        if let Some(share) = lengths.nth(index) {
+            self.show(scene, Length::of(self.h, 1.0, share), event, pass);
+        }
+    }
+}
+
+impl<S, K> Split<S, K>
+where
+    S: RigidScene + SecondDerivatives,
+    K: DifferentiableFlow<Scalar<S>>,
+{
+    /// Whether the derivatives of force gradients are known.
+    pub(super) fn check_gradients(scene: &S) -> Result<(), SetupError> {
+        let (w, zero) = (scene.advected(), Vector3::repeat(real(0.0)));
+        let known = scene.kick_gradient(&w, &zero, [&zero; 2], &mut |_, _| {});
+        known.map(|_| ()).ok_or(SetupError::NoSecondDerivatives)
+    }
+
+    /// Shows a pass what a share of this length did.
+    #[inline(always)]
+    pub(super) fn show(
+        &self,
+        scene: &S,
+        length: Length<Scalar<S>>,
+        event: &Change<SO3<Scalar<S>>, S::Advected>,
+        pass: &mut impl Pass<SO3<Scalar<S>>>,
+    ) {
+        match length.flow {
+            Flow::Kick => {
+                let (torque, inverse_inertia) = (&self.torque, &self.inverse_inertia);
+                let gradient = length.gradient.map(|share| ForceGradient { share, torque, inverse_inertia });
+                pass.stage(&Stage::kick(scene, length.time, gradient, event));
+            }
+            Flow::Drift => K::visit(&self.kinetic, length.time, event, S::PARAMETERS, pass),
         }
     }
 }

@@ -222,10 +222,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
             return Err(SetupError::NoForceGradient);
         }
         let all: Vec<_> = scheme.shares().zip(scheme.gradients()).collect();
-        let share = |times: f64, ((flow, part), gradient): ((Flow, f64), f64)| {
-            let of_gradient = (gradient != 0.0).then(|| h * h * h * real(times * gradient));
-            share_of(&kinetic, &inverse_inertia, flow, h * real(times * part), of_gradient)
-        };
+        let share = |times: f64, share| share_of(&kinetic, &inverse_inertia, Length::of(h, times, share));
         let (outer, joint) = (share(1.0, all[0])?, share(2.0, all[0])?);
         let inner = all[1..all.len() - 1].iter().map(|&inner| share(1.0, inner)).collect::<Result<_, _>>()?;
         Ok(Self { scheme, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None })
@@ -372,13 +369,29 @@ fn advance_called<T: Real, K: KineticFlow<T>>(drift: &K::Drift, momentum: &Vecto
     K::advance(drift, momentum)
 }
 
-/// A share of this length, s, and if it is a kick with a gradient, s³.
+/// How long a share is.
+#[derive(Clone, Copy, Debug)]
+struct Length<T> {
+    flow: Flow,
+    /// s
+    time: T,
+    /// Of a kick with a force gradient, s³.
+    gradient: Option<T>,
+}
+
+impl<T: Real> Length<T> {
+    /// So many times a share of a step, and of the force gradient.
+    fn of(h: T, times: f64, ((flow, share), gradient): ((Flow, f64), f64)) -> Self {
+        let gradient = (gradient != 0.0).then(|| h * h * h * real(times * gradient));
+        Self { flow, time: h * real(times * share), gradient }
+    }
+}
+
+/// A share of this length.
 fn share_of<T: Real, K: KineticFlow<T>>(
     kinetic: &K,
     inverse_inertia: &Matrix3<T>,
-    flow: Flow,
-    time: T,
-    gradient: Option<T>,
+    Length { flow, time, gradient }: Length<T>,
 ) -> Result<Share<K::Drift, T>, SetupError> {
     Ok(match flow {
         Flow::Drift => Share::Drift(kinetic.drift(time)?),

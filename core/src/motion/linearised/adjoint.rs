@@ -258,13 +258,12 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         for n in (0..steps).rev() {
             inverse.recorded(&mut now, &events)?;
             let mut made = events.borrow_mut();
-            // A step back undoes the stages from the last to the first. Schemes are symmetric: the one that is undone first
-            // has the share of the first, and so on.
+            // A step back undoes the stages from the last to the first.
             let after = made.iter().skip(1).map(|event| event.before).chain([now.motion]).collect::<Vec<_>>();
             for (index, (event, after)) in made.drain(..).zip(after).enumerate() {
                 let increment = Group::<S>::from_increment(&event.increment).inverse().increment();
                 let undone = Change { before: after, increment };
-                forwards.stepper.plan.visit(&forwards.stepper.scene, index, &undone, &mut back);
+                forwards.stepper.plan.visit_undone(&forwards.stepper.scene, index, &undone, &mut back);
             }
             back.add(&cost(n, &now.motion));
         }

@@ -9,9 +9,10 @@
 //!
 //! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
 //! of fourth and sixth order. A scene without it has nothing of this in its program. They go with a scene's own step, on
-//! any group and with forces, with compositions, and with splittings whose flow is declared or exact. `cargo bench --bench
-//! gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step, a step with derivatives
-//! makes its drifts twice.
+//! any group and with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
+//! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step, a
+//! step with derivatives makes its drifts twice; one of a processed splitting makes both ends of the processor, as what is
+//! differentiated is what is read.
 //!
 //! # Coordinates
 //!
@@ -42,6 +43,18 @@
 //!
 //! Of an exact flow, whose turn is a known function of the momentum, the first line is `ε = ∂_με δμ + ∂_θε δθ`: of a symmetric
 //! body in closed form, of any other by dual numbers through its closed form.
+//!
+//! A kick in the time `t`, with the share `s` of the force gradient, is `δμ⁺ = δμ + t D_ζ τ + s δf`, where `f` is the torque
+//! of `−½ τ·J⁻¹τ`. With the derivative `D_v τ` of the torque along a velocity,
+//!
+//! ```text
+//! ⟨v, f⟩ = ⟨u, D_v τ⟩             J u = τ
+//! δ⟨v, f⟩ = ⟨u, δD_v τ⟩ + ⟨r, δτ − δJ u⟩             J r = D_v τ
+//! ```
+//!
+//! at fixed `u`, `v` and `r`: by the place, by the parameters and by those of the inertia. That is what
+//! [`kick_gradient`](SecondDerivatives::kick_gradient) gives, and it adds in a sum though `f` doesn't. The columns of the
+//! tangent map take it for each axis `v`, the adjoint once.
 //!
 //! # The adjoint
 //!
@@ -82,6 +95,7 @@ mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use recorded::Change;
+pub(crate) use stage::ForceGradient;
 pub use stage::{Cotangent, Flown, Pass, Stage};
 pub use tangent::{Tangent, TangentOf};
 
@@ -105,7 +119,7 @@ use recorded::Recorded;
 #[diagnostic::on_unimplemented(
     message = "the derivatives of a step of `{Self}` aren't known",
     label = "not with this method",
-    note = "known are those of a scene's own step, of compositions, and of splittings whose flow is exact or declared with `gradients`"
+    note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`"
 )]
 pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// How many scalars the parameters have: those of the scene, and behind them those of what else the plan moves by.
@@ -123,7 +137,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// # Errors
     ///
     /// [`SetupError::NoSecondDerivatives`] where one hasn't.
-    fn check_stages(&self) -> Result<(), SetupError> {
+    fn check_stages(&self, _scene: &S) -> Result<(), SetupError> {
         Ok(())
     }
 
@@ -147,6 +161,19 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
 
     /// Shows the stage that has made the change of this number to a pass.
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
+
+    /// The same of the stage that a change of this number, by a step of `−h`, has undone. Those of a symmetric plan are
+    /// undone by one another, the last by the first.
+    #[inline(always)]
+    fn visit_undone(
+        &self,
+        scene: &S,
+        index: usize,
+        event: &Change<Group<S>, S::Advected>,
+        pass: &mut impl Pass<Group<S>>,
+    ) {
+        self.visit(scene, index, event, pass);
+    }
 }
 
 impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
@@ -184,13 +211,14 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// # Errors
     ///
-    /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients.
+    /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients, of a term whose derivatives were written by
+    /// hand without [`kick_gradient`](SecondDerivatives::kick_gradient).
     pub fn linearised(&self) -> Result<Linearised<'_, S, P>, SetupError>
     where
         S: SecondDerivatives,
         P: Linearisable<S>,
     {
-        self.plan.check_stages()?;
+        self.plan.check_stages(&self.scene)?;
         Ok(Linearised { stepper: self })
     }
 }

@@ -17,8 +17,21 @@ pub struct Stage<'a, E: Effect> {
     attitude: Group<E>,
     advected: E::Advected,
     increment: Matrix<E>,
+    /// What a kick has of the force gradient.
+    gradient: Option<ForceGradient<'a, Scalar<E>, E::Constants, Square<E>>>,
     /// Among the parameters of the plan, the number of the effect's first.
     first: usize,
+}
+
+/// The share of a force gradient in a kick: of the push `f` of the potential `−½ τ·J⁻¹τ`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ForceGradient<'a, T, C, M> {
+    /// s³.
+    pub(crate) share: T,
+    /// With which [`Effect::kick_before`] is the torque `τ`.
+    pub(crate) torque: &'a C,
+    /// `J⁻¹`.
+    pub(crate) inverse_inertia: &'a M,
 }
 
 /// What was done. It is matched where its derivatives are used, so that each arm is straight-line code with its own
@@ -35,13 +48,18 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// The effect's own step of length `h`.
     pub(crate) fn step<A>(effect: &'a E, h: Scalar<E>, event: &Change<Group<E>, A>, advected: E::Advected) -> Self {
         let (attitude, increment) = (event.before.attitude, event.increment);
-        Self { effect, kind: Kind::Step(h), attitude, advected, increment, first: 0 }
+        Self { effect, kind: Kind::Step(h), attitude, advected, increment, gradient: None, first: 0 }
     }
 
-    /// The kick of its potential.
-    pub(crate) fn kick(effect: &'a E, time: Scalar<E>, event: &Change<Group<E>, E::Advected>) -> Self {
+    /// The kick of its potential, with a share of the force gradient or without.
+    pub(crate) fn kick(
+        effect: &'a E,
+        time: Scalar<E>,
+        gradient: Option<ForceGradient<'a, Scalar<E>, E::Constants, Square<E>>>,
+        event: &Change<Group<E>, E::Advected>,
+    ) -> Self {
         let (attitude, advected) = (event.before.attitude, event.before.advected);
-        Self { effect, kind: Kind::Kick(time), attitude, advected, increment: zero(), first: 0 }
+        Self { effect, kind: Kind::Kick(time), attitude, advected, increment: zero(), gradient, first: 0 }
     }
 
     /// With the effect's parameters behind so many others.
@@ -71,7 +89,12 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     #[inline(always)]
     pub(super) fn slope(&self, time: Scalar<E>) -> Square<E> {
         let blocks = self.blocks(real(1.0));
-        (blocks.end_by_place + blocks.start_by_place * real::<Scalar<E>>(-1.0)) * time
+        let slope = (blocks.end_by_place + blocks.start_by_place * real::<Scalar<E>>(-1.0)) * time;
+        if self.gradient.is_none() {
+            return slope;
+        }
+        let rows = Vector::<E>::square(|k| self.of_gradient(&Vector::<E>::axis(k), &mut |_, _| {}));
+        slope + Vector::<E>::transpose(&rows)
     }
 
     /// The derivatives of `μ` and `μ⁺` by the parameters, those that are carried not among them.
@@ -100,6 +123,15 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
 
     /// The derivatives of `μ` and `μ⁺` by all parameters; those of one that is visited again are added.
     pub(super) fn forwards(&self, visit: &mut impl FnMut(usize, Vector<E>, Vector<E>)) {
+        if self.gradient.is_some() {
+            for axis in (0..Group::<E>::DIMENSION).map(Vector::<E>::axis) {
+                self.of_gradient(&axis, &mut |number, share| {
+                    visit(self.first + number, Vector::<E>::zero(), axis * share);
+                });
+            }
+        }
+        let scale = self.scale();
+        let visit = &mut |number, start, end| visit(number, start * scale, end * scale);
         self.by_parameters(visit);
         E::carried_parameters(&mut |place, parameter| {
             let seen: E::Advected = seen_of_unit(place, &self.attitude);
@@ -115,28 +147,56 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
     /// Adds the gradient of `⟨p, μ⁺⟩ − ⟨u, μ⟩` by the parameters at a fixed increment, for `[u, p]`, and returns that along
     /// displacements.
     #[inline(always)]
-    fn fixed_increment(&self, ends: [&Vector<E>; 2], gradient: &mut [Scalar<E>]) -> Vector<E> {
-        // One check of the range, not one for each scalar.
-        let own = gradient.get_mut(self.first..self.first + E::PARAMETERS).unwrap_or_default();
-        debug_assert_eq!(own.len(), E::PARAMETERS, "a plan counts the parameters of its stages");
-        let mut add = |number: usize, share: Scalar<E>| {
-            if let Some(sum) = own.get_mut(number) {
-                *sum += share;
-            }
-        };
+    fn fixed_increment(&self, ends: [&Vector<E>; 2], add: &mut impl FnMut(usize, Scalar<E>)) -> Vector<E> {
         let (by_place, by_seen) =
-            self.effect.adjoint_gradient(&self.increment, &self.advected, self.length(), ends, &mut add);
+            self.effect.adjoint_gradient(&self.increment, &self.advected, self.length(), ends, &mut *add);
+        self.add_carried(&by_seen, add);
+        by_place
+    }
+
+    /// Adds the gradient of `⟨p, f⟩` by the parameters, where `f` is the push of the force gradient, and returns that along
+    /// displacements.
+    ///
+    /// `⟨p, f⟩ = ⟨u, D_v τ⟩` with `J u = τ` and, `s` being the share, `v = s p`. How `u` changes is in the gradient of
+    /// `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` at fixed `u` and `r` where `J r = D_v τ`.
+    #[inline(always)]
+    fn of_gradient(&self, paired: &Vector<E>, add: &mut impl FnMut(usize, Scalar<E>)) -> Vector<E> {
+        let Some(ForceGradient { share, torque, inverse_inertia }) = self.gradient else {
+            return Vector::<E>::zero();
+        };
+        let along = *paired * share;
+        let u = *inverse_inertia * E::kick_before(torque, &self.advected);
+        // That it is known was asked before.
+        let change = E::kick_derivative(torque, &self.advected, &along).unwrap_or_else(Vector::<E>::zero);
+        let r = *inverse_inertia * change;
+        let Some((by_place, by_seen)) = self.effect.kick_gradient(&self.advected, &along, [&u, &r], &mut *add) else {
+            return Vector::<E>::zero();
+        };
+        self.add_carried(&by_seen, add);
+        by_place
+    }
+
+    /// Adds what the parameters that are carried have in the gradient by what the body sees.
+    #[inline(always)]
+    fn add_carried(&self, by_seen: &E::Advected, add: &mut impl FnMut(usize, Scalar<E>)) {
         let mut by_carried = None;
         E::carried_parameters(&mut |place, parameter| {
             let by_carried = by_carried.get_or_insert_with(|| by_seen.pulled_back(&self.attitude));
             add(parameter, entry(by_carried, place));
         });
-        by_place
     }
 
     /// Takes the gradient at the end of the stage to its beginning, and adds the parameters' shares.
     #[inline(always)]
     pub(super) fn pull(&self, end: &Cotangent<Vector<E>>, gradient: &mut [Scalar<E>]) -> Cotangent<Vector<E>> {
+        // One check of the range, not one for each scalar.
+        let own = gradient.get_mut(self.first..self.first + E::PARAMETERS).unwrap_or_default();
+        debug_assert_eq!(own.len(), E::PARAMETERS, "a plan counts the parameters of its stages");
+        let add = &mut |number: usize, share: Scalar<E>| {
+            if let Some(sum) = own.get_mut(number) {
+                *sum += share;
+            }
+        };
         match self.kind {
             // Without a step nothing moves.
             Kind::Step(h) if h == real(0.0) => *end,
@@ -146,19 +206,22 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 let attitude = inverse.adjoint_transpose(&end.attitude);
                 let (factors, det) = Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern::<E>());
                 let start = Vector::<E>::solve_again_with(&factors, det, pattern::<E>(), &(attitude + share));
-                let by_place = self.fixed_increment([&start, &end.momentum], gradient);
+                let by_place = self.fixed_increment([&start, &end.momentum], add);
                 Cotangent { attitude: attitude + by_place, momentum: start }
             }
             Kind::Kick(time) => {
                 let paired = end.momentum * time;
-                let by_place = self.fixed_increment([&paired; 2], gradient);
-                Cotangent { attitude: end.attitude + by_place, momentum: end.momentum }
+                let mut attitude = end.attitude + self.fixed_increment([&paired; 2], add);
+                if self.gradient.is_some() {
+                    attitude = attitude + self.of_gradient(&end.momentum, add);
+                }
+                Cotangent { attitude, momentum: end.momentum }
             }
         }
     }
 
     /// The time that derivatives by parameters are multiplied by.
-    pub(super) fn scale(&self) -> Scalar<E> {
+    fn scale(&self) -> Scalar<E> {
         match self.kind {
             Kind::Step(_) => real(1.0),
             Kind::Kick(time) => time,

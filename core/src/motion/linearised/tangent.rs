@@ -184,12 +184,12 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
     #[inline(always)]
     fn stage<E: SecondDerivatives<Scalar = G::Scalar, Group = G>>(&mut self, stage: &Stage<'_, E>) {
         if !self.shares.is_empty() {
-            let (zero, scale) = (G::Vector::zero(), stage.scale());
+            let zero = G::Vector::zero();
             self.shares.fill((zero, zero));
             let shares = &mut self.shares;
             stage.forwards(&mut |number, start, end| {
                 if let Some(share) = shares.get_mut(number) {
-                    *share = (share.0 + start * scale, share.1 + end * scale);
+                    *share = (share.0 + start, share.1 + end);
                 }
             });
         }

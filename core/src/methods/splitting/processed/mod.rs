@@ -1,6 +1,7 @@
 //! Processed splittings: a kernel step by step, between the two ends of a processor.
 
 mod inside;
+mod linearised;
 mod scheme;
 
 pub use inside::Inside;
@@ -11,12 +12,12 @@ use alloc::vec::Vec;
 use inside::Stepped;
 
 use super::scheme::Flow;
-use super::{KineticFlow, Split, Stages, has_force_gradient, share_of};
+use super::{KineticFlow, Length, Split, Stages, has_force_gradient, share_of};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
 use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Coordinates, InLanes, Lanes, lanes_of_fields, real};
+use crate::numbers::{Coordinates, InLanes, Lanes, Real, lanes_of_fields, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
 /// The plan of [`Stepper::processed`](crate::Stepper::processed): a kinetic-potential splitting whose steps are made inside of a processor, so that three drifts give order 6.
@@ -70,6 +71,8 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 #[derive(Clone, Debug)]
 pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
     scheme: ProcessedScheme,
+    /// Of [`leave`](Self::leave), and the other way round of [`enter`](Self::enter).
+    parts: Vec<Part>,
     kernel: Split<S, K>,
     /// Its steps, from the end of a joint to the end of the next, so that they are all the same.
     step: Stages<K::Drift, Scalar<S>>,
@@ -87,7 +90,7 @@ lanes_of_fields!(
         Split<S, K>: Lanes<Lane = Split<S::Lane, K::Lane>>,
         Stages<K::Drift, Scalar<S>>: Lanes<Lane = Stages<<K::Lane as KineticFlow<Scalar<S::Lane>>>::Drift, Scalar<S::Lane>>>
     ]
-    { lanes: [kernel, step, enter, leave], scalars: [], shared: [scheme] }
+    { lanes: [kernel, step, enter, leave], scalars: [], shared: [scheme, parts] }
 );
 
 impl<W, S, K> InLanes<W> for Processed<S, K>
@@ -123,7 +126,7 @@ impl<S: Effect> Stepper<S> {
 }
 
 /// A drift or a kick, as a part of the kernel's step and of the processor's, which has no sign, and so the gradient.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Part {
     flow: Flow,
     time: [f64; 2],
@@ -133,6 +136,14 @@ struct Part {
 impl Part {
     fn has_gradient(&self) -> bool {
         self.gradient.iter().any(|gradient| gradient.abs() > 0.0)
+    }
+
+    /// In a step, and a processor of this length; so many times.
+    fn length<T: Real>(&self, [step, processor]: [T; 2], times: f64) -> Length<T> {
+        let time = step * real(times * self.time[0]) + processor * real(times * self.time[1]);
+        let cubes = [step, processor].map(|h| h * h * h);
+        let gradient = cubes[0] * real(times * self.gradient[0]) + cubes[1] * real(times * self.gradient[1]);
+        Length { flow: self.flow, time, gradient: self.has_gradient().then_some(gradient) }
     }
 }
 
@@ -166,23 +177,19 @@ fn way_out(scheme: &ProcessedScheme) -> Vec<Part> {
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
     fn new(scene: &S, h: Scalar<S>, kinetic: K, scheme: ProcessedScheme) -> Result<Self, SetupError> {
         let kernel = Split::folded(scene, h, kinetic, scheme.kernel())?;
-        let (length, out) = (h.simd_abs(), way_out(&scheme));
+        let parts = way_out(&scheme);
         // The kernel's own were asked for with the kernel.
-        if out.iter().any(Part::has_gradient) && !has_force_gradient(scene) {
+        if parts.iter().any(Part::has_gradient) && !has_force_gradient(scene) {
             return Err(SetupError::NoForceGradient);
         }
         let folded = |part: &Part, sign: f64| {
-            let time = h * real(sign * part.time[0]) + length * real(sign * part.time[1]);
-            let cubes = [h, length].map(|h| h * h * h);
-            let gradient = cubes[0] * real(sign * part.gradient[0]) + cubes[1] * real(sign * part.gradient[1]);
-            let gradient = part.has_gradient().then_some(gradient);
-            share_of(&kernel.kinetic, &kernel.inverse_inertia, part.flow, time, gradient)
+            share_of(&kernel.kinetic, &kernel.inverse_inertia, part.length([h, h.simd_abs()], sign))
         };
-        let leave = out.iter().map(|part| folded(part, 1.0)).collect::<Result<_, _>>()?;
-        let enter = out.iter().rev().map(|part| folded(part, -1.0)).collect::<Result<_, _>>()?;
+        let leave = parts.iter().map(|part| folded(part, 1.0)).collect::<Result<_, _>>()?;
+        let enter = parts.iter().rev().map(|part| folded(part, -1.0)).collect::<Result<_, _>>()?;
         let mut step = kernel.inner.clone();
         step.add(kernel.joint.clone());
-        Ok(Self { scheme, kernel, step, enter, leave })
+        Ok(Self { scheme, parts, kernel, step, enter, leave })
     }
 
     /// The coefficients.

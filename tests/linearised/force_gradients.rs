@@ -1,0 +1,139 @@
+//! Kicks with force gradients, and processed splittings, which have them.
+
+use liestep::effects::{Dipole, Gravity, GravityGradient, RigidBody, Spring};
+use liestep::groups::{Advected, LieGroup as _};
+use liestep::laws::samples::{Random, along};
+use liestep::mechanics::{
+    DiscreteLagrangian as _, Inertia, NonstandardInertia, SecondDerivatives as _, Sum, Term as _,
+};
+use liestep::methods::{ProcessedScheme, SplittingScheme};
+use liestep::numbers::Entries as _;
+use liestep::{SO3, Stepper};
+use nalgebra::{Matrix3, RealField, Rotation3, Vector3};
+use num_dual::{Dual64, HyperHyperDual64};
+
+use super::dual::{STEP, assert_linearised};
+use super::scenes::{J_D, MOMENTS, Numbers, SEEDS, exact_flow, gravity, heavy, unit};
+
+type Several<T> = Sum<Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>, Dipole<T>>;
+
+/// The parameters of the scene below; those of the body are the first nine.
+const PARAMETERS: usize = 45;
+
+/// Potentials that are linear in what is advected, quadratic, and of a root.
+fn several<T: RealField + Copy>(varied: Option<(usize, T)>) -> Several<T> {
+    let mut n = Numbers::new(varied);
+    let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_D)).expect("a body") };
+    let gravity = gravity(&mut n);
+    let spring = Spring {
+        k: n.number(1.5),
+        length: n.number(0.4),
+        at: n.vector(0.1, 0.5, -0.3),
+        anchor: n.vector(0.8, -0.2, 0.9),
+    };
+    let J = Matrix3::identity() * J_D.trace() - J_D;
+    let gradient = GravityGradient {
+        GM: n.number(0.7),
+        r: n.number(1.3),
+        J: Inertia::new(n.symmetric(&J)).expect("a body"),
+        direction: n.vector(0.6, 0.0, 0.8),
+    };
+    let dipole = Dipole { moment: n.vector(0.7, -0.4, 0.2), field: n.vector(0.3, 0.9, -0.5) };
+    body + gravity + spring + gradient + dipole
+}
+
+fn body<T: RealField + Copy>(scene: Several<T>) -> RigidBody<T> {
+    scene.first.first.first.first
+}
+
+/// `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` by the declared Lagrangians themselves, as `−V` is what is left of `l_d` where nothing turns,
+/// and `J` its second derivative there: along a displacement `ζ`, or by a parameter.
+fn by_dual_numbers(
+    attitude: &Matrix3<f64>,
+    [u, v, r]: [&Vector3<f64>; 3],
+    displaced: &Vector3<f64>,
+    number: Option<usize>,
+) -> f64 {
+    let units = [1, 2, 3].map(|k| HyperHyperDual64::new(0.0, ones(k, 1), ones(k, 2), ones(k, 3), 0.0, 0.0, 0.0, 0.0));
+    let lift = |matrix: &Matrix3<f64>| matrix.map(HyperHyperDual64::from);
+    let turned = |v: &Vector3<f64>, k: usize| Matrix3::identity() + lift(&v.cross_matrix()) * units[k];
+    let scene = several(number.map(|number| (number, units[2])));
+    let (one, start) = (HyperHyperDual64::from(1.0), lift(attitude) * turned(displaced, 2));
+    let seen = |matrix| scene.advected().seen_from(&SO3::from_matrix_unchecked(matrix));
+    let still = |matrix| scene.l_d(&Matrix3::identity(), &seen(matrix), one);
+    let change = still(start * turned(v, 1) * turned(u, 0)).eps1eps2eps3;
+    let torque = still(start * turned(r, 0)).eps1eps3;
+    // exp(ε₁ r̂ + ε₂ û)
+    let [r, u] = [r, u].map(|v| lift(&v.cross_matrix()));
+    let second = (r * u + u * r) * (units[0] * units[1] * HyperHyperDual64::from(0.5));
+    let f = Matrix3::identity() + r * units[0] + u * units[1] + second;
+    change + torque - body(scene).l_d(&f, &(), one).eps1eps2eps3
+}
+
+fn ones(k: usize, place: usize) -> f64 {
+    if k == place { 1.0 } else { 0.0 }
+}
+
+/// Along displacements of the body and by each parameter; of those that are advected by way of what the body sees.
+#[test]
+fn the_gradient_of_a_kick() {
+    let scene = several::<f64>(None);
+    for seed in 0..5 {
+        let mut random = Random::new(seed);
+        let attitude: SO3 = along::<SO3, 3, 3>(&random.sample(), 1.0);
+        let [u, v, r]: [Vector3<f64>; 3] = [random.sample(), random.sample(), random.sample()];
+        let mut by_parameters = vec![0.0; PARAMETERS];
+        let seen = scene.advected().seen_from(&attitude);
+        let found = scene.kick_gradient(&seen, &v, [&u, &r], &mut |number, share| by_parameters[number] += share);
+        let (by_place, by_seen) = found.expect("it is derived");
+        let mut by_carried = Vec::new();
+        Advected::<SO3>::pulled_back(&by_seen, &attitude).each(&mut |entry| by_carried.push(entry));
+        Several::<f64>::carried_parameters(&mut |place, number| by_parameters[number] += by_carried[place]);
+        let at = attitude.matrix();
+        let place = |k: usize| by_dual_numbers(&at, [&u, &v, &r], &Matrix3::identity().column(k).into(), None);
+        let parameter = |number| by_dual_numbers(&at, [&u, &v, &r], &Vector3::zeros(), Some(number));
+        let expected: Vec<f64> = (0..3).map(place).chain((0..PARAMETERS).map(parameter)).collect();
+        let size = expected.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
+        assert!(expected.iter().filter(|entry| entry.abs() > 1e-3 * size).count() > 30, "{expected:?}");
+        for (k, (found, expected)) in by_place.iter().chain(&by_parameters).zip(&expected).enumerate() {
+            assert!((found - expected).abs() < 1e-14 * size, "{seed}, {k}: {found}, not {expected}");
+        }
+    }
+}
+
+/// With a declared flow, behind whose kicks are all of these potentials.
+#[test]
+fn a_splitting_with_force_gradients() {
+    for scheme in [SplittingScheme::FORCE_GRADIENT_2, SplittingScheme::FORCE_GRADIENT_5] {
+        let split = |number: Option<usize>| {
+            let of_flow = number.filter(|&number| number >= PARAMETERS).map(|number| number - PARAMETERS);
+            let scene = several(unit(number.filter(|&number| number < PARAMETERS)));
+            Stepper::split(scene, (5.0 * STEP).into(), body(several(unit(of_flow))), scheme).expect("a stepper")
+        };
+        for seed in SEEDS {
+            let scene = several::<f64>(None);
+            let stepper = Stepper::split(scene, 5.0 * STEP, body(scene), scheme).expect("a stepper");
+            assert_linearised(&stepper, split, seed);
+        }
+    }
+}
+
+/// From a kick to a kick and from a drift to a drift; forwards and back in time.
+#[test]
+fn a_processed_splitting() {
+    let axes = Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner();
+    let schemes = [ProcessedScheme::SIX_A, ProcessedScheme::SIX_B, ProcessedScheme::FOUR_A, ProcessedScheme::FOUR_C];
+    for (scheme, h) in schemes.into_iter().zip([0.1, -0.2, 0.05, 0.1]) {
+        let processed = |number: Option<usize>| {
+            let of_flow = number.filter(|&number| number >= 17).map(|number| number - 17);
+            let scene = heavy(MOMENTS, &axes, 9.81, unit(number.filter(|&number| number < 17)));
+            let flow = exact_flow::<Dual64>(MOMENTS, &axes, unit(of_flow));
+            Stepper::processed(scene, h.into(), flow, scheme).expect("a stepper")
+        };
+        for seed in SEEDS {
+            let scene = heavy(MOMENTS, &axes, 9.81, None);
+            let stepper = Stepper::processed(scene, h, exact_flow(MOMENTS, &axes, None), scheme).expect("a stepper");
+            assert_linearised(&stepper, processed, seed);
+        }
+    }
+}
