@@ -9,8 +9,12 @@ use liestep::methods::{
 use liestep::motion::Plan;
 use liestep::prelude::*;
 
+use crate::rivals::dop853::Dop853;
+use crate::rivals::embedded::{self, Embedded};
+use crate::rivals::library;
 use crate::rivals::rates::{Rates, rk4_step};
-use crate::rivals::{dop853, library};
+use crate::rivals::tsitouras::Tsitouras5;
+use crate::rivals::verner::Verner9;
 use crate::scenes::{Kind, Scene};
 
 /// A run made ready, from its start to its end each time it is called; `None` where a step failed.
@@ -66,8 +70,9 @@ impl Method {
     pub fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
         let (first, next, last) = match self.control {
             Control::Step(longest) => (longest, 1.0 / ratio, 1e-5),
-            // An error of order 8 falls by the eighth power of the step.
-            Control::Tolerance => (1.0, ratio.powi(-8), 1e-15),
+            // An error of order 8 falls by the eighth power of the step. With a tolerance of one, a motion that has grown
+            // without bound is accepted, and takes ever shorter steps.
+            Control::Tolerance => (0.1, ratio.powi(-8), 1e-15),
         };
         let whole = self.steps_are_equal();
         core::iter::successors(Some(first), move |parameter| Some(parameter * next))
@@ -253,35 +258,46 @@ where
     })
 }
 
-fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> [Method; 4] {
-    [
-        Method::new("RK4", Family::Rival, Control::Step(0.5), move |scene, t, h| {
-            let (equations, start, steps) = (equations(scene), scene.start(), count(t, h));
-            Some(Box::new(move || {
-                let mut y = start;
-                for _ in 0..steps {
-                    y = rk4_step(&equations, h, &y);
-                }
-                Some(equations.end(&y))
-            }))
-        }),
-        Method::new("DOP853, fixed step", Family::Rival, Control::Step(1.0), move |scene, t, h| {
-            let (equations, start, steps) = (equations(scene), scene.start(), count(t, h));
-            Some(Box::new(move || {
-                let mut y = start;
-                for _ in 0..steps {
-                    y = dop853::step(&equations, h, &y);
-                }
-                Some(equations.end(&y))
-            }))
-        }),
-        Method::new("DOP853", Family::Rival, Control::Tolerance, move |scene, t, tolerance| {
-            let (equations, start) = (equations(scene), scene.start());
-            Some(Box::new(move || Some(equations.end(&dop853::integrate(&equations, t, tolerance, start)?))))
-        }),
+fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> Vec<Method> {
+    let classical = Method::new("RK4", Family::Rival, Control::Step(0.5), move |scene, t, h| {
+        let (equations, start, steps) = (equations(scene), scene.start(), count(t, h));
+        Some(Box::new(move || {
+            let mut y = start;
+            for _ in 0..steps {
+                y = rk4_step(&equations, h, &y);
+            }
+            Some(equations.end(&y))
+        }))
+    });
+    let of_a_library =
         Method::new("DOP853 of a library", Family::Rival, Control::Tolerance, move |scene, t, tolerance| {
             let (equations, start) = (equations(scene), scene.start());
             Some(Box::new(move || Some(equations.end(&library::integrate(&equations, t, tolerance, start)?))))
+        });
+    let mut rivals = vec![classical];
+    rivals.extend(embedded::<Tsitouras5, E>(equations));
+    rivals.extend(embedded::<Dop853, E>(equations));
+    rivals.extend(embedded::<Verner9, E>(equations));
+    rivals.push(of_a_library);
+    rivals
+}
+
+/// With a fixed step, and with its own control.
+fn embedded<M: Embedded, E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> [Method; 2] {
+    [
+        Method::new(format!("{}, fixed step", M::NAME), Family::Rival, Control::Step(1.0), move |scene, t, h| {
+            let (equations, start, steps) = (equations(scene), scene.start(), count(t, h));
+            Some(Box::new(move || {
+                let mut y = start;
+                for _ in 0..steps {
+                    y = embedded::step::<M>(&equations, h, &y);
+                }
+                Some(equations.end(&y))
+            }))
+        }),
+        Method::new(M::NAME, Family::Rival, Control::Tolerance, move |scene, t, tolerance| {
+            let (equations, start) = (equations(scene), scene.start());
+            Some(Box::new(move || Some(equations.end(&embedded::integrate::<M>(&equations, t, tolerance, start)?))))
         }),
     ]
 }

@@ -38,7 +38,7 @@ const LEAST_LEVEL: f64 = 64.0 * f64::EPSILON;
 /// A reference isn't looked for with so many times the steps of the first trial.
 const MOST_REFERENCE_STEPS: f64 = 256.0;
 /// The ranking ends where it has cost so many runs of the method that looks cheapest.
-const MOST_RUNS: f64 = 8.0;
+const OF_A_RANKING: f64 = 8.0;
 /// Methods are told apart that seem to cost up to so many times the cheapest.
 pub(super) const FAR: f64 = 2.0;
 /// How often a longer part is in the horizon.
@@ -85,9 +85,10 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
             let ((errs_a, high_a, of_a), (errs_b, high_b, of_b)) = (likely(a), likely(b));
             (errs_a, high_a).cmp(&(errs_b, high_b)).then(of_a.total_cmp(&of_b))
         });
-        let mut failure = None;
+        let (mut failure, mut many) = (None, None);
         for scout in scouts {
             let (mut scouted, mut horizon) = (None, start.horizon);
+            let name = || candidates[scout].name.clone();
             for _ in 0..MOST_SHORTENINGS {
                 let (start, mut ladder) = (start.until(horizon), Ladder::new(&candidates[scout]));
                 let level = level(accuracy, horizon);
@@ -104,7 +105,11 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
                 failure = failure.or(ladder.failure);
                 horizon /= SHORTER;
             }
-            let Some((found, ladder, level)) = scouted else { continue };
+            let Some((found, ladder, level)) = scouted else {
+                // The shortest part had too few.
+                many.get_or_insert_with(|| (MOST_STEPS * start.horizon / (SHORTER * horizon), name()));
+                continue;
+            };
             let step = found.horizon / ladder.estimate(&found, None, level).steps;
             let wanted = (OF_STEPS * step).min(start.horizon);
             let mut ladders: Vec<_> = candidates.iter().map(Ladder::new).map(Some).collect();
@@ -120,12 +125,10 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
             if part.refer(scout, accuracy, trials).is_some() {
                 return Ok(part);
             }
+            many.get_or_insert_with(|| (times * horizon / step, name()));
         }
-        Err(failure.unwrap_or(AccuracyError::TooManySteps {
-            steps: f64::INFINITY,
-            method: candidates.first().map_or_else(String::new, |first| first.name.clone()),
-            trials: *trials,
-        }))
+        let (steps, method) = many.unwrap_or_else(|| (trials.most_steps, String::new()));
+        Err(failure.unwrap_or(AccuracyError::TooManySteps { steps, method, trials: *trials }))
     }
 
     /// A longer part, for the methods that may be cheapest; none where this one is as long.
@@ -229,7 +232,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
             let best = known.into_iter().map(cost).fold(f64::INFINITY, f64::min);
             let Some(index) = open.into_iter().min_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
             let spent = trials.operations - before;
-            let is_expensive = cost(index) > within * best || spent > MOST_RUNS * best;
+            let is_expensive = cost(index) > within * best || spent > OF_A_RANKING * best;
             if is_expensive || cost(index).is_infinite() || trials.operations > MOST_IN_VAIN {
                 break;
             }

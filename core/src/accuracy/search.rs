@@ -361,7 +361,10 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
             // Long steps may fail in any way; that a step can't be had at all has to do with short ones.
             (_, Some(failure @ AccuracyError::Setup(_)), _) | (_, Some(failure), None) => failure,
             (_, _, Some((steps, method))) => AccuracyError::TooManySteps { steps, method, trials },
-            (..) => AccuracyError::TooManySteps { steps: trials.most_steps, method: String::new(), trials },
+            (..) => {
+                let method = self.candidates.first().map_or_else(String::new, |first| first.name.clone());
+                AccuracyError::TooManySteps { steps: trials.most_steps, method, trials }
+            }
         }
     }
 }

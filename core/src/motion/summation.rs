@@ -166,9 +166,21 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn finish(&mut self, spatial: impl FnOnce() -> A) {
         self.count();
         if is_due(self.now().steps) {
-            self.restore(&spatial());
+            by_copy(self, |near| near.restore(&spatial()));
         }
     }
+}
+
+/// A change that is seldom made, by a function that is called.
+///
+/// What such a function is shown stays in memory in all the steps between, too. There the next step reads what the last
+/// one has just written, often in other pieces than it was written in, and waits for it. A copy leaves the motion in
+/// registers.
+#[inline(always)]
+pub(crate) fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
+    let mut changed = *motion;
+    change(&mut changed);
+    *motion = changed;
 }
 
 /// Whether it is time to look how far roundings have gone.

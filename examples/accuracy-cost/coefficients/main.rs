@@ -16,6 +16,8 @@
 //! those of most processors are, it is the one that is nearest.
 
 mod problem;
+#[cfg(test)]
+mod rivals;
 mod search;
 mod unseen;
 mod words;

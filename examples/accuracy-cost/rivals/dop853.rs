@@ -1,18 +1,73 @@
-//! Dormand and Prince's method of order 8, unrolled for the seven numbers of a top, with its own step control.
+//! Dormand and Prince's method of order 8.
 //!
-//! Coefficients, error estimate and controller are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential
-//! Equations I*, 2nd edition, II.5 and II.10. There is no dense output. With a fixed step the error isn't estimated,
-//! which saves what that costs.
+//! Coefficients and error estimate are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, 2nd
+//! edition, II.5 and II.10.
 
 // The digits are those of the source, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;
 
+use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
-/// Coefficients that aren't zero, each with the stage that it belongs to.
-type Row<const N: usize> = [(usize, f64); N];
+pub struct Dop853;
+
+impl Embedded for Dop853 {
+    const NAME: &'static str = "DOP853";
+    const POWER: i32 = 8;
+    type Stages = [State; 12];
+
+    #[inline(always)]
+    fn stages(equations: &impl Rates, h: f64, y: &State, first: State) -> [State; 12] {
+        let mut k = [[0.0; 7]; 12];
+        k[0] = first;
+        stages!(k, equations, h, y: 1 A2 2 A3 3 A4 4 A5 5 A6 6 A7 7 A8 8 A9 9 A10 10 A11 11 A12);
+        k
+    }
+
+    #[inline(always)]
+    fn mean(k: &[State; 12]) -> State {
+        combination(k, &B)
+    }
+
+    #[inline(always)]
+    fn complete(_: &impl Rates, _: f64, _: &State, _: &State, _: &mut [State; 12]) -> Option<State> {
+        None
+    }
+
+    /// The combined estimate of orders 5 and 3.
+    #[inline(always)]
+    fn error(k: &[State; 12], mean: &State, scales: &State) -> f64 {
+        let (fifth, third) = (combination(k, &ERROR_5), plus(mean, 1.0, &combination(k, &ERROR_3)));
+        let (five, three) = (mean_square(&fifth, scales), mean_square(&third, scales));
+        let denominator = five + 0.01 * three;
+        if denominator > 0.0 { five / denominator.sqrt() } else { 0.0 }
+    }
+
+    fn tableau() -> Tableau {
+        let third = ERROR_3.iter().chain(&B).copied().collect();
+        Tableau {
+            order: 8,
+            rows: vec![
+                vec![],
+                A2.into(),
+                A3.into(),
+                A4.into(),
+                A5.into(),
+                A6.into(),
+                A7.into(),
+                A8.into(),
+                A9.into(),
+                A10.into(),
+                A11.into(),
+                A12.into(),
+            ],
+            weights: B.into(),
+            estimates: vec![(5, ERROR_5.into()), (3, third)],
+        }
+    }
+}
 
 const A2: Row<1> = [(0, 5.26001519587677318785587544488e-2)];
 const A3: Row<2> = [(0, 1.97250569845378994544595329183e-2), (1, 5.91751709536136983633785987549e-2)];
@@ -104,106 +159,3 @@ const ERROR_3: Row<3> = [
     (8, -0.733846688281611857341361741547),
     (11, -0.220588235294117647058823529412e-1),
 ];
-
-#[inline(always)]
-fn combination<const N: usize>(k: &[State; 12], row: &Row<N>) -> State {
-    core::array::from_fn(|i| {
-        let (first, factor) = row[0];
-        row[1..].iter().fold(factor * k[first][i], |sum, &(stage, factor)| sum + factor * k[stage][i])
-    })
-}
-
-#[inline(always)]
-fn plus(y: &State, h: f64, change: &State) -> State {
-    core::array::from_fn(|i| y[i] + h * change[i])
-}
-
-/// The twelve stages from `y`, of which `first` is the first, and the step's mean rate.
-#[inline(always)]
-fn stages(equations: &impl Rates, h: f64, y: &State, first: State) -> ([State; 12], State) {
-    let mut k = [[0.0; 7]; 12];
-    k[0] = first;
-    macro_rules! stage {
-        ($($place:literal $row:ident)+) => {$(
-            k[$place] = equations.rate(&plus(y, h, &combination(&k, &$row)));
-        )+};
-    }
-    stage!(1 A2 2 A3 3 A4 4 A5 5 A6 6 A7 7 A8 8 A9 9 A10 10 A11 11 A12);
-    let mean = combination(&k, &B);
-    (k, mean)
-}
-
-/// One step of fixed length.
-#[inline]
-pub fn step(equations: &impl Rates, h: f64, y: &State) -> State {
-    let (_, mean) = stages(equations, h, y, equations.rate(y));
-    plus(y, h, &mean)
-}
-
-/// From `y` over the time `t` with the method's own step control; `None` where it gives up.
-///
-/// The tolerance is relative and absolute at once, as all seven numbers are of the order of one or of the momentum.
-pub fn integrate(equations: &impl Rates, t: f64, tolerance: f64, mut y: State) -> Option<State> {
-    let mut rate = equations.rate(&y);
-    let (mut done, mut h) = (0.0, initial_step(equations, &y, &rate, tolerance).min(t));
-    let mut rejected = false;
-    for _ in 0..MOST_STEPS {
-        let last = done + 1.01 * h >= t;
-        if last {
-            h = t - done;
-        }
-        let (k, mean) = stages(equations, h, &y, rate);
-        let next = plus(&y, h, &mean);
-        let error = error(h, &y, &next, &k, &mean, tolerance);
-        let wanted = h / (error.powf(1.0 / 8.0) / SAFETY).clamp(1.0 / LARGEST_GROWTH, 1.0 / SMALLEST_GROWTH);
-        if error <= 1.0 {
-            done += h;
-            y = next;
-            if last {
-                return Some(y);
-            }
-            rate = equations.rate(&y);
-            // After a rejection the step isn't lengthened at once.
-            h = if rejected { wanted.min(h) } else { wanted };
-            rejected = false;
-        } else if error.is_finite() {
-            h = wanted.min(h);
-            rejected = true;
-        } else {
-            return None;
-        }
-    }
-    None
-}
-
-/// Far more than any of the scenes takes.
-const MOST_STEPS: u32 = 10_000_000;
-const SAFETY: f64 = 0.9;
-const SMALLEST_GROWTH: f64 = 0.333;
-const LARGEST_GROWTH: f64 = 6.0;
-
-/// The combined estimate of orders 5 and 3, in units of the tolerance.
-#[inline(always)]
-fn error(h: f64, y: &State, next: &State, k: &[State; 12], mean: &State, tolerance: f64) -> f64 {
-    let (fifth, third) = (combination(k, &ERROR_5), plus(mean, 1.0, &combination(k, &ERROR_3)));
-    let (mut five, mut three) = (0.0, 0.0);
-    for i in 0..7 {
-        let scale = tolerance * (1.0 + y[i].abs().max(next[i].abs()));
-        five += (fifth[i] / scale).powi(2);
-        three += (third[i] / scale).powi(2);
-    }
-    let denominator = five + 0.01 * three;
-    if denominator > 0.0 { h * five / (7.0 * denominator).sqrt() } else { 0.0 }
-}
-
-/// A step for which an explicit Euler step would change the rate little.
-fn initial_step(equations: &impl Rates, y: &State, rate: &State, tolerance: f64) -> f64 {
-    let norm = |v: &State| {
-        let sum: f64 = (0..7).map(|i| (v[i] / (tolerance * (1.0 + y[i].abs()))).powi(2)).sum();
-        (sum / 7.0).sqrt()
-    };
-    let first = 0.01 * norm(y) / norm(rate);
-    let later = equations.rate(&plus(y, first, rate));
-    let second = norm(&plus(&later, -1.0, rate)) / first;
-    (0.01 / norm(rate).max(second)).powf(1.0 / 8.0).min(100.0 * first)
-}

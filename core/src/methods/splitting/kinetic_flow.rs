@@ -23,7 +23,7 @@ pub trait KineticFlow<T: Real>: Clone {
     /// Whether it is the motion itself, but for rounding, whatever the time.
     const EXACT: bool = false;
 
-    /// How much of that [`take_spin`](Self::take_spin) takes out.
+    /// How much of that its [`spin`](Self::spin) is.
     const OPERATIONS_OF_SPIN: u32 = 0;
 
     /// Shows its name and every constant: two flows that show the same move a body in the same way.
@@ -44,10 +44,10 @@ pub trait KineticFlow<T: Real>: Clone {
     /// [`SetupError`] for a body or a time that can't be used.
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError>;
 
-    /// Takes out of a drift its rotation about the third body axis, where it is one that commutes with all else about
-    /// that axis, and returns its angle in units of `p_3`; without such a rotation there is nothing to take.
+    /// The angle in units of `−p_3` of the rotation about the third body axis that the drift ends with, where it is one
+    /// that commutes with all else about that axis.
     #[must_use]
-    fn take_spin(_drift: &mut Self::Drift) -> Option<T> {
+    fn spin(_drift: &Self::Drift) -> Option<T> {
         None
     }
 
@@ -57,6 +57,16 @@ pub trait KineticFlow<T: Real>: Clone {
     ///
     /// [`StepError`] where an equation has no solution.
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError>;
+
+    /// The same without its [`spin`](Self::spin).
+    ///
+    /// # Errors
+    ///
+    /// As [`advance`](Self::advance).
+    #[inline(always)]
+    fn advance_without_spin(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
+        Self::advance(drift, momentum)
+    }
 }
 
 /// What a body did.
@@ -169,18 +179,20 @@ impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
         Ok(SymmetricDrift { about_momentum, about_axis })
     }
 
-    fn take_spin(drift: &mut Self::Drift) -> Option<T> {
-        Some(core::mem::replace(&mut drift.about_axis, T::zero()))
+    fn spin(drift: &Self::Drift) -> Option<T> {
+        Some(drift.about_axis)
+    }
+
+    #[inline(always)]
+    fn advance_without_spin(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
+        let [(a11, a21, a31), (a12, a22, a32), (a13, a23, a33)] = rotation(p, drift.about_momentum);
+        let increment = Matrix3::new(a11, a12, a13, a21, a22, a23, a31, a32, a33);
+        // Not a number where the angle has no digit left.
+        Ok(Turn { increment, change: Vector3::repeat(a33 * T::zero()), iterations: 0 })
     }
 
     #[inline(always)]
     fn advance(drift: &Self::Drift, p: &Vector3<T>) -> Result<Turn<T>, StepError> {
-        if drift.about_axis.simd_eq(T::zero()).all() {
-            let [(a11, a21, a31), (a12, a22, a32), (a13, a23, a33)] = rotation(p, drift.about_momentum);
-            let increment = Matrix3::new(a11, a12, a13, a21, a22, a23, a31, a32, a33);
-            // Not a number where the angle has no digit left.
-            return Ok(Turn { increment, change: Vector3::repeat(a33 * T::zero()), iterations: 0 });
-        }
         let angle = drift.about_axis * p.z;
         let (sinc, versine) = rotation_coefficients(angle * angle);
         // sin θ and cos θ − 1, without cancellation.

@@ -1,7 +1,7 @@
 //! Splittings in lanes: shares are gathered as they were folded for each body alone.
 
 use super::preprocessed_flow::PreprocessedDrift;
-use super::{Kick, KineticFlow, PreprocessedFlow, Share, Spin, Split, Stage, Stages};
+use super::{Kick, KineticFlow, PreprocessedFlow, Spin, Split, Stage, Stages};
 use crate::mechanics::{Effect, Scalar};
 use crate::numbers::{InLanes, Lanes, Real, lanes_of_fields};
 use nalgebra::SimdValue;
@@ -16,7 +16,7 @@ lanes_of_fields!(
         K: KineticFlow<Scalar<S>, Drift: Lanes<Lane = <K::Lane as KineticFlow<Element<S>>>::Drift>>
             + Lanes<Lane: KineticFlow<Element<S>>>
     ]
-    { lanes: [torque, inverse_inertia, kinetic, outer, inner, joint, spin], scalars: [h], shared: [scheme] }
+    { lanes: [torque, inverse_inertia, kinetic, first, step, last, spin], scalars: [h], shared: [scheme] }
 );
 
 impl<W, S, K> InLanes<W> for Split<S, K>
@@ -29,8 +29,7 @@ where
 }
 
 lanes_of_fields!(
-    impl[D: Lanes, T: Real<Element: Real>] Spin<D, T> => Spin<D::Lane, T::Element>, as Spin
-    { lanes: [outer, inner], scalars: [angle], shared: [] }
+    impl[T: Real<Element: Real>] Spin<T> => Spin<T::Element>, as Spin { lanes: [], scalars: [angle], shared: [] }
 );
 
 lanes_of_fields!(
@@ -47,33 +46,6 @@ lanes_of_fields!(
     impl[D: Lanes, T: Real<Element: Real>] Stages<D, T> => Stages<D::Lane, T::Element>, as Stages
     { lanes: [lead, stages], scalars: [], shared: [] }
 );
-
-/// Of one kind in all lanes.
-impl<D: Lanes, T: Real<Element: Real>> Lanes for Share<D, T> {
-    type Lane = Share<D::Lane, T::Element>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        match lane {
-            Share::Drift(drift) => Self::Drift(D::splat(drift)),
-            Share::Kick(kick) => Self::Kick(Lanes::splat(kick)),
-        }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        match self {
-            Self::Drift(drift) => Share::Drift(drift.lane(k)),
-            Self::Kick(kick) => Share::Kick(kick.lane(k)),
-        }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        match (self, lane) {
-            (Self::Drift(own), Share::Drift(drift)) => own.set_lane(k, drift),
-            (Self::Kick(own), Share::Kick(kick)) => own.set_lane(k, kick),
-            _ => false,
-        }
-    }
-}
 
 /// A flow of the free body that is a type of its scalar.
 macro_rules! flow_in_lanes {

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
-use super::{Flow, KineticFlow, Length, Spin, Split};
+use super::{Flow, KineticFlow, Length, Split};
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
@@ -129,11 +129,13 @@ where
         motion: &mut M,
         kept: &mut (),
     ) -> Result<StepReport, StepError> {
-        let Some(Spin { outer, inner, .. }) = &self.spin else { return self.step(scene, motion, kept) };
+        if self.spin.is_none() {
+            return self.step(scene, motion, kept);
+        }
         let (mut whole, mut plain) = (*motion, *motion.now());
-        self.make(outer, &mut whole, &mut 0)?;
-        self.make_all(inner, &mut whole, &mut 0)?;
-        self.make(outer, &mut whole, &mut 0)?;
+        for shares in [&self.first, &self.last] {
+            self.make_all::<true, M>(shares, &mut whole, &mut 0)?;
+        }
         let report = self.step(scene, &mut plain, kept)?;
         motion.replace(plain);
         Ok(report)

@@ -98,26 +98,24 @@ pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
     inverse_inertia: Matrix3<Scalar<S>>,
     kinetic: K,
     h: Scalar<S>,
-    /// The first share of a step, which is the last one too.
-    outer: Share<K::Drift, Scalar<S>>,
-    inner: Stages<K::Drift, Scalar<S>>,
-    /// The last share of a step and the first of the next.
-    joint: Share<K::Drift, Scalar<S>>,
+    /// The first share of a run.
+    first: Stages<K::Drift, Scalar<S>>,
+    /// A step without its first share, to the end of the next one's, which is made together with the last.
+    step: Stages<K::Drift, Scalar<S>>,
+    /// The same to the end of a run.
+    last: Stages<K::Drift, Scalar<S>>,
     /// What all the drifts of a step turn about the third body axis, in units of `p_3`, where that can be done at once.
-    spin: Option<Spin<K::Drift, Scalar<S>>>,
+    spin: Option<Spin<Scalar<S>>>,
 }
 
-/// What is turned once a step, and the shares with their own turns, which derivatives are of.
-#[derive(Clone, Debug)]
-struct Spin<D, T> {
-    /// In units of `p_3`.
+/// An angle in units of `p_3`.
+#[derive(Clone, Copy, Debug)]
+struct Spin<T> {
     angle: T,
-    outer: Share<D, T>,
-    inner: Stages<D, T>,
 }
 
 /// A share of the step, its constants folded.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 enum Share<D, T> {
     Drift(D),
     Kick(Kick<T>),
@@ -141,14 +139,13 @@ struct Stage<D, T> {
 
 impl<D, T> FromIterator<Share<D, T>> for Stages<D, T> {
     fn from_iter<I: IntoIterator<Item = Share<D, T>>>(shares: I) -> Self {
-        let mut all = Self { lead: None, stages: Vec::new() };
-        shares.into_iter().for_each(|share| all.add(share));
-        all
+        shares.into_iter().fold(Self { lead: None, stages: Vec::new() }, Self::and)
     }
 }
 
 impl<D, T> Stages<D, T> {
-    fn add(&mut self, share: Share<D, T>) {
+    /// These, and then a share.
+    fn and(mut self, share: Share<D, T>) -> Self {
         match share {
             Share::Drift(drift) => self.stages.push(Stage { drift, kick: None }),
             Share::Kick(kick) => {
@@ -157,6 +154,7 @@ impl<D, T> Stages<D, T> {
                 *place = Some(kick);
             }
         }
+        self
     }
 }
 
@@ -200,7 +198,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         // A turn for itself costs about what three others save.
         let drifts = scheme.shares().filter(|(flow, _)| *flow == Flow::Drift).count();
         if drifts > 3 && splitting.is_without_torque(scene) {
-            splitting.take_spin();
+            splitting.spin = splitting.spin_of_a_step();
         }
         Ok(splitting)
     }
@@ -224,8 +222,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         let all: Vec<_> = scheme.shares().zip(scheme.gradients()).collect();
         let share = |times: f64, share| share_of(&kinetic, &inverse_inertia, Length::of(h, times, share));
         let (outer, joint) = (share(1.0, all[0])?, share(2.0, all[0])?);
-        let inner = all[1..all.len() - 1].iter().map(|&inner| share(1.0, inner)).collect::<Result<_, _>>()?;
-        Ok(Self { scheme, torque, inverse_inertia, kinetic, h, outer, inner, joint, spin: None })
+        let inner: Stages<_, _> =
+            all[1..all.len() - 1].iter().map(|&inner| share(1.0, inner)).collect::<Result<_, _>>()?;
+        let (first, step, last) = (Stages::from_iter([outer.clone()]), inner.clone().and(joint), inner.and(outer));
+        Ok(Self { scheme, torque, inverse_inertia, kinetic, h, first, step, last, spin: None })
     }
 
     /// Whether no kick has a third component, to the last bit: then a rotation about the third axis doesn't change the
@@ -241,20 +241,10 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 
     /// A potential that is symmetric about the third body axis commutes with rotations about it, and so does what else
     /// a symmetric body does; `p_3` is constant.
-    fn take_spin(&mut self) {
-        let (mut outer, mut joint, mut inner) = (self.outer.clone(), self.joint.clone(), self.inner.clone());
-        let mut angle = real(0.0);
-        let ends = [(&mut outer, 2.0), (&mut joint, 0.0)].into_iter().filter_map(|(share, times)| match share {
-            Share::Drift(drift) => Some((drift, times)),
-            Share::Kick(_) => None,
-        });
-        for (drift, times) in inner.stages.iter_mut().map(|stage| (&mut stage.drift, 1.0)).chain(ends) {
-            let Some(taken) = K::take_spin(drift) else { return };
-            angle += taken * real(times);
-        }
-        self.joint = joint;
-        let (outer, inner) = (core::mem::replace(&mut self.outer, outer), core::mem::replace(&mut self.inner, inner));
-        self.spin = Some(Spin { angle, outer, inner });
+    fn spin_of_a_step(&self) -> Option<Spin<Scalar<S>>> {
+        let drifts = [&self.first, &self.last].into_iter().flat_map(|shares| &shares.stages);
+        let angle = drifts.map(|stage| K::spin(&stage.drift)).try_fold(real(0.0), |all, spin| Some(all + spin?));
+        angle.map(|angle| Spin { angle })
     }
 
     /// Why a step that began with this momentum didn't end with one.
@@ -292,7 +282,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     }
 
     #[inline(always)]
-    fn make_all<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+    fn make_all<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         shares: &Stages<K::Drift, Scalar<S>>,
         motion: &mut M,
@@ -303,7 +293,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
             self.kick(kick, motion);
         }
         for Stage { drift, kick } in &shares.stages {
-            Self::drift(drift, motion, iterations)?;
+            Self::drift::<WITH_SPIN, M>(drift, motion, iterations)?;
             if let Some(kick) = kick {
                 self.kick(kick, motion);
             }
@@ -311,22 +301,39 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         Ok(())
     }
 
+    /// The steps of a run with these shares at its beginning, if it has any, and at the end of its last step, and the number
+    /// of iterations. The spin is that of each drift, or of a step.
     #[inline(always)]
-    fn make<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+    fn make_steps<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
-        share: &Share<K::Drift, Scalar<S>>,
+        scene: &S,
         motion: &mut M,
-        iterations: &mut u32,
-    ) -> Result<(), StepError> {
-        match share {
-            Share::Drift(drift) => Self::drift(drift, motion, iterations)?,
-            Share::Kick(kick) => self.kick(kick, motion),
+        (mut first, last): (Option<&Stages<K::Drift, Scalar<S>>>, &Stages<K::Drift, Scalar<S>>),
+        steps: u64,
+    ) -> Result<u64, StepError> {
+        let (mut all, mut iterations, mut made) = (0, 0, 0);
+        // One loop with the beginning in it, so that there is one copy of the code.
+        while made < steps {
+            let shares = if made + 1 < steps { &self.step } else { last };
+            self.make_all::<WITH_SPIN, M>(first.unwrap_or(shares), motion, &mut iterations)?;
+            if first.take().is_some() {
+                continue;
+            }
+            if let Some(Spin { angle }) = self.spin.filter(|_| !WITH_SPIN) {
+                spin::turn(angle * motion.now().momentum.z, motion);
+                if is_due(motion.now().steps + 1) {
+                    spin::make_good(angle * motion.now().momentum.z, STEPS_BETWEEN_CHECKS, motion);
+                }
+            }
+            motion.finish(|| scene.advected());
+            all += u64::from(core::mem::take(&mut iterations));
+            made += 1;
         }
-        Ok(())
+        Ok(all)
     }
 
     #[inline(always)]
-    fn drift<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+    fn drift<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         drift: &K::Drift,
         motion: &mut M,
         iterations: &mut u32,
@@ -335,9 +342,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         // The bits are the same either way. Builds with debug assertions, as those of tests, have to compile quickly: there
         // the flow is called, and so compiled once, not again for each drift of each function that makes steps.
         let turn = if const { cfg!(debug_assertions) } {
-            advance_called::<_, K>(drift, &momentum)?
+            advance_called::<_, K, WITH_SPIN>(drift, &momentum)?
         } else {
-            K::advance(drift, &momentum)?
+            advance::<_, K, WITH_SPIN>(drift, &momentum)?
         };
         motion.turn_and_push(&turn.increment, &turn.change);
         *iterations += turn.iterations;
@@ -363,10 +370,22 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
 
-/// [`KineticFlow::advance`], not inlined.
+/// Moves the body, with its spin or without.
+#[inline(always)]
+fn advance<T: Real, K: KineticFlow<T>, const WITH_SPIN: bool>(
+    drift: &K::Drift,
+    momentum: &Vector3<T>,
+) -> Result<Turn<T>, StepError> {
+    if WITH_SPIN { K::advance(drift, momentum) } else { K::advance_without_spin(drift, momentum) }
+}
+
+/// The same, not inlined.
 #[inline(never)]
-fn advance_called<T: Real, K: KineticFlow<T>>(drift: &K::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
-    K::advance(drift, momentum)
+fn advance_called<T: Real, K: KineticFlow<T>, const WITH_SPIN: bool>(
+    drift: &K::Drift,
+    momentum: &Vector3<T>,
+) -> Result<Turn<T>, StepError> {
+    advance::<T, K, WITH_SPIN>(drift, momentum)
 }
 
 /// How long a share is.
@@ -433,30 +452,18 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
         (): &mut (),
         steps: u64,
     ) -> Result<u64, StepError> {
-        let mut next = *motion;
-        let (mut all, mut iterations) = (0, 0);
-        if steps > 0 {
-            self.make(&self.outer, &mut next, &mut iterations)?;
-        }
-        for remaining in (0..steps).rev() {
-            self.make_all(&self.inner, &mut next, &mut iterations)?;
-            let last = if remaining == 0 { &self.outer } else { &self.joint };
-            self.make(last, &mut next, &mut iterations)?;
-            if let &Some(Spin { angle, .. }) = &self.spin {
-                spin::turn(angle * next.now().momentum.z, &mut next);
-                if is_due(next.now().steps + 1) {
-                    spin::make_good(angle * next.now().momentum.z, STEPS_BETWEEN_CHECKS, &mut next);
-                }
-            }
-            next.finish(|| scene.advected());
-            all += u64::from(core::mem::take(&mut iterations));
-        }
+        let (mut next, ends) = (*motion, (Some(&self.first), &self.last));
+        let iterations = if const { K::OPERATIONS_OF_SPIN > 0 } && self.spin.is_some() {
+            self.make_steps::<false, M>(scene, &mut next, ends, steps)?
+        } else {
+            self.make_steps::<true, M>(scene, &mut next, ends, steps)?
+        };
         let end = next.now();
         if !(Coordinates::is_finite(&end.momentum) && Advected::is_finite(&end.advected)) {
             return Err(self.why_not_finite(&motion.now().momentum));
         }
         *motion = next;
-        Ok(all)
+        Ok(iterations)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {

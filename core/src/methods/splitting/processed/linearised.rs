@@ -46,12 +46,12 @@ where
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
         let (mut whole, mut plain) = (*motion, *motion.now());
-        self.kernel.make_all(&self.enter, &mut whole, &mut 0)?;
+        self.kernel.make_all::<true, M>(&self.enter, &mut whole, &mut 0)?;
         if let Some(inside) = kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all()) {
             whole.replace(inside.after(plain.steps));
         }
-        for shares in [&self.step, &self.leave] {
-            self.kernel.make_all(shares, &mut whole, &mut 0)?;
+        for shares in [&self.kernel.step, &self.leave] {
+            self.kernel.make_all::<true, M>(shares, &mut whole, &mut 0)?;
         }
         let report = self.step(scene, &mut plain, kept)?;
         motion.replace(plain);

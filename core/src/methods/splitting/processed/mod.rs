@@ -74,9 +74,7 @@ pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
     /// Of [`leave`](Self::leave), and the other way round of [`enter`](Self::enter).
     parts: Vec<Part>,
     kernel: Split<S, K>,
-    /// Its steps, from the end of a joint to the end of the next, so that they are all the same.
-    step: Stages<K::Drift, Scalar<S>>,
-    /// From what is read to the end of a joint.
+    /// From what is read to the end of the first share of the kernel, from which its steps are all the same.
     enter: Stages<K::Drift, Scalar<S>>,
     /// From there to what is read.
     leave: Stages<K::Drift, Scalar<S>>,
@@ -90,7 +88,7 @@ lanes_of_fields!(
         Split<S, K>: Lanes<Lane = Split<S::Lane, K::Lane>>,
         Stages<K::Drift, Scalar<S>>: Lanes<Lane = Stages<<K::Lane as KineticFlow<Scalar<S::Lane>>>::Drift, Scalar<S::Lane>>>
     ]
-    { lanes: [kernel, step, enter, leave], scalars: [], shared: [scheme, parts] }
+    { lanes: [kernel, enter, leave], scalars: [], shared: [scheme, parts] }
 );
 
 impl<W, S, K> InLanes<W> for Processed<S, K>
@@ -187,9 +185,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
         };
         let leave = parts.iter().map(|part| folded(part, 1.0)).collect::<Result<_, _>>()?;
         let enter = parts.iter().rev().map(|part| folded(part, -1.0)).collect::<Result<_, _>>()?;
-        let mut step = kernel.inner.clone();
-        step.add(kernel.joint.clone());
-        Ok(Self { scheme, parts, kernel, step, enter, leave })
+        Ok(Self { scheme, parts, kernel, enter, leave })
     }
 
     /// The coefficients.
@@ -249,28 +245,17 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
         if steps == 0 {
             return Ok(0);
         }
-        let (mut next, mut all, mut iterations) = (*motion, 0, 0);
+        let (mut next, mut iterations) = (*motion, 0);
         let inside = kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all());
-        // One loop for the way in and for the steps, so that there is one copy of the code.
-        let mut is_entering = inside.is_none();
+        let enter = if inside.is_some() { None } else { Some(&self.enter) };
         if let Some(inside) = inside {
             next.show(inside.after(next.now().steps));
         }
-        let mut made = 0;
-        while made < steps {
-            let shares = if is_entering { &self.enter } else { &self.step };
-            self.kernel.make_all(shares, &mut next, &mut iterations)?;
-            if core::mem::take(&mut is_entering) {
-                continue;
-            }
-            next.finish(|| scene.advected());
-            all += u64::from(core::mem::take(&mut iterations));
-            made += 1;
-        }
+        let all = self.kernel.make_steps::<true, M>(scene, &mut next, (enter, &self.kernel.step), steps)?;
         // A copy, without what is carried: that is of the sums inside.
         let inside = *next.now();
         let mut read = inside;
-        self.kernel.make_all(&self.leave, &mut read, &mut iterations)?;
+        self.kernel.make_all::<true, _>(&self.leave, &mut read, &mut iterations)?;
         if !(Coordinates::is_finite(&read.momentum) && Advected::is_finite(&read.advected)) {
             return Err(self.kernel.why_not_finite(&motion.now().momentum));
         }
