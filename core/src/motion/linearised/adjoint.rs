@@ -38,10 +38,7 @@ type GradientOf<S> = Gradient<Vector<S>, Scalar<S>>;
 
 /// The way back.
 struct Back<'a, G: LieGroup> {
-    /// Where the steps are made.
     cotangent: Cotangent<G::Vector>,
-    /// What is to be added to it, of what is read.
-    read: Cotangent<G::Vector>,
     /// By the parameters, so far.
     gradient: &'a mut [G::Scalar],
 }
@@ -59,18 +56,6 @@ impl<G: LieGroup> Pass<G> for Back<'_, G> {
 }
 
 impl<G: LieGroup> Back<'_, G> {
-    /// Takes what is read to where the steps are made by the changes that lead from there, and adds it.
-    #[inline(always)]
-    fn enter(&mut self, leaving: impl FnOnce(&mut Self)) {
-        let read = core::mem::replace(&mut self.read, Cotangent::zero());
-        if read != Cotangent::zero() {
-            let inside = core::mem::replace(&mut self.cotangent, read);
-            leaving(self);
-            let read = core::mem::replace(&mut self.cotangent, inside);
-            self.add(&read);
-        }
-    }
-
     #[inline(always)]
     fn add(&mut self, cotangent: &Cotangent<G::Vector>) {
         let Cotangent { attitude, momentum } = self.cotangent;
@@ -101,19 +86,13 @@ where
     #[inline(always)]
     fn run(self) {
         let Stepper { scene, plan } = self.stepper;
-        let (ends, stages) = (plan.ends(), plan.stages());
         // As many of each step: all steps of a plan have the same stages.
-        for (n, step) in self.steps.rev().zip(self.events.chunks(stages).rev()) {
-            let visit = |changes: Range<usize>, back: &mut Back<'_, Group<S>>| {
-                for (index, event) in step.iter().enumerate().take(changes.end).skip(changes.start).rev() {
-                    plan.visit(scene, index, event, back);
-                }
-            };
-            self.back.enter(|back| visit(stages - ends..stages, back));
-            // The ways out of a step and into the next are left out: together they do nothing.
-            visit(if n == 0 { 0 } else { ends }..stages - ends, self.back);
+        for (n, step) in self.steps.rev().zip(self.events.chunks(plan.stages()).rev()) {
+            for (index, event) in step.iter().enumerate().rev() {
+                plan.visit(scene, index, event, self.back);
+            }
             if let Some(event) = step.first() {
-                self.back.read = (self.cost)(n, &event.before);
+                self.back.add(&(self.cost)(n, &event.before));
             }
         }
     }
@@ -188,7 +167,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
             self.recorded(&mut end, &events)?;
         }
         let mut gradient = self.no_gradient();
-        let mut back = Back { cotangent: Cotangent::zero(), read: cost(steps, &end.motion), gradient: &mut gradient };
+        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient };
         let mut last = steps;
         while let Some((first, mut start)) = starts.pop() {
             if last < steps {
@@ -207,7 +186,6 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearised<'_, S, P> {
             });
             last = first;
         }
-        back.enter(|_| {});
         let start = back.cotangent;
         let gradient = finite::<S>(start, gradient)?;
         *state = end;
@@ -276,8 +254,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Backwards<'_, S, P> {
         let mut now = self.inverse.adopt(&end);
         let events = RefCell::new(Vec::new());
         let mut gradient = forwards.no_gradient();
-        let (cotangent, read) = (cost(steps, &end.motion), Cotangent::zero());
-        let mut back = Back { cotangent, read, gradient: &mut gradient };
+        let mut back = Back { cotangent: cost(steps, &end.motion), gradient: &mut gradient };
         for n in (0..steps).rev() {
             inverse.recorded(&mut now, &events)?;
             let mut made = events.borrow_mut();

@@ -12,7 +12,7 @@
 //! any group and with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
 //! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step, a
 //! step with derivatives makes its drifts twice; one of a processed splitting makes both ends of the processor, as what is
-//! differentiated is what is read; an adjoint makes them at its start, and the end where something is read.
+//! differentiated is what is read.
 //!
 //! # Coordinates
 //!
@@ -143,12 +143,6 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
 
     /// How many changes a step makes.
     fn stages(&self) -> usize;
-
-    /// How many of them, at either end of a step, lead to where it is made and back to what is read: those of the end of one
-    /// step are undone at the beginning of the next.
-    fn ends(&self) -> usize {
-        0
-    }
 
     /// A step whose changes are written down: those that [`stages`](Self::stages) counts, in this order.
     ///

@@ -37,10 +37,6 @@ where
         2 * self.parts.len() + self.changes_of_kernel()
     }
 
-    fn ends(&self) -> usize {
-        self.parts.len()
-    }
-
     /// The way in is made anew in each step, for its derivatives alone.
     #[inline(always)]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
