@@ -65,10 +65,10 @@ fn skip_argument(input: ParseStream) {
 }
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
-    let mut known = vec!["group", "advected", role.key(), "crate"];
-    if role != Role::Constraint {
-        known.extend(["given", "generators", "gradients"]);
-    }
+    let mut known = match role {
+        Role::Constraint => vec!["group", "advected", role.key(), "crate"],
+        _ => vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"],
+    };
     match role {
         Role::Lagrangian => known.extend(["l", "velocity", "discretise"]),
         Role::Force => known.push("displacement"),
