@@ -62,18 +62,18 @@ fn gap(declaration: &Declaration, header: &Header, held: &Held) -> TokenStream {
     let scalar = quote_spanned!(span=> #private::core::primitive::f64);
     let types = parts.iter().map(|part| match part.shape {
         Shape::Scalar => scalar.clone(),
-        shape => {
+        shape @ Shape::Matrix(..) => {
             let rows = Literal::usize_unsuffixed(shape.rows());
             quote_spanned!(span=> #private::nalgebra::SVector<#scalar, #rows>)
         }
     });
     let entries = parts.iter().zip(&names).flat_map(|(part, name)| {
-        (0..part.shape.rows()).map(move |row| match part.shape {
-            Shape::Scalar => quote_spanned!(span=> #name),
-            _ => {
-                let row = Literal::usize_unsuffixed(row);
-                quote_spanned!(span=> #name.data.0[0][#row])
+        (0..part.shape.rows()).map(move |row| {
+            if part.shape == Shape::Scalar {
+                return quote_spanned!(span=> #name);
             }
+            let row = Literal::usize_unsuffixed(row);
+            quote_spanned!(span=> #name.data.0[0][#row])
         })
     });
     let is_tuple = matches!(declaration.expression.as_ref().map(check::value), Some(syn::Expr::Tuple(_)));
@@ -122,7 +122,7 @@ impl Code<'_> {
         let (span, private, functions) = (Span::mixed_site(), &self.header.private, held.rows());
         let bodies = &held.lowered.declared.bodies;
         let given = |id: NodeId| match held.graph.node(id) {
-            Node::Input(input) => Some(self.entry_of_place(bodies, input).unwrap_or_else(|| self.input_token(input))),
+            Node::Input(input) => Some(entry_of_place(bodies, input).unwrap_or_else(|| self.input_token(input))),
             _ => None,
         };
         let (lets, values) = self.statements(&held.graph, &held.entries.concat().concat(), &given);
@@ -135,20 +135,6 @@ impl Code<'_> {
             quote_spanned!(span=> #private::Slope { turn: #turn, shift: #shift })
         });
         quote_spanned!(span=> #lets [#(#slopes),*])
-    }
-
-    /// An entry of where a body is.
-    fn entry_of_place(&self, bodies: &[Body; 2], input: Input) -> Option<TokenStream> {
-        let span = Span::mixed_site();
-        BODIES.iter().zip(bodies).find_map(|(name, body)| {
-            let name = Ident::new(name, span);
-            let place = match input.symbol {
-                symbol if symbol == body.attitude => quote_spanned!(span=> #name.attitude),
-                symbol if symbol == body.position => quote_spanned!(span=> #name.position),
-                _ => return None,
-            };
-            Some(entry(&place, input))
-        })
     }
 
     /// All parameters with their names.
@@ -165,6 +151,20 @@ impl Code<'_> {
         });
         fields.collect()
     }
+}
+
+/// An entry of where a body is.
+fn entry_of_place(bodies: &[Body; 2], input: Input) -> Option<TokenStream> {
+    let span = Span::mixed_site();
+    BODIES.iter().zip(bodies).find_map(|(name, body)| {
+        let name = Ident::new(name, span);
+        let place = match input.symbol {
+            symbol if symbol == body.attitude => quote_spanned!(span=> #name.attitude),
+            symbol if symbol == body.position => quote_spanned!(span=> #name.position),
+            _ => return None,
+        };
+        Some(entry(&place, input))
+    })
 }
 
 /// What the struct's documentation says of it.

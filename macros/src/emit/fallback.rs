@@ -5,9 +5,9 @@ use quote::{quote, quote_spanned};
 use syn::{Item, ItemStruct};
 
 use super::Header;
-use crate::declared::Role;
 use crate::declared::errors::Errors;
 use crate::declared::parse;
+use crate::declared::{Declaration, Role};
 
 /// The item with all mistakes, and with a stand-in.
 pub(crate) fn mistakes(role: Role, arguments: TokenStream, item: &TokenStream, errors: &Errors) -> TokenStream {
@@ -21,20 +21,24 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let Some(item) = as_struct(item).filter(|item| parse::declared_again(item).is_none()) else {
         return TokenStream::new();
     };
-    let span = Span::mixed_site();
     let mut silent = Errors::default();
     let declaration = parse::as_far_as_readable(role, without_lagrangian(role, arguments), item, &mut silent);
     let header = Header::new(&declaration);
-    let private = &header.private;
-    if role == Role::Constraint {
-        return constraint(&header);
+    match role {
+        Role::Constraint => constraint(&header),
+        Role::Lagrangian | Role::Force => of_effect(&declaration, &header),
     }
+}
+
+/// That of what has a step.
+fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
+    let (span, private) = (Span::mixed_site(), &header.private);
     let none = quote_spanned!(span=> ());
     let types = header.types(true, &none, &none);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
     let effect = header.implementation("Effect");
     let addition = header.addition();
-    let lanes = super::lanes::lanes(&header, None);
+    let lanes = super::lanes::lanes(header, None);
     let core = quote_spanned!(span=> #private::core);
     let of_increment = [
         ("right_momentum", &vector),
@@ -47,7 +51,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
         let name = syn::Ident::new(name, span);
         quote_spanned!(span=> fn #name(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #result { loop {} })
     });
-    let of_role = match role {
+    let of_role = match declaration.role {
         Role::Lagrangian => {
             let (lagrangian, invariance) =
                 (header.implementation("DiscreteLagrangian"), header.implementation("LeftInvariant"));
@@ -88,7 +92,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
             }
         }
     };
-    let gradients = declaration.gradients.map(|_| gradients(&header));
+    let gradients = declaration.gradients.map(|_| gradients(header));
     let term = header.term(&quote_spanned! {span=>
         fn validate(&self) -> #core::result::Result<(), #private::SetupError> { loop {} }
         fn advected(&self) -> Self::Advected { loop {} }

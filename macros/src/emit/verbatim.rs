@@ -17,7 +17,7 @@ use crate::declared::{Declaration, FieldKind, Role, Shape, Spelling};
 /// The Lagrangian's `l_d` or `l`, a force's `virtual_work`, or a constraint's `gap`.
 pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStream {
     let span = Span::mixed_site();
-    let (private, scalar, square) = (&header.private, &header.scalar, header.matrix());
+    let (private, scalar) = (&header.private, &header.scalar);
     let Some(mut expression) = declaration.expression.clone() else { return TokenStream::new() };
     let mut rewrite = Rewrite { header, mentioned: Vec::new(), scopes: Vec::new() };
     rewrite.visit_expr_mut(&mut expression);
@@ -104,13 +104,24 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
         let (#(#names,)*) = (#(#values,)*);
         #expression
     };
-    let signature = match declaration.role {
-        Role::Constraint => return declared,
+    if declaration.role == Role::Constraint {
+        return declared;
+    }
+    let signature = signature(declaration, header);
+    quote_spanned! {span=>
+        #signature { #declared }
+    }
+}
+
+/// The method that has the expression.
+fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
+    let (span, scalar, square, vector) = (Span::mixed_site(), &header.scalar, header.matrix(), header.vector());
+    match declaration.role {
         Role::Lagrangian if declaration.continuous.is_some() => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
         },
-        Role::Lagrangian => quote_spanned! {span=>
+        Role::Lagrangian | Role::Constraint => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar
         },
@@ -125,9 +136,6 @@ pub(super) fn declared(declaration: &Declaration, header: &Header) -> TokenStrea
                 eta_next: &#vector,
             ) -> #scalar
         },
-    };
-    quote_spanned! {span=>
-        #signature { #declared }
     }
 }
 

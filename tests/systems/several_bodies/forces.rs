@@ -3,7 +3,7 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
-use liestep::groups::{Advected as _, Given, LieGroup as _, R1, R3};
+use liestep::groups::{Advected, Given, LieGroup as _, R1, R3};
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::{Effect, Force, Term};
 use liestep::{SO3, Stepper, force};
@@ -71,7 +71,7 @@ fn stages_follow_from_the_virtual_work() {
             let column = push.momentum_jacobian(&f, &w, h).column(j).into_owned();
             assert!((column - slope).norm() < 1e-9 * (1.0 + slope.norm()), "column {j}: {column} {slope}");
         }
-        let next = w.advect(&at.increment());
+        let next = Advected::<Group>::advect(&w, &at.increment());
         let expected = at.adjoint_transpose(&(before - kick)) + after;
         let found = Push::kick_after(&constants, &at.increment(), &next);
         assert!((found - expected).norm() < 1e-13 * (1.0 + expected.norm()), "{found} {expected}");

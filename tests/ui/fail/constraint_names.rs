@@ -32,12 +32,12 @@ struct Winch {
 
 #[constraint(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), Q = F_2.seen_from(F_1)),
-    zero = (R_1 * R_2).trace() + (Q * axis).dot(&axis),
+    advected(w = up.seen_from(F_1), v = up.seen_from(F_2)),
+    zero = w.dot(&v),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Crossed {
-    axis: Vector3<f64>,
+    up: Vector3<f64>,
 }
 
 #[constraint(

@@ -2,6 +2,7 @@
 
 mod advice;
 mod closures;
+mod constraint;
 mod frames;
 mod functions;
 mod methods;
@@ -56,7 +57,7 @@ pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Optio
     let tree = tree?;
     functions.push(tree.clone());
     if declaration.role == Role::Constraint {
-        few(&functions, value(expression), errors)?;
+        constraint::few(&functions, value(expression), errors)?;
     } else if tree.shape != Shape::Scalar {
         let shape = tree.shape.describe();
         let advice = match declaration.role {
@@ -72,37 +73,6 @@ pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Optio
         usage::check(declaration, &used, errors);
     }
     errors.is_empty().then_some(functions)
-}
-
-/// What holds two bodies has no more than these, as they have so many coordinates against each other.
-const MOST_FUNCTIONS: usize = 6;
-
-/// A mistake where a constraint is of matrices, or of too many functions.
-fn few(functions: &[Rc<Tree>], result: &Expr, errors: &mut Errors) -> Option<()> {
-    let parts: Vec<&Expr> = match result {
-        Expr::Tuple(tuple) => tuple.elems.iter().collect(),
-        other => vec![other],
-    };
-    let is_function = |tree: &Tree| tree.shape == Shape::Scalar || tree.shape.is_vector();
-    if let Some((tree, part)) = functions.iter().zip(parts).find(|(tree, _)| !is_function(tree)) {
-        let message = format!(
-            "a constraint is a scalar or a vector, or several of them, `(a, b)`, but this is {}: of an attitude take what \
-             has to be zero, as in `(R_1 * e).dot(&(R_2 * n))`",
-            tree.shape.describe()
-        );
-        errors.push_over(part, message);
-        return None;
-    }
-    let rows: usize = functions.iter().map(|tree| tree.shape.rows()).sum();
-    if rows > MOST_FUNCTIONS {
-        let message = format!(
-            "these are {rows} functions: two bodies have {MOST_FUNCTIONS} coordinates against each other, and more \
-             functions than that repeat what others say"
-        );
-        errors.push_over(result, message);
-        return None;
-    }
-    Some(())
 }
 
 /// What a block ends with, or the expression itself.
@@ -279,18 +249,6 @@ impl Checker<'_> {
         };
         self.errors.push_over(argument, format!("`{function}` {advice}"));
         false
-    }
-
-    /// `(a, b)`: scalars and vectors one below the other; the last of them.
-    fn stacked(&mut self, tuple: &syn::ExprTuple) -> Option<Rc<Tree>> {
-        let parts: Vec<Option<Rc<Tree>>> = tuple.elems.iter().map(|part| self.expression(part)).collect();
-        if parts.is_empty() {
-            self.errors.push_over(tuple, "these are no functions: write what has to be zero");
-        }
-        let mut parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
-        let last = parts.pop();
-        self.above = parts;
-        last
     }
 
     /// The token, and not what it stands among, has no meaning.
@@ -585,10 +543,6 @@ impl Checker<'_> {
         };
         self.errors.push(span, message);
         None
-    }
-
-    fn is_constraint(&self) -> bool {
-        self.declaration.role == Role::Constraint
     }
 
     fn is_force(&self) -> bool {

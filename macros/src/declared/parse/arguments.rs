@@ -64,16 +64,22 @@ fn skip_argument(input: ParseStream) {
     let _ = input.parse::<Token![,]>();
 }
 
-fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
-    let mut known = vec!["group", "advected", role.key(), "crate"];
-    if role != Role::Constraint {
-        known.extend(["given", "generators", "gradients"]);
-    }
+/// The names of arguments.
+fn known(role: Role) -> Vec<&'static str> {
+    let mut known = match role {
+        Role::Constraint => vec!["group", "advected", role.key(), "crate"],
+        _ => vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"],
+    };
     match role {
         Role::Lagrangian => known.extend(["l", "velocity", "discretise"]),
         Role::Force => known.push("displacement"),
         Role::Constraint => {}
     }
+    known
+}
+
+fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
+    let known = known(role);
     let Some(key) = key(input, &known) else {
         if !arguments.has_nameless {
             errors.push(input.span(), format!("arguments have names: write `group = SO3`, `{} = …`", role.key()));
@@ -152,17 +158,8 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
         pairs @ ("advected" | "given") if role != Role::Constraint || pairs == "advected" => {
             let is_given = pairs == "given";
-            if !input.peek(syn::token::Paren) {
-                let example = if is_given { "given(u = torque)" } else { "advected(w = up)" };
-                let message = format!("write `{example}`: a name for the expression, then the field");
-                return Err(syn::Error::new(key.span(), message));
-            }
-            let content;
-            parenthesized!(content in input);
-            let pairs = content.parse_terminated(advected_pair, Token![,]);
-            // What is left after a mistake would be reported as unexpected.
-            content.parse::<TokenStream>()?;
-            arguments.advected.extend(pairs?.into_iter().map(|(name, source)| (name, source, is_given)));
+            let pairs = advected_pairs(&key, is_given, input)?;
+            arguments.advected.extend(pairs.into_iter().map(|(name, source)| (name, source, is_given)));
         }
         other => {
             let near = suggestion(other, known.iter().copied());
@@ -295,6 +292,25 @@ fn without_quotes(key: &Ident, input: ParseStream) -> syn::Result<()> {
         }
         Err(_) => Ok(()),
     }
+}
+
+/// `(w = up, …)`.
+fn advected_pairs(
+    key: &Ident,
+    is_given: bool,
+    input: ParseStream,
+) -> syn::Result<Punctuated<(Ident, Source), Token![,]>> {
+    if !input.peek(syn::token::Paren) {
+        let example = if is_given { "given(u = torque)" } else { "advected(w = up)" };
+        let message = format!("write `{example}`: a name for the expression, then the field");
+        return Err(syn::Error::new(key.span(), message));
+    }
+    let content;
+    parenthesized!(content in input);
+    let pairs = content.parse_terminated(advected_pair, Token![,]);
+    // What is left after a mistake would be reported as unexpected.
+    content.parse::<TokenStream>()?;
+    pairs
 }
 
 fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {

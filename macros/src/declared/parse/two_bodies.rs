@@ -24,6 +24,7 @@ pub(super) fn check(factors: &[Factor], fields: &[Field], scalar: &Scalar, item:
         errors.push_decisive(field.at, message);
     }
     if !matches!(scalar, Scalar::Primitive(name) if name == "f64") {
-        errors.push_decisive(item.ident.span(), "joints are steps of `f64`: make that the scalar of the fields");
+        let place = fields.first().map_or(item.ident.span(), |field| field.at);
+        errors.push_decisive(place, "joints are over `f64`: make that the scalar of the fields");
     }
 }

@@ -168,7 +168,7 @@ impl Point<'_, Residue> {
     fn moving(&self) -> Values<PowerSeries<Residue>> {
         let mut values = self.in_numbers(PowerSeries::constant);
         let step = element(self.group(), &velocity(self.group(), &values)).map(|entry| entry * PowerSeries::STEP);
-        values.extend(increments(self.group(), &exponential(&step)));
+        values.extend(increments(self.group(), &exponential(self.group(), &step)));
         values.insert(Name::Step, Value::scalar(PowerSeries::STEP));
         values
     }
@@ -212,8 +212,20 @@ fn carried_by_one<T: Number>(variance: Variance, e: &Value<T>, w: &Value<T>) -> 
     }
 }
 
-/// `⟨ad*_ξ μ, E_k⟩ = ⟨μ, [ξ, E_k]⟩` for all `k`.
+/// `⟨ad*_ξ μ, E_k⟩ = ⟨μ, [ξ, E_k]⟩` for all `k`, of a product factor by factor.
 fn coadjoint<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
+    let factors = group.factors().iter().enumerate();
+    let own = factors.flat_map(|(factor, own)| {
+        let components = |all: &[T]| {
+            let first = group.component_of(factor);
+            all.iter().skip(first).take(own.dimension()).copied().collect::<Vec<_>>()
+        };
+        coadjoint_of_factor(own, &components(xi), &components(momentum))
+    });
+    own.collect()
+}
+
+fn coadjoint_of_factor<T: Number>(group: &Group, xi: &[T], momentum: &[T]) -> Vec<T> {
     let (dual, xi) = (group.dual(), element(group, xi));
     let of_generator = |entries: &Vec<Rational>| {
         let generator = Value::square(group.size, entries);

@@ -167,18 +167,24 @@ fn stream(seed: u64) -> impl FnMut() -> f64 {
 /// `exp(s E_k)`, where `s` is small.
 fn turn(group: &Group, k: usize, s: f64) -> Value {
     let entries = group.generators.get(k).map_or(&[][..], Vec::as_slice);
-    exponential(&Value::square(group.size, entries).map(|entry: f64| s * entry))
+    exponential(group, &Value::square(group.size, entries).map(|entry: f64| s * entry))
 }
 
-/// The matrix exponential, by its series, of what is small or a power of `h`.
-fn exponential<T: Number>(exponent: &Value<T>) -> Value<T> {
-    let mut power = Value::identity(exponent.rows);
-    let mut sum = power.clone();
-    for order in 1..20 {
-        power = power.times(exponent).map(|x| x * T::of(Rational::new(1, order)));
-        sum = sum.zip(&power, |x, y| x + y);
-    }
-    sum
+/// The exponential, by its series, of an element of the algebra that is small or a power of `h`.
+fn exponential<T: Number>(group: &Group, exponent: &Value<T>) -> Value<T> {
+    by_blocks(group, exponent, |exponent| {
+        let mut power = Value::identity(exponent.rows);
+        let mut sum = power.clone();
+        for order in 1..20 {
+            let factor = T::of(Rational::new(1, order));
+            power = power.times(exponent).map(|x| x * factor);
+            if power.entries.iter().all(|entry| entry.is_lost()) {
+                break;
+            }
+            sum = sum.plus(&power);
+        }
+        sum
+    })
 }
 
 /// Numbers for all names.
@@ -401,16 +407,18 @@ fn translation<T: Number>(matrix: &Value<T>) -> Value<T> {
 
 /// The inverse of an element, block by block.
 fn inverse_of<T: Number>(group: &Group, all: &Value<T>) -> Value<T> {
-    let mut inverse = Value::identity(group.size);
-    for factor in 0..group.factors().len() {
-        let (start, own) = (group.row_of(factor), block(group, all, factor).inverse());
-        let inside = |at: usize| (start..start + own.rows).contains(&at);
-        let known = inverse.clone();
-        inverse = Value::new(group.size, group.size, |row, column| {
-            if inside(row) && inside(column) { own.at(row - start, column - start) } else { known.at(row, column) }
-        });
-    }
-    inverse
+    by_blocks(group, all, Value::inverse)
+}
+
+/// What is made of each block, in its place.
+fn by_blocks<T: Number>(group: &Group, all: &Value<T>, of_block: impl Fn(&Value<T>) -> Value<T>) -> Value<T> {
+    let blocks: Vec<(usize, Value<T>)> =
+        (0..group.factors().len()).map(|factor| (group.row_of(factor), of_block(&block(group, all, factor)))).collect();
+    Value::new(group.size, group.size, |row, column| {
+        let own = blocks.iter().rev().find(|(start, _)| *start <= row);
+        let entry = own.and_then(|(start, own)| own.checked_at(row - start, column.checked_sub(*start)?));
+        entry.unwrap_or(T::ZERO)
+    })
 }
 
 /// A value that has what a field's type promises.

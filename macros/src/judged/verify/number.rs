@@ -19,6 +19,11 @@ pub(super) trait Number:
     fn power(self, exponent: i32) -> Self;
 
     fn apply(self, function: Function) -> Self;
+
+    /// Whether nothing is seen of it beside a one.
+    fn is_lost(self) -> bool {
+        false
+    }
 }
 
 impl Number for f64 {
@@ -36,5 +41,9 @@ impl Number for f64 {
 
     fn apply(self, function: Function) -> Self {
         function.apply(self)
+    }
+
+    fn is_lost(self) -> bool {
+        self.abs() < 1e-18
     }
 }

@@ -12,6 +12,7 @@ use super::series::Series;
 use super::value::Value;
 use super::{displacements, exponential, increments, parameter, stream, velocities};
 use crate::declared::{Declaration, Kind, Name, Role, Shape, Tree};
+use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
 
 /// A sum may be taken apart as often; what is shared by `let`s is written down more often than a person would.
@@ -125,11 +126,11 @@ impl Points {
             values
         };
         // At h = 0.3 and at h = 0.2.
-        let turn = |h: f64| exponential(&velocity.map(|entry| entry * Series::constant(h)));
+        let turn = |h: f64| exponential(group, &velocity.map(|entry| entry * Series::constant(h)));
         Self {
             turned: with_increment(turn(0.3)),
             turned_further: with_increment(turn(0.2)),
-            moving: with_increment(motion(&velocity, Rational::ONE)),
+            moving: with_increment(motion(group, &velocity, Rational::ONE)),
             elsewhere,
             at_rest: at_rest.clone(),
         }
@@ -137,9 +138,9 @@ impl Points {
 }
 
 /// `exp(± h ξ̂)`.
-fn motion(velocity: &Value<Series>, sign: Rational) -> Value<Series> {
+fn motion(group: &Group, velocity: &Value<Series>, sign: Rational) -> Value<Series> {
     let step = Series::STEP * Series::of(sign);
-    exponential(&velocity.map(|entry| entry * step))
+    exponential(group, &velocity.map(|entry| entry * step))
 }
 
 /// How a term goes.

@@ -56,7 +56,7 @@ impl Residue {
 
     fn raised(self, exponent: u64) -> Self {
         let (mut power, mut square) = (Self::ONE, self);
-        for bit in 0..u64::BITS {
+        for bit in 0..u64::BITS - exponent.leading_zeros() {
             if exponent >> bit & 1 == 1 {
                 power = power * square;
             }
@@ -114,7 +114,9 @@ impl Number for Residue {
 
     fn of(value: Rational) -> Self {
         let (numerator, denominator) = value.parts();
-        Self::reduced(numerator) / Self::reduced(denominator)
+        let numerator = Self::reduced(numerator);
+        // Most are whole, and a reciprocal takes a hundred products.
+        if denominator == 1 { numerator } else { numerator / Self::reduced(denominator) }
     }
 
     fn power(self, exponent: i32) -> Self {

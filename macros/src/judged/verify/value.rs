@@ -38,6 +38,11 @@ impl<T: Number> Value<T> {
         self.entries.get(row * self.columns + column).copied().unwrap_or(T::UNDEFINED)
     }
 
+    /// The same, nothing beyond the edges.
+    pub(super) fn checked_at(&self, row: usize, column: usize) -> Option<T> {
+        (row < self.rows && column < self.columns).then(|| self.at(row, column))
+    }
+
     pub(super) fn first(&self) -> T {
         self.at(0, 0)
     }

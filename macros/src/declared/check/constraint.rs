@@ -1,0 +1,58 @@
+//! What a constraint is of, beside what any declaration is: scalars and vectors one below the other.
+
+use std::rc::Rc;
+
+use syn::{Expr, ExprTuple};
+
+use super::Checker;
+use crate::declared::errors::Errors;
+use crate::declared::{Role, Shape, Tree};
+
+/// What holds two bodies has no more than these, as they have so many coordinates against each other.
+const MOST_FUNCTIONS: usize = 6;
+
+/// A mistake where a constraint is of matrices, or of too many functions.
+pub(super) fn few(functions: &[Rc<Tree>], result: &Expr, errors: &mut Errors) -> Option<()> {
+    let parts: Vec<&Expr> = match result {
+        Expr::Tuple(tuple) => tuple.elems.iter().collect(),
+        other => vec![other],
+    };
+    let is_function = |tree: &Tree| tree.shape == Shape::Scalar || tree.shape.is_vector();
+    if let Some((tree, part)) = functions.iter().zip(parts).find(|(tree, _)| !is_function(tree)) {
+        let message = format!(
+            "a constraint is a scalar or a vector, or several of them, `(a, b)`, but this is {}: of an attitude take what \
+             has to be zero, as in `(R_1 * e).dot(&(R_2 * n))`",
+            tree.shape.describe()
+        );
+        errors.push_over(part, message);
+        return None;
+    }
+    let rows: usize = functions.iter().map(|tree| tree.shape.rows()).sum();
+    if rows > MOST_FUNCTIONS {
+        let message = format!(
+            "these are {rows} functions: two bodies have {MOST_FUNCTIONS} coordinates against each other, and more \
+             functions than that repeat what others say"
+        );
+        errors.push_over(result, message);
+        return None;
+    }
+    Some(())
+}
+
+impl Checker<'_> {
+    pub(super) fn is_constraint(&self) -> bool {
+        self.declaration.role == Role::Constraint
+    }
+
+    /// `(a, b)`: scalars and vectors one below the other; the last of them.
+    pub(super) fn stacked(&mut self, tuple: &ExprTuple) -> Option<Rc<Tree>> {
+        let parts: Vec<Option<Rc<Tree>>> = tuple.elems.iter().map(|part| self.expression(part)).collect();
+        if parts.is_empty() {
+            self.errors.push_over(tuple, "these are no functions: write what has to be zero");
+        }
+        let mut parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        let last = parts.pop();
+        self.above = parts;
+        last
+    }
+}

@@ -1,0 +1,77 @@
+//! The names of velocities and of displacements, one for each factor of the group.
+
+use syn::Ident;
+use syn::ext::IdentExt as _;
+
+use super::check_free;
+use crate::declared::errors::Errors;
+use crate::declared::{AdvectedParameter, Factor, Field, Role, named_displacements, named_velocities};
+
+/// Mistakes where a name of this kind means something else.
+pub(super) fn check_names(
+    role: Role,
+    names: &[Ident],
+    kind: &str,
+    (fields, advected): (&[Field], &[AdvectedParameter]),
+    errors: &mut Errors,
+) {
+    for (at, name) in names.iter().enumerate() {
+        let plain = name.unraw().to_string();
+        check_free(role, name, errors);
+        if names[..at].contains(name) {
+            errors.push_decisive(name.span(), format!("`{plain}` is {kind} already: choose another name"));
+        } else if fields.iter().any(|field| field.plain_name() == plain) {
+            errors.push_decisive(name.span(), format!("`{plain}` is a field already: choose another name"));
+        } else if advected.iter().any(|w| w.plain_name() == plain) {
+            errors.push_decisive(name.span(), format!("`{plain}` is advected already: choose another name"));
+        }
+    }
+}
+
+/// The names of a force's displacements, which several bodies need; none of one body, where they are `eta` and `eta_next`.
+pub(super) fn displacements(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &mut Errors) -> Vec<Ident> {
+    let is_product = factors.len() > 1;
+    let Some((key, names)) = named else {
+        if let Some(factor) = factors.first().filter(|_| is_product) {
+            let message = format!(
+                "the displacements of several bodies have names: write `{}`; those at the end of the step are called the \
+                 same with `_next`",
+                named_displacements(factors)
+            );
+            errors.push_decisive(factor.place, message);
+        }
+        return Vec::new();
+    };
+    if !is_product {
+        errors.push_decisive(key.span(), "the displacements of one body are called `eta` and `eta_next`: remove this");
+        return Vec::new();
+    }
+    if names.len() != factors.len() {
+        let increments: Vec<String> = factors.iter().map(|factor| format!("`{}`", factor.name)).collect();
+        let message = format!(
+            "write `{}`: each of {} has a displacement, in this order",
+            named_displacements(factors),
+            increments.join(", ")
+        );
+        errors.push_decisive(key.span(), message);
+    }
+    names
+}
+
+/// The names of the velocities, one for each factor, or none.
+pub(super) fn velocities(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &mut Errors) -> Vec<Ident> {
+    let Some((key, names)) = named else { return Vec::new() };
+    if names.len() != factors.len() {
+        let increments: Vec<String> = factors.iter().map(|factor| format!("`{}`", factor.name)).collect();
+        let message = match increments.as_slice() {
+            [_] => "one group has one velocity: write `velocity = Omega`".to_owned(),
+            several => format!(
+                "write `{}`: each of {} has a velocity, in this order",
+                named_velocities(factors),
+                several.join(", ")
+            ),
+        };
+        errors.push_decisive(key.span(), message);
+    }
+    names
+}
