@@ -180,14 +180,12 @@ impl fmt::Display for SetupError {
                 f,
                 "the kinetic part is negative along a direction (pivot {pivot:e}, relative to the inertia there); check its sign, the `.transpose()` in it, and the signs of its parameters"
             ),
-            Self::NonFiniteConstant => write!(
-                f,
-                "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values"
+            Self::NonFiniteConstant => f.write_str(
+                "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values",
             ),
             Self::NonFinite { what } => write!(f, "the initial {what} is not finite; give finite numbers"),
-            Self::NoVelocity => write!(
-                f,
-                "no velocity that rest can be continued to has the initial momentum; choose a momentum nearer to that at rest"
+            Self::NoVelocity => f.write_str(
+                "no velocity that rest can be continued to has the initial momentum; choose a momentum nearer to that at rest",
             ),
             Self::AmbiguousVelocity { difference } if difference.is_nan() => write!(
                 f,
@@ -222,21 +220,17 @@ impl fmt::Display for SetupError {
                 f,
                 "the kinetic flow is that of another body: two entries of the inertias differ by {difference:e}; build both from one"
             ),
-            Self::VaryingInertia => write!(
-                f,
-                "the inertia depends on what is advected or given, or on the velocity, and this method needs one that is the same everywhere; compose the scene's own step instead"
+            Self::VaryingInertia => f.write_str(
+                "the inertia depends on what is advected or given, or on the velocity, and this method needs one that is the same everywhere; compose the scene's own step instead",
             ),
-            Self::BiasMismatch => write!(
-                f,
-                "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them"
+            Self::BiasMismatch => f.write_str(
+                "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them",
             ),
-            Self::NoForceGradient => write!(
-                f,
-                "a term of the scene was written without `kick_derivative`, so it has no force gradient; choose a scheme without them, or write it"
+            Self::NoForceGradient => f.write_str(
+                "a term of the scene was written without `kick_derivative`, so it has no force gradient; choose a scheme without them, or write it",
             ),
-            Self::NoSecondDerivatives => write!(
-                f,
-                "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it"
+            Self::NoSecondDerivatives => f.write_str(
+                "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it",
             ),
             Self::PotentialMismatch => {
                 write!(

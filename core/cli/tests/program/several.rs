@@ -183,7 +183,7 @@ fn a_loop() {
         format!("[[joint]]\nkind = \"ball\"\nbodies = {bodies:?}\nat = {at:?}\n")
     };
     let (left, right) = ([-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]);
-    let mut joints = vec![
+    let mut joints = [
         joint(["space", "rod-0"], [[0.0; 3], left]),
         joint(["rod-0", "rod-1"], [right, left]),
         joint(["rod-2", "rod-1"], [left, right]),
@@ -254,7 +254,7 @@ fn mistakes_have_places() {
         ("[run]", "[sweep]\ngravity.g = [1, 2]\n[run]"),
     ]
     .map(|(line, by)| mistake(line, by));
-    expect![[r#"
+    expect![[r"
         held.toml:17:8: there are two bodies called `upper`
         held.toml:17:8: the `name` of a body has letters, digits, - and _ only
         held.toml:17:8: `space` is what bodies move in; give the body another name
@@ -283,7 +283,7 @@ fn mistakes_have_places() {
         held.toml:42:9: must be a whole number of steps, above zero
         held.toml:78:1: a file has up to 8 bodies; a program may have any number
         held.toml:36:2: unknown field `sweep`, expected one of `title`, `body`, `gravity`, `joint`, `spring`, `run`, `picture`, `output`
-    "#]].assert_eq(&messages.concat());
+    "]].assert_eq(&messages.concat());
 }
 
 /// What is of one body is refused with a place, or a way out.

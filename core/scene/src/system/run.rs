@@ -201,7 +201,7 @@ impl System {
             closed = closed.and(table.end());
         }
         ended.map_err(|error| match error {
-            RunError::Step { time, cause } => self.stopped(&arranged, time, cause),
+            RunError::Step { time, cause } => self.stopped(&arranged, time, &cause),
             RunError::Observer { cause, .. } => failed(&cause),
             other => Mistake::of_run(&self.path, self.places.pace, other.to_string()),
         })?;
@@ -244,10 +244,10 @@ impl System {
     }
 
     /// Why a step can't be made.
-    fn stopped(&self, arranged: &Arranged, time: f64, cause: StepError) -> Mistake {
+    fn stopped(&self, arranged: &Arranged, time: f64, cause: &StepError) -> Mistake {
         let place = match cause {
-            StepError::SingularJoint { joint, .. } => arranged.number(joint).map(|joint| self.places.joints[joint]),
-            StepError::UnsolvedBody { body, .. } => self.places.bodies.get(body).copied(),
+            StepError::SingularJoint { joint, .. } => arranged.number(*joint).map(|joint| self.places.joints[joint]),
+            StepError::UnsolvedBody { body, .. } => self.places.bodies.get(*body).copied(),
             _ => None,
         };
         let message = format!("stopped at t = {time} s: {cause}");

@@ -89,8 +89,11 @@ impl Effect for Springs {
         for Between { bodies, of: Spring { k, length, at } } in self.all() {
             visitor.term("spring");
             #[allow(clippy::cast_precision_loss)] // eight
-            bodies.iter().for_each(|body| visitor.parameter("body", body.map_or(-1.0, |body| body as f64)));
-            at.iter().flatten().for_each(|&entry| visitor.parameter("at", entry));
+            let numbers = bodies.map(|body| body.map_or(-1.0, |body| body as f64));
+            for (name, &value) in numbers.iter().map(|of| ("body", of)).chain(at.iter().flatten().map(|of| ("at", of)))
+            {
+                visitor.parameter(name, value);
+            }
             visitor.parameter("k", *k);
             visitor.parameter("length", *length);
         }

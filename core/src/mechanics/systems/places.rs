@@ -402,8 +402,8 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
     #[inline(always)]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
         let mut all = [make(At { place: 0, bodies: [0, 1] }); N];
-        for place in 1..N - 1 {
-            all[place] = make(At { place, bodies: [place, place + 1] });
+        for (place, of) in all.iter_mut().enumerate().take(N - 1).skip(1) {
+            *of = make(At { place, bodies: [place, place + 1] });
         }
         all
     }
