@@ -1,6 +1,6 @@
 //! Verner's method of order 9 with an estimate of order 8, the efficient one of 2024.
 //!
-//! Coefficients are those of J. H. Verner, *Refuge for Runge–Kutta pairs*, 9(8) IIa; the order of both parts is tested.
+//! Coefficients are those of J. H. Verner, *Refuge for Runge–Kutta pairs*; the order of both parts is tested.
 
 // The digits are those of the source, whatever a double keeps of them.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]

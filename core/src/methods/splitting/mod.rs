@@ -137,6 +137,8 @@ struct Stage<D, T> {
     kick: Option<Kick<T>>,
 }
 
+type StagesOf<S, K> = Stages<<K as KineticFlow<Scalar<S>>>::Drift, Scalar<S>>;
+
 impl<D, T> FromIterator<Share<D, T>> for Stages<D, T> {
     fn from_iter<I: IntoIterator<Item = Share<D, T>>>(shares: I) -> Self {
         shares.into_iter().fold(Self { lead: None, stages: Vec::new() }, Self::and)
@@ -261,7 +263,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     }
 
     /// Of shares that are made for themselves, besides their iterations.
-    fn operations(shares: &Stages<K::Drift, Scalar<S>>) -> f64 {
+    fn operations(shares: &StagesOf<S, K>) -> f64 {
         let kick = 0.5 * f64::from(S::OPERATIONS.step);
         let kicks = shares.stages.iter().map(|stage| &stage.kick).chain([&shares.lead]).flatten();
         let of_kicks = kicks.map(|made| kick + made.mobility.map_or(0.0, |_| kick + OF_A_FORCE_GRADIENT));
@@ -284,7 +286,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     #[inline(always)]
     fn make_all<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
-        shares: &Stages<K::Drift, Scalar<S>>,
+        shares: &StagesOf<S, K>,
         motion: &mut M,
         iterations: &mut u32,
     ) -> Result<(), StepError> {
@@ -308,7 +310,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         &self,
         scene: &S,
         motion: &mut M,
-        (mut first, last): (Option<&Stages<K::Drift, Scalar<S>>>, &Stages<K::Drift, Scalar<S>>),
+        (mut first, last): (Option<&StagesOf<S, K>>, &StagesOf<S, K>),
         steps: u64,
     ) -> Result<u64, StepError> {
         let (mut all, mut iterations, mut made) = (0, 0, 0);
