@@ -10,7 +10,7 @@ use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, Twi
 use nalgebra::SimdBool as _;
 
 /// Increments of nothing.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn zero<G: LieGroup, const N: usize>() -> [G::Matrix; N] {
     [crate::numbers::zero::<G::Scalar, G::Matrix>(); N]
 }
@@ -37,22 +37,22 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         filled(*self, |k| self[k].inverse())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn matrix(&self) -> Self::Matrix {
         filled(zero::<G, N>(), |k| self[k].matrix())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
         filled([G::identity(); N], |k| G::from_matrix_unchecked(matrix[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn hat(components: &Self::Vector) -> Self::Matrix {
         filled(zero::<G, N>(), |k| G::hat(&components.0[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn vee(matrix: &Self::Matrix) -> Self::Vector {
         Bodies(filled([G::Vector::zero(); N], |k| G::vee(&matrix[k])))
     }
@@ -61,7 +61,7 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         Bodies(filled(velocity.0, |k| self[k].adjoint(&velocity.0[k])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_transpose(&self, momentum: &Self::Vector) -> Self::Vector {
         Bodies(filled(momentum.0, |k| self[k].adjoint_transpose(&momentum.0[k])))
     }
@@ -74,32 +74,32 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         Bodies(filled(xi.0, |k| G::lie_bracket_transpose(&xi.0[k], &momentum.0[k])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_increment(increment: &Self::Matrix) -> Self {
         filled([G::identity(); N], |k| G::from_increment(&increment[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment(&self) -> Self::Matrix {
         filled(zero::<G, N>(), |k| self[k].increment())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
         filled(*increment, |k| G::inverse_increment(&increment[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
         filled(*increment, |k| self[k].change(&increment[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn advance(&self, increment: &Self::Matrix) -> Self {
         filled(*self, |k| self[k].advance(&increment[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector {
         Bodies(filled(momentum.0, |k| G::adjoint_transpose_increment(&increment[k], &momentum.0[k])))
     }
@@ -141,12 +141,12 @@ fn of_bodies<U: Copy, const N: usize>(names: &[(String, U)]) -> Vec<(String, U)>
 
 /// Body by body.
 impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment(xi: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
         filled(zero::<G, N>(), |k| R::increment(&xi.0[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment_of_half(half: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
         filled(zero::<G, N>(), |k| R::increment_of_half(&half.0[k]))
     }
@@ -163,17 +163,17 @@ impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
         BlockDiagonal(from_fn(|k| R::tangent(&xi.0[k])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_near_identity(xi: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
         xi.0.iter().fold(!nowhere::<G::Scalar>(), |near, xi| near & R::is_near_identity(xi))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_half_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
         half.0.iter().fold(!nowhere::<G::Scalar>(), |near, half| near & R::is_half_near_identity(half))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_half_well_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
         half.0.iter().fold(!nowhere::<G::Scalar>(), |near, half| near & R::is_half_well_near_identity(half))
     }
@@ -183,19 +183,19 @@ impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
 impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {
     type Of = G;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn factor(&self) -> G {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         self[K]
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn of_matrix(matrix: &[G::Matrix; N]) -> G::Matrix {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         matrix[K]
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn components(joined: &Bodies<G::Vector, N>) -> G::Vector {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         joined.0[K]
@@ -208,12 +208,12 @@ impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
         filled(*self, |k| self[k].seen_from(&attitude[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         filled(*self, |k| self[k].change(&increment[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
         filled(*self, |k| self[k].advect(&increment[k]))
     }
@@ -226,7 +226,7 @@ impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
         filled(*self, |k| self[k].seen_through(&matrix[k], &inverse[k]))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_finite(&self) -> bool {
         self.iter().all(W::is_finite)
     }
@@ -261,27 +261,27 @@ where
 {
     type Body = G;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn pair(first: &G, second: &G) -> Self {
         (*first, *second)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn matrices(first: &G::Matrix, second: &G::Matrix) -> Self::Matrix {
         (*first, *second)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn parts(joined: &Self::Vector) -> [G::Vector; 2] {
         G::Vector::split(joined).into()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn joined(first: &G::Vector, second: &G::Vector) -> Self::Vector {
         first.join(second)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<G>; 2]; 2] {
         G::Vector::blocks(matrix)
     }
@@ -305,27 +305,27 @@ where
 {
     type Body = (A, B);
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn pair(first: &(A, B), second: &(A, B)) -> Self {
         (first.0, first.1, second.0, second.1)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn matrices(first: &(A::Matrix, B::Matrix), second: &(A::Matrix, B::Matrix)) -> Self::Matrix {
         (first.0, first.1, second.0, second.1)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn parts(joined: &Self::Vector) -> [<(A, B) as LieGroup>::Vector; 2] {
         <(A, B) as LieGroup>::Vector::split(joined).into()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn joined(first: &<(A, B) as LieGroup>::Vector, second: &<(A, B) as LieGroup>::Vector) -> Self::Vector {
         first.join(second)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn blocks(matrix: &SquareOf<Self>) -> [[SquareOf<(A, B)>; 2]; 2] {
         <(A, B) as LieGroup>::Vector::blocks(matrix)
     }

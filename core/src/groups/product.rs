@@ -90,18 +90,18 @@ macro_rules! product {
                 ($(self.$place.matrix(),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
                 ($($group::from_matrix_unchecked(matrix.$place),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn hat($joined: &Self::Vector) -> Self::Matrix {
                 let ($($part,)+) = $split;
                 ($($group::hat(&$part),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn vee(matrix: &Self::Matrix) -> Self::Vector {
                 let ($($part,)+) = ($($group::vee(&matrix.$place),)+);
                 $join
@@ -113,7 +113,7 @@ macro_rules! product {
                 $join
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn adjoint_transpose(&self, $joined: &Self::Vector) -> Self::Vector {
                 let ($($part,)+) = $split;
                 let ($($part,)+) = ($(self.$place.adjoint_transpose(&$part),)+);
@@ -136,32 +136,32 @@ macro_rules! product {
                 $join
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn from_increment(increment: &Self::Matrix) -> Self {
                 ($($group::from_increment(&increment.$place),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn increment(&self) -> Self::Matrix {
                 ($(self.$place.increment(),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
                 ($($group::inverse_increment(&increment.$place),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
                 ($(self.$place.change(&increment.$place),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn advance(&self, increment: &Self::Matrix) -> Self {
                 ($(self.$place.advance(&increment.$place),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn adjoint_transpose_increment(increment: &Self::Matrix, $joined: &Self::Vector) -> Self::Vector {
                 let ($($part,)+) = $split;
                 let ($($part,)+) = ($($group::adjoint_transpose_increment(&increment.$place, &$part),)+);
@@ -202,13 +202,13 @@ macro_rules! product {
             $(R: Retraction<$group>,)+
             $($bound)*
         {
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn increment($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
                 ($(<R as Retraction<$group>>::increment(&$part),)+)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn increment_of_half($joined: &<($($group,)+) as LieGroup>::Vector) -> ($($group::Matrix,)+) {
                 let ($($part,)+) = $split;
                 ($(<R as Retraction<$group>>::increment_of_half(&$part),)+)
@@ -227,19 +227,19 @@ macro_rules! product {
                 $squares
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn is_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_near_identity(&$part))+
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn is_half_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_near_identity(&$part))+
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn is_half_well_near_identity($joined: &<($($group,)+) as LieGroup>::Vector) -> Mask<$scalar> {
                 let ($($part,)+) = $split;
                 !nowhere::<$scalar>() $(& <R as Retraction<$group>>::is_half_well_near_identity(&$part))+
@@ -261,17 +261,17 @@ macro_rules! product {
         {
             type Of = $own;
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn factor(&self) -> $own {
                 self.$own_place
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn of_matrix(matrix: &Self::Matrix) -> $own::Matrix {
                 matrix.$own_place
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn components($joined: &Self::Vector) -> $own::Vector {
                 let ($($part,)+) = $split;
                 let _ = ($(&$part,)+);

@@ -80,7 +80,7 @@ pub struct NewtonUpdate<V, S, T> {
 
 impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
     /// Of a residual and its Jacobian.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[must_use]
     pub fn of(residual: &V, jacobian: &V::Square, pattern: Pattern) -> Self {
         let (factors, det) = V::factorise_with(jacobian, pattern);
@@ -89,7 +89,7 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
 }
 
 /// One of Newton's iterations whose matrix joins neighbours. There are no factors for another update.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn linked_update<E: Effect + ?Sized>(
     constants: &E::Constants,
     terms: &E::StepTerms,
@@ -102,7 +102,7 @@ pub(crate) fn linked_update<E: Effect + ?Sized>(
 }
 
 /// What is known of the Newton matrix of an effect.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
     Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
 }
@@ -245,7 +245,7 @@ pub trait Effect: Term {
     /// `exp(−t v̂)·w`. `None` where it isn't known.
     ///
     /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[must_use]
     fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
         None
@@ -267,7 +267,7 @@ pub trait Effect: Term {
 
     /// One of Newton's iterations: the update that is to be subtracted, and what it was solved from, as
     /// [`Coordinates::factorise_with`] gives it. A system of many bodies makes it body by body.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[must_use]
     fn newton_update(
         constants: &Self::Constants,
@@ -283,7 +283,7 @@ pub trait Effect: Term {
 
     /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that
     /// are given.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -294,7 +294,7 @@ pub trait Effect: Term {
     }
 
     /// The residual of [`newton_system`](Self::newton_system) without its Jacobian.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -305,7 +305,7 @@ pub trait Effect: Term {
 
     /// What of [`kick_after`](Self::kick_after) isn't in the [`moving_kick`](Residual::moving_kick) of
     /// [`newton_residual`](Self::newton_residual): that of the other terms of a sum.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[must_use]
     fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
         None
@@ -373,7 +373,7 @@ pub(crate) fn factored_inertia<E: Effect>(effect: &E) -> Option<FactoredInertia<
 }
 
 /// The body velocity of the momentum `μ` and the energy, by the inertia in factors if there is one: the same, to the bit.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn velocity_and_energy<E: Effect>(
     effect: &E,
     inertia: Option<&FactoredInertia<Group<E>>>,
@@ -438,7 +438,7 @@ fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advect
     quadratic_energy(effect, velocity, &effect.inertia(w), w)
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Square<E>, w: &E::Advected) -> Scalar<E> {
     velocity.dot(&(*inertia * *velocity)) * real(0.5) + effect.potential(w)
 }

@@ -144,7 +144,7 @@ pub struct StepDerivatives<M> {
 impl<M: Add<Output = M>> Add for StepDerivatives<M> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self {
             start_by_turn: self.start_by_turn + other.start_by_turn,
@@ -162,7 +162,7 @@ where
 {
     const PARAMETERS: usize = A::PARAMETERS + B::PARAMETERS;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step_derivatives(
         &self,
         increment: &Matrix<Self>,
@@ -172,7 +172,7 @@ where
         self.first.step_derivatives(increment, &w.0, h) + self.second.step_derivatives(increment, &w.1, h)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_parameters(
         &self,
         increment: &Matrix<Self>,
@@ -186,7 +186,7 @@ where
         });
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn by_advected(
         &self,
         increment: &Matrix<Self>,
@@ -199,14 +199,14 @@ where
         self.second.by_advected(increment, &w.1, h, &mut |number, start, end| visit(before + number, start, end));
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn carried_parameters(visit: &mut impl FnMut(usize, usize)) {
         let before = scalars::<Scalar<Self>, A::Advected>();
         A::carried_parameters(visit);
         B::carried_parameters(&mut |place, number| visit(before + place, A::PARAMETERS + number));
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_system(
         &self,
         increment: &Matrix<Self>,
@@ -219,7 +219,7 @@ where
         (first + second, right_side + other)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_gradient(
         &self,
         increment: &Matrix<Self>,
@@ -234,7 +234,7 @@ where
         (first + second, (seen, other))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_gradient(
         &self,
         w: &Self::Advected,
@@ -250,7 +250,7 @@ where
 }
 
 /// How many there are.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn scalars<T: Real, A: Entries<T>>() -> usize {
     let mut count = 0;
     zero::<T, A>().each(&mut |_| count += 1);

@@ -208,7 +208,7 @@ where
         A::are_finite(&constants.0) && B::are_finite(&constants.1)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
         match (A::PARTS.kick_before, B::PARTS.kick_before) {
             (true, true) => A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
@@ -217,7 +217,7 @@ where
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_derivative(
         constants: &Self::Constants,
         w: &Self::Advected,
@@ -233,7 +233,7 @@ where
     }
 
     /// The right side `a` belongs to one unknown part, zero to the other.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &Self::Advected) -> Self::StepTerms {
         let zero = Vector::<Self>::zero();
         // What only joins bodies would take it twice.
@@ -242,7 +242,7 @@ where
         (A::step_terms(&constants.0, first, &w.0), B::step_terms(&constants.1, second, &w.1))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -262,7 +262,7 @@ where
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_update(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -279,7 +279,7 @@ where
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -297,7 +297,7 @@ where
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -312,7 +312,7 @@ where
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_beside(
         constants: &Self::Constants,
         increment: &Matrix<Self>,
@@ -331,7 +331,7 @@ where
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
         match (A::PARTS.kick_after, B::PARTS.kick_after) {
             (true, true) => {

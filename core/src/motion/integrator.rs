@@ -284,7 +284,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         factored_inertia(self.scene())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn velocity_and_energy(
         &self,
         motion: &Motion<Group<S>, S::Advected>,

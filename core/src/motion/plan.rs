@@ -62,7 +62,8 @@ pub trait Plan<S: Effect> {
         true
     }
 
-    /// One step; marked `#[inline(always)]`, as the instructions of the machine are those of what is inlined.
+    /// One step; marked `#[inline(always)]`, as what is called isn't kept in registers and has no vector instructions of
+    /// the machine. The library's own are marked so but for builds with debug assertions, which are to be built soon.
     ///
     /// # Errors
     ///
@@ -81,7 +82,7 @@ pub trait Plan<S: Effect> {
     /// # Errors
     ///
     /// As [`step`](Self::step).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -94,7 +95,7 @@ pub trait Plan<S: Effect> {
     {
         let mut iterations = 0;
         for _ in 0..steps {
-            iterations += u64::from(step(self, scene, motion, kept)?.iterations);
+            iterations += u64::from(self.step(scene, motion, kept)?.iterations);
         }
         Ok(iterations)
     }
@@ -112,7 +113,7 @@ pub trait Plan<S: Effect> {
     /// # Errors
     ///
     /// [`StepError::SingularJoint`] where that isn't determined.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn push<M: Summation<Group<S>, S::Advected>>(
         &self,
         _scene: &S,
@@ -125,7 +126,7 @@ pub trait Plan<S: Effect> {
     }
 
     /// Puts other advected values in the place of those that the body sees, and forgets what is kept of them.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn see(&self, motion: &mut Motion<Group<S>, S::Advected>, _kept: &mut Self::Kept, advected: S::Advected) {
         motion.advected = advected;
     }
@@ -168,22 +169,6 @@ pub trait Plan<S: Effect> {
     fn cost(&self) -> Cost;
 }
 
-/// [`Plan::step`] where steps are many: inlined, as what is called isn't kept in registers. Builds with debug assertions
-/// are to be built soon, and call it where no vector instructions would be lost: a step is half of what a test compiles.
-#[inline(always)]
-pub(crate) fn step<S: Effect, P: Plan<S>, M: Summation<Group<S>, S::Advected>>(
-    plan: &P,
-    scene: &S,
-    motion: &mut M,
-    kept: &mut P::Kept,
-) -> Result<StepReport, StepError> {
-    if const { cfg!(debug_assertions) && matches!(P::VECTORS, Vectors::AsCompiled) } {
-        rare_step(plan, scene, motion, kept)
-    } else {
-        plan.step(scene, motion, kept)
-    }
-}
-
 /// Says how many steps are to be made after those that were, by the motion then.
 pub type NextSteps<'a, G, A> = dyn FnMut(&Motion<G, A>) -> u64 + 'a;
 
@@ -203,7 +188,7 @@ impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     const VECTORS: Vectors = P::VECTORS;
 
     /// Those who look at the motion are called from here, so that constants needn't be loaded again after them.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run(self) -> Self::Output {
         let Self(plan, scene, motion, kept, (mut steps, mut next)) = self;
         let mut iterations = 0;

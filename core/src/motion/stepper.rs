@@ -10,7 +10,7 @@ use crate::mechanics::{
 };
 use crate::motion::declared::Declared;
 use crate::motion::flows::DiscreteLiePoisson;
-use crate::motion::plan::{Next, Plan, Steerable, run_called, step};
+use crate::motion::plan::{Next, Plan, Steerable, run_called};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::Motion;
@@ -158,9 +158,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// [`StepError`] where an equation of the method has no solution, for a scene's own step (2.7) on the branch of the
     /// identity, or a value isn't finite. [`StepError::BeyondSolvable`] names the largest step that would do.
-    // Where a program is to be fast, for certain: what is called isn't kept in registers. Elsewhere builds are to be.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    #[cfg_attr(debug_assertions, inline)]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
         let made = if const { P::STEPS_BY_RUNS } {
             self.run_unexplained(state, 1).map(StepReport::of_run)
@@ -588,8 +586,8 @@ impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
     const VECTORS: Vectors = P::VECTORS;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run(self) -> Self::Output {
-        step(&self.0.plan, &self.0.scene, &mut self.1.motion, &mut self.1.kept)
+        self.0.plan.step(&self.0.scene, &mut self.1.motion, &mut self.1.kept)
     }
 }

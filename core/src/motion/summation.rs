@@ -133,7 +133,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn push(&mut self, change: &G::Vector);
 
     /// One after the other: a turn that carries the momentum along.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
         self.turn(increment);
         self.push(change);
@@ -143,7 +143,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn proceed(&mut self, step: &Proceeded<G, A>);
 
     /// Counts a step.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn count(&mut self) {
         self.recount(self.now().steps + 1);
     }
@@ -162,7 +162,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     fn show(&mut self, motion: Motion<G, A>);
 
     /// Counts a step, and now and then [restores](Self::restore).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn finish(&mut self, spatial: impl FnOnce() -> A) {
         self.count();
         if is_due(self.now().steps) {
@@ -176,7 +176,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
 /// What such a function is shown stays in memory in all the steps between, too. There the next step reads what the last
 /// one has just written, often in other pieces than it was written in, and waits for it. A copy leaves the motion in
 /// registers.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
     let mut changed = *motion;
     change(&mut changed);
@@ -184,7 +184,7 @@ pub(crate) fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
 }
 
 /// Whether it is time to look how far roundings have gone.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn is_due(steps: u64) -> bool {
     steps.is_multiple_of(u64::from(STEPS_BETWEEN_CHECKS))
 }
@@ -205,35 +205,35 @@ pub struct Proceeded<G: LieGroup, A> {
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     const CARRIES: bool = false;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn now(&self) -> &Motion<G, A> {
         self
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn turn(&mut self, increment: &G::Matrix) {
         self.attitude = self.attitude.advance(increment);
         self.advected = self.advected.advect(increment);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn turned(&self, increment: &G::Matrix) -> A {
         self.advected.advect(increment)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn push(&mut self, change: &G::Vector) {
         self.momentum = self.momentum + *change;
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn proceed(&mut self, step: &Proceeded<G, A>) {
         self.attitude = self.attitude.advance(&step.increment);
         self.momentum = step.momentum;
         self.advected = step.advected;
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn recount(&mut self, steps: u64) {
         self.steps = steps;
     }
@@ -247,7 +247,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
         *self = motion;
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn show(&mut self, motion: Motion<G, A>) {
         *self = motion;
     }

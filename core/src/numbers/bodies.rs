@@ -18,7 +18,7 @@ pub struct BlockDiagonal<S, const N: usize>(pub [S; N]);
 
 /// Something for each body, in an array that is full of something before. `core::array::from_fn` isn't always inlined,
 /// and copies what it makes.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn filled<X: Copy, const N: usize>(mut array: [X; N], mut of: impl FnMut(usize) -> X) -> [X; N] {
     for (k, entry) in array.iter_mut().enumerate() {
         *entry = of(k);
@@ -29,7 +29,7 @@ pub(crate) fn filled<X: Copy, const N: usize>(mut array: [X; N], mut of: impl Fn
 impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self(filled(self.0, |k| self.0[k] + other.0[k]))
     }
@@ -38,7 +38,7 @@ impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
 impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
         Self(filled(self.0, |k| self.0[k] - other.0[k]))
     }
@@ -47,7 +47,7 @@ impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
 impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
         Self(filled(self.0, |k| -self.0[k]))
     }
@@ -56,7 +56,7 @@ impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
 impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V, N> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, factor: T) -> Self {
         Self(filled(self.0, |k| self.0[k] * factor))
     }
@@ -65,7 +65,7 @@ impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V,
 impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         Self(filled(self.0, |k| self.0[k] + other.0[k]))
     }
@@ -74,7 +74,7 @@ impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
 impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiagonal<S, N> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, factor: T) -> Self {
         Self(filled(self.0, |k| self.0[k] * factor))
     }
@@ -83,7 +83,7 @@ impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiag
 impl<V: Copy, S: Copy + Mul<V, Output = V>, const N: usize> Mul<Bodies<V, N>> for BlockDiagonal<S, N> {
     type Output = Bodies<V, N>;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, components: Bodies<V, N>) -> Bodies<V, N> {
         Bodies(filled(components.0, |k| self.0[k] * components.0[k]))
     }
@@ -94,14 +94,14 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for [E; N] {
         from_fn(|_| E::from_entries(next))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn each(&self, visit: &mut impl FnMut(T)) {
         for body in self {
             body.each(visit);
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         filled(*self, |k| self[k].zip(&other[k], combine))
     }
@@ -112,12 +112,12 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
         Self(Entries::from_entries(next))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn each(&self, visit: &mut impl FnMut(T)) {
         self.0.each(visit);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         Self(self.0.zip(&other.0, combine))
     }
@@ -127,7 +127,7 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
 const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
 
 /// How many components there are.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn dimension<T: Real, V: Coordinates<T>>() -> usize {
     let mut dimension = 0;
     V::zero().each(&mut |_| dimension += 1);
@@ -135,13 +135,13 @@ fn dimension<T: Real, V: Coordinates<T>>() -> usize {
 }
 
 /// The lesser of two numbers; what isn't a number stays.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn least<T: Real>(a: T, b: T) -> T {
     b.select(b.simd_lt(a) | b.simd_ne(b), a)
 }
 
 /// More than anything is.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn most<T: Real>() -> T {
     real(f64::INFINITY)
 }
@@ -156,17 +156,17 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
     type Links = [[V::Square; 2]; N];
     type Four = Bodies<V::Four, N>;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn beside(columns: &[Self; 4]) -> Self::Four {
         Bodies(from_fn(|body| V::beside(&from_fn(|k| columns[k].0[body]))))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn of_four(four: &Self::Four, k: usize) -> Self {
         Self(from_fn(|body| V::of_four(&four.0[body], k)))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn map_four(matrix: &Self::Square, four: &Self::Four) -> Self::Four {
         Bodies(filled(four.0, |body| V::map_four(&matrix.0[body], &four.0[body])))
     }
@@ -176,7 +176,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         BlockDiagonal(from_fn(|body| V::square(|k| column(body * dimension + k).0[body])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zero() -> Self {
         Self([V::zero(); N])
     }
@@ -188,7 +188,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         axis
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn dot(&self, other: &Self) -> T {
         let mut sum = T::zero();
         for k in 0..N {
@@ -197,49 +197,49 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         sum
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn outer(&self, other: &Self) -> Self::Square {
         BlockDiagonal(from_fn(|k| self.0[k].outer(&other.0[k])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_finite(&self) -> bool {
         self.0.iter().all(V::is_finite)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn select(self, mask: Mask<T>, other: Self) -> Self {
         Self(filled(self.0, |k| self.0[k].select(mask, other.0[k])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn factorise(matrix: &Self::Square) -> (Self::Square, T) {
         Self::factorise_apart(matrix, WHOLE)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_again(factors: &Self::Square, _: T, right_side: &Self) -> Self {
         Self::solve_apart(factors, WHOLE, right_side)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn factorise_with(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
         Self::factorise_apart(matrix, pattern)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_again_with(factors: &Self::Square, _: T, pattern: Pattern, right_side: &Self) -> Self {
         Self::solve_apart(factors, pattern, right_side)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn inverse_with(factors: &Self::Square, _: T, pattern: Pattern) -> Self::Square {
         let of_body = |factors| V::square(|k| V::solve_apart(factors, pattern, &V::axis(k)));
         BlockDiagonal(filled(factors.0, |body| of_body(&factors.0[body])))
     }
 
     /// The pattern is that of one body.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn factorise_apart(matrix: &Self::Square, pattern: Pattern) -> (Self::Square, T) {
         let (mut factors, mut smallest) = (*matrix, most());
         for k in 0..N {
@@ -250,19 +250,19 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         (factors, smallest)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self {
         Self(filled(right_side.0, |k| V::solve_apart(&factors.0[k], pattern, &right_side.0[k])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn no_links() -> Self::Links {
         let zero = V::zero();
         [[zero.outer(&zero); 2]; N]
     }
 
     /// By elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_linked(matrix: &Self::Square, links: &Self::Links, right_side: &Self) -> (Self, T) {
         let (mut solution, mut smallest) = (*right_side, most());
         // `A_k⁻¹ U_k` of those behind which there is one.
@@ -289,12 +289,12 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_trace(body, blocks)))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn trace(matrix: &Self::Square) -> T {
         matrix.0.iter().fold(T::zero(), |sum, body| sum + V::trace(body))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn transpose(matrix: &Self::Square) -> Self::Square {
         BlockDiagonal(filled(matrix.0, |k| V::transpose(&matrix.0[k])))
     }
@@ -303,7 +303,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_pivot(body)))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         let mut raised = (*residual, *jacobian);
         for k in 0..N {

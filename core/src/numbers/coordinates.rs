@@ -85,7 +85,7 @@ pub trait Coordinates<T: Real>:
 
     /// The solution `z` of `A z = b`, and `det A`.
     #[must_use]
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve(matrix: &Self::Square, right_side: &Self) -> (Self, T) {
         let (factors, det) = Self::factorise(matrix);
         (Self::solve_again(&factors, det, right_side), det)
@@ -124,7 +124,7 @@ pub trait Coordinates<T: Real>:
     /// `Dᵏ r` and its derivative, for `D = 1 + |y|²` of half the coordinates `y` and a residual `r` with its derivative;
     /// of several bodies each with its own `D`.
     #[must_use]
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         if power == 0 {
             return (*residual, *jacobian);
@@ -154,22 +154,22 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     type Links = ();
     type Four = FourVectors<T, D>;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn beside(columns: &[Self; 4]) -> FourVectors<T, D> {
         FourVectors(core::array::from_fn(|row| core::array::from_fn(|k| columns[k][row])))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn of_four(four: &FourVectors<T, D>, k: usize) -> Self {
         entries::<T, D>(|row| four.0[row][k])
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn map_four(matrix: &SMatrix<T, D, D>, four: &FourVectors<T, D>) -> FourVectors<T, D> {
         four.mapped(matrix)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn square(column: impl Fn(usize) -> Self) -> SMatrix<T, D, D> {
         let mut square = SMatrix::<T, D, D>::zeros();
         for k in 0..D {
@@ -181,7 +181,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         square
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zero() -> Self {
         Self::zeros()
     }
@@ -192,28 +192,28 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         axis
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn dot(&self, other: &Self) -> T {
         sum::<T, D>(|k| self[k] * other[k])
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn outer(&self, other: &Self) -> SMatrix<T, D, D> {
         SMatrix::from_fn(|row, column| self[row] * other[column])
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_finite(&self) -> bool {
         // Zero times an infinity or a NaN is NaN; the sum itself could overflow.
         sum::<T, D>(|k| self[k] * T::zero()).simd_eq(T::zero()).all()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn select(self, mask: Mask<T>, other: Self) -> Self {
         self.zip_map(&other, |a, b| a.select(mask, b))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn factorise(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
         // `D` is a constant, so that one of these is left.
         match D {
@@ -224,7 +224,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_again(factors: &SMatrix<T, D, D>, det: T, b: &Self) -> Self {
         match D {
             1 => b / det,
@@ -236,12 +236,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn factorise_with(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
         if pattern.factors.is_whole() { Self::factorise(matrix) } else { Self::factorise_apart(matrix, pattern) }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_again_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern, b: &Self) -> Self {
         if pattern.factors.is_whole() {
             Self::solve_again(factors, det, b)
@@ -250,7 +250,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn inverse_with(factors: &SMatrix<T, D, D>, det: T, pattern: Pattern) -> SMatrix<T, D, D> {
         if pattern.factors.is_whole() && D <= 3 {
             // For these the factors are the adjugate.
@@ -259,20 +259,20 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         Self::square(|k| Self::solve_again_with(factors, det, pattern, &Self::axis(k)))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn factorise_apart(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
         blocks::factorise(matrix, pattern)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_apart(factors: &SMatrix<T, D, D>, pattern: Pattern, b: &Self) -> Self {
         blocks::solve_again(factors, pattern, b)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn no_links() {}
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_linked(matrix: &SMatrix<T, D, D>, (): &(), right_side: &Self) -> (Self, T) {
         Self::solve(matrix, right_side)
     }
@@ -281,12 +281,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         blocks::least_trace(matrix, blocks)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn trace(matrix: &SMatrix<T, D, D>) -> T {
         sum::<T, D>(|k| matrix[(k, k)])
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn transpose(matrix: &SMatrix<T, D, D>) -> SMatrix<T, D, D> {
         matrix.transpose()
     }
@@ -306,7 +306,7 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 // of the machine. With loops, on the other hand, steps of single bodies are up to a sixth slower.
 
 /// `term(0) + term(1) + …`, in that order.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
     if D == 0 {
         return T::zero();
@@ -322,7 +322,7 @@ fn sum<T: Real, const D: usize>(term: impl Fn(usize) -> T) -> T {
 }
 
 /// `entry(0), entry(1), …`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D> {
     if T::LANES == 1 {
         return SVector::from_fn(|i, _| entry(i));
@@ -334,7 +334,7 @@ fn entries<T: Real, const D: usize>(entry: impl Fn(usize) -> T) -> SVector<T, D>
     entries
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let det = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
     let mut adjugate = SMatrix::zeros();
@@ -346,7 +346,7 @@ pub(super) fn adjugate_2<T: Real, const D: usize>(m: &SMatrix<T, D, D>) -> (SMat
 }
 
 /// Its rows are cross products of columns.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn adjugate_3<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> (SMatrix<T, D, D>, T) {
     let m = |row: usize, column: usize| matrix[(row - 1, column - 1)];
     let c11 = m(2, 2) * m(3, 3) - m(2, 3) * m(3, 2);

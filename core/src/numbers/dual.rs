@@ -26,22 +26,22 @@ pub(crate) trait Number:
     /// Zero in these lanes, where it is zero but for a rounding. A derivative stays.
     fn vanishing(self, mask: Self::Mask) -> Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zero() -> Self {
         Self::number(0.0)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn one() -> Self {
         Self::number(1.0)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_gt(self, other: Self) -> Self::Mask {
         other.simd_lt(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_ge(self, other: Self) -> Self::Mask {
         other.simd_le(self)
     }
@@ -50,47 +50,47 @@ pub(crate) trait Number:
 impl<T: Real> Number for T {
     type Mask = Mask<T>;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn number(value: f64) -> Self {
         real(value)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_default_epsilon() -> Self {
         <T as nalgebra::SimdRealField>::simd_default_epsilon()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_sqrt(self) -> Self {
         nalgebra::SimdComplexField::simd_sqrt(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_abs(self) -> Self {
         nalgebra::SimdComplexField::simd_abs(self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_max(self, other: Self) -> Self {
         nalgebra::SimdPartialOrd::simd_max(self, other)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_lt(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_lt(self, other)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_le(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_le(self, other)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn select(self, mask: Self::Mask, other: Self) -> Self {
         nalgebra::SimdValue::select(self, mask, other)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn vanishing(self, mask: Self::Mask) -> Self {
         nalgebra::SimdValue::select(T::zero(), mask, self)
     }
@@ -105,24 +105,24 @@ pub(crate) struct Dual<T> {
 
 impl<T: Real> Dual<T> {
     /// What doesn't vary.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn constant(value: T) -> Self {
         Self { value, slopes: [T::zero(); 3] }
     }
 
     /// What varies along one of the directions.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn along(value: T, direction: usize) -> Self {
         Self { value, slopes: core::array::from_fn(|k| if k == direction { T::one() } else { T::zero() }) }
     }
 
     /// A function with this value, and this derivative by the number.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn chained(self, value: T, slope: T) -> Self {
         Self { value, slopes: self.slopes.map(|own| own * slope) }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zip(self, other: Self, value: T, slope: impl Fn(T, T) -> T) -> Self {
         Self { value, slopes: core::array::from_fn(|k| slope(self.slopes[k], other.slopes[k])) }
     }
@@ -131,7 +131,7 @@ impl<T: Real> Dual<T> {
 impl<T: Real> Add for Dual<T> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
         self.zip(other, self.value + other.value, |a, b| a + b)
     }
@@ -140,7 +140,7 @@ impl<T: Real> Add for Dual<T> {
 impl<T: Real> Sub for Dual<T> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
         self.zip(other, self.value - other.value, |a, b| a - b)
     }
@@ -149,7 +149,7 @@ impl<T: Real> Sub for Dual<T> {
 impl<T: Real> Mul for Dual<T> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     #[allow(clippy::suspicious_arithmetic_impl)] // the rule for products has a sum
     fn mul(self, other: Self) -> Self {
         self.zip(other, self.value * other.value, |a, b| a * other.value + self.value * b)
@@ -159,7 +159,7 @@ impl<T: Real> Mul for Dual<T> {
 impl<T: Real> Div for Dual<T> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn div(self, other: Self) -> Self {
         let (inverse, ratio) = (T::one() / other.value, self.value / other.value);
         self.zip(other, ratio, |a, b| (a - ratio * b) * inverse)
@@ -169,7 +169,7 @@ impl<T: Real> Div for Dual<T> {
 impl<T: Real> Neg for Dual<T> {
     type Output = Self;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
         self.chained(-self.value, -T::one())
     }
@@ -178,49 +178,49 @@ impl<T: Real> Neg for Dual<T> {
 impl<T: Real> Number for Dual<T> {
     type Mask = Mask<T>;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn number(value: f64) -> Self {
         Self::constant(real(value))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_default_epsilon() -> Self {
         Self::constant(<T as nalgebra::SimdRealField>::simd_default_epsilon())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_sqrt(self) -> Self {
         let root = nalgebra::SimdComplexField::simd_sqrt(self.value);
         self.chained(root, real::<T>(0.5) / root)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_abs(self) -> Self {
         (-self).select(self.simd_lt(Self::zero()), self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_max(self, other: Self) -> Self {
         other.select(self.simd_lt(other), self)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_lt(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_lt(self.value, other.value)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn simd_le(self, other: Self) -> Self::Mask {
         nalgebra::SimdPartialOrd::simd_le(self.value, other.value)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn select(self, mask: Self::Mask, other: Self) -> Self {
         let value = nalgebra::SimdValue::select(self.value, mask, other.value);
         self.zip(other, value, |a, b| nalgebra::SimdValue::select(a, mask, b))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn vanishing(self, mask: Self::Mask) -> Self {
         Self { value: nalgebra::SimdValue::select(T::zero(), mask, self.value), slopes: self.slopes }
     }

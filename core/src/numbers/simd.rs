@@ -3,7 +3,8 @@
 /// How wide the vector registers are that a step is worth compiling for.
 ///
 /// Which of them there are is found out when the program runs, with the feature `dispatch`; without it, all is as
-/// compiled. No digit depends on it.
+/// compiled. With debug assertions, too: their builds are to be done soon, and what vector instructions are for is
+/// called there, not inlined. No digit depends on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
     /// Those of the target that the program was compiled for: two `f64` by default.
@@ -26,13 +27,13 @@ pub(crate) trait Kernel {
     /// for all of them.
     const VECTORS: Vectors;
 
-    /// Does it; marked `#[inline(always)]`.
+    /// Does it; marked `#[inline(always)]` but for builds with debug assertions.
     fn run(self) -> Self::Output;
 }
 
 /// Does it with the best instructions that the machine has, up to those asked for, if the feature `dispatch` is on.
 #[cfg(feature = "dispatch")]
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     use pulp::{Arch, Simd, WithSimd};
 
@@ -41,14 +42,14 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     impl<K: Kernel> WithSimd for Dispatched<K> {
         type Output = K::Output;
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn with_simd<S: Simd>(self, _: S) -> K::Output {
             self.0.run()
         }
     }
 
     // A branch on a constant leaves the others uncompiled; a `match` doesn't.
-    if const { matches!(K::VECTORS, Vectors::AsCompiled) } {
+    if const { cfg!(debug_assertions) || matches!(K::VECTORS, Vectors::AsCompiled) } {
         return kernel.run();
     }
     #[cfg(target_arch = "x86_64")]
@@ -63,7 +64,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 
 /// Does it with the instructions that it was compiled for.
 #[cfg(not(feature = "dispatch"))]
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     let _ = K::VECTORS;
     kernel.run()

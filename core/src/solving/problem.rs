@@ -43,27 +43,27 @@ pub(super) struct Usual<'a, L: Effect> {
 }
 
 impl<L: Effect> System<Group<L>> for Usual<'_, L> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn pattern(&self) -> Pattern {
         pattern::<L>()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn has_factors(&self) -> bool {
         !L::LINKS_NEIGHBOURS
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         L::newton_system(self.constants, &self.terms, half)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_update(&self, half: &Vector<L>) -> NewtonUpdate<Vector<L>, Square<L>, Scalar<L>> {
         L::newton_update(self.constants, &self.terms, half)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
         L::newton_residual(self.constants, &self.terms, half).momentum_defect
     }
@@ -78,7 +78,7 @@ impl<L: Effect> Problem<'_, L> {
     /// `REUSE` says whether a Jacobian may be [reused](super::reused_jacobian).
     ///
     /// Nothing here is lent to a function that isn't inlined; that is a sixth of the time of a step.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(crate) fn solve_directly<const REUSE: bool>(
         &self,
         guess: &Vector<L>,
@@ -104,7 +104,7 @@ impl<L: Effect> Problem<'_, L> {
     }
 
     /// What an iteration has settled on, if nothing about it is doubtful.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn usual(
         &self,
         half: &Vector<L>,

@@ -41,7 +41,7 @@ pub(crate) fn safe<T: Real>(at_rest: T) -> T {
 
 /// Whether iterations that converge at a rate will do: only with plain floating-point numbers. The derivatives that a
 /// dual number carries converge with the quadratic iteration as its values do, but lag behind them in others.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn has_no_derivatives<T: Real>() -> bool {
     let element = TypeId::of::<<T as SimdValue>::Element>();
     element == TypeId::of::<f64>() || element == TypeId::of::<f32>()
@@ -51,7 +51,7 @@ impl<G: LieGroup> Lanes<G> {
     /// An iteration of the lanes that haven't settled. With `REUSE`, the lanes that it has brought near enough make one
     /// more with the same Jacobian. Where steps are so long that they seldom can, asking costs more than it saves.
     /// Returns whether a lane has settled by that.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn iterate_once<const REUSE: bool>(
         &mut self,
         equation: &(impl System<G> + ?Sized),
@@ -63,7 +63,7 @@ impl<G: LieGroup> Lanes<G> {
     }
 
     /// The second part of [`iterate_once`](Self::iterate_once).
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn reuse_jacobian<const REUSE: bool>(
         &mut self,
         equation: &(impl System<G> + ?Sized),
@@ -89,14 +89,14 @@ impl<G: LieGroup> Lanes<G> {
 
 /// Whether an update will be enough after one with the square `first` that has led to one with the square `size`:
 /// `2C|u₁|³ ≤ REST ε|y|`, which is what is missing after an update `|u₂| = C|u₁|²` if `C` is one elsewhere.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST / TYPICAL_CURVATURE);
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
 /// Whether it was: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. All are squares.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(crate) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))

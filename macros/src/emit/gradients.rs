@@ -43,34 +43,34 @@ pub(super) fn implementation(emitter: &Emitter) -> Option<TokenStream> {
         #implementation {
             const PARAMETERS: #usize = #count;
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn step_derivatives(&self, increment: &#matrix, w: &Self::Advected, h: #scalar) -> #private::StepDerivatives<#square> {
                 #blocks
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn by_parameters(&self, increment: &#matrix, w: &Self::Advected, h: #scalar, #visit) {
                 #parameters
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn by_advected(&self, increment: &#matrix, w: &Self::Advected, h: #scalar, #visit) {
                 #advected
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn carried_parameters(visit: &mut impl #private::core::ops::FnMut(#usize, #usize)) {
                 #carried
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn adjoint_system(
                 &self, increment: &#matrix, w: &Self::Advected, h: #scalar, at_end: &#vector,
             ) -> (#square, #vector) {
                 #system
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn adjoint_gradient(
                 &self, increment: &#matrix, w: &Self::Advected, h: #scalar, [at_start, at_end]: [&#vector; 2],
                 visit: &mut impl #private::core::ops::FnMut(#usize, #scalar),
@@ -109,7 +109,7 @@ fn kick_gradient(emitter: &Emitter, linearisation: &mut Linearisation) -> Option
     let (span, private, scalar) = (Span::mixed_site(), &emitter.header.private, &emitter.header.scalar);
     let (core, vector) = (quote_spanned!(span=> #private::core), emitter.header.vector());
     Some(quote_spanned! {span=>
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn kick_gradient(
             &self, w: &Self::Advected, velocity: &#vector, [acceleration, multiplier]: [&#vector; 2],
             visit: &mut impl #core::ops::FnMut(#core::primitive::usize, #scalar),

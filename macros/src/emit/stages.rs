@@ -92,19 +92,19 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         }
 
         #[doc = #before]
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> #vector { #kick_before }
 
         #kick_derivative
 
         #[doc = #step]
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn step_terms(constants: &Self::Constants, a: &#vector, w: &Self::Advected) -> Self::StepTerms {
             #step_terms_body
         }
 
         #[doc = #iteration]
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn newton_system(
             constants: &Self::Constants,
             terms: &Self::StepTerms,
@@ -118,7 +118,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         #residual_alone
 
         #[doc = #after]
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn kick_after(constants: &Self::Constants, increment: &#matrix, next: &Self::Advected) -> #vector {
             #inverse
             #kick_after
@@ -188,7 +188,7 @@ fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) 
     let option = quote_spanned!(span=> #private::core::option::Option);
     quote_spanned! {span=>
         #[doc = #documentation]
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn kick_derivative(
             constants: &Self::Constants,
             w: &Self::Advected,
@@ -212,7 +212,7 @@ fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::G
         const JACOBIAN_IS_EXPENSIVE: #private::core::primitive::bool = true;
 
         #[doc = #documentation]
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn newton_residual(
             constants: &Self::Constants,
             terms: &Self::StepTerms,

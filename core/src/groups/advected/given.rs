@@ -16,7 +16,7 @@ pub struct Given<T, const R: usize = 1, const C: usize = 1>(pub SMatrix<T, R, C>
 
 impl<T: Real> Given<T> {
     /// A scalar.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub const fn scalar(value: T) -> Self {
         Self(Vector1::new(value))
     }
@@ -29,34 +29,34 @@ impl<T: Real, const R: usize, const C: usize> Entries<T> for Given<T, R, C> {
         Self(Entries::from_entries(next))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn each(&self, visit: &mut impl FnMut(T)) {
         self.0.each(visit);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
         Self(self.0.zip(&other.0, combine))
     }
 }
 
 impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<G> for Given<T, R, C> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn seen_from(&self, _: &G) -> Self {
         *self
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn pulled_back(&self, _: &G) -> Self {
         *self
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn rate(&self, _: &G::Matrix) -> Self {
         Self(SMatrix::zeros())
     }
@@ -65,7 +65,7 @@ impl<T: Real, G: LieGroup<Scalar = T>, const R: usize, const C: usize> Advected<
         *self
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn advect(&self, _: &G::Matrix) -> Self {
         *self
     }

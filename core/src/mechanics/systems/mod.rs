@@ -143,7 +143,7 @@ where
 }
 
 /// The number of the term at a place.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 const fn term_at<const M: usize>(place: usize) -> usize {
     if M == 1 { 0 } else { place }
 }
@@ -300,7 +300,7 @@ where
         constants.iter().all(|(constants, _)| E::are_finite(constants))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_before(constants: &Self::Constants, w: &P::Advected) -> Vector<Self> {
         P::sum(|at| {
             let (constants, spatial) = &constants[term_at::<M>(at.place)];
@@ -308,7 +308,7 @@ where
         })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_derivative(constants: &Self::Constants, w: &P::Advected, velocity: &Vector<Self>) -> Option<Vector<Self>> {
         let mut is_known = true;
         let all = P::sum(|at| {
@@ -320,7 +320,7 @@ where
         is_known.then_some(all)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &P::Advected) -> Self::StepTerms {
         P::gather(|at| {
             let (constants, spatial) = &constants[term_at::<M>(at.place)];
@@ -328,7 +328,7 @@ where
         })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_system(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -340,7 +340,7 @@ where
         })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_linked(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -353,7 +353,7 @@ where
         })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_update(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -365,7 +365,7 @@ where
         })
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_residual(
         constants: &Self::Constants,
         terms: &Self::StepTerms,
@@ -378,7 +378,7 @@ where
         Residual { momentum_defect, moving_kick: None }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &P::Advected) -> Vector<Self> {
         P::sum(|at| {
             let (constants, spatial) = &constants[term_at::<M>(at.place)];

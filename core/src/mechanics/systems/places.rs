@@ -64,7 +64,7 @@ pub trait Places<E: Effect> {
     fn squares(of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group>;
 
     /// Both, from a vector and a matrix of each place.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn system(
         mut of: impl FnMut(At) -> (Vector<E>, Square<E>),
     ) -> (<Self::Group as LieGroup>::Vector, SquareOf<Self::Group>) {
@@ -72,7 +72,7 @@ pub trait Places<E: Effect> {
     }
 
     /// The same, with the blocks that join neighbours added to those that are given.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn linked(
         _: &mut LinksOf<Self::Group>,
         of: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -81,7 +81,7 @@ pub trait Places<E: Effect> {
     }
 
     /// One of Newton's iterations, from residual and Jacobian of each place.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_update(
         pattern: Pattern,
         system: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -171,12 +171,12 @@ macro_rules! at_one_body {
 
         const AT_ONE_BODY: bool = true;
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn matrix(all: &[Matrix<E>; N], at: At) -> Matrix<E> {
             all[at.bodies[0]]
         }
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn components(all: &All<Vector<E>, N>, at: At) -> Vector<E> {
             all.0[at.bodies[0]]
         }
@@ -192,14 +192,14 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
 
     at_one_body!();
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(mut each: impl FnMut(At)) {
         for place in 0..N {
             each(At { place, bodies: [place; 2] });
         }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
         from_fn(|place| make(At { place, bodies: [place; 2] }))
     }
@@ -208,24 +208,24 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
         from_fn(of)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn seen(all: &[E::Advected; N], _: &E::Advected, at: At) -> E::Advected {
         all[at.place]
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sum(mut of: impl FnMut(At) -> Vector<E>) -> All<Vector<E>, N> {
         Bodies(filled([Vector::<E>::zero(); N], |place| of(At { place, bodies: [place; 2] })))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn squares(mut of: impl FnMut(At) -> Square<E>) -> BlockDiagonal<Square<E>, N> {
         let zero = Vector::<E>::zero();
         BlockDiagonal(filled([zero.outer(&zero); N], |place| of(At { place, bodies: [place; 2] })))
     }
 
     /// Body by body: what both have in common is computed once.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn system(mut of: impl FnMut(At) -> (Vector<E>, Square<E>)) -> (All<Vector<E>, N>, BlockDiagonal<Square<E>, N>) {
         let zero = Vector::<E>::zero();
         let (mut vectors, mut squares) = ([zero; N], [zero.outer(&zero); N]);
@@ -236,7 +236,7 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
     }
 
     /// Body by body, so that what is solved for one stays in registers.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn newton_update(
         pattern: Pattern,
         mut system: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -264,13 +264,13 @@ impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
 
     at_one_body!();
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(mut each: impl FnMut(At)) {
         const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         each(At { place: 0, bodies: [K; 2] });
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; 1] {
         [make(At { place: 0, bodies: [K; 2] })]
     }
@@ -279,12 +279,12 @@ impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
         SeenFrom(of(0))
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn seen(all: &Self::Advected, _: &E::Advected, _: At) -> E::Advected {
         all.0
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn sum(mut of: impl FnMut(At) -> Vector<E>) -> All<Vector<E>, N> {
         let mut all = [Vector::<E>::zero(); N];
         all[K] = of(At { place: 0, bodies: [K; 2] });
@@ -312,17 +312,17 @@ macro_rules! at_two_bodies {
 
         const AT_ONE_BODY: bool = false;
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn matrix(all: &[BodyMatrix<E>; N], at: At) -> Matrix<E> {
             Group::<E>::matrices(&all[at.bodies[0]], &all[at.bodies[1]])
         }
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn components(all: &All<BodyVector<E>, N>, at: At) -> Vector<E> {
             Group::<E>::joined(&all.0[at.bodies[0]], &all.0[at.bodies[1]])
         }
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn sum(mut of: impl FnMut(At) -> Vector<E>) -> All<BodyVector<E>, N> {
             let mut all = [BodyVector::<E>::zero(); N];
             <Self as Places<E>>::visit(|at| add_parts::<E, N>(&mut all, at, &of(at)));
@@ -356,7 +356,7 @@ macro_rules! neighbours {
         const PLACES: usize = N - 1;
         const NAME: (&'static str, [usize; 2]) = ($name, [0, N]);
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn visit(mut each: impl FnMut(At)) {
             const { assert!(N > 1, "neighbours are two bodies at least") };
             for place in 0..N - 1 {
@@ -369,7 +369,7 @@ macro_rules! neighbours {
             Neighbours(from_fn(|place| of(place.min(N - 2))), PhantomData)
         }
 
-        #[inline(always)]
+        #[cfg_attr(not(debug_assertions), inline(always))]
         fn seen(all: &Self::Advected, _: &E::Advected, at: At) -> E::Advected {
             all.0[at.place]
         }
@@ -377,7 +377,7 @@ macro_rules! neighbours {
 }
 
 /// Adds the part of each of the two bodies.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_parts<E: Effect<Group: Pair>, const N: usize>(all: &mut [BodyVector<E>; N], at: At, both: &Vector<E>) {
     for (body, part) in at.bodies.into_iter().zip(Group::<E>::parts(both)) {
         all[body] = all[body] + part;
@@ -399,7 +399,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
     at_two_bodies!();
     neighbours!("coupled along the row");
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
         let mut all = [make(At { place: 0, bodies: [0, 1] }); N];
         for (place, of) in all.iter_mut().enumerate().take(N - 1).skip(1) {
@@ -416,7 +416,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupled<N> {
         <Self as Places<E>>::linked(&mut All::<BodyVector<E>, N>::no_links(), of)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn linked(
         links: &mut LinksOf<Self::Group>,
         mut of: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -445,7 +445,7 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
     at_two_bodies!();
     of_ends!();
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(mut each: impl FnMut(At)) {
         const { assert!(A < N && B < N && A != B, "there are no two bodies with these numbers, counted from zero") };
         each(At { place: 0, bodies: [A, B] });
@@ -455,7 +455,7 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
         SeenBetween(of(0), PhantomData)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn seen(all: &Self::Advected, _: &E::Advected, _: At) -> E::Advected {
         all.0
     }
@@ -470,7 +470,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     at_two_bodies!();
     of_ends!();
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(mut each: impl FnMut(At)) {
         let mut place = 0;
         for first in 0..N {
@@ -486,7 +486,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     }
 
     /// Formed where it is needed: so many wouldn't be kept.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn seen(all: &Self::Advected, spatial: &E::Advected, at: At) -> E::Advected {
         let [first, second] = at.bodies.map(|body| Body::<E>::from_matrix_unchecked(all.0[body]));
         spatial.seen_from(&Group::<E>::pair(&first, &second))

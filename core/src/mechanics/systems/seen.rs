@@ -31,12 +31,12 @@ macro_rules! entries {
                 Self(Entries::from_entries(next), $($marker)?)
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn each(&self, visit: &mut impl FnMut(S)) {
                 self.0.each(visit);
             }
 
-            #[inline(always)]
+            #[cfg_attr(not(debug_assertions), inline(always))]
             fn zip(&self, other: &Self, combine: &mut impl FnMut(S, S) -> S) -> Self {
                 Self(self.0.zip(&other.0, combine), $($marker)?)
             }
@@ -50,7 +50,7 @@ entries!([G: LieGroup<Scalar = S>, const N: usize] WhereAllAre<G, N>,);
 
 impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
     /// Something of each two neighbours, and of the one behind.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn map(&self, each: impl Fn(&W, usize) -> W, behind: impl Fn(&W) -> W) -> Self {
         let mut mapped = self.0;
         for k in 1..N {
@@ -78,12 +78,12 @@ where
         self.map(|w, k| w.seen_from(&P::pair(&attitude[k], &attitude[k + 1])), W::clone)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         self.map(|w, k| w.change(&P::matrices(&increment[k], &increment[k + 1])), unchanged::<G::Scalar, W>)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
         self.map(|w, k| w.advect(&P::matrices(&increment[k], &increment[k + 1])), W::clone)
     }
@@ -97,7 +97,7 @@ where
         self.map(|w, k| w.seen_through(&pair(matrix, k), &pair(inverse, k)), W::clone)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_finite(&self) -> bool {
         self.0.iter().all(W::is_finite)
     }
@@ -113,7 +113,7 @@ where
         Self(self.0.seen_from(&P::pair(&attitude[A], &attitude[B])), PhantomData)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self(self.0.change(&P::matrices(&increment[A], &increment[B])), PhantomData)
     }
@@ -127,7 +127,7 @@ where
         Self(self.0.seen_through(&pair(matrix), &pair(inverse)), PhantomData)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_finite(&self) -> bool {
         self.0.is_finite()
     }
@@ -139,7 +139,7 @@ impl<G: LieGroup, const N: usize> Advected<[G; N]> for WhereAllAre<G, N> {
     }
 
     /// `R D`.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
         Self(filled(self.0, |k| G::from_matrix_unchecked(self.0[k]).change(&increment[k])))
     }

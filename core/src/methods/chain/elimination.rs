@@ -112,7 +112,7 @@ pub(super) fn outwards(links: &[Link], work: &mut [Work]) {
 }
 
 /// `ŷ + ŷ²`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn quadratic(y: &Vector3<f64>) -> Matrix3<f64> {
     let (xx, yy, zz) = (y.x * y.x, y.y * y.y, y.z * y.z);
     let (xy, xz, yz) = (y.x * y.y, y.x * y.z, y.y * y.z);
@@ -129,7 +129,7 @@ pub(super) fn momenta(links: &[Link], work: &mut [Work]) {
 }
 
 /// Eliminates from the end to the pivot, with the residual `h r` of each link.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn eliminate(links: &[Link], work: &mut [Work], residual: impl Fn(&Link, &Work) -> (Vector3<f64>, Matrix3<f64>)) {
     let (mut beyond, mut mass, mut q) = (Vector3::zeros(), Matrix3::zeros(), Vector3::zeros());
     for (link, work) in links.iter().zip(work).rev() {
@@ -161,14 +161,14 @@ fn eliminate(links: &[Link], work: &mut [Work], residual: impl Fn(&Link, &Work) 
 }
 
 /// `(D J − J Dᵀ)^∨ + m c × u + ρ × P − h a`, and `tr(F J) I − F J`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn momentum_equation(link: &Link, work: &Work) -> (Vector3<f64>, Matrix3<f64>) {
     let nonstandard = link.J_d.as_matrix();
     let dj = work.increment * nonstandard;
     (residual(link, work, &dj), inertia(&(dj + nonstandard)))
 }
 
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn residual(link: &Link, work: &Work, dj: &Matrix3<f64>) -> Vector3<f64> {
     Vector3::new(dj.m32 - dj.m23, dj.m13 - dj.m31, dj.m21 - dj.m12)
         + link.c.cross(&work.u) * link.m
@@ -251,7 +251,7 @@ pub(super) fn momenta_of_velocities(links: &[Link], work: &mut [Work]) {
 }
 
 /// `â M`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn cross_columns(a: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::new(
         a.y * m.m31 - a.z * m.m21,
@@ -267,7 +267,7 @@ fn cross_columns(a: &Vector3<f64>, m: &Matrix3<f64>) -> Matrix3<f64> {
 }
 
 /// `M â`: each row times `a`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn cross_rows(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(
         m.m12 * a.z - m.m13 * a.y,
@@ -283,13 +283,13 @@ fn cross_rows(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// `M + â`.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn add_hat(m: &Matrix3<f64>, a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(m.m11, m.m12 - a.z, m.m13 + a.y, m.m21 + a.z, m.m22, m.m23 - a.x, m.m31 - a.y, m.m32 + a.x, m.m33)
 }
 
 /// The inverse, by Cramer's rule, and the determinant. Where it is zero nothing is finite.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn inverted(m: &Matrix3<f64>) -> (Matrix3<f64>, f64) {
     let (adjugate, determinant) = crate::numbers::adjugate_3(m);
     (adjugate * (1.0 / determinant), determinant)

@@ -154,7 +154,7 @@ impl<const N: usize> ChainStepper<N> {
     }
 
     /// What the increments are to satisfy.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn prepared(&self, state: &ChainState<N>) -> [Work; N] {
         let mut work = Self::work(&state.motion.attitude);
         let h = self.h;
@@ -169,7 +169,7 @@ impl<const N: usize> ChainStepper<N> {
     }
 
     /// The end of a step with these increments.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn proceed(&self, state: &mut ChainState<N>, work: &mut [Work; N]) -> Result<(), StepError> {
         let (links, h) = (&self.chain.links[..], self.h);
         outwards(links, work);

@@ -182,7 +182,7 @@ impl<S: Effect> Plan<S> for Composed<S> {
     }
 
     /// The iterations of the report are those of all stages.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -240,7 +240,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Composed<S> {
         self.stages.len()
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
         if let Some(substep) = self.stages.get(index).and_then(|stage| self.substeps.get(stage.substep)) {
             pass.stage(&Linear::step(scene, substep.step_size(), event, event.before.advected));
@@ -264,7 +264,7 @@ impl<T: Real> Stage<T> {
         Self { substep, scale: real(scale), last: real(scale * (1.0 + ratio)), earlier: real(-ratio * next / before) }
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn half_guess<V: Coordinates<T>>(&self, last: V, far: Mask<T>, earlier: V) -> V {
         let guess = last * self.last + earlier * self.earlier;
         // Near the fold coordinates change too fast for a straight line.

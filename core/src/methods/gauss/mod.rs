@@ -265,7 +265,8 @@ fn compensated(y: &Lifted, change: &Lifted, carry: &Lifted) -> (Lifted, Lifted) 
     (next, left)
 }
 
-#[cfg(test)]
+// Builds with debug assertions ask for no vector instructions.
+#[cfg(all(test, not(debug_assertions)))]
 mod tests {
     use super::{Collocated, Gauss, Plan as _, StepError, StepReport, Stepper, Vector3};
     use crate::effects::{Gravity, RigidBody};

@@ -206,12 +206,12 @@ impl Constraint<3> for BallJoint {
         check([("above", &self.above), ("below", &self.below)])
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn gap(&self, above: &Place, below: &Place) -> Vector3<f64> {
         below.of(&self.below) - above.of(&self.above)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn slope(&self, above: &Place, below: &Place) -> [Slope<3>; 2] {
         let arm = |place: &Place, point: &Vector3<f64>| (place.attitude * point).cross_matrix();
         [

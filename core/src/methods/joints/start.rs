@@ -37,7 +37,7 @@ where
     }
 
     /// Without slopes and matrices.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn equations(&self) -> Equations<'_, C, K, N, T, L> {
         Equations::new(&self.joints, &self.tree)
     }

@@ -46,7 +46,7 @@ where
         Effect::describe(flow, visitor);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
         pass.stage(&Stage::step(flow, time, event, ()).behind(first_parameter));
     }
@@ -64,7 +64,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
         Self::describe(flow, visitor);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit<A>(flow: &Self, time: T, event: &Change<SO3<T>, A>, first_parameter: usize, pass: &mut impl Pass<SO3<T>>) {
         let (transverse, axial) = Self::moments(flow);
         let (momentum, increment) = (event.before.momentum, event.increment);
@@ -86,7 +86,7 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
 }
 
 /// A turn by `F`, whose increment this is, of a body with this momentum before it.
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub(super) fn flown<'a, T: Real>(
     turn_by_momentum: Matrix3<T>,
     increment: &Matrix3<T>,
@@ -122,7 +122,7 @@ where
 
     /// A step that turns about the axis once, after all drifts, is the same only for potentials that are symmetric about
     /// it. The derivative with respect to the potential leaves those, so the drifts are made again with their own turns.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -141,7 +141,7 @@ where
         Ok(report)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(
         &self,
         scene: &S,
@@ -169,7 +169,7 @@ where
     }
 
     /// Shows a pass what a share of this length did.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn show(
         &self,
         scene: &S,

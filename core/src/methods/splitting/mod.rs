@@ -283,7 +283,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         &self.kinetic
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn make_all<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         shares: &StagesOf<S, K>,
@@ -305,7 +305,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 
     /// The steps of a run with these shares at its beginning, if it has any, and at the end of its last step, and the number
     /// of iterations. The spin is that of each drift, or of a step.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn make_steps<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -334,26 +334,20 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
         Ok(all)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn drift<const WITH_SPIN: bool, M: Summation<SO3<Scalar<S>>, S::Advected>>(
         drift: &K::Drift,
         motion: &mut M,
         iterations: &mut u32,
     ) -> Result<(), StepError> {
         let momentum = motion.now().momentum;
-        // The bits are the same either way. Builds with debug assertions, as those of tests, have to compile quickly: there
-        // the flow is called, and so compiled once, not again for each drift of each function that makes steps.
-        let turn = if const { cfg!(debug_assertions) } {
-            advance_called::<_, K, WITH_SPIN>(drift, &momentum)?
-        } else {
-            advance::<_, K, WITH_SPIN>(drift, &momentum)?
-        };
+        let turn = if WITH_SPIN { K::advance(drift, &momentum)? } else { K::advance_without_spin(drift, &momentum)? };
         motion.turn_and_push(&turn.increment, &turn.change);
         *iterations += turn.iterations;
         Ok(())
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn kick<M: Summation<SO3<Scalar<S>>, S::Advected>>(&self, kick: &Kick<Scalar<S>>, motion: &mut M) {
         let advected = motion.now().advected;
         let torque: Vector3<Scalar<S>> = S::kick_before(&self.torque, &advected);
@@ -371,24 +365,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
 }
 
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Split<S, K> {}
-
-/// Moves the body, with its spin or without.
-#[inline(always)]
-fn advance<T: Real, K: KineticFlow<T>, const WITH_SPIN: bool>(
-    drift: &K::Drift,
-    momentum: &Vector3<T>,
-) -> Result<Turn<T>, StepError> {
-    if WITH_SPIN { K::advance(drift, momentum) } else { K::advance_without_spin(drift, momentum) }
-}
-
-/// The same, not inlined.
-#[inline(never)]
-fn advance_called<T: Real, K: KineticFlow<T>, const WITH_SPIN: bool>(
-    drift: &K::Drift,
-    momentum: &Vector3<T>,
-) -> Result<Turn<T>, StepError> {
-    advance::<T, K, WITH_SPIN>(drift, momentum)
-}
 
 /// How long a share is.
 #[derive(Clone, Copy, Debug)]
@@ -433,7 +409,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
 
     fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) {}
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn step<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -446,7 +422,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     const STEPS_BY_RUNS: bool = true;
 
     /// The last drift of a step and the first of the next are made as one.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,

@@ -149,7 +149,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// # Errors
     ///
     /// As [`Plan::step`].
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn record<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
@@ -164,7 +164,7 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
 
     /// The same of the stage that a change of this number, by a step of `−h`, has undone. Those of a symmetric plan are
     /// undone by one another, the last by the first.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit_undone(
         &self,
         scene: &S,
@@ -181,7 +181,7 @@ impl<S: SecondDerivatives> Linearisable<S> for Declared<S> {
         1
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(&self, scene: &S, _: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>) {
         pass.stage(&Stage::step(scene, self.step_size(), event, event.before.advected));
     }
@@ -301,7 +301,7 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearised<'a, S, P> {
     }
 
     /// One step, whose stages are written down.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn recorded(
         &self,
         state: &mut StateOf<S, P>,
@@ -334,7 +334,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, S, P> {
     /// As many as there are columns side by side.
     const VECTORS: Vectors = Vectors::Four;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn run(self) -> bool {
         self.tangent.keep();
         for (index, event) in self.events.iter().enumerate() {

@@ -24,7 +24,7 @@ pub(super) struct Recorded<'a, G: LieGroup, A> {
 }
 
 impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn note(&self, increment: G::Matrix) {
         self.events.borrow_mut().push(Change { before: self.motion, increment });
     }
@@ -33,41 +33,41 @@ impl<G: LieGroup, A: Advected<G>> Recorded<'_, G, A> {
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
     const CARRIES: bool = false;
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn now(&self) -> &Motion<G, A> {
         &self.motion
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn turn(&mut self, increment: &G::Matrix) {
         self.note(*increment);
         self.motion.turn(increment);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn turned(&self, increment: &G::Matrix) -> A {
         self.motion.turned(increment)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn push(&mut self, change: &G::Vector) {
         self.note(zero());
         Summation::push(&mut self.motion, change);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn turn_and_push(&mut self, increment: &G::Matrix, change: &G::Vector) {
         self.note(*increment);
         self.motion.turn_and_push(increment, change);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn proceed(&mut self, step: &Proceeded<G, A>) {
         self.note(step.increment);
         self.motion.proceed(step);
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn recount(&mut self, steps: u64) {
         self.motion.recount(steps);
     }
@@ -81,7 +81,7 @@ impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Recorded<'_, G, A> {
         self.motion = motion;
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn show(&mut self, motion: Motion<G, A>) {
         self.motion = motion;
     }

@@ -38,7 +38,7 @@ where
     }
 
     /// The way in is made anew in each step, for its derivatives alone.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn record<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
         scene: &S,
@@ -58,7 +58,7 @@ where
         Ok(report)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(
         &self,
         scene: &S,
@@ -72,7 +72,7 @@ where
     }
 
     /// The processor is that of `|h|` in a step of `−h` too, and so isn't undone by itself.
-    #[inline(always)]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit_undone(
         &self,
         scene: &S,
