@@ -158,7 +158,7 @@
 //!
 //! [`Placed`](crate::mechanics::Placed) has a row of three as a listing. With potentials of the ends of a step each body is
 //! solved by itself, and a step has to be short for the stiffest of them. With one of the middle, at `Coupled` places, the
-//! row is solved together, and what is stiff there, as a rod, doesn't bound the step. A term that couples velocities doesn't
+//! row is solved together, and the step isn't bounded by 2/ω of what is stiff there, as a rod. A term that couples velocities doesn't
 //! compile there. Links on ball joints couple them, and have a stepper of their own, whose step takes a time proportional to their number:
 //! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
 //!

@@ -7,10 +7,10 @@ use std::array::from_fn;
 
 use liestep::groups::{LieGroup as _, R3};
 use liestep::mechanics::{Each, Effect as _, Placed, Sum};
-use liestep::methods::{Constraint, Joined, Joint, Jointed, Joints, Place, Slope};
+use liestep::methods::{Joined, Joint, Jointed, Joints};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
-use nalgebra::{SMatrix, SVector, Vector3, Vector6};
+use nalgebra::{Vector3, Vector6};
 
 use super::file::{BODIES, LOOPS, System};
 use super::springs::Springs;
@@ -38,54 +38,7 @@ pub(super) type Held = Stepper<Parts, Jointed<Parts, Link, 5, BODIES, BODIES, LO
 pub(super) type HeldBodies = [(SO3, R3); BODIES];
 
 /// A joint, or the place of one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Link {
-    Joint(Joint),
-    Loose,
-}
-
-impl Constraint<5> for Link {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Joint(joint) => joint.name(),
-            Self::Loose => "loose",
-        }
-    }
-
-    fn validate(&self) -> Result<(), SetupError> {
-        match self {
-            Self::Joint(joint) => joint.validate(),
-            Self::Loose => Ok(()),
-        }
-    }
-
-    fn rows(&self) -> usize {
-        match self {
-            Self::Joint(joint) => joint.rows(),
-            Self::Loose => 0,
-        }
-    }
-
-    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, 5> {
-        match self {
-            Self::Joint(joint) => joint.gap(above, below),
-            Self::Loose => SVector::zeros(),
-        }
-    }
-
-    fn slope(&self, above: &Place, below: &Place) -> [Slope<5>; 2] {
-        match self {
-            Self::Joint(joint) => joint.slope(above, below),
-            Self::Loose => [Slope { turn: SMatrix::zeros(), shift: SMatrix::zeros() }; 2],
-        }
-    }
-
-    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
-        if let Self::Joint(joint) = self {
-            joint.describe(visit);
-        }
-    }
-}
+type Link = Option<Joint>;
 
 /// Joints as the library takes them, each with its number in the file.
 pub(super) struct Arranged {
@@ -101,7 +54,7 @@ impl Arranged {
         let joined = |number: usize| {
             let between = &system.joints[number];
             let [above, below] = between.bodies;
-            Joined { joint: Link::Joint(between.of), above, below: below.unwrap_or_default() }
+            Joined { joint: Some(between.of), above, below: below.unwrap_or_default() }
         };
         // Space is behind the last.
         let mut group: [usize; BODIES + 1] = from_fn(|body| body);
@@ -121,7 +74,7 @@ impl Arranged {
         // What no joint connects to space is held there by nothing, at one body of each such tree.
         let free: Vec<usize> =
             (0..BODIES).filter(|&body| group[body] != group[BODIES] && !group[..body].contains(&group[body])).collect();
-        let loose = |below: usize| Joined::to_space(Link::Loose, below);
+        let loose = |below: usize| Joined::to_space(None, below);
         let of_tree =
             |place: usize| tree.get(place).map_or_else(|| loose(free[place - tree.len()]), |&number| joined(number));
         let joints = Joints::tree(from_fn(of_tree));
@@ -153,7 +106,7 @@ impl System {
 
     pub(super) fn stepper(&self, arranged: &Arranged) -> Result<Held, SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
-        // What is behind the bodies is like the first, weighs nothing and rests.
+        // What is behind the bodies is like the first without gravity, and rests.
         let heavy = |place: usize| {
             let (body, g) = self.bodies.get(place).map_or((&self.bodies[0], 0.0), |body| (body, g));
             Heavy { J_d: body.J_d, m: body.m, g, up }

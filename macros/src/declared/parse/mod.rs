@@ -8,6 +8,7 @@ mod own_group;
 mod size;
 mod two_bodies;
 
+use quote::format_ident;
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
@@ -159,7 +160,7 @@ pub(crate) fn as_far_as_readable(
         _ => Vec::new(),
     };
     // Among several bodies `eta` is a name as any other.
-    let both = displacements.iter().flat_map(|name| [name.clone(), Ident::new(&format!("{name}_next"), name.span())]);
+    let both = displacements.iter().flat_map(|name| [name.clone(), format_ident!("{name}_next")]);
     check_names(Role::Lagrangian, &both.collect::<Vec<_>>(), "a displacement", (&fields, &advected), errors);
     let (expression, continuous) = kind(role, &mut arguments, (&fields, &advected, &factors), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
