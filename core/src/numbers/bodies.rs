@@ -327,7 +327,8 @@ mod tests {
     #[test]
     fn a_row_is_solved_as_the_whole_matrix() {
         let mut random = Random::new(7);
-        let mut block = |diagonal: f64| Matrix6::<f64>::from_fn(|i, j| random.signed() + if i == j { diagonal } else { 0.0 });
+        let mut block =
+            |diagonal: f64| Matrix6::<f64>::from_fn(|i, j| random.signed() + if i == j { diagonal } else { 0.0 });
         let (matrix, links) = ([(); 3].map(|()| block(9.0)), [(); 3].map(|()| [block(0.0), block(0.0)]));
         let mut dense = SMatrix::<f64, 18, 18>::zeros();
         for (k, own) in matrix.iter().enumerate() {

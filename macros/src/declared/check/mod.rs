@@ -352,7 +352,9 @@ impl Checker<'_> {
     fn is_free(&mut self, name: &syn::Ident) -> bool {
         let (letters, the) = (name.unraw().to_string(), self.declaration.role.definite());
         let is_increment = self.declaration.factors.iter().any(|factor| factor.name == letters);
-        if is_increment || self.declaration.role.reserved(self.declaration.group.is_product()).contains(&letters.as_str()) {
+        if is_increment
+            || self.declaration.role.reserved(self.declaration.group.is_product()).contains(&letters.as_str())
+        {
             self.errors.push(name.span(), format!("`{letters}` already has a meaning in {the}: choose another name"));
             return false;
         }

@@ -10,10 +10,7 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
     if declaration.role == Role::Force {
         let is_displacement = |name: &Name| matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_));
         if !used.iter().any(is_displacement) {
-            errors.push_over(
-                declaration.expression.as_ref().map(super::value),
-                displacement_is_needed(declaration),
-            );
+            errors.push_over(declaration.expression.as_ref().map(super::value), displacement_is_needed(declaration));
         }
         check_names(declaration, used, errors);
         return;

@@ -8,8 +8,8 @@ mod own_group;
 mod size;
 mod two_bodies;
 
-use quote::format_ident;
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
+use quote::format_ident;
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};

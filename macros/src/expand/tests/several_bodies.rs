@@ -170,7 +170,8 @@ fn names_of_several_bodies() {
     for displacements in ["turn, s", "r#fn, r#type"] {
         let [turn, s] = displacements.split(", ").collect::<Vec<_>>()[..] else { panic!("two names") };
         let next = s.trim_start_matches("r#");
-        let pushed = force(displacements, &format!("h * (eta.dot(&{turn}) + eta_next * eta.dot(&({s} + {next}_next)))"));
+        let pushed =
+            force(displacements, &format!("h * (eta.dot(&{turn}) + eta_next * eta.dot(&({s} + {next}_next)))"));
         assert!(!is_refused(&pushed), "{pushed}");
         assert!(syn::parse2::<syn::File>(pushed).is_ok());
     }
