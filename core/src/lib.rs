@@ -41,7 +41,7 @@
 //! | simulate a body with gravity, a spring, drag, … | [`effects`]: bodies and what acts on them; they add with `+` |
 //! | declare a Lagrangian or a force of your own | [`lagrangian`], [`force`](macro@force) |
 //! | move two to four bodies that turn together, without the effects or a splitting | [`lagrangian`] and [`force`](macro@force) with `group(F_1 = SO3, F_2 = SO3)` |
-//! | move many bodies that feel each other's attitudes and positions | [`mechanics::Placed`]: terms on one body or on two, put at places ([`Each`](mechanics::Each), [`On`](mechanics::On), [`Along`](mechanics::Along), [`Between`](mechanics::Between), [`Pairs`](mechanics::Pairs)) |
+//! | move many bodies that feel each other's attitudes and positions | [`mechanics::Placed`]: terms on one body or on two, put at places ([`Each`](mechanics::Each), [`On`](mechanics::On), [`Along`](mechanics::Along), [`Between`](mechanics::Between), [`Pairs`](mechanics::Pairs), [`Coupled`](mechanics::Coupled)) |
 //! | step over the oscillations of stiff rods | [`mechanics::Coupled`] |
 //! | start a rod or a spherical pendulum by its direction | [`NonstandardInertia::pointing`] |
 //! | move a chain of links on ball joints | [`methods::ChainStepper`] |

@@ -161,7 +161,8 @@ pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) 
 }
 
 /// Derives the slopes of a holonomic constraint on two bodies: `impl Constraint` for the annotated struct, which
-/// `Stepper::jointed` holds as it holds the library's joints.
+/// `Stepper::jointed` holds as it holds the library's joints. It takes one type of them: joints of several kinds are an enum
+/// of your own, see `Constraint`.
 ///
 /// ```text
 /// #[constraint(

@@ -82,6 +82,11 @@ const ARROW_STREAM: &str = "arrows";
 fn run(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
     let scenes: Vec<Scene> = paths.iter().map(Scene::read).collect::<Result<_, _>>()?;
+    let several = paths.iter().zip(&scenes).find(|(_, scene)| matches!(scene, Scene::System(_)));
+    if let Some((path, _)) = several.filter(|_| given.get_flag("html")) {
+        let message = format!("a page plays one body, and {} has several; leave --html out", path.display());
+        return Err(Failure::Command(message));
+    }
     let mut output = folder(given)?;
     for (number, (path, scene)) in (1..).zip(paths.iter().zip(&scenes)) {
         if paths.len() > 1 {
@@ -121,10 +126,6 @@ fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Out
 }
 
 fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Output) -> Result<(), Failure> {
-    if given.get_flag("html") {
-        let message = format!("a page plays one body, and {} has several; leave --html out", path.display());
-        return Err(Failure::Command(message));
-    }
     let run = simulate(given, path, output, |told, table| match table {
         Some(table) => system.run_recorded(told, table),
         None => system.run_told(told),

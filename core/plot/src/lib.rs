@@ -18,4 +18,4 @@ pub use panel::{Line, Panel, Vertical};
 pub use plotters::style::RGBColor as Colour;
 pub use sketch::{Sketch, arc};
 pub use sphere::{Path, sphere};
-pub use style::{BLUE, GREEN, INK, ORANGE, PURPLE, heading, legend, px};
+pub use style::{BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILION, YELLOW, heading, legend, px};

@@ -14,6 +14,12 @@ pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
 pub const GREEN: RGBColor = RGBColor(0, 158, 115);
 /// A path.
 pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
+/// For more lines than four.
+pub const SKY: RGBColor = RGBColor(86, 180, 233);
+/// The same.
+pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
+/// The same, and the faintest.
+pub const YELLOW: RGBColor = RGBColor(240, 228, 66);
 
 /// Letters and axes.
 pub const INK: RGBColor = RGBColor(45, 45, 45);

@@ -135,6 +135,7 @@ fn step_errors() {
 fn inertia_errors() {
     let errors = [
         InertiaError::NotFinite,
+        InertiaError::NotPositive { what: "m", value: -0.25 },
         InertiaError::NotSymmetric { defect: 0.125 },
         InertiaError::NotDiagonal { largest: 0.125 },
         InertiaError::TriangleInequality { smallest: -0.25 },
@@ -144,6 +145,7 @@ fn inertia_errors() {
     for error in errors {
         let parts: &[&str] = match error {
             InertiaError::NotFinite => &["inertia", "not finite"],
+            InertiaError::NotPositive { .. } => &["the m", "-2.5e-1", "not above zero"],
             InertiaError::NotSymmetric { .. } => &["not symmetric", "1.25e-1", "more than rounding"],
             InertiaError::NotDiagonal { .. } => &["not diagonal", "1.25e-1", "principal axes"],
             InertiaError::TriangleInequality { .. } => &["no body", "-2.5e-1", "exceeds the sum of the others"],

@@ -158,7 +158,7 @@
 //!
 //! [`Placed`](crate::mechanics::Placed) has a row of three as a listing. With potentials of the ends of a step each body is
 //! solved by itself, and a step has to be short for the stiffest of them. With one of the middle, at `Coupled` places, the
-//! row is solved together, and what is stiff there, as a rod, doesn't bound the step. A term that couples velocities doesn't
+//! row is solved together, and the step isn't bounded by 2/ω of what is stiff there, as a rod. A term that couples velocities doesn't
 //! compile there. Links on ball joints couple them, and have a stepper of their own, whose step takes a time proportional to their number:
 //! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
 //!
@@ -175,7 +175,8 @@
 //! | [`Joint`](crate::methods::Joint) | either, where a system has both |
 //! | [`constraint`](macro@crate::constraint) | functions of the places of two bodies that are zero, declared: a joint of your own, with a strut as a listing at [`Constraint`](crate::methods::Constraint) |
 //!
-//! [`Joints`](crate::methods::Joints) takes those of trees and, apart, one of each loop. A motion starts where joints
+//! [`Joints`](crate::methods::Joints) takes those of trees and, apart, one of each loop, all of one type: joints of several kinds are an
+//! enum of your own that implements [`Constraint`](crate::methods::Constraint), as `Joint` does. A motion starts where joints
 //! are closed and with velocities that keep them so; [`start_nearest`](crate::Stepper::start_nearest) finds such from
 //! others next to them. What can't be is an error that names the joint: one that is open, one that has nothing to do
 //! (the fourth pin of a planar linkage: three of its five functions), a loop that has come to a singular position.

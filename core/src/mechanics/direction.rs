@@ -7,8 +7,10 @@ use crate::error::SetupError;
 use crate::groups::SO3;
 use crate::numbers::{Real, is_finite, real, reported};
 
-/// What a number printed to a dozen digits leaves, in units of the last place.
-const PRINTED: f64 = 1e4;
+/// What a number printed to a dozen digits leaves, and, in a scalar that hasn't as many, rounding.
+fn printed<T: RealField + Copy + Real>() -> T {
+    (T::default_epsilon() * real(64.0)).max(real(2e-12))
+}
 
 impl<T: RealField + Copy> NonstandardInertia<T> {
     /// Of a mass `m`, in kg, at the end `l` of a thin rod without mass, about its other end; `l` is in the body's frame, in m.
@@ -19,9 +21,19 @@ impl<T: RealField + Copy> NonstandardInertia<T> {
     ///
     /// # Errors
     ///
-    /// [`InertiaError`], where a number isn't finite, or the mass or the length isn't positive.
+    /// [`InertiaError::NotPositive`] where the mass or the length isn't positive, [`InertiaError::NotFinite`], and
+    /// [`InertiaError::OutOfRange`].
     pub fn of_rod(m: T, l: &Vector3<T>) -> Result<Self, InertiaError> {
-        // An eighth of `J_d` is across the rod, either way, and the rest along it.
+        for (what, value) in [("m", m), ("length of l", l.norm())] {
+            if !is_finite(value) {
+                return Err(InertiaError::NotFinite);
+            }
+            if value <= T::zero() {
+                return Err(InertiaError::NotPositive { what, value: reported(value) });
+            }
+        }
+        // `J_d` has m|l|²/8 across the rod, either way, and 7m|l|²/8 along it. Of J = tr(J_d) I − J_d these are m|l|² and
+        // m|l|²/4.
         let across = Matrix3::from_diagonal_element(l.norm_squared());
         Self::new((across + l * l.transpose() * real::<T>(6.0)) * (m * real(0.125)))
     }
@@ -80,7 +92,7 @@ impl<T: RealField + Copy + Real> NonstandardInertia<T> {
         self.check_symmetry(&axis)?;
         check_finite("velocity", velocity)?;
         let spin = velocity.dot(&direction);
-        if spin.abs() > velocity.norm() * T::default_epsilon() * real(PRINTED) {
+        if spin.abs() > velocity.norm() * printed::<T>() {
             return Err(SetupError::Spin { spin: reported(spin) });
         }
         let attitude = shortest_turn(&axis, &direction);
@@ -95,7 +107,7 @@ impl<T: RealField + Copy + Real> NonstandardInertia<T> {
         let across = (inertia.trace() - along) * real(0.5);
         let symmetric = Matrix3::from_diagonal_element(across) + axis * axis.transpose() * (along - across);
         let difference = (inertia - symmetric).amax();
-        if difference > inertia.amax() * T::default_epsilon() * real(PRINTED) {
+        if difference > inertia.amax() * printed::<T>() {
             return Err(SetupError::NotAxisymmetric { difference: reported(difference) });
         }
         Ok(())
@@ -110,7 +122,7 @@ fn check_finite<T: RealField + Copy>(what: &'static str, vector: &Vector3<T>) ->
 fn unit<T: RealField + Copy + Real>(what: &'static str, vector: &Vector3<T>) -> Result<Vector3<T>, SetupError> {
     check_finite(what, vector)?;
     let length = vector.norm();
-    if (length - T::one()).abs() > T::default_epsilon() * real(PRINTED) {
+    if (length - T::one()).abs() > printed::<T>() {
         return Err(SetupError::NotUnit { what, length: reported(length) });
     }
     Ok(vector / length)
@@ -147,10 +159,12 @@ mod tests {
         assert!((moments - Vector3::new(0.25 * moment, moment, moment)).amax() < 1e-14 * moment);
         let about = rod.to_inertia().as_matrix() * along;
         assert!((about - along * (0.25 * moment)).amax() < 1e-14 * moment);
-        for (m, l) in [(0.0, along), (1.0, Vector3::zeros())] {
-            assert!(matches!(NonstandardInertia::of_rod(m, &l), Err(InertiaError::Singular { .. })));
+        for m in [0.0, -1.0] {
+            let refused = Err(InertiaError::NotPositive { what: "m", value: m });
+            assert_eq!(NonstandardInertia::of_rod(m, &along), refused);
         }
-        assert!(matches!(NonstandardInertia::of_rod(-1.0, &along), Err(InertiaError::TriangleInequality { .. })));
+        let refused = Err(InertiaError::NotPositive { what: "length of l", value: 0.0 });
+        assert_eq!(NonstandardInertia::of_rod(1.0, &Vector3::zeros()), refused);
         assert!(matches!(NonstandardInertia::of_rod(f64::NAN, &along), Err(InertiaError::NotFinite)));
     }
 
@@ -197,5 +211,15 @@ mod tests {
         let across = Vector3::new(1.0, -0.5, -0.500_000_000_000_1);
         let (_, velocity) = rod.pointing(&z, &printed, &across).unwrap();
         assert!(velocity.z == 0.0);
+    }
+
+    /// In single precision rounding is no mistake either, and a thousandth is one.
+    #[test]
+    fn directions_of_single_precision() {
+        let rod = NonstandardInertia::of_rod(1.0_f32, &Vector3::z()).unwrap();
+        let (direction, still) = (Vector3::new(1.0_f32, 2.0, -0.3).normalize(), Vector3::zeros());
+        assert!(rod.pointing(&Vector3::z(), &direction, &still).is_ok());
+        let refused = rod.pointing(&Vector3::z(), &(direction * 1.001), &still);
+        assert!(matches!(refused, Err(SetupError::NotUnit { what: "direction", .. })));
     }
 }

@@ -97,7 +97,7 @@ pub(crate) fn linked_update<E: Effect + ?Sized>(
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
     let mut links = Vector::<E>::no_links();
     let (residual, jacobian) = E::newton_linked(constants, terms, half, &mut links);
-    let (update, det) = Vector::<E>::solve_linked(&jacobian, &links, &residual);
+    let (update, det) = Vector::<E>::solve_linked(&jacobian, &links, pattern::<E>(), &residual);
     NewtonUpdate { update, factors: jacobian, det }
 }
 
@@ -207,6 +207,9 @@ pub trait Effect: Term {
 
     /// The exact right-trivialised Newton Jacobian: entry `(k, j)` is the derivative of component `k` of the momentum
     /// equation (2.7), [`legendre_minus`](crate::mechanics::DiscreteLagrangian::legendre_minus), along `F ↦ exp(t E_j) F`.
+    ///
+    /// Of several bodies it has the block of each. Where the equation [joins neighbours](Self::LINKS_NEIGHBOURS), those
+    /// between two are missing.
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self>;
 
     /// The matrix `J(w)` of the continuous limit `l(ξ, w) = ½ ξ·Jξ + s·ξ − V`, `l_d(exp hξ, w) = h l(ξ, w) + O(h²)`; of

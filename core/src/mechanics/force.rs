@@ -11,7 +11,8 @@ use crate::mechanics::effect::{Effect, Matrix, Scalar, Vector};
 /// \[MW01\], section 3.2.
 pub trait Force: Effect {
     /// The declared virtual work of a step, in J s, for displacements of the body at its beginning and its end, each in
-    /// the body's axes then (on SO(3) in rad).
+    /// the body's axes then (on SO(3) in rad). On a product they are those of its factors, one after the other; of
+    /// translations they are in the axes of space, in m.
     fn virtual_work(
         &self,
         f: &Matrix<Self>,

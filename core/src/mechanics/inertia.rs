@@ -23,6 +23,13 @@ use crate::numbers::{Real, lanes_of_wrapper, real, reported};
 pub enum InertiaError {
     /// An entry is NaN or infinite.
     NotFinite,
+    /// A mass or a length that an inertia is made of isn't positive.
+    NotPositive {
+        /// Which.
+        what: &'static str,
+        /// Its value, kg or m.
+        value: f64,
+    },
     /// The matrix differs from its transpose by more than rounding.
     NotSymmetric {
         /// The largest `|A_ij − A_ji|`, kg m².
@@ -54,6 +61,9 @@ impl fmt::Display for InertiaError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite => write!(f, "the inertia has an entry that is not finite; give finite numbers"),
+            Self::NotPositive { what, value } => {
+                write!(f, "the {what} of the inertia is {value:e}, not above zero; give a positive one")
+            }
             Self::NotSymmetric { defect } => {
                 write!(
                     f,

@@ -263,18 +263,19 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
     /// By elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn solve_linked(matrix: &Self::Square, links: &Self::Links, right_side: &Self) -> (Self, T) {
+    fn solve_linked(matrix: &Self::Square, links: &Self::Links, pattern: Pattern, right_side: &Self) -> (Self, T) {
+        let pattern = Pattern { apart: Blocks::WHOLE, ..pattern };
         let (mut solution, mut smallest) = (*right_side, most());
         // `A_k⁻¹ U_k` of those behind which there is one.
         let mut eliminated = matrix.0;
         let mut of_body = matrix.0.first().copied();
         for k in 0..N {
             let Some(own) = of_body else { break };
-            let (factors, det) = V::factorise_apart(&own, WHOLE);
+            let (factors, det) = V::factorise_apart(&own, pattern);
             smallest = least(smallest, det);
-            solution.0[k] = V::solve_apart(&factors, WHOLE, &solution.0[k]);
+            solution.0[k] = V::solve_apart(&factors, pattern, &solution.0[k]);
             let (Some(next), [upper, lower]) = (matrix.0.get(k + 1), &links[k]) else { break };
-            eliminated[k] = V::square(|column| V::solve_apart(&factors, WHOLE, &(*upper * V::axis(column))));
+            eliminated[k] = V::square(|column| V::solve_apart(&factors, pattern, &(*upper * V::axis(column))));
             let taken = V::square(|column| *lower * (eliminated[k] * V::axis(column)));
             of_body = Some(*next + taken * real::<T>(-1.0));
             solution.0[k + 1] = solution.0[k + 1] - *lower * solution.0[k];
@@ -310,5 +311,54 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
             (raised.0.0[k], raised.1.0[k]) = V::raised(&residual.0[k], &jacobian.0[k], power, &half.0[k]);
         }
         raised
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
+
+    use super::{BlockDiagonal, Blocks, Bodies, Coordinates as _, Pattern};
+    use crate::laws::samples::Random;
+
+    /// A body that turns and is translated.
+    const PATTERN: Pattern = Pattern { factors: Blocks::WHOLE.then(3, Blocks::WHOLE), apart: Blocks::WHOLE };
+
+    #[test]
+    fn a_row_is_solved_as_the_whole_matrix() {
+        let mut random = Random::new(7);
+        let mut block =
+            |diagonal: f64| Matrix6::<f64>::from_fn(|i, j| random.signed() + if i == j { diagonal } else { 0.0 });
+        let (matrix, links) = ([(); 3].map(|()| block(9.0)), [(); 3].map(|()| [block(0.0), block(0.0)]));
+        let mut dense = SMatrix::<f64, 18, 18>::zeros();
+        for (k, own) in matrix.iter().enumerate() {
+            dense.fixed_view_mut::<6, 6>(6 * k, 6 * k).copy_from(own);
+        }
+        // The last have nobody behind them.
+        for (k, [upper, lower]) in links.iter().enumerate().take(2) {
+            dense.fixed_view_mut::<6, 6>(6 * k, 6 * k + 6).copy_from(upper);
+            dense.fixed_view_mut::<6, 6>(6 * k + 6, 6 * k).copy_from(lower);
+        }
+        let right_side = SVector::<f64, 18>::from_fn(|k, _| [1.0, -2.0, 0.5, 3.0][k % 4]);
+        let bodies = Bodies([0, 6, 12].map(|start| right_side.fixed_rows::<6>(start).into_owned()));
+        let (solution, det) = Bodies::solve_linked(&BlockDiagonal(matrix), &links, PATTERN, &bodies);
+        let expected = dense.lu().solve(&right_side).unwrap();
+        for (k, own) in solution.0.iter().enumerate() {
+            let off = (own - expected.fixed_rows::<6>(6 * k)).amax();
+            assert!(off < 1e-13 * expected.amax(), "{k}: {off:e}");
+        }
+        assert!(det > 0.0);
+    }
+
+    /// A negative determinant of turning and one of shifting don't hide each other.
+    #[test]
+    fn two_negative_factors_of_a_body_show() {
+        let negative = Matrix6::from_diagonal(&Vector6::new(1.0, 2.0, -1.0, 1.0, -3.0, 1.0));
+        let matrix = BlockDiagonal([Matrix6::identity(), negative]);
+        let links = Bodies::<Vector6<f64>, 2>::no_links();
+        let right_side = Bodies([Vector6::repeat(1.0), Vector6::repeat(6.0)]);
+        let (solution, det) = Bodies::solve_linked(&matrix, &links, PATTERN, &right_side);
+        assert!((det + 1.0).abs() < 1e-15, "{det}");
+        assert!((negative * solution.0[1] - right_side.0[1]).amax() < 1e-14);
     }
 }

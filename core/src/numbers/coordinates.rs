@@ -115,8 +115,9 @@ pub trait Coordinates<T: Real>:
     fn no_links() -> Self::Links;
 
     /// The solution `z` of `A z = b` for a matrix with these blocks beside its diagonal, and the determinant of its
-    /// elimination as of [`factorise_with`](Self::factorise_with). What is apart otherwise isn't with these.
-    fn solve_linked(matrix: &Self::Square, links: &Self::Links, right_side: &Self) -> (Self, T);
+    /// elimination as of [`factorise_with`](Self::factorise_with), of whose pattern the factors count. What is apart
+    /// otherwise isn't with these.
+    fn solve_linked(matrix: &Self::Square, links: &Self::Links, pattern: Pattern, right_side: &Self) -> (Self, T);
 
     /// The least of the traces of the blocks.
     fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T;
@@ -273,8 +274,9 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     fn no_links() {}
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn solve_linked(matrix: &SMatrix<T, D, D>, (): &(), right_side: &Self) -> (Self, T) {
-        Self::solve(matrix, right_side)
+    fn solve_linked(matrix: &SMatrix<T, D, D>, (): &(), pattern: Pattern, right_side: &Self) -> (Self, T) {
+        let (factors, det) = Self::factorise_with(matrix, pattern);
+        (Self::solve_again_with(&factors, det, pattern, right_side), det)
     }
 
     fn least_trace(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {

@@ -12,7 +12,7 @@ use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
 use crate::groups::{LieGroup, Retraction};
 use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, linked_update, pattern};
-use crate::numbers::{Coordinates as _, Mask, Pattern, real, reported};
+use crate::numbers::{Coordinates as _, Mask, Pattern, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// What else is asked of a momentum equation where a solution is doubtful.
@@ -154,8 +154,11 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
     }
 
     /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too, that of each body's
-    /// part where there are several.
+    /// part where there are several. Where neighbours are joined the whole of it isn't at hand, and nothing is accepted.
     fn look_closer(&self, half: &G::Vector) -> Mask<G::Scalar> {
+        if !self.equation.has_factors() {
+            return nowhere::<G::Scalar>();
+        }
         let (jacobian, pattern) = (self.equation.momentum_jacobian(half), self.equation.pattern());
         let (_, det) = G::Vector::factorise_with(&jacobian, pattern);
         is_positive(det) & is_positive(G::Vector::least_trace(&jacobian, pattern.factors))

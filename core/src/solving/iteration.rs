@@ -28,7 +28,8 @@ pub(super) trait System<G: LieGroup> {
     /// What is known of the Jacobian.
     fn pattern(&self) -> Pattern;
 
-    /// Whether a Jacobian may serve for [another update](Self::simplified).
+    /// Whether its Jacobian is that of [`newton_system`](Self::newton_system), and so may serve for
+    /// [another update](Self::simplified): not where neighbours are joined.
     fn has_factors(&self) -> bool;
 
     /// The residual and the Jacobian at half the coordinates.

@@ -48,12 +48,14 @@ impl Role {
         }
     }
 
-    /// The names that mean something in each expression, and can't be those of parameters, of `let`s or of what a function is called
-    /// with: what is compiled finds the one that was declared, whatever else has its name.
-    pub(crate) fn reserved(self) -> &'static [&'static str] {
+    /// The names that mean something in each expression, on one body or on several, and can't be those of parameters, of `let`s
+    /// or of what a function is called with: what is compiled finds the one that was declared, whatever else has its name.
+    pub(crate) fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
-            Self::Lagrangian | Self::Constraint => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
-            Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
+            Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
+            Self::Lagrangian | Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
+            // There are no steps in it.
+            Self::Constraint => &["I", "hat", "vee", "log", "exp", "inverse"],
         }
     }
 

@@ -45,6 +45,12 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
             return None;
         }
     }
+    for (part, function) in functions.iter().enumerate() {
+        if slopes.iter().flatten().all(|slopes| slopes[part].is_zero()) {
+            explain::constant(function, errors);
+            return None;
+        }
+    }
     let (mut graph, bodies, symbols) = (Graph::default(), &lowered.declared.bodies, &lowered.declared.symbols);
     let entries = std::array::from_fn(|body| {
         std::array::from_fn(|by| {

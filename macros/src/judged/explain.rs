@@ -246,6 +246,14 @@ pub(super) fn not_held(body: usize, declaration: &Declaration, errors: &mut Erro
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
 }
 
+/// Reports a function of a constraint that is the same wherever the bodies are.
+pub(super) fn constant(function: &Tree, errors: &mut Errors) {
+    errors.push_between(
+        [function.span, function.end],
+        "this doesn't depend on where the bodies are, so it holds nothing: leave it out, or use what `advected(…)` names",
+    );
+}
+
 /// Reports what the self-check doesn't confirm.
 pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     let message = match unconfirmed {

@@ -118,6 +118,8 @@ fn a_file_is_what_a_program_makes() {
     }
 }
 
+const TURNING: &str = "start.velocity = [0.4, -0.2, 1]\nmoving = [0.2, 0.1, 0]";
+
 fn free(name: &str, position: [f64; 3], rest: &str) -> String {
     format!(
         "[[body]]\nname = \"{name}\"\nm = 2\nmoments = [0.3, 0.4, 0.5]\nposition = {position:?}\nstart.euler = [0, 0, 0]\n\
@@ -142,8 +144,7 @@ fn bodies_on_a_spring() {
     assert_eq!(run_of.steps(), 200);
 
     // Away from their centres they turn each other, a third one hangs on a joint, and all momentum is kept.
-    let turning = "start.velocity = [0.4, -0.2, 1]\nmoving = [0.2, 0.1, 0]";
-    let bodies = free("a", [0.0; 3], turning) + &free("b", [0.9, 0.0, 0.1], still) + &free("c", [0.9, 0.6, 0.1], still);
+    let bodies = free("a", [0.0; 3], TURNING) + &free("b", [0.9, 0.0, 0.1], still) + &free("c", [0.9, 0.6, 0.1], still);
     let springs = "[[spring]]\nbodies = [\"a\", \"b\"]\nat = [[0.2, 0.1, 0], [-0.1, 0, 0.2]]\nk = 30\nlength = 0.3\n\
                    [[spring]]\nbodies = [\"c\", \"a\"]\nat = [[0, 0.1, 0], [0, 0, 0.2]]\nk = 5\nlength = 0\n";
     let joint = "[[joint]]\nkind = \"ball\"\nbodies = [\"b\", \"c\"]\nat = [[0, 0.3, 0], [0, -0.3, 0]]\n";
@@ -220,7 +221,12 @@ fn mistake(line: &str, by: &str) -> String {
 fn mistakes_have_places() {
     let many = "[[body]]\nname = \"b\"\nm = 1\nmoments = [1, 1, 1]\nposition = [0, 0, 0]\nstart.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\n";
     let eighth: String = (0..7).map(|k| many.replace("\"b\"", &format!("\"b{k}\""))).collect();
+    let ball = "[[joint]]\nkind = \"ball\"\nbodies = [\"upper\", \"lower\"]\nat = [[0, 0, -0.5], [-0.3, 0, 0]]\n";
+    let spring = "[[spring]]\nbodies = [\"upper\", \"lower\"]\nat = [[0, 0, 0], [0, 0, 0]]\nk = 1\nlength = 0\n";
     let messages = [
+        ("[run]", &*(ball.repeat(5) + "[run]")),
+        ("[run]", &*(spring.repeat(17) + "[run]")),
+        ("name = \"upper\"", "name = \"lower_velocity\""),
         ("name = \"lower\"", "name = \"upper\""),
         ("name = \"lower\"", "name = \"lo wer\""),
         ("name = \"lower\"", "name = \"space\""),
@@ -254,7 +260,10 @@ fn mistakes_have_places() {
         ("[run]", "[sweep]\ngravity.g = [1, 2]\n[run]"),
     ]
     .map(|(line, by)| mistake(line, by));
-    expect![[r"
+    expect![[r#"
+        held.toml:52:1: this joint closes one loop more than the 4 that a file may have; a program may have any number
+        held.toml:116:1: a file has up to 16 springs; a program may have any number
+        held.toml:17:8: two columns of the table would be called `lower_velocity_x`: give the body another name
         held.toml:17:8: there are two bodies called `upper`
         held.toml:17:8: the `name` of a body has letters, digits, - and _ only
         held.toml:17:8: `space` is what bodies move in; give the body another name
@@ -272,18 +281,31 @@ fn mistakes_have_places() {
         held.toml:32:8: a pin has `axes`: that of each of its bodies, in that body's frame
         held.toml:29:8: a ball joint turns about any axis; leave `axes` out, or make it a `pin`
         held.toml:29:8: a direction can't be zero
-        held.toml:31:1: this joint is open by 9.999999999999998e-2 m (of axes the cosine) at the start; give other places, or let `nearest = true` of `run` close the joints
-        held.toml:25:1: this joint is open by 1e0 m (of axes the cosine) at the start; give other places, or let `nearest = true` of `run` close the joints
-        held.toml:31:1: the velocities open this joint by 4.999999999999998e-1 m/s (of axes the cosine per second); give others, or let `nearest = true` of `run` find those next to them
+        held.toml:31:1: this joint is open by 9.999999999999998e-2 (lengths in m and cosines of axes together) at the start; give other places, or let `nearest = true` of `run` close the joints
+        held.toml:25:1: this joint is open by 1e0 (lengths in m and cosines of axes together) at the start; give other places, or let `nearest = true` of `run` close the joints
+        held.toml:31:1: the velocities open this joint by 4.999999999999998e-1 (lengths in m and cosines of axes together, per second); give others, or let `nearest = true` of `run` find those next to them
         held.toml:36:1: the other joints, or its own functions, do a part of what this one is to do (pivot 0e0); leave it out, or make a `pin` a `ball`
         held.toml:37:8: `duration` is 2 s, shorter than one `step` of 5 s
         held.toml:37:1: unknown field `accuracy`, expected one of `step`, `duration`, `nearest`
-        held.toml:16:1: stopped at t = 0 s: no increment of the body 1 (from zero) that continues the identity: it would turn by 4.00e-1 rad, and its part of the Jacobian has the determinant -2.138501244042695e0; take smaller steps
+        held.toml:16:1: stopped at t = 0 s: no increment of the body `lower` that continues the identity: it would turn by 4.00e-1 rad, and its part of the Jacobian has the determinant -2.138501244042695e0; take a smaller `step`
         held.toml:41:12: unknown variant `place`, expected one of `position`, `quaternion`, `velocity`, `moving`, `energy`, `momentum`, `angular-momentum`, `gap`
         held.toml:42:9: must be a whole number of steps, above zero
         held.toml:78:1: a file has up to 8 bodies; a program may have any number
         held.toml:36:2: unknown field `sweep`, expected one of `title`, `body`, `gravity`, `joint`, `spring`, `run`, `picture`, `output`
-    "]].assert_eq(&messages.concat());
+    "#]].assert_eq(&messages.concat());
+}
+
+/// A body may be called as a column is, unless both are written.
+#[test]
+fn columns_have_names_of_their_own() {
+    let text = HELD.replace("50 cm/s", "0.5 m/s").replace("\"lower\"", "\"momentum\"");
+    let columns = system(&text).columns();
+    assert!(columns.iter().any(|column| column.name == "momentum_x" && column.unit == "m"));
+    assert!(columns.iter().any(|column| column.name == "gap" && column.unit == "m, 1"));
+    let text = text.replace("\"energy\"", "\"momentum\"");
+    let Err(mistake) = Scene::parse("held.toml", &text) else { panic!("two columns of one name") };
+    let message = "held.toml:17:8: two columns of the table would be called `momentum_x`: give the body another name";
+    assert_eq!(mistake.to_string(), message);
 }
 
 /// What is of one body is refused with a place, or a way out.
@@ -301,10 +323,20 @@ fn what_files_of_several_bodies_are_not_for() {
     let one = "held.toml:7:1: the file has several bodies";
     refused(&["sweep", "held.toml"], 1, one);
     refused(&["ensemble", "held.toml"], 1, one);
-    refused(&["run", "held.toml", "--html"], 2, "a page plays one body, and held.toml has several; leave --html out");
+    // Before anything of another is run.
+    refused(
+        &["run", "top.toml", "held.toml", "--html", "--out", "pages"],
+        2,
+        "a page plays one body, and held.toml has several; leave --html out",
+    );
+    assert!(!folder.join("pages").exists());
     let about = "held.toml: 2 bodies + gravity + 2 joints, 400 steps of 0.005 s\n";
     assert_eq!(printed(&folder, &["check", "held.toml"]), about);
-    assert!(printed(&folder, &["derive", "held.toml"]).contains("momentum"));
+    let derivation = printed(&folder, &["derive", "held.toml"]);
+    let parts = ["momentum", "x_b + R_b ρ_b − x_a − R_a ρ_a = 0", "R_a e_2 · R_b n_b = 0"];
+    assert!(parts.iter().all(|part| derivation.contains(part)) && !derivation.contains("without gravity"));
+    let free = system(&format!("title = \"free\"\n{}[run]\nstep = 0.1\nduration = 1\n", free("a", [0.0; 3], TURNING)));
+    assert!(free.derivation().contains("without gravity") && !free.derivation().contains("joints"));
     // Beside one of one body.
     let output = simulate(&folder, &["held.toml", "top.toml"]);
     assert!(output.status.success() && folder.join("top.csv").exists());

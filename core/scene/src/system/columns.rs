@@ -106,23 +106,41 @@ impl Output {
         let values = self.columns.iter().flat_map(|column| column.values(sample));
         std::iter::once(sample.time).chain(values).collect()
     }
-}
 
-impl System {
-    /// The columns of a table, the time first.
-    #[must_use]
-    pub fn columns(&self) -> Vec<Named> {
+    /// The columns of bodies of these names, the time first, each with the number of its body.
+    fn named(&self, bodies: &[&str], has_pins: bool) -> Vec<(Named, Option<usize>)> {
         let named = |name: String, unit: &str| Named { name, unit: unit.to_owned() };
-        let mut all = vec![named("t".to_owned(), "s")];
-        for column in &self.output.columns {
+        let mut all = vec![(named("t".to_owned(), "s"), None)];
+        for column in &self.columns {
+            // A length and the cosines of axes.
+            let unit = if has_pins && *column == SystemColumn::Gap { "m, 1" } else { column.unit() };
             let names = column.names().iter();
             if column.is_of_bodies() {
-                let of_all = self.names().flat_map(|body| names.clone().map(move |name| format!("{body}_{name}")));
-                all.extend(of_all.map(|name| named(name, column.unit())));
+                for (number, body) in bodies.iter().enumerate() {
+                    all.extend(names.clone().map(|name| (named(format!("{body}_{name}"), unit), Some(number))));
+                }
             } else {
-                all.extend(names.map(|name| named((*name).to_owned(), column.unit())));
+                all.extend(names.map(|name| (named((*name).to_owned(), unit), None)));
             }
         }
         all
+    }
+
+    /// A name that two columns have, and the number of the body that one is of.
+    pub(super) fn name_twice(&self, bodies: &[&str]) -> Option<(usize, String)> {
+        let all = self.named(bodies, false);
+        all.iter().enumerate().find_map(|(number, (column, body))| {
+            let (_, other) = all[..number].iter().find(|(other, _)| other.name == column.name)?;
+            Some((body.or(*other)?, column.name.clone()))
+        })
+    }
+}
+
+impl System {
+    /// The columns of a table, the time first. Where there are pins the unit of the [gap](SystemColumn::Gap) is `m, 1`.
+    #[must_use]
+    pub fn columns(&self) -> Vec<Named> {
+        let named = self.output.named(&self.names().collect::<Vec<_>>(), self.has_pins());
+        named.into_iter().map(|(column, _)| column).collect()
     }
 }

@@ -13,6 +13,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::columns::Output;
+use super::held::Arranged;
 use super::picture::Picture;
 use crate::body::{Full, INERTIA, Moments, Nonstandard};
 use crate::document::Wrong;
@@ -34,15 +35,15 @@ pub(super) const SPRINGS: usize = 16;
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]`, up to eight | `name`; `m`; one of `moments`, `J_d`, `J`, about the centre of mass; `position` of that in space, and how fast it is `moving`; `start` as of [one body](crate::SceneFile) |
-/// | `gravity` | `g`, `up` |
-/// | `[[joint]]` | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: the point of each, from its centre of mass; `axes` of a pin: that of each |
-/// | `[[spring]]`, up to sixteen | `bodies`, `at` as of joints; `k`, `length` |
+/// | `[[body]]`, up to eight | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `position` of that in space, m, and how fast it is `moving` there, m/s; `start` as of [one body](crate::SceneFile) |
+/// | `gravity` | `g`, m/s²; `up`, in space |
+/// | `[[joint]]`, up to four more than make a tree | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: the point of each, m, from its centre of mass in its own frame, of `space` from the origin; `axes` of a pin: that of each, in the same frames |
+/// | `[[spring]]`, up to sixteen | `bodies`, `at` as of joints; `k`, N/m, and `length`, m, at rest |
 /// | `run` | `duration`, `step`; `nearest`: whether joints that are open at the start are closed, with the velocities that keep them so |
 /// | `picture` | `plane`: `xy`, `xz`, `yz` |
 /// | `output` | `columns` of a table behind the time, see [`SystemColumn`](crate::SystemColumn); `every`: so many steps from row to row |
 ///
-/// Joints may form loops. Everything else that several bodies can have is for programs: [`liestep::Stepper::jointed`].
+/// Joints may form loops, up to four of them. Everything else that several bodies can have is for programs: [`liestep::Stepper::jointed`].
 #[derive(Clone)]
 pub struct System {
     pub(super) title: String,
@@ -57,6 +58,7 @@ pub struct System {
     pub(super) output: Output,
     pub(super) path: PathBuf,
     pub(super) places: Places,
+    pub(super) arranged: Arranged,
 }
 
 /// Lines and columns of tables, from one.
@@ -211,6 +213,10 @@ impl System {
         format!("{}, {} steps of {} s", self.sum(), self.steps, short(self.step))
     }
 
+    pub(super) fn has_pins(&self) -> bool {
+        self.joints.iter().any(|joint| matches!(joint.of, Joint::Pin(_)))
+    }
+
     /// What there is, in words.
     pub(super) fn sum(&self) -> String {
         let counted = |count: usize, one: &str| match count {
@@ -233,19 +239,32 @@ fn of_table(table: SystemTable, path: &Path, places: Places) -> Result<System, W
     if let Some(spring) = table.spring.get(SPRINGS) {
         return Err((spring.span(), format!("a file has up to {SPRINGS} springs; a program may have any number")));
     }
-    let mut bodies: Vec<Body> = Vec::new();
+    let (mut bodies, mut names): (Vec<Body>, Vec<Range<usize>>) = Default::default();
     for body in table.body {
         let body = body_of(body)?;
         if bodies.iter().any(|other| other.name == body.0.name) {
             return Err((body.1, format!("there are two bodies called `{}`", body.0.name)));
         }
         bodies.push(body.0);
+        names.push(body.1);
     }
     if bodies.is_empty() {
         return Err((0..0, "a system has a body at least".to_owned()));
     }
-    let joints =
+    let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    if let Some((body, name)) = table.output.name_twice(&called) {
+        let message = format!("two columns of the table would be called `{name}`: give the body another name");
+        return Err((names[body].clone(), message));
+    }
+    let spans: Vec<Range<usize>> = table.joint.iter().map(Spanned::span).collect();
+    let joints: Vec<_> =
         table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies)).collect::<Result<_, _>>()?;
+    let arranged = Arranged::of(&joints).map_err(|joint| {
+        let message = format!(
+            "this joint closes one loop more than the {LOOPS} that a file may have; a program may have any number"
+        );
+        (spans[joint].clone(), message)
+    })?;
     let springs = table.spring.into_iter().map(|spring| {
         let SpringTable { bodies: names, at, k, length } = spring.into_inner();
         let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
@@ -267,6 +286,7 @@ fn of_table(table: SystemTable, path: &Path, places: Places) -> Result<System, W
         output: table.output,
         path: path.to_owned(),
         places,
+        arranged,
     })
 }
 

@@ -7,12 +7,12 @@ use std::array::from_fn;
 
 use liestep::groups::{LieGroup as _, R3};
 use liestep::mechanics::{Each, Effect as _, Placed, Sum};
-use liestep::methods::{Constraint, Joined, Joint, Jointed, Joints, Place, Slope};
+use liestep::methods::{Joined, Joint, Jointed, Joints};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
-use nalgebra::{SMatrix, SVector, Vector3, Vector6};
+use nalgebra::{Vector3, Vector6};
 
-use super::file::{BODIES, LOOPS, System};
+use super::file::{BODIES, Between, LOOPS, System};
 use super::springs::Springs;
 
 /// A body and its weight.
@@ -37,57 +37,16 @@ type Parts = Sum<Placed<Each<BODIES>, Heavy, BODIES>, Springs>;
 pub(super) type Held = Stepper<Parts, Jointed<Parts, Link, 5, BODIES, BODIES, LOOPS>>;
 pub(super) type HeldBodies = [(SO3, R3); BODIES];
 
+/// What joints hold, as in the documentation of `BallJoint` and `PinJoint`.
+const BALLS: &str =
+    "joints from a body a, or space, to a body b: x_b + R_b ρ_b − x_a − R_a ρ_a = 0 at both ends of a step\n";
+const PINS: &str = "pins, with e_1 and e_2 across the axis n_a: R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0, too\n";
+
 /// A joint, or the place of one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Link {
-    Joint(Joint),
-    Loose,
-}
-
-impl Constraint<5> for Link {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Joint(joint) => joint.name(),
-            Self::Loose => "loose",
-        }
-    }
-
-    fn validate(&self) -> Result<(), SetupError> {
-        match self {
-            Self::Joint(joint) => joint.validate(),
-            Self::Loose => Ok(()),
-        }
-    }
-
-    fn rows(&self) -> usize {
-        match self {
-            Self::Joint(joint) => joint.rows(),
-            Self::Loose => 0,
-        }
-    }
-
-    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, 5> {
-        match self {
-            Self::Joint(joint) => joint.gap(above, below),
-            Self::Loose => SVector::zeros(),
-        }
-    }
-
-    fn slope(&self, above: &Place, below: &Place) -> [Slope<5>; 2] {
-        match self {
-            Self::Joint(joint) => joint.slope(above, below),
-            Self::Loose => [Slope { turn: SMatrix::zeros(), shift: SMatrix::zeros() }; 2],
-        }
-    }
-
-    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
-        if let Self::Joint(joint) = self {
-            joint.describe(visit);
-        }
-    }
-}
+type Link = Option<Joint>;
 
 /// Joints as the library takes them, each with its number in the file.
+#[derive(Clone)]
 pub(super) struct Arranged {
     joints: Joints<Link, BODIES, LOOPS>,
     /// Those of the tree, then those of loops.
@@ -97,16 +56,16 @@ pub(super) struct Arranged {
 impl Arranged {
     /// The first joints that lead to a body which none before leads to are those of trees, the others close loops; `Err`
     /// has the number of the first that is too many.
-    fn of(system: &System) -> Result<Self, usize> {
+    pub(super) fn of(joints: &[Between<Joint>]) -> Result<Self, usize> {
         let joined = |number: usize| {
-            let between = &system.joints[number];
+            let between = &joints[number];
             let [above, below] = between.bodies;
-            Joined { joint: Link::Joint(between.of), above, below: below.unwrap_or_default() }
+            Joined { joint: Some(between.of), above, below: below.unwrap_or_default() }
         };
         // Space is behind the last.
         let mut group: [usize; BODIES + 1] = from_fn(|body| body);
         let (mut tree, mut loops) = (Vec::new(), Vec::new());
-        for (number, between) in system.joints.iter().enumerate() {
+        for (number, between) in joints.iter().enumerate() {
             let [one, other] = between.bodies.map(|body| group[body.unwrap_or(BODIES)]);
             if one == other {
                 loops.push(number);
@@ -121,7 +80,7 @@ impl Arranged {
         // What no joint connects to space is held there by nothing, at one body of each such tree.
         let free: Vec<usize> =
             (0..BODIES).filter(|&body| group[body] != group[BODIES] && !group[..body].contains(&group[body])).collect();
-        let loose = |below: usize| Joined::to_space(Link::Loose, below);
+        let loose = |below: usize| Joined::to_space(None, below);
         let of_tree =
             |place: usize| tree.get(place).map_or_else(|| loose(free[place - tree.len()]), |&number| joined(number));
         let joints = Joints::tree(from_fn(of_tree));
@@ -139,27 +98,25 @@ impl Arranged {
 }
 
 impl System {
-    /// What was derived of a body, and what springs add.
+    /// What was derived of a body, what springs add, and what joints hold.
     #[must_use]
     pub fn derivation(&self) -> String {
+        let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };
         let springs = if self.springs.is_empty() { "" } else { Springs::DERIVATION };
-        format!("{}{springs}", Heavy::DERIVATION)
+        let joints = if self.joints.is_empty() { "" } else { BALLS };
+        let pins = if self.has_pins() { PINS } else { "" };
+        format!("{}{gravity}{springs}{joints}{pins}", Heavy::DERIVATION)
     }
 
-    /// The joints, or the number of the first that closes one loop too many.
-    pub(super) fn arranged(&self) -> Result<Arranged, usize> {
-        Arranged::of(self)
-    }
-
-    pub(super) fn stepper(&self, arranged: &Arranged) -> Result<Held, SetupError> {
+    pub(super) fn stepper(&self) -> Result<Held, SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
-        // What is behind the bodies is like the first, weighs nothing and rests.
+        // What is behind the bodies is like the first without gravity, and rests.
         let heavy = |place: usize| {
             let (body, g) = self.bodies.get(place).map_or((&self.bodies[0], 0.0), |body| (body, g));
             Heavy { J_d: body.J_d, m: body.m, g, up }
         };
         let parts = Each::<BODIES>::of(from_fn(heavy)) + Springs::of(&self.springs);
-        Stepper::jointed(parts, arranged.joints, self.step)
+        Stepper::jointed(parts, self.arranged.joints, self.step)
     }
 
     pub(super) fn start(&self) -> (HeldBodies, Bodies<Vector6<f64>, BODIES>) {

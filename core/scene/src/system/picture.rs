@@ -1,10 +1,13 @@
 //! The picture of a system: the ways of its bodies, and quantities over time.
 
-use liestep_plot::{BLUE, Colour, GREEN, Line, ORANGE, PURPLE, Panel, Vertical, heading, legend, px, render};
+use liestep_plot::{
+    BLUE, Colour, GREEN, INK, Line, ORANGE, PURPLE, Panel, SKY, VERMILION, Vertical, YELLOW, heading, legend, px,
+    render,
+};
 use nalgebra::Vector3;
 use serde::Deserialize;
 
-use super::file::System;
+use super::file::{BODIES, System};
 use super::run::{SystemRun, SystemSample};
 
 /// What to draw.
@@ -24,7 +27,8 @@ enum Plane {
     Yz,
 }
 
-const COLOURS: [Colour; 4] = [BLUE, ORANGE, GREEN, PURPLE];
+/// As many as there may be bodies.
+const COLOURS: [Colour; BODIES] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, INK, YELLOW];
 
 impl System {
     /// The picture of a run as SVG: the ways of the centres of mass, how far each body is turned from its start, and how
@@ -47,7 +51,7 @@ impl System {
                 width: 3,
                 points: samples.iter().map(|sample| point(sample, body)).collect(),
             };
-            (0..self.bodies.len()).zip(COLOURS.iter().cycle()).map(line).collect()
+            (0..self.bodies.len()).zip(&COLOURS).map(line).collect()
         };
         let way = |sample: &SystemSample, body: usize| {
             let place: Vector3<f64> = sample.bodies[body].position;
@@ -72,7 +76,7 @@ impl System {
             function: false,
             lines: of_bodies(&way),
         };
-        let names: Vec<_> = self.names().zip(COLOURS.into_iter().cycle()).collect();
+        let names: Vec<_> = self.names().zip(COLOURS).collect();
         render((1200, 640), |area| {
             let (header, body) = area.split_vertically(px(88));
             heading(&header, &self.title, &format!("{}, h = {} s", self.sum(), self.step))?;

@@ -7,9 +7,12 @@ use liestep::{SO3, SetupError, StepError};
 use nalgebra::Vector3;
 
 use super::file::System;
-use super::held::{Arranged, Held};
+use super::held::Held;
 use crate::columns::drawn;
 use crate::mistake::Mistake;
+
+/// What tells how far joints are open.
+const GAP: &str = "lengths in m and cosines of axes together";
 
 /// A state, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +57,8 @@ pub struct SystemRun {
 }
 
 impl SystemRun {
-    /// The states that were kept for pictures, the first and the last among them: 20 000 or a few less of a longer run.
+    /// The states that were kept for pictures, the first and the last among them: those of each `k`-th step
+    /// between, with the least `k` for which that is 20 000 at most.
     #[must_use]
     pub fn samples(&self) -> &[SystemSample] {
         &self.samples
@@ -71,8 +75,12 @@ impl SystemRun {
     pub fn summary(&self, system: &System) -> String {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
         let widest = self.samples.iter().map(|sample| sample.gap).fold(0.0, f64::max);
-        let joints =
-            if system.joints.is_empty() { String::new() } else { format!(", joints open by {widest:.1e} m at most") };
+        let unit = if system.has_pins() { "(m and cosines)" } else { "m" };
+        let joints = if system.joints.is_empty() {
+            String::new()
+        } else {
+            format!(", joints open by {widest:.1e} {unit} at most")
+        };
         format!(
             "{}\n  {}, {} steps of {} s\n  energy {:.6} J → {:.6} J{joints}\n",
             system.title,
@@ -162,15 +170,11 @@ impl System {
         told: &mut dyn FnMut(f64),
         mut table: Option<&mut dyn Sink>,
     ) -> Result<SystemRun, Mistake> {
-        let arranged = self.arranged().map_err(|joint| {
-            let message = "closes more loops than a file may have; a program may have any number".to_owned();
-            Mistake::of_run(&self.path, self.places.joints[joint], message)
-        })?;
-        let stepper = self.stepper(&arranged).map_err(|error| self.refused(&arranged, error))?;
+        let stepper = self.stepper().map_err(|error| self.refused(error))?;
         let (bodies, velocities) = self.start();
         let started =
             if self.nearest { stepper.start_nearest(bodies, velocities) } else { stepper.start(bodies, velocities) };
-        let mut state = started.map_err(|error| self.refused(&arranged, error))?;
+        let mut state = started.map_err(|error| self.refused(error))?;
         let failed = |error: &dyn std::fmt::Display| {
             Mistake::of_table(&self.path, format!("the table can't be written: {error}"))
         };
@@ -201,7 +205,7 @@ impl System {
             closed = closed.and(table.end());
         }
         ended.map_err(|error| match error {
-            RunError::Step { time, cause } => self.stopped(&arranged, time, &cause),
+            RunError::Step { time, cause } => self.stopped(time, &cause),
             RunError::Observer { cause, .. } => failed(&cause),
             other => Mistake::of_run(&self.path, self.places.pace, other.to_string()),
         })?;
@@ -209,34 +213,54 @@ impl System {
         Ok(SystemRun { samples: kept, step: self.step, steps })
     }
 
+    /// Where the joint is that the library gives this number.
+    fn of_joint(&self, joint: usize) -> (usize, usize) {
+        self.arranged.number(joint).map_or(self.places.pace, |joint| self.places.joints[joint])
+    }
+
     /// Why it can't be started, with the place of the body or the joint.
-    fn refused(&self, arranged: &Arranged, error: SetupError) -> Mistake {
-        let of_joint =
-            |joint: usize| arranged.number(joint).map_or(self.places.pace, |joint| self.places.joints[joint]);
+    fn refused(&self, error: SetupError) -> Mistake {
         let (place, message) = match error {
             SetupError::OffConstraint { joint, by } => {
-                let message = format!(
-                    "this joint is open by {by:e} m (of axes the cosine) at the start; give other places, or let `nearest = true` of `run` close the joints"
-                );
-                (of_joint(joint), message)
+                let message = if self.nearest {
+                    format!(
+                        "no places next to these were found where the joints are closed: this one stays open by {by:e} ({GAP}); give places nearer to such, or other joints"
+                    )
+                } else {
+                    format!(
+                        "this joint is open by {by:e} ({GAP}) at the start; give other places, or let `nearest = true` of `run` close the joints"
+                    )
+                };
+                (self.of_joint(joint), message)
             }
             SetupError::OffVelocity { joint, by } => {
-                let message = format!(
-                    "the velocities open this joint by {by:e} m/s (of axes the cosine per second); give others, or let `nearest = true` of `run` find those next to them"
-                );
-                (of_joint(joint), message)
+                let message = if self.nearest {
+                    format!(
+                        "no velocities next to these were found that keep this joint closed: they open it by {by:e} ({GAP}, per second); give others"
+                    )
+                } else {
+                    format!(
+                        "the velocities open this joint by {by:e} ({GAP}, per second); give others, or let `nearest = true` of `run` find those next to them"
+                    )
+                };
+                (self.of_joint(joint), message)
             }
             SetupError::RedundantJoint { joint, pivot } => {
                 let message = format!(
                     "the other joints, or its own functions, do a part of what this one is to do (pivot {pivot:e}); leave it out, or make a `pin` a `ball`"
                 );
-                (of_joint(joint), message)
+                (self.of_joint(joint), message)
             }
-            SetupError::Joint { joint, .. } | SetupError::JointParameter { joint, .. } => {
-                (of_joint(joint), error.to_string())
+            SetupError::Joint { joint, cause } => {
+                (self.of_joint(joint), format!("this joint {cause}; check the bodies that it joins"))
             }
-            SetupError::BodyParameter { body, .. } => {
-                (self.places.bodies.get(body).copied().unwrap_or(self.places.pace), error.to_string())
+            SetupError::JointParameter { joint, field, cause } => {
+                (self.of_joint(joint), format!("parameter `{field}` of this joint {cause}; give it another value"))
+            }
+            SetupError::BodyParameter { body, field, cause } if body < self.bodies.len() => {
+                let name = &self.bodies[body].name;
+                let message = format!("parameter `{field}` of the body `{name}` {cause}; give it another value");
+                (self.places.bodies[body], message)
             }
             error => (self.places.pace, error.to_string()),
         };
@@ -244,14 +268,24 @@ impl System {
     }
 
     /// Why a step can't be made.
-    fn stopped(&self, arranged: &Arranged, time: f64, cause: &StepError) -> Mistake {
-        let place = match cause {
-            StepError::SingularJoint { joint, .. } => arranged.number(*joint).map(|joint| self.places.joints[joint]),
-            StepError::UnsolvedBody { body, .. } => self.places.bodies.get(*body).copied(),
-            _ => None,
+    fn stopped(&self, time: f64, cause: &StepError) -> Mistake {
+        let (place, why) = match *cause {
+            StepError::SingularJoint { joint, pivot } => {
+                let why = format!(
+                    "this joint comes to a singular position (pivot {pivot:e}), where its force isn't determined; make a `pin` a `ball`, take a smaller `step`, or another start"
+                );
+                (self.of_joint(joint), why)
+            }
+            StepError::UnsolvedBody { body, turn, determinant } if body < self.bodies.len() => {
+                let name = &self.bodies[body].name;
+                let why = format!(
+                    "no increment of the body `{name}` that continues the identity: it would turn by {turn:.2e} rad, and its part of the Jacobian has the determinant {determinant:e}; take a smaller `step`"
+                );
+                (self.places.bodies[body], why)
+            }
+            _ => (self.places.pace, cause.to_string()),
         };
-        let message = format!("stopped at t = {time} s: {cause}");
-        Mistake::of_run(&self.path, place.unwrap_or(self.places.pace), message)
+        Mistake::of_run(&self.path, place, format!("stopped at t = {time} s: {why}"))
     }
 }
 

@@ -227,7 +227,7 @@ where
         );
         assert!(
             P::AT_ONE_BODY || P::LINKS_NEIGHBOURS || !E::PARTS.unknown,
-            "this potential depends on where two bodies are within the step: put it at neighbours in a row, by \
+            "this term depends on where two bodies are within the step: put it at neighbours in a row, by \
              `Coupled::<N>::of`, or take the means of what it has at the ends of the step"
         );
         assert!(

@@ -110,8 +110,8 @@ pub struct Along<const N: usize>;
 /// step: the means of what they are at its ends, or functions of these.
 ///
 /// The momentum equations of the row are solved together, by elimination from the first body to the last, in time
-/// proportional to `N`. What is stiff there doesn't bound the step: with means a linear spring moves as by the implicit
-/// midpoint rule. At [`Along`] places, with half of a potential at either end, a step has to be below `2/ω` of the fastest
+/// proportional to `N`. The step isn't bounded by `2/ω` of what is stiff there: with means a linear spring moves as by the
+/// implicit midpoint rule. At [`Along`] places, with half of a potential at either end, a step has to be below `2/ω` of the fastest
 /// oscillation.
 ///
 /// # Examples

@@ -45,6 +45,9 @@ pub struct Slope<const K: usize> {
 /// its functions, and derives its [`slope`](Self::slope). By hand, as in `examples/declarations/strut.rs`, that this is the
 /// derivative of the [`gap`](Self::gap) is up to you.
 ///
+/// A stepper takes one type of joint. Joints of several kinds are an enum of your own that implements this, as [`Joint`]
+/// does, with the largest `K` and the number that each has in [`rows`](Self::rows); an `Option` of a joint may hold nothing.
+///
 /// # Examples
 ///
 /// A strut, a rod without mass between two points: one function. A body that hangs on it, thrown sideways:
@@ -335,6 +338,37 @@ impl Constraint<5> for Joint {
         match self {
             Self::Ball(joint) => joint.describe(visit),
             Self::Pin(joint) => joint.describe(visit),
+        }
+    }
+}
+
+/// A place where there may be a joint: `None` holds nothing. With it [`Jointed`](crate::methods::Jointed) has a joint less
+/// than its type says.
+impl<C: Constraint<K>, const K: usize> Constraint<K> for Option<C> {
+    fn name(&self) -> &'static str {
+        self.as_ref().map_or("nothing", C::name)
+    }
+
+    fn validate(&self) -> Result<(), SetupError> {
+        self.as_ref().map_or(Ok(()), C::validate)
+    }
+
+    fn rows(&self) -> usize {
+        self.as_ref().map_or(0, C::rows)
+    }
+
+    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, K> {
+        self.as_ref().map_or_else(SVector::zeros, |joint| joint.gap(above, below))
+    }
+
+    fn slope(&self, above: &Place, below: &Place) -> [Slope<K>; 2] {
+        let nothing = Slope { turn: SMatrix::zeros(), shift: SMatrix::zeros() };
+        self.as_ref().map_or([nothing; 2], |joint| joint.slope(above, below))
+    }
+
+    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        if let Some(joint) = self {
+            joint.describe(visit);
         }
     }
 }

@@ -352,7 +352,9 @@ impl Checker<'_> {
     fn is_free(&mut self, name: &syn::Ident) -> bool {
         let (letters, the) = (name.unraw().to_string(), self.declaration.role.definite());
         let is_increment = self.declaration.factors.iter().any(|factor| factor.name == letters);
-        if is_increment || self.declaration.role.reserved().contains(&letters.as_str()) {
+        if is_increment
+            || self.declaration.role.reserved(self.declaration.group.is_product()).contains(&letters.as_str())
+        {
             self.errors.push(name.span(), format!("`{letters}` already has a meaning in {the}: choose another name"));
             return false;
         }
@@ -468,10 +470,10 @@ impl Checker<'_> {
         } else {
             match name.as_str() {
                 "I" => return Some(Tree::new(span, square, Kind::Identity)),
-                "h" if self.declaration.continuous.is_some() || self.is_constraint() => {
+                "h" if self.declaration.continuous.is_some() || self.is_constraint() && !self.is_parameter("h") => {
                     return self.of_a_step(&name, None, span);
                 }
-                "h" => (Shape::Scalar, Name::Step),
+                "h" if !self.is_constraint() => (Shape::Scalar, Name::Step),
                 _ if displacement.is_some() => displacement?,
                 _ => {
                     if let Some(index) = advected(self.declaration) {

@@ -10,10 +10,7 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
     if declaration.role == Role::Force {
         let is_displacement = |name: &Name| matches!(name, Name::DisplacementBefore(_) | Name::DisplacementAfter(_));
         if !used.iter().any(is_displacement) {
-            errors.push_over(
-                declaration.expression.as_ref().map(super::value),
-                "virtual work needs a displacement: `eta` at the beginning of the step, `eta_next` at its end",
-            );
+            errors.push_over(declaration.expression.as_ref().map(super::value), displacement_is_needed(declaration));
         }
         check_names(declaration, used, errors);
         return;
@@ -59,6 +56,14 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         }
     }
     check_names(declaration, used, errors);
+}
+
+/// By the names that displacements have.
+fn displacement_is_needed(declaration: &Declaration) -> String {
+    let pairs: Vec<_> = (0..declaration.factors.len()).filter_map(|factor| declaration.displacement(factor)).collect();
+    let [before, after] =
+        [0, 1].map(|end| pairs.iter().map(|pair| format!("`{}`", pair[end])).collect::<Vec<_>>().join(" or "));
+    format!("virtual work needs a displacement: {before} at the beginning of the step, {after} at its end")
 }
 
 /// Of an increment or a velocity among several.

@@ -11,8 +11,12 @@ use crate::declared::{Field, FieldKind, Role, Scalar};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::Variance;
 
-/// The fields, and the names of those whose type has no meaning.
-pub(super) fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec<Field>, Vec<String>) {
+/// The fields of a declaration, on one body or on several, and the names of those whose type has no meaning.
+pub(super) fn fields(
+    (role, is_product): (Role, bool),
+    item: &ItemStruct,
+    errors: &mut Errors,
+) -> (Vec<Field>, Vec<String>) {
     let Fields::Named(named) = &item.fields else {
         let what = match role {
             Role::Lagrangian => "a Lagrangian",
@@ -25,7 +29,7 @@ pub(super) fn fields(role: Role, item: &ItemStruct, errors: &mut Errors) -> (Vec
     let (mut fields, mut unreadable) = (Vec::new(), Vec::new());
     for field in &named.named {
         let Some(name) = field.ident.clone() else { continue };
-        check_free(role, &name, errors);
+        check_free((role, is_product), &name, errors);
         if let Some(kind) = field_kind(&field.ty, item) {
             fields.push(Field { name, kind, at: field.ty.span() });
         } else {

@@ -145,7 +145,7 @@ const MOST_FACTORS: usize = 4;
 pub(super) fn check_increments(factors: &[Factor], taken: &Taken, errors: &mut Errors) {
     // One that isn't named is `F`, which no other can be.
     for Factor { name, place, .. } in factors.iter().filter(|factor| factor.name != "F") {
-        let meaning = if Role::Lagrangian.reserved().contains(&name.as_str()) {
+        let meaning = if Role::Lagrangian.reserved(true).contains(&name.as_str()) {
             "already has a meaning in the Lagrangian"
         } else if name == "space" {
             "is what isn't a body, as in `seen_from(space)`"

@@ -9,6 +9,7 @@ mod size;
 mod two_bodies;
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
+use quote::format_ident;
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};
@@ -126,7 +127,7 @@ pub(crate) fn as_far_as_readable(
         };
         errors.push(Span::call_site(), message);
     }
-    let (mut fields, unreadable) = fields::fields(role, &item, errors);
+    let (mut fields, unreadable) = fields::fields((role, group.is_product()), &item, errors);
     if errors.is_empty() {
         points(&mut fields, &group, errors);
     }
@@ -158,9 +159,8 @@ pub(crate) fn as_far_as_readable(
         Role::Force if errors.is_empty() => displacements(arguments.displacement.take(), &factors, errors),
         _ => Vec::new(),
     };
-    // Among several bodies `eta` is a name as any other.
-    let both = displacements.iter().flat_map(|name| [name.clone(), Ident::new(&format!("{name}_next"), name.span())]);
-    check_names(Role::Lagrangian, &both.collect::<Vec<_>>(), "a displacement", (&fields, &advected), errors);
+    let both = displacements.iter().flat_map(|name| [name.clone(), format_ident!("{name}_next")]);
+    check_names((role, group.is_product()), &both.collect::<Vec<_>>(), "a displacement", (&fields, &advected), errors);
     let (expression, continuous) = kind(role, &mut arguments, (&fields, &advected, &factors), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
@@ -213,7 +213,7 @@ fn kind(
         errors.push(key.span(), "`l` is given here");
     }
     let velocities = velocities(velocity, factors, errors);
-    check_names(role, &velocities, "a velocity", (fields, advected), errors);
+    check_names((role, factors.len() > 1), &velocities, "a velocity", (fields, advected), errors);
     let discretisation = discretisation.map(|(_, discretisation)| discretisation);
     if let Some(Discretisation { quadrature: Quadrature::Midpoint, coordinates, place }) = discretisation
         && coordinates != Coordinates::Exponential
@@ -251,7 +251,7 @@ fn advected(
             errors.push_decisive(name.span(), format!("`{unraw}` is a field already: choose another name"));
             continue;
         }
-        check_free(role, name, errors);
+        check_free((role, group.is_some_and(|(group, _)| group.is_product())), name, errors);
         if parameters.len() == MOST_ADVECTED {
             let message = format!(
                 "at most {MOST_ADVECTED} are advected or given: declare the rest in a term of its own, and add it"
@@ -390,9 +390,9 @@ fn are_alike(group: Option<(&Group, &[Factor])>, a: usize, b: usize) -> bool {
 }
 
 /// A mistake where a parameter has a name that means something else.
-fn check_free(role: Role, name: &Ident, errors: &mut Errors) {
+fn check_free((role, is_product): (Role, bool), name: &Ident, errors: &mut Errors) {
     let (unraw, the) = (name.unraw().to_string(), role.definite());
-    if role.reserved().contains(&unraw.as_str()) {
+    if role.reserved(is_product).contains(&unraw.as_str()) {
         errors.push_decisive(name.span(), format!("`{unraw}` already has a meaning in {the}: choose another name"));
     }
 }

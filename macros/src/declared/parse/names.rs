@@ -9,7 +9,7 @@ use crate::declared::{AdvectedParameter, Factor, Field, Role, named_displacement
 
 /// Mistakes where a name of this kind means something else.
 pub(super) fn check_names(
-    role: Role,
+    role: (Role, bool),
     names: &[Ident],
     kind: &str,
     (fields, advected): (&[Field], &[AdvectedParameter]),

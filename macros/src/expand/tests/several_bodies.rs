@@ -1,5 +1,7 @@
 //! Declarations of several bodies: what they conserve, and what is solved together.
 
+use proc_macro2::TokenStream;
+
 use super::{expanded, is_refused, tokens};
 use crate::declared::errors::Errors;
 use crate::declared::{Kind, Role, check, parse};
@@ -148,4 +150,38 @@ fn one_factor_is_a_group() {
     let l_d = "((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)";
     assert!(!is_refused(&expanded(&format!("group(F_1 = SO3), l_d = {l_d}"), item)));
     assert!(is_refused(&expanded("group(), l_d = h", item)));
+}
+
+/// What a declaration of that role makes.
+fn of_role(role: Role, arguments: &str, item: &str) -> TokenStream {
+    crate::expand::expand(role, tokens(arguments), &tokens(item))
+}
+
+/// The messages name what was declared, and what means nothing there is a name as any other.
+#[test]
+fn names_of_several_bodies() {
+    let force = |displacements: &str, work: &str| {
+        let arguments = format!("group(F_1 = SO3, d_1 = R3), displacement({displacements}), work = {work}");
+        of_role(Role::Force, &arguments, "struct Push { eta: Vector3<f64>, eta_next: f64 }")
+    };
+    let missing = force("turn, s", "h * eta_next * eta.norm()");
+    let needed = "a displacement: `turn` or `s` at the beginning of the step, `turn_next` or `s_next` at its end";
+    assert!(missing.to_string().contains(needed), "{missing}");
+    for displacements in ["turn, s", "r#fn, r#type"] {
+        let [turn, s] = displacements.split(", ").collect::<Vec<_>>()[..] else { panic!("two names") };
+        let next = s.trim_start_matches("r#");
+        let pushed =
+            force(displacements, &format!("h * (eta.dot(&{turn}) + eta_next * eta.dot(&({s} + {next}_next)))"));
+        assert!(!is_refused(&pushed), "{pushed}");
+        assert!(syn::parse2::<syn::File>(pushed).is_ok());
+    }
+    let bodies = "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected(r = d_2.seen_from(d_1))";
+    let held = |zero: &str| {
+        let item = "#[derive(Clone, Copy, Debug, PartialEq)] struct Strut { F: Vector3<f64>, h: f64 }";
+        of_role(Role::Constraint, &format!("{bodies}, zero = {zero}"), item)
+    };
+    let strut = held("(r - F).norm_squared() - h * h");
+    assert!(!is_refused(&strut), "{strut}");
+    let constant = held("(r - F, h - 1.0)");
+    assert!(constant.to_string().contains("doesn't depend on where the bodies are"), "{constant}");
 }
