@@ -40,6 +40,6 @@ pub(crate) use stepper::StateOf;
 pub use stepper::Stepper;
 pub(crate) use stepper::check_attitude;
 pub use summation::{Motion, Proceeded, Summation};
-pub(crate) use summation::{STEPS_BETWEEN_CHECKS, by_copy, is_due, restored};
+pub(crate) use summation::{STEPS_BETWEEN_CHECKS, is_due, restored};
 
 pub use crate::solving::{Guess, Solvability, Warm};

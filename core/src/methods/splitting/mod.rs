@@ -32,8 +32,7 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, by_copy, count,
-    is_due,
+    Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
 };
 use crate::numbers::{Coordinates, Real, largest_lane, real, reported};
 use nalgebra::{Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
@@ -328,8 +327,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
             if let Some(Spin { angle }) = self.spin.filter(|_| !WITH_SPIN) {
                 spin::turn(angle * motion.now().momentum.z, motion);
                 if is_due(motion.now().steps + 1) {
-                    let angle = angle * motion.now().momentum.z;
-                    by_copy(motion, |near| spin::make_good(angle, STEPS_BETWEEN_CHECKS, near));
+                    spin::make_good(angle * motion.now().momentum.z, STEPS_BETWEEN_CHECKS, motion);
                 }
             }
             motion.finish(|| scene.advected());
