@@ -127,9 +127,9 @@ pub enum SetupError {
     VaryingInertia,
     /// The kinetic flow of a splitting has other rotors than the Lagrangian, or none.
     BiasMismatch,
-    /// A splitting with force gradients needs the derivative of the torque.
+    /// A splitting with force gradients needs the derivative of the torque: a term has no `kick_derivative`.
     NoForceGradient,
-    /// The derivatives of a splitting with force gradients need that of the torque's derivative.
+    /// A splitting with force gradients can't be linearised: a term has no `kick_gradient`.
     NoSecondDerivatives,
     /// One of the candidates for an accuracy is another scene than the first.
     PotentialMismatch,
@@ -227,7 +227,7 @@ impl fmt::Display for SetupError {
                 "the kinetic flow hasn't the momentum at rest that the Lagrangian has, or has another: rotors differ; compose the scene instead, or choose a flow that has them",
             ),
             Self::NoForceGradient => f.write_str(
-                "a term of the scene was written without `kick_derivative`, so it has no force gradient; choose a scheme without them, or write it",
+                "a term of the scene has no `kick_derivative` and so no force gradient: it was written without, or declared with a torque behind a `let` that stays closed; choose a scheme without them, or write the torque without the `let`",
             ),
             Self::NoSecondDerivatives => f.write_str(
                 "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it",

@@ -36,7 +36,7 @@ pub struct Kept {
     pub lost: Vec<Lost>,
 }
 
-/// Runs those methods that a user would choose among: the first declared one, the cheapest of each family, and both
+/// Runs those methods that a user would choose among: the first declared one, the cheapest of each family, and the
 /// rivals with steps of equal length.
 pub fn kept(scene: &Scene, methods: &[Method], measured: &[Measured], most: u32) -> Vec<Kept> {
     let cheapest = [Family::Poisson, Family::NearlyPoisson].map(|family| {

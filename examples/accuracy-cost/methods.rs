@@ -48,7 +48,8 @@ pub enum Family {
 enum Control {
     /// Steps of equal length, from this on, s.
     Step(f64),
-    Tolerance,
+    /// That of an error that falls by this power of the step.
+    Tolerance(i32),
 }
 
 impl Method {
@@ -70,9 +71,8 @@ impl Method {
     pub fn parameters(&self, t: f64, ratio: f64) -> impl Iterator<Item = f64> + use<> {
         let (first, next, last) = match self.control {
             Control::Step(longest) => (longest, 1.0 / ratio, 1e-5),
-            // An error of order 8 falls by the eighth power of the step. With a tolerance of one, a motion that has grown
-            // without bound is accepted, and takes ever shorter steps.
-            Control::Tolerance => (0.1, ratio.powi(-8), 1e-15),
+            // With a tolerance of one, a motion that has grown without bound is accepted, and takes ever shorter steps.
+            Control::Tolerance(power) => (0.1, ratio.powi(-power), 1e-15),
         };
         let whole = self.steps_are_equal();
         core::iter::successors(Some(first), move |parameter| Some(parameter * next))
@@ -269,11 +269,15 @@ fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> Vec<Met
             Some(equations.end(&y))
         }))
     });
-    let of_a_library =
-        Method::new("DOP853 of a library", Family::Rival, Control::Tolerance, move |scene, t, tolerance| {
+    let of_a_library = Method::new(
+        "DOP853 of a library",
+        Family::Rival,
+        Control::Tolerance(Dop853::POWER),
+        move |scene, t, tolerance| {
             let (equations, start) = (equations(scene), scene.start());
             Some(Box::new(move || Some(equations.end(&library::integrate(&equations, t, tolerance, start)?))))
-        });
+        },
+    );
     let mut rivals = vec![classical];
     rivals.extend(embedded::<Tsitouras5, E>(equations));
     rivals.extend(embedded::<Dop853, E>(equations));
@@ -295,7 +299,7 @@ fn embedded<M: Embedded, E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'sta
                 Some(equations.end(&y))
             }))
         }),
-        Method::new(M::NAME, Family::Rival, Control::Tolerance, move |scene, t, tolerance| {
+        Method::new(M::NAME, Family::Rival, Control::Tolerance(M::POWER), move |scene, t, tolerance| {
             let (equations, start) = (equations(scene), scene.start());
             Some(Box::new(move || Some(equations.end(&embedded::integrate::<M>(&equations, t, tolerance, start)?))))
         }),

@@ -2,7 +2,7 @@
 
 use declarations::{FourthOrderTop, HeavyTop, Motion, Top as _};
 use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates, SavedChoice};
-use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, Rotor, Spring};
+use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
 use liestep::groups::{Advected, LieGroup as _, SO2};
 use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
 use liestep::methods::{CompositionScheme, PreprocessedFlow, PreprocessedOrder, SymmetricBody};
@@ -309,8 +309,22 @@ fn steps_too_long_for_the_motion_are_not_taken_for_rounding() {
     let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 1.0, 1.0)).unwrap() };
     let accuracy = Accuracy { tolerance: 1e-3, horizon: 1000.0 };
     let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), Vector3::z() * 1e5).unwrap_err();
-    let AccuracyError::TooManySteps { steps, method, .. } = &refusal else { panic!("{refusal}") };
+    let AccuracyError::TooManySteps { steps, is_bound: false, method, .. } = &refusal else { panic!("{refusal}") };
     assert!(*steps > 1e6 && steps.is_finite() && method == "its own step", "{refusal}");
+    assert!(refusal.to_string().starts_with("about "), "{refusal}");
+}
+
+/// The same of a body whose long steps have no solution: that they fail isn't why. Of the shortest part's trials only the
+/// last has one.
+#[test]
+fn long_steps_without_a_solution_are_not_the_cause() {
+    let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.5, 2.0)).unwrap() };
+    let accuracy = Accuracy { tolerance: 1e-3, horizon: 1000.0 };
+    let velocity = Vector3::z() * (0.8 * 8.0_f64.powi(20) / accuracy.horizon);
+    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
+    let AccuracyError::TooManySteps { steps, is_bound: true, method, .. } = &refusal else { panic!("{refusal}") };
+    assert!(*steps > 1e17 && method == "its own step", "{refusal}");
+    assert!(refusal.to_string().starts_with("at least 1e18 steps of the method `its own step`"), "{refusal}");
 }
 
 /// In so short a time the steps that the accuracy takes are too short for a double.

@@ -1,14 +1,15 @@
 //! Kicks with force gradients, and processed splittings, which have them.
 
-use liestep::effects::{Dipole, Gravity, GravityGradient, RigidBody, Spring};
+use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Spring};
 use liestep::groups::{Advected, LieGroup as _};
 use liestep::laws::samples::{Random, along};
 use liestep::mechanics::{
-    DiscreteLagrangian as _, Inertia, NonstandardInertia, SecondDerivatives as _, Sum, Term as _,
+    DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, NonstandardInertia, Regular, SecondDerivatives, Sum,
+    Term as _,
 };
-use liestep::methods::{ProcessedScheme, SplittingScheme};
+use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
 use liestep::numbers::Entries as _;
-use liestep::{SO3, Stepper};
+use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, Rotation3, Vector3};
 use num_dual::{Dual64, HyperHyperDual64};
 
@@ -136,4 +137,69 @@ fn a_processed_splitting() {
             assert_linearised(&stepper, processed, seed);
         }
     }
+}
+
+/// A kinetic term of fourth order, behind `let`s that stay closed.
+#[lagrangian(
+    group = SO3,
+    gradients,
+    l_d = {
+        let xi = log(F);
+        let a = inverse(J) * (J * xi).cross(&xi);
+        (xi.dot(&(J * xi)) / 2.0 - a.dot(&(J * a)) / 24.0) / h
+    },
+)]
+#[derive(Clone)]
+struct Bent {
+    J: Inertia,
+}
+
+const OF_BENT: Vector3<f64> = Vector3::new(2.5, 3.0, 3.5);
+
+/// All that it has in a kick is its inertia: `−⟨r, J u⟩`.
+#[test]
+fn the_kick_of_a_closed_kinetic_term() {
+    let J = Inertia::from_principal_moments(OF_BENT).expect("a body");
+    let (body, mut random) = (Bent { J }, Random::new(1));
+    let [u, v, r]: [Vector3<f64>; 3] = [random.sample(), random.sample(), random.sample()];
+    let mut by_inertia = [0.0; 9];
+    let (by_place, ()) =
+        body.kick_gradient(&(), &v, [&u, &r], &mut |number, share| by_inertia[number] += share).expect("it is zero");
+    assert_eq!(by_place, Vector3::zeros());
+    // Of a symmetric change; an entry beside the diagonal may have it all, or each of the two half.
+    for row in 0..3 {
+        for column in 0..3 {
+            let found = by_inertia[3 * row + column] + by_inertia[3 * column + row];
+            let expected = -(r[row] * u[column] + r[column] * u[row]);
+            assert!((found - expected).abs() < 1e-15, "{row}, {column}: {found}, not {expected}");
+        }
+    }
+}
+
+/// A splitting takes only the potential and the inertia from the scene, so that which kinetic term it has is the same.
+#[test]
+fn a_splitting_of_a_closed_kinetic_term() {
+    let J = Inertia::from_principal_moments(OF_BENT).expect("a body");
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(OF_BENT).expect("a body");
+    let gravity = gravity(&mut Numbers::<f64>::new(None));
+    let found = transition(Bent { J } + gravity);
+    let expected = transition(PrincipalBody { J_d } + gravity);
+    for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
+        assert!((found - expected).amax() < 1e-13 * expected.amax(), "{found} is not {expected}");
+    }
+}
+
+fn transition<S>(scene: S) -> [[Matrix3<f64>; 2]; 2]
+where
+    S: DiscreteLagrangian<Scalar = f64, Group = SO3> + SecondDerivatives + Regular,
+{
+    let flow = ExactBody::new(&Inertia::from_principal_moments(OF_BENT).expect("a body"));
+    let stepper = Stepper::split(scene, 0.1, flow, SplittingScheme::FORCE_GRADIENT_4).expect("a stepper");
+    let linear = stepper.linearised().expect("derivatives");
+    let mut state = stepper.start_with_momentum(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).expect("a start");
+    let mut tangent = linear.tangent(&[]);
+    for _ in 0..10 {
+        linear.step(&mut state, &mut tangent).expect("a step");
+    }
+    tangent.transition()
 }

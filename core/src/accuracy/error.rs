@@ -33,8 +33,10 @@ pub enum AccuracyError {
     },
     /// The steps that all methods would need are too many to be tried.
     TooManySteps {
-        /// About how many the one that looks cheapest would make, or more.
+        /// About how many the one that looks cheapest would make.
         steps: f64,
+        /// Whether it would make at least so many: even steps as short haven't shown the motion.
+        is_bound: bool,
         /// What it is called.
         method: String,
         /// What was tried.
@@ -44,6 +46,29 @@ pub enum AccuracyError {
     Setup(SetupError),
     /// A method doesn't get to the horizon, with however short a step, and no other does for the accuracy.
     Step(StepError),
+}
+
+/// The steps that a method would need, too many to be tried.
+#[derive(Debug)]
+pub(super) struct TooMany {
+    pub(super) steps: f64,
+    /// Whether they are at least so many.
+    pub(super) is_bound: bool,
+    pub(super) method: String,
+}
+
+/// Why no method was found: of all methods that were tried, one failure and one that needs too many steps.
+///
+/// Long steps may fail in any way; that a step can't be had at all has to do with short ones.
+pub(super) fn refusal(failure: Option<AccuracyError>, many: Option<TooMany>, trials: Trials) -> AccuracyError {
+    match (failure, many) {
+        (Some(failure @ AccuracyError::Setup(_)), _) | (Some(failure), None) => failure,
+        (_, Some(TooMany { steps, is_bound, method })) => {
+            AccuracyError::TooManySteps { steps, is_bound, method, trials }
+        }
+        // Without methods.
+        (None, None) => AccuracyError::TooManySteps { steps: 0.0, is_bound: true, method: String::new(), trials },
+    }
 }
 
 impl fmt::Display for AccuracyError {
@@ -59,11 +84,14 @@ impl fmt::Display for AccuracyError {
                 f,
                 "the tolerance {tolerance:e} is below what rounding leaves at the horizon: about {floor:.0e} can be reached; choose a larger one or a nearer horizon"
             ),
-            Self::TooManySteps { steps, method, trials } => write!(
-                f,
-                "about {steps:.0e} steps of the method `{method}` would be needed, which {} trials of up to {:.0e} steps show; choose a larger tolerance or a nearer horizon",
-                trials.runs, trials.most_steps
-            ),
+            Self::TooManySteps { steps, is_bound, method, trials } => {
+                let about = if *is_bound { "at least" } else { "about" };
+                write!(
+                    f,
+                    "{about} {steps:.0e} steps of the method `{method}` would be needed, which {} trials of up to {:.0e} steps show; choose a larger tolerance or a nearer horizon",
+                    trials.runs, trials.most_steps
+                )
+            }
             Self::Setup(cause) => cause.fmt(f),
             Self::Step(cause) => write!(f, "no step leads to the horizon: {cause}"),
         }

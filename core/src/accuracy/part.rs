@@ -5,12 +5,11 @@
 //! that one of them is known to have there when it has the error asked for at the horizon; before any is known to, for
 //! one that grows in proportion to time.
 
-use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::Accuracy;
 use super::candidates::Candidate;
-use super::error::AccuracyError;
+use super::error::{AccuracyError, TooMany, refusal};
 use super::ladder::{Estimate, LARGEST_ERROR, Ladder, SMALLEST_ERROR};
 use super::search::MOST_IN_VAIN;
 use super::trials::{End, Start, Trials};
@@ -87,8 +86,8 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
         });
         let (mut failure, mut many) = (None, None);
         for scout in scouts {
-            let (mut scouted, mut horizon) = (None, start.horizon);
-            let name = || candidates[scout].name.clone();
+            let (mut scouted, mut horizon, mut last_failure) = (None, start.horizon, None);
+            let too_many = |steps, is_bound| TooMany { steps, is_bound, method: candidates[scout].name.clone() };
             for _ in 0..MOST_SHORTENINGS {
                 let (start, mut ladder) = (start.until(horizon), Ladder::new(&candidates[scout]));
                 let level = level(accuracy, horizon);
@@ -102,12 +101,17 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
                     scouted = Some((start, ladder, level));
                     break;
                 }
-                failure = failure.or(ladder.failure);
+                last_failure = ladder.failure;
                 horizon /= SHORTER;
             }
             let Some((found, ladder, level)) = scouted else {
-                // The shortest part had too few.
-                many.get_or_insert_with(|| (MOST_STEPS * start.horizon / (SHORTER * horizon), name()));
+                // The shortest part had too few, if it had any.
+                match last_failure {
+                    Some(last) => failure = failure.or(Some(last)),
+                    None => {
+                        many.get_or_insert_with(|| too_many(MOST_STEPS * start.horizon / (SHORTER * horizon), true));
+                    }
+                }
                 continue;
             };
             let step = found.horizon / ladder.estimate(&found, None, level).steps;
@@ -125,10 +129,9 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
             if part.refer(scout, accuracy, trials).is_some() {
                 return Ok(part);
             }
-            many.get_or_insert_with(|| (times * horizon / step, name()));
+            many.get_or_insert_with(|| too_many(times * horizon / step, false));
         }
-        let (steps, method) = many.unwrap_or_else(|| (trials.most_steps, String::new()));
-        Err(failure.unwrap_or(AccuracyError::TooManySteps { steps, method, trials: *trials }))
+        Err(refusal(failure, many, *trials))
     }
 
     /// A longer part, for the methods that may be cheapest; none where this one is as long.
@@ -200,6 +203,11 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
     /// Operations of a run to the horizon with the steps that an error over the part takes.
     pub(super) fn cost(&self, index: usize, error: f64) -> f64 {
         self.estimate(index, error).cost(self.times)
+    }
+
+    /// Of a method of which no estimate is known, the steps that a run to the horizon has at least.
+    pub(super) fn least_steps(&self, index: usize) -> f64 {
+        self.ladders[index].as_ref().and_then(Ladder::finest).map_or(1.0, |finest| finest.steps * self.times)
     }
 
     /// The error over the part of steps of which a run to the horizon has so many.

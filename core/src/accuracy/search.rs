@@ -1,12 +1,11 @@
 //! The search for the cheapest method: all are ranked over a short part of the motion, and the first of them are run to
 //! the horizon.
 
-use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::Accuracy;
 use super::candidates::Candidate;
-use super::error::AccuracyError;
+use super::error::{AccuracyError, TooMany, refusal};
 use super::ladder::{Ladder, SMALLEST_ERROR};
 use super::part::{FAR, Part};
 use super::trials::{End, Start, Trial, Trials};
@@ -96,8 +95,8 @@ struct Search<'a, G: LieGroup<Scalar = f64>, A> {
 /// What was found of methods that don't come near enough.
 #[derive(Default)]
 struct Refused {
-    /// Steps that the first would have made, and its name.
-    steps: Option<(f64, String)>,
+    /// Steps that the first would have made.
+    many: Option<TooMany>,
     /// The least tolerance that rounding leaves.
     floor: Option<f64>,
     /// Whether that is what the motion makes of roundings, whatever the method.
@@ -205,6 +204,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         for index in part.ranking(level) {
             let estimate = part.estimate(index, level);
             if estimate.steps.is_infinite() {
+                self.note_steps(index, part.least_steps(index), true);
                 break;
             }
             if let Some(found) = self.approach(index, estimate.steps * part.times) {
@@ -230,7 +230,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
             let most = if agree { MOST_OPERATIONS } else { MOST_IN_VAIN };
             if self.trials.operations + ladder.cost_of(steps) > most {
                 let needed = if agree { ladder.estimate(start, None, AIM * tolerance).steps } else { likely };
-                self.refused.steps.get_or_insert_with(|| (needed.max(steps), candidate.name.clone()));
+                self.note_steps(index, needed.max(steps), !agree && steps >= likely);
                 if !agree {
                     self.note_floor(&ladder, 0.0);
                 }
@@ -261,6 +261,9 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
             steps = if aim > 1.1 * steps { aim } else { (steps * finer).ceil() };
         };
         let Some(left) = left else {
+            if let (None, Some(finest)) = (&ladder.failure, ladder.finest()) {
+                self.note_steps(index, finest.steps, true);
+            }
             self.refused.failure = self.refused.failure.take().or(ladder.failure);
             return None;
         };
@@ -353,18 +356,18 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         floor > self.accuracy.tolerance
     }
 
+    /// Remembers the first method that needs too many steps.
+    fn note_steps(&mut self, index: usize, steps: f64, is_bound: bool) {
+        let method = || self.candidates[index].name.clone();
+        self.refused.many.get_or_insert_with(|| TooMany { steps, is_bound, method: method() });
+    }
+
     fn refusal(&mut self) -> AccuracyError {
-        let Refused { steps, floor, failure, .. } = core::mem::take(&mut self.refused);
+        let Refused { many, floor, failure, .. } = core::mem::take(&mut self.refused);
         let (trials, tolerance) = (self.trials, self.accuracy.tolerance);
-        match (floor, failure, steps) {
-            (Some(floor), ..) => AccuracyError::Unreachable { tolerance, floor, trials },
-            // Long steps may fail in any way; that a step can't be had at all has to do with short ones.
-            (_, Some(failure @ AccuracyError::Setup(_)), _) | (_, Some(failure), None) => failure,
-            (_, _, Some((steps, method))) => AccuracyError::TooManySteps { steps, method, trials },
-            (..) => {
-                let method = self.candidates.first().map_or_else(String::new, |first| first.name.clone());
-                AccuracyError::TooManySteps { steps: trials.most_steps, method, trials }
-            }
+        match floor {
+            Some(floor) => AccuracyError::Unreachable { tolerance, floor, trials },
+            None => refusal(failure, many, trials),
         }
     }
 }

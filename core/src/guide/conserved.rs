@@ -129,7 +129,7 @@
 //!
 //! | | |
 //! |---|---|
-//! | a million steps of every method, with RK4 and DOP853 | `cargo run --release --example accuracy-cost` |
+//! | a million steps of every method, and of explicit Runge–Kutta methods | `cargo run --release --example accuracy-cost` |
 //! | 10⁸ steps | `cargo test --release -p liestep-tests -- --ignored` |
 //! | the Poisson structure, by the Jacobian of a step | `tests/common/structure/poisson.rs`, `tests/accuracy/poisson.rs` |
 //! | the energy that a step keeps to order `h⁴` | [`guarantees`](crate::conventions::guarantees#conserved), `cargo cases --row T2` |

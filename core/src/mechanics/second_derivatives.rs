@@ -114,15 +114,20 @@ pub trait SecondDerivatives: Effect {
     /// of a force gradient ask of a term: with `J u = τ` and `J r = D_v τ` it is the gradient of `⟨J⁻¹τ, D_v τ⟩`, which is
     /// `⟨v, f⟩` for the torque `f` of the potential `−½ τ·J⁻¹τ`.
     ///
-    /// On SO(3) `u` is in rad/s², `v` and `r` are those of a number in its unit per that of `f`, kg m²/s⁴, and per that of
-    /// `τ`, N m.
+    /// On SO(3), for a number with the unit N:
+    ///
+    /// - `u` in rad/s²
+    /// - `v` in N per unit of `f`, N/(kg m²/s⁴)
+    /// - `r` in N per unit of `τ`, N/(kg m²/s²)
+    /// - the covector that is returned in N/rad, the other derivatives in N per unit of what they are by
     fn kick_gradient(
         &self,
-        _w: &Self::Advected,
-        _velocity: &Vector<Self>,
-        _weights: [&Vector<Self>; 2],
-        _visit: &mut impl FnMut(usize, Scalar<Self>),
+        w: &Self::Advected,
+        velocity: &Vector<Self>,
+        weights: [&Vector<Self>; 2],
+        visit: &mut impl FnMut(usize, Scalar<Self>),
     ) -> Option<(Vector<Self>, Self::Advected)> {
+        let _ = (w, velocity, weights, visit);
         None
     }
 }

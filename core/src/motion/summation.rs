@@ -177,7 +177,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
 /// one has just written, often in other pieces than it was written in, and waits for it. A copy leaves the motion in
 /// registers.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
+fn by_copy<M: Copy>(motion: &mut M, change: impl FnOnce(&mut M)) {
     let mut changed = *motion;
     change(&mut changed);
     *motion = changed;

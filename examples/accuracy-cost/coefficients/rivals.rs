@@ -1,9 +1,12 @@
-//! The coefficients of the rivals satisfy the order conditions, one for each rooted tree.
+//! The coefficients of the rivals satisfy the order conditions, one for each rooted tree, and what is timed has that order.
 
 use accuracy_cost::rivals::dop853::Dop853;
-use accuracy_cost::rivals::embedded::{Embedded, Tableau};
+use accuracy_cost::rivals::embedded::{Embedded, Tableau, integrate, step};
+use accuracy_cost::rivals::rates::Rates;
 use accuracy_cost::rivals::tsitouras::Tsitouras5;
 use accuracy_cost::rivals::verner::Verner9;
+use declarations::motions::End;
+use workbench::top_equations::State;
 
 /// A rooted tree: how many nodes it has, its density `γ`, and the trees at its root, each by its place among all.
 struct Tree {
@@ -86,4 +89,65 @@ fn rivals_have_their_orders() {
     assert_orders::<Tsitouras5>();
     assert_orders::<Dop853>();
     assert_orders::<Verner9>();
+}
+
+/// Equations whose motion is known, the first of them time's.
+#[derive(Clone, Copy)]
+struct Known;
+
+impl Known {
+    fn at(t: f64) -> State {
+        let angle = 0.5 * t * t;
+        [t, t.sin().exp(), angle.cos(), angle.sin(), (1.0 + t).recip(), 1.0 + t, (1.0 + t).sqrt().recip()]
+    }
+
+    fn largest_error(t: f64, found: &State) -> f64 {
+        Self::at(t).iter().zip(found).fold(0.0, |worst, (exact, found)| worst.max((exact - found).abs()))
+    }
+}
+
+impl Rates for Known {
+    fn rate(&self, &[t, a, c, s, b, d, e]: &State) -> State {
+        [1.0, a * t.cos(), -t * s, t * c, -b * b, b * d, -0.5 * e * e * e]
+    }
+
+    fn end(&self, _: &State) -> End {
+        unreachable!("no body moves so")
+    }
+}
+
+/// Of the functions that are timed: of twice the steps the error at the end, and the estimate of a step of half the length, are smaller
+/// by the powers of two that the order says.
+fn assert_measured<M: Embedded>(steps: u32) {
+    let end = |steps: u32| {
+        let y = (0..steps).fold(Known::at(0.0), |y, _| step::<M>(&Known, 2.0 / f64::from(steps), &y));
+        Known::largest_error(2.0, &y)
+    };
+    let order = (end(steps) / end(2 * steps)).log2();
+    let estimate = |h: f64| {
+        let y = Known::at(0.5);
+        let mut k = M::stages(&Known, h, &y, Known.rate(&y));
+        let mean = M::mean(&k);
+        let next = core::array::from_fn(|i| y[i] + h * mean[i]);
+        let _ = M::complete(&Known, h, &y, &next, &mut k);
+        h * M::error(&k, &mean, &[1.0; 7])
+    };
+    let h = 2.0 / f64::from(steps);
+    let power = (estimate(h) / estimate(0.5 * h)).log2();
+    println!("{}: order {order:.2} down to {:.1e}, estimate {power:.2}", M::NAME, end(2 * steps));
+    // What the step leaves at the next order is small, so that it may seem one more.
+    assert!(order > f64::from(M::tableau().order) - 0.5, "{}: {order}", M::NAME);
+    assert!((power - f64::from(M::POWER)).abs() < 0.5, "{}: {power}", M::NAME);
+    for tolerance in [1e-5, 1e-8, 1e-11] {
+        let found = integrate::<M>(&Known, 2.0, tolerance, Known::at(0.0)).unwrap();
+        let error = Known::largest_error(2.0, &found);
+        assert!(error < 30.0 * tolerance, "{}: {error} with a tolerance of {tolerance}", M::NAME);
+    }
+}
+
+#[test]
+fn what_is_timed_has_its_order() {
+    assert_measured::<Tsitouras5>(20);
+    assert_measured::<Dop853>(8);
+    assert_measured::<Verner9>(8);
 }

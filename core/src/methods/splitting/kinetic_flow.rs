@@ -23,7 +23,7 @@ pub trait KineticFlow<T: Real>: Clone {
     /// Whether it is the motion itself, but for rounding, whatever the time.
     const EXACT: bool = false;
 
-    /// How much of that its [`spin`](Self::spin) is.
+    /// How much of that its [`spin`](Self::spin) is. Where it is zero, the spin stays in the drifts.
     const OPERATIONS_OF_SPIN: u32 = 0;
 
     /// Shows its name and every constant: two flows that show the same move a body in the same way.
@@ -44,8 +44,11 @@ pub trait KineticFlow<T: Real>: Clone {
     /// [`SetupError`] for a body or a time that can't be used.
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError>;
 
-    /// The angle in units of `−p_3` of the rotation about the third body axis that the drift ends with, where it is one
-    /// that commutes with all else about that axis.
+    /// The `s` of the rotation `exp(−s p_3 E_3)` about the third body axis that the drift ends with, 1/(kg m²/s), where it
+    /// is one that commutes with all else about that axis.
+    ///
+    /// Under a potential that is symmetric about the axis, too, those of all drifts are made at once. A flow that has it
+    /// says its [operations](Self::OPERATIONS_OF_SPIN), and what is [left](Self::advance_without_spin) of the drift.
     #[must_use]
     fn spin(_drift: &Self::Drift) -> Option<T> {
         None
@@ -58,13 +61,15 @@ pub trait KineticFlow<T: Real>: Clone {
     /// [`StepError`] where an equation has no solution.
     fn advance(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError>;
 
-    /// The same without its [`spin`](Self::spin).
+    /// The same without its [`spin`](Self::spin), so that `exp(−s p_3 E_3)` after it makes the whole. A flow with
+    /// [operations of a spin](Self::OPERATIONS_OF_SPIN) has to write it, or else doesn't compile.
     ///
     /// # Errors
     ///
     /// As [`advance`](Self::advance).
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn advance_without_spin(drift: &Self::Drift, momentum: &Vector3<T>) -> Result<Turn<T>, StepError> {
+        const { assert!(Self::OPERATIONS_OF_SPIN == 0, "a flow with a spin needs an `advance_without_spin`") };
         Self::advance(drift, momentum)
     }
 }
@@ -130,25 +135,10 @@ lanes_of_fields!(
     { lanes: [], scalars: [transverse, axial], shared: [] }
 );
 
-/// A turn about the axis in all lanes or in none, as what is done without one differs in signs of zeros.
-impl<T: Real<Element: Real>> Lanes for SymmetricDrift<T> {
-    type Lane = SymmetricDrift<T::Element>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self { about_momentum: T::splat(lane.about_momentum), about_axis: T::splat(lane.about_axis) }
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        SymmetricDrift { about_momentum: self.about_momentum.extract(k), about_axis: self.about_axis.extract(k) }
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        let is_without = self.about_axis.simd_eq(T::zero());
-        self.about_momentum.replace(k, lane.about_momentum);
-        self.about_axis.replace(k, lane.about_axis);
-        if lane.about_axis == real(0.0) { is_without.all() } else { is_without.none() }
-    }
-}
+lanes_of_fields!(
+    impl[T: Real<Element: Real>] SymmetricDrift<T> => SymmetricDrift<T::Element>, as SymmetricDrift
+    { lanes: [], scalars: [about_momentum, about_axis], shared: [] }
+);
 
 impl<T: Real> KineticFlow<T> for SymmetricBody<T> {
     type Drift = SymmetricDrift<T>;

@@ -1,4 +1,6 @@
 //! The derivatives of a splitting: those of its kicks are the scene's, those of its drifts the flow's.
+//!
+//! The kick of a force gradient has the scene's `J⁻¹` in it, so the scene's inertia is a parameter of that, too.
 
 use nalgebra::{Matrix3, Vector3};
 

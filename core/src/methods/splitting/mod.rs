@@ -104,11 +104,11 @@ pub struct Split<S: Effect, K: KineticFlow<Scalar<S>>> {
     step: Stages<K::Drift, Scalar<S>>,
     /// The same to the end of a run.
     last: Stages<K::Drift, Scalar<S>>,
-    /// What all the drifts of a step turn about the third body axis, in units of `p_3`, where that can be done at once.
+    /// The [spins](KineticFlow::spin) of all the drifts of a step, where they can be made at once.
     spin: Option<Spin<Scalar<S>>>,
 }
 
-/// An angle in units of `p_3`.
+/// The rotation `exp(−s p_3 E_3)`, by its `s`.
 #[derive(Clone, Copy, Debug)]
 struct Spin<T> {
     angle: T,
@@ -244,6 +244,9 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Split<S, K> {
     /// A potential that is symmetric about the third body axis commutes with rotations about it, and so does what else
     /// a symmetric body does; `p_3` is constant.
     fn spin_of_a_step(&self) -> Option<Spin<Scalar<S>>> {
+        if K::OPERATIONS_OF_SPIN == 0 {
+            return None;
+        }
         let drifts = [&self.first, &self.last].into_iter().flat_map(|shares| &shares.stages);
         let angle = drifts.map(|stage| K::spin(&stage.drift)).try_fold(real(0.0), |all, spin| Some(all + spin?));
         angle.map(|angle| Spin { angle })

@@ -162,8 +162,10 @@ pub trait Linearisable<S: SecondDerivatives>: Plan<S> {
     /// Shows the stage that has made the change of this number to a pass.
     fn visit(&self, scene: &S, index: usize, event: &Change<Group<S>, S::Advected>, pass: &mut impl Pass<Group<S>>);
 
-    /// The same of the stage that a change of this number, by a step of `−h`, has undone. Those of a symmetric plan are
-    /// undone by one another, the last by the first.
+    /// The same of the stage that a change of this number, by a step of `−h`, has undone.
+    ///
+    /// The lengths of most plans are odd in `h`: stage `i` of a step of `−h` has minus the length of stage `i` of one of
+    /// `h`, and that is what it undoes. A plan whose lengths aren't says so here, as a processed splitting does.
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit_undone(
         &self,

@@ -221,7 +221,8 @@ fn lagrangian(declared: &Declared) -> Result<Derived, LimitError> {
     let adjoint_defect = self_adjoint::defect(&context);
     let limit = limit::limit(&context, &momentum)?;
     let parts = transport::parts(&context, &momentum, &diamond);
-    let kick_derivative = (closed.is_empty() && declared.group.is_so3)
+    // The multipliers of closed `let`s aren't varied; what has no kick has no derivative of it all the same.
+    let kick_derivative = (declared.group.is_so3 && (closed.is_empty() || parts.kick_before.is_zero()))
         .then(|| kick_derivative::kick_derivative(&context, &parts.kick_before));
     let flow = closed.is_empty().then(|| transport::increments(&context, &momentum, &left_momentum));
     let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };

@@ -11,7 +11,7 @@ use crate::groups::SO3;
 use crate::mechanics::{RigidScene, Scalar, SceneVisitor, SecondDerivatives};
 use crate::motion::linearised::{Change, Linearisable, Pass};
 use crate::motion::{Plan, StepReport, Summation};
-use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _};
+use nalgebra::SimdComplexField as _;
 
 impl<S, K> Linearisable<S> for Processed<S, K>
 where
@@ -47,7 +47,7 @@ where
     ) -> Result<StepReport, StepError> {
         let (mut whole, mut plain) = (*motion, *motion.now());
         self.kernel.make_all::<true, M>(&self.enter, &mut whole, &mut 0)?;
-        if let Some(inside) = kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all()) {
+        if let Some(inside) = self.inside(kept) {
             whole.replace(inside.after(plain.steps));
         }
         for shares in [&self.kernel.step, &self.leave] {

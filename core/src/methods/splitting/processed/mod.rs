@@ -71,7 +71,7 @@ use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector
 #[derive(Clone, Debug)]
 pub struct Processed<S: Effect, K: KineticFlow<Scalar<S>>> {
     scheme: ProcessedScheme,
-    /// Of [`leave`](Self::leave), and the other way round of [`enter`](Self::enter).
+    /// [`leave`](Self::leave)'s; reversed and with the other sign, [`enter`](Self::enter)'s.
     parts: Vec<Part>,
     kernel: Split<S, K>,
     /// From what is read to the end of the first share of the kernel, from which its steps are all the same.
@@ -193,6 +193,12 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Processed<S, K> {
     pub fn scheme(&self) -> &ProcessedScheme {
         &self.scheme
     }
+
+    /// What a step goes on from, if that was left there by steps of its own length.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn inside(&self, kept: &Inside<Scalar<S>, S::Advected>) -> Option<Stepped<Scalar<S>, S::Advected>> {
+        kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all())
+    }
 }
 
 /// A step that is given values goes in and out of the processor with them.
@@ -246,7 +252,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
             return Ok(0);
         }
         let (mut next, mut iterations) = (*motion, 0);
-        let inside = kept.0.filter(|inside| inside.h.simd_eq(self.kernel.h).all());
+        let inside = self.inside(kept);
         let enter = if inside.is_some() { None } else { Some(&self.enter) };
         if let Some(inside) = inside {
             next.show(inside.after(next.now().steps));
