@@ -260,7 +260,7 @@ fn mistakes_have_places() {
         ("[run]", "[sweep]\ngravity.g = [1, 2]\n[run]"),
     ]
     .map(|(line, by)| mistake(line, by));
-    expect![[r#"
+    expect![[r"
         held.toml:52:1: this joint closes one loop more than the 4 that a file may have; a program may have any number
         held.toml:116:1: a file has up to 16 springs; a program may have any number
         held.toml:17:8: two columns of the table would be called `lower_velocity_x`: give the body another name
@@ -292,7 +292,7 @@ fn mistakes_have_places() {
         held.toml:42:9: must be a whole number of steps, above zero
         held.toml:78:1: a file has up to 8 bodies; a program may have any number
         held.toml:36:2: unknown field `sweep`, expected one of `title`, `body`, `gravity`, `joint`, `spring`, `run`, `picture`, `output`
-    "#]].assert_eq(&messages.concat());
+    "]].assert_eq(&messages.concat());
 }
 
 /// A body may be called as a column is, unless both are written.
