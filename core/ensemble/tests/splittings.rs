@@ -198,7 +198,7 @@ fn a_processed_body_of_another_step_has_lanes_of_its_own() {
     }
 }
 
-/// Unlike schemes share no lanes; nor do bodies of which one spins about an axis of its own.
+/// Unlike schemes share no lanes; spheres share them with other bodies.
 #[test]
 fn unlike_splittings_have_lanes_of_their_own() {
     assert_same("two schemes by turns", true, 0.0, |top| {

@@ -17,7 +17,7 @@
 //! measurements: the step is taken from a run to the horizon whose error has been measured against a finer one, and of
 //! that one only the own error is extrapolated.
 //!
-//! All trials together cost at most thirty times the run, unless that is of one or two steps only. A scene that would
+//! All trials together cost at most thirty times the run, unless that has but a few dozen steps. A scene that would
 //! take more than some seconds is refused with what was tried, and a choice that was made can be [saved](SavedChoice):
 //! then one run besides the chosen one is enough.
 

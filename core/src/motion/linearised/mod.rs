@@ -10,7 +10,7 @@
 //! They are asked for by the word `gradients` in a declaration; the effects of the library have it, except for the bodies
 //! of fourth and sixth order. A scene without it has nothing of this in its program. They go with a scene's own step, on
 //! any group and with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
-//! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step, a
+//! `cargo bench --bench gradients` has the costs of scenes' own steps. In a splitting whose symmetric body turns about its axis once a step, a
 //! step with derivatives makes its drifts twice; one of a processed splitting makes both ends of the processor, as what is
 //! differentiated is what is read.
 //!

@@ -9,7 +9,6 @@ mod size;
 mod two_bodies;
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
-use quote::format_ident;
 use syn::ext::IdentExt as _;
 use syn::parse::{ParseStream, Parser as _};
 use syn::{Expr, Fields, Ident, Item, ItemStruct, Path, braced};
@@ -159,7 +158,9 @@ pub(crate) fn as_far_as_readable(
         Role::Force if errors.is_empty() => displacements(arguments.displacement.take(), &factors, errors),
         _ => Vec::new(),
     };
-    let both = displacements.iter().flat_map(|name| [name.clone(), format_ident!("{name}_next")]);
+    let both = displacements
+        .iter()
+        .flat_map(|name| [name.clone(), Ident::new(&format!("{}_next", name.unraw()), name.span())]);
     check_names((role, group.is_product()), &both.collect::<Vec<_>>(), "a displacement", (&fields, &advected), errors);
     let (expression, continuous) = kind(role, &mut arguments, (&fields, &advected, &factors), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
