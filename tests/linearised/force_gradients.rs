@@ -1,11 +1,10 @@
 //! Kicks with force gradients, and processed splittings, which have them.
 
-use liestep::effects::{Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Spring};
+use liestep::effects::{Dipole, PrincipalBody, RigidBody};
 use liestep::groups::{Advected, LieGroup as _};
 use liestep::laws::samples::{Random, along};
 use liestep::mechanics::{
-    DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, NonstandardInertia, Regular, SecondDerivatives, Sum,
-    Term as _,
+    DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular, SecondDerivatives, Sum, Term as _,
 };
 use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
 use liestep::numbers::Entries as _;
@@ -14,9 +13,9 @@ use nalgebra::{Matrix3, RealField, Rotation3, Vector3};
 use num_dual::{Dual64, HyperHyperDual64};
 
 use super::dual::{STEP, assert_linearised};
-use super::scenes::{J_D, MOMENTS, Numbers, SEEDS, exact_flow, gravity, heavy, unit};
+use super::scenes::{Held, MOMENTS, Numbers, SEEDS, exact_flow, gravity, heavy, held, unit};
 
-type Several<T> = Sum<Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>, Dipole<T>>;
+type Several<T> = Sum<Held<T>, Dipole<T>>;
 
 /// The parameters of the scene below; those of the body are the first nine.
 const PARAMETERS: usize = 45;
@@ -24,23 +23,9 @@ const PARAMETERS: usize = 45;
 /// Potentials that are linear in what is advected, quadratic, and of a root.
 fn several<T: RealField + Copy>(varied: Option<(usize, T)>) -> Several<T> {
     let mut n = Numbers::new(varied);
-    let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_D)).expect("a body") };
-    let gravity = gravity(&mut n);
-    let spring = Spring {
-        k: n.number(1.5),
-        length: n.number(0.4),
-        at: n.vector(0.1, 0.5, -0.3),
-        anchor: n.vector(0.8, -0.2, 0.9),
-    };
-    let J = Matrix3::identity() * J_D.trace() - J_D;
-    let gradient = GravityGradient {
-        GM: n.number(0.7),
-        r: n.number(1.3),
-        J: Inertia::new(n.symmetric(&J)).expect("a body"),
-        direction: n.vector(0.6, 0.0, 0.8),
-    };
+    let held = held(&mut n);
     let dipole = Dipole { moment: n.vector(0.7, -0.4, 0.2), field: n.vector(0.3, 0.9, -0.5) };
-    body + gravity + spring + gradient + dipole
+    held + dipole
 }
 
 fn body<T: RealField + Copy>(scene: Several<T>) -> RigidBody<T> {

@@ -56,28 +56,36 @@ pub(crate) fn unit(number: Option<usize>) -> Option<(usize, Dual64)> {
 
 pub(crate) const J_D: Matrix3<f64> = Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.6, 0.3, -0.1, 0.3, 2.4);
 
-type Damped<T> = Sum<Sum<Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>, Rotor<T>>, Drag<T>>;
+pub(crate) type Held<T> = Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>;
 
-fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> Damped<T> {
-    let mut n = Numbers::new(varied);
+/// A body under three potentials.
+pub(crate) fn held<T: RealField + Copy>(n: &mut Numbers<T>) -> Held<T> {
     let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_D)).expect("a body") };
-    let gravity = gravity(&mut n);
+    let gravity = gravity(n);
     let spring = Spring {
         k: n.number(1.5),
         length: n.number(0.4),
         at: n.vector(0.1, 0.5, -0.3),
         anchor: n.vector(0.8, -0.2, 0.9),
     };
+    let gradient =
+        GravityGradient { GM: n.number(0.7), r: n.number(1.3), J: inertia(n), direction: n.vector(0.6, 0.0, 0.8) };
+    body + gravity + spring + gradient
+}
+
+fn inertia<T: RealField + Copy>(n: &mut Numbers<T>) -> Inertia<T> {
     let J = Matrix3::identity() * J_D.trace() - J_D;
-    let gradient = GravityGradient {
-        GM: n.number(0.7),
-        r: n.number(1.3),
-        J: Inertia::new(n.symmetric(&J)).expect("a body"),
-        direction: n.vector(0.6, 0.0, 0.8),
-    };
+    Inertia::new(n.symmetric(&J)).expect("a body")
+}
+
+type Damped<T> = Sum<Sum<Held<T>, Rotor<T>>, Drag<T>>;
+
+fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> Damped<T> {
+    let mut n = Numbers::new(varied);
+    let held = held(&mut n);
     let rotor = Rotor { spin: n.vector(0.3, -0.2, 0.5) };
-    let drag = Drag { c: n.number(0.4), J: Inertia::new(n.symmetric(&J)).expect("a body") };
-    body + gravity + spring + gradient + rotor + drag
+    let drag = Drag { c: n.number(0.4), J: inertia(&mut n) };
+    held + rotor + drag
 }
 
 pub(crate) fn gravity<T: RealField + Copy>(n: &mut Numbers<T>) -> Gravity<T> {

@@ -8,7 +8,7 @@
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, stages};
+use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, rows, stages};
 use super::rates::Rates;
 
 pub struct Dop853;
@@ -49,20 +49,7 @@ impl Embedded for Dop853 {
         let third = ERROR_3.iter().chain(&B).copied().collect();
         Tableau {
             order: 8,
-            rows: vec![
-                vec![],
-                A2.into(),
-                A3.into(),
-                A4.into(),
-                A5.into(),
-                A6.into(),
-                A7.into(),
-                A8.into(),
-                A9.into(),
-                A10.into(),
-                A11.into(),
-                A12.into(),
-            ],
+            rows: rows![A2 A3 A4 A5 A6 A7 A8 A9 A10 A11 A12],
             weights: B.into(),
             estimates: vec![(5, ERROR_5.into()), (3, third)],
         }

@@ -71,6 +71,14 @@ macro_rules! stages {
 }
 pub(super) use stages;
 
+/// The rows of a tableau, of which the first stage has none.
+macro_rules! rows {
+    ($($row:ident)+) => {
+        vec![vec![], $($row.into()),+]
+    };
+}
+pub(super) use rows;
+
 /// One step of fixed length.
 #[inline]
 pub fn step<M: Embedded>(equations: &impl Rates, h: f64, y: &State) -> State {

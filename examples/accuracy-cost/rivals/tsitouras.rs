@@ -8,7 +8,7 @@
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, stages};
+use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, rows, stages};
 use super::rates::Rates;
 
 pub struct Tsitouras5;
@@ -44,12 +44,7 @@ impl Embedded for Tsitouras5 {
     }
 
     fn tableau() -> Tableau {
-        Tableau {
-            order: 5,
-            rows: vec![vec![], A2.into(), A3.into(), A4.into(), A5.into(), A6.into(), B.into()],
-            weights: B.into(),
-            estimates: vec![(4, ERROR.into())],
-        }
+        Tableau { order: 5, rows: rows![A2 A3 A4 A5 A6 B], weights: B.into(), estimates: vec![(4, ERROR.into())] }
     }
 }
 

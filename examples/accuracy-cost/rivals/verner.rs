@@ -7,7 +7,7 @@
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, stages};
+use super::embedded::{Embedded, Row, Tableau, combination, mean_square, plus, rows, stages};
 use super::rates::Rates;
 
 pub struct Verner9;
@@ -45,24 +45,7 @@ impl Embedded for Verner9 {
     fn tableau() -> Tableau {
         Tableau {
             order: 9,
-            rows: vec![
-                vec![],
-                A2.into(),
-                A3.into(),
-                A4.into(),
-                A5.into(),
-                A6.into(),
-                A7.into(),
-                A8.into(),
-                A9.into(),
-                A10.into(),
-                A11.into(),
-                A12.into(),
-                A13.into(),
-                A14.into(),
-                A15.into(),
-                A16.into(),
-            ],
+            rows: rows![A2 A3 A4 A5 A6 A7 A8 A9 A10 A11 A12 A13 A14 A15 A16],
             weights: B.into(),
             estimates: vec![(8, ERROR.into())],
         }
