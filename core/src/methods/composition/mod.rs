@@ -147,7 +147,6 @@ lanes_of_fields!(
     impl[S] Composed<S> => Composed<S::Lane>, as Composed
     where [
         S: Effect + Lanes<Lane: Effect<Scalar = <S::Scalar as nalgebra::SimdValue>::Element>>,
-        S::Scalar: Real<Element: Real>,
         Declared<S>: Lanes<Lane = Declared<S::Lane>>
     ]
     { lanes: [substeps, stages], scalars: [h], shared: [scheme] }
@@ -162,7 +161,7 @@ where
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] Stage<T> => Stage<T::Element>, as Stage
+    impl[T: Real] Stage<T> => Stage<T::Element>, as Stage
     { lanes: [], scalars: [scale, last, earlier], shared: [substep] }
 );
 

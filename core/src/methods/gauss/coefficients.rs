@@ -3,18 +3,24 @@
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _; // roots and powers
 
+/// A number for each stage: for those of the first half of the step, then for their mirror images.
+pub(super) type OfStages<const PAIRS: usize> = [[f64; PAIRS]; 2];
+
+/// A matrix over the stages, by columns.
+pub(super) type Columns<const PAIRS: usize> = [[OfStages<PAIRS>; PAIRS]; 2];
+
 /// Coefficients of a collocation with `2 PAIRS` stages on the unit interval.
 ///
 /// Stage `k` of the first half has the node `c_k < 1/2`, its mirror image `k̄` the node `1 − c_k`. With
-/// `L_j = h b_j f(Y_j)` a step is `Y_i = y + Σ (1/2 + σ_ij) L_j`, `y⁺ = y + Σ L_j`, where `σ` is skew and changes its
-/// sign when both stages are mirrored. So one matrix `β` says it all:
+/// `L_j = h b_j f(Y_j)` a step is
 ///
 /// ```text
-/// Y_i, Y_ī = y + Σ L/2 − Σ_k β_ki (L_k − L_k̄) ± Σ_k β_ik (L_k + L_k̄)
+/// Y_i = y + Σ_j (1/2 + σ_ij) L_j      y⁺ = y + Σ_j L_j
 /// ```
 ///
-/// In this form the method is symplectic and symmetric for any `β`, hence for rounded ones: the conditions
-/// `b_i a_ij + b_j a_ji = b_i b_j` and `a_ij + a_īj̄ = b_j` hold exactly.
+/// where `σ` is skew and changes its sign when both stages are mirrored. In this form the method is symplectic and
+/// symmetric for any such `σ`, hence for a rounded one, if `1/2 + σ_ij` and `1/2 − σ_ij` are rounded together: the
+/// conditions `b_i a_ij + b_j a_ji = b_i b_j` and `a_ij + a_īj̄ = b_j` hold exactly.
 ///
 /// # Source
 ///
@@ -25,13 +31,10 @@ use nalgebra::ComplexField as _; // roots and powers
 pub(super) struct Coefficients<const PAIRS: usize> {
     /// `b_k`, of both stages of a pair.
     pub(super) weights: [f64; PAIRS],
-    /// `β`, by columns: `[k][i]` is `β_ik`.
-    pub(super) odd: [[f64; PAIRS]; PAIRS],
-    /// `−βᵀ`, by columns: `[k][i]` is `−β_ki`.
-    pub(super) even: [[f64; PAIRS]; PAIRS],
-    /// From the `L` of a step to the values at the next step's nodes of the polynomial through them, by columns: first
-    /// those from the first half, then those from the second; to the first and to the second half.
-    pub(super) continuation: [[[[f64; PAIRS]; PAIRS]; 2]; 2],
+    /// `1/2 + σ`.
+    pub(super) places: Columns<PAIRS>,
+    /// From the `L` of a step to the values at the next step's nodes of the polynomial through them.
+    pub(super) continuation: Columns<PAIRS>,
 }
 
 impl<const PAIRS: usize> Coefficients<PAIRS> {
@@ -44,6 +47,7 @@ impl<const PAIRS: usize> Coefficients<PAIRS> {
             let slope = index(stages) * (before - x * value);
             (1.0 - x * x) / (slope * slope)
         });
+        // With β, of an odd polynomial of the one node and an even one of the other, σ_ij = ±β_ij ∓ β_ji by the stages' sides.
         let beta = |i: usize, k: usize| -> f64 {
             let terms = (1..stages).map(|m| {
                 let (odd, even) = if m % 2 == 1 { (m, m - 1) } else { (m - 1, m) };
@@ -52,23 +56,25 @@ impl<const PAIRS: usize> Coefficients<PAIRS> {
             });
             0.5 * terms.sum::<f64>()
         };
-        let extrapolated = |from: f64, to: f64, weight: f64| -> f64 {
-            let terms = (0..stages).map(|m| index(2 * m + 1) * legendre(m, to + 2.0) * legendre(m, from));
-            weight * terms.sum::<f64>()
+        let place = |(side_i, i): (f64, usize), (side_j, j): (f64, usize)| {
+            let sigma = side_i * beta(i, j) - side_j * beta(j, i);
+            // Between 1/2 and 2, so that its difference from one is exact.
+            let larger = 0.5 + sigma.abs();
+            if sigma < 0.0 { 1.0 - larger } else { larger }
         };
-        let sides = [1.0, -1.0];
-        Self {
-            weights,
-            odd: columns(beta),
-            even: columns(|i, k| -beta(k, i)),
-            continuation: sides
-                .map(|from| sides.map(|to| columns(|i, k| extrapolated(from * nodes[k], to * nodes[i], weights[i])))),
-        }
+        let extrapolated = |(side_i, i): (f64, usize), (side_j, j): (f64, usize)| -> f64 {
+            let (from, to) = (side_j * nodes[j], side_i * nodes[i] + 2.0);
+            let terms = (0..stages).map(|m| index(2 * m + 1) * legendre(m, to) * legendre(m, from));
+            weights[i] * terms.sum::<f64>()
+        };
+        Self { weights, places: columns(place), continuation: columns(extrapolated) }
     }
 }
 
-fn columns<const PAIRS: usize>(entry: impl Fn(usize, usize) -> f64) -> [[f64; PAIRS]; PAIRS] {
-    core::array::from_fn(|k| core::array::from_fn(|i| entry(i, k)))
+/// Of the entry in a row and a column, each given by the side of the step that its stage is on and the number there.
+fn columns<const PAIRS: usize>(entry: impl Fn((f64, usize), (f64, usize)) -> f64) -> Columns<PAIRS> {
+    let stages = |of: &dyn Fn((f64, usize)) -> f64| [1.0, -1.0].map(|side| core::array::from_fn(|k| of((side, k))));
+    [1.0, -1.0].map(|side| core::array::from_fn(|k| stages(&|row| entry(row, (side, k)))))
 }
 
 #[allow(clippy::cast_precision_loss)] // a few dozen at most
@@ -126,17 +132,17 @@ mod tests {
                 .sum();
             assert!((sum - integral(power, 1.0)).abs() < 1e-15, "{PAIRS} pairs, B, x^{power}: {sum}");
         }
-        // 1/2 + σ, of stages in the order of `all_nodes`.
-        let mu = |i: usize, j: usize| {
-            let (row, column) = (i % PAIRS, j % PAIRS);
-            let (even, odd) = (coefficients.even[column][row], coefficients.odd[column][row]);
-            let sign = |stage: usize| if stage < PAIRS { 1.0 } else { -1.0 };
-            0.5 + sign(j) * even + sign(i) * odd
-        };
+        let place = |i: usize, j: usize| coefficients.places.as_flattened()[j].as_flattened()[i];
+        for (i, j) in (0..stages).flat_map(|i| (0..stages).map(move |j| (i, j))) {
+            let mirrored = |stage: usize| (stage + PAIRS) % stages;
+            let is_one = |sum: f64| sum.to_bits() == 1.0_f64.to_bits();
+            assert!(is_one(place(i, j) + place(j, i)), "symplectic");
+            assert!(is_one(place(i, j) + place(mirrored(i), mirrored(j))), "symmetric");
+        }
         for (i, x) in all_nodes.iter().enumerate() {
             for power in 0..stages {
                 let terms =
-                    (0..stages).map(|j| all_weights[j] * mu(i, j) * all_nodes[j].powi(power.try_into().unwrap()));
+                    (0..stages).map(|j| all_weights[j] * place(i, j) * all_nodes[j].powi(power.try_into().unwrap()));
                 let error = terms.sum::<f64>() - integral(power, *x);
                 assert!(error.abs() < 1e-15, "{PAIRS} pairs, C, stage {i}, x^{power}: {error:e}");
             }
@@ -157,7 +163,9 @@ mod tests {
         let coefficients = Coefficients::<1>::new();
         assert!((coefficients.weights[0] - 0.5).abs() < 2e-16);
         // a_12 = 1/4 − √3/6 and a_21 = 1/4 + √3/6.
-        assert!((coefficients.odd[0][0] + 3.0_f64.sqrt() / 6.0).abs() < 2e-16);
+        let [[of_first], [of_second]] = coefficients.places;
+        assert!((0.5 * of_second[0][0] - (0.25 - 3.0_f64.sqrt() / 6.0)).abs() < 2e-16);
+        assert!((0.5 * of_first[1][0] - (0.25 + 3.0_f64.sqrt() / 6.0)).abs() < 2e-16);
     }
 
     /// A polynomial of the degree that they determine is continued exactly.
@@ -173,7 +181,7 @@ mod tests {
         for (to, expected) in expected.iter().enumerate() {
             for (i, expected) in expected.iter().enumerate() {
                 let terms = (0..2).flat_map(|side| (0..2).map(move |k| (side, k)));
-                let found: f64 = terms.map(|(side, k)| coefficients.continuation[side][to][k][i] * from[side][k]).sum();
+                let found: f64 = terms.map(|(side, k)| coefficients.continuation[side][k][to][i] * from[side][k]).sum();
                 assert!((found - expected).abs() < 1e-12, "{found} {expected}");
             }
         }

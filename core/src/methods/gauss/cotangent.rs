@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use super::coefficients::Coefficients;
+use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, Legendre, Matrix, Term, Vector, check_inertia, check_velocity};
@@ -116,13 +117,6 @@ type Phase<const N: usize> = [SMatrix<f64, N, N>; 2];
 
 /// The changes `L_j = h b_j f(Y_j)` at the stages of the first half and at their mirror images.
 type Stages<const PAIRS: usize, const N: usize> = [[Phase<N>; PAIRS]; 2];
-
-/// Changes as small as these, relative to the unknowns, may be rounding: the iteration has settled where they don't
-/// fall any more.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// Where each iteration takes at least a factor of two, which is at the edge of convergence, they are enough.
-const MOST_ITERATIONS: u32 = 60;
 
 /// What several bodies, whose matrices are a tuple, don't have.
 #[diagnostic::on_unimplemented(
@@ -252,22 +246,24 @@ where
         let rate = self.rate(&start)?;
         let weights = self.coefficients.weights.map(|weight| h * weight);
         let mut stages: Stages<PAIRS, N> = [weights.map(|weight| rate.map(|part| part * weight)); 2];
-        let mut before = f64::INFINITY;
-        let mut settled = false;
-        let mut iterations = 0;
-        while !settled {
+        let (mut changes, mut last, mut is_settled) = (Changes::of_constants(), false, false);
+        let (mut residual, mut iterations) = (f64::INFINITY, 0);
+        while !is_settled {
             if iterations == MOST_ITERATIONS {
-                return Err(StepError::NotConverged { iterations, residual: before.sqrt() });
+                return Err(StepError::NotConverged { iterations, residual });
             }
             iterations += 1;
             let next = self.iterated(&start, &stages, &weights)?;
-            let change = relative_change(&start, &stages, &next);
+            let [of_attitude, of_momentum] = relative_changes(&start, &stages, &next);
+            let change = of_attitude + of_momentum;
+            residual = change.sqrt();
             if !change.is_finite() {
-                return Err(StepError::NotConverged { iterations, residual: change });
+                return Err(StepError::NotConverged { iterations, residual });
             }
             stages = next;
-            settled = change <= ROUNDING * ROUNDING && change >= before || change == 0.0;
-            before = change;
+            let judged = changes.judge(change, || of_attitude);
+            is_settled = last || judged == Next::Nothing;
+            last = judged == Next::Once;
         }
         let zero = [SMatrix::zeros(); 2];
         let [attitude, conjugate] = combined(&zero, stages.as_flattened().iter().map(|stage| (1.0, stage)));
@@ -285,21 +281,14 @@ where
         stages: &Stages<PAIRS, N>,
         weights: &[f64; PAIRS],
     ) -> Result<Stages<PAIRS, N>, StepError> {
-        let Coefficients { odd, even, .. } = &self.coefficients;
-        let [first, second] = stages;
-        let middle = combined(start, stages.as_flattened().iter().map(|stage| (0.5, stage)));
         let mut next = *stages;
-        for i in 0..PAIRS {
-            let pairs = || first.iter().zip(second).enumerate();
-            let zero = [SMatrix::zeros(); 2];
-            let shift =
-                pairs().fold(zero, |sum, (k, (a, b))| [0, 1].map(|part| sum[part] + (a[part] - b[part]) * even[k][i]));
-            let turn =
-                pairs().fold(zero, |sum, (k, (a, b))| [0, 1].map(|part| sum[part] + (a[part] + b[part]) * odd[k][i]));
-            for (half, sign) in [(0, 1.0), (1, -1.0)] {
-                let place = [0, 1].map(|part| middle[part] + shift[part] + turn[part] * sign);
-                next[half][i] = self.rate(&place)?.map(|part| part * weights[i]);
-            }
+        let places = self.coefficients.places.as_flattened();
+        for (i, next) in next.as_flattened_mut().iter_mut().enumerate() {
+            let terms =
+                places.iter().zip(stages.as_flattened()).map(|(column, stage)| (column.as_flattened()[i], stage));
+            let change = combined(&[SMatrix::zeros(); 2], terms);
+            let place = [0, 1].map(|part| start[part] + change[part]);
+            *next = self.rate(&place)?.map(|part| part * weights[i % PAIRS]);
         }
         Ok(next)
     }
@@ -393,17 +382,17 @@ fn combined<'a, const N: usize>(y: &Phase<N>, terms: impl Iterator<Item = (f64, 
     terms.fold(*y, |sum, (factor, term)| [0, 1].map(|part| sum[part] + term[part] * factor))
 }
 
-/// By how much two iterates differ, relative to the place, both parts squared.
-fn relative_change<const PAIRS: usize, const N: usize>(
+/// By how much two iterates differ, relative to the place, of both parts and squared.
+fn relative_changes<const PAIRS: usize, const N: usize>(
     place: &Phase<N>,
     before: &Stages<PAIRS, N>,
     after: &Stages<PAIRS, N>,
-) -> f64 {
+) -> [f64; 2] {
     let pairs = || before.as_flattened().iter().zip(after.as_flattened());
     let of = |part: usize| {
         let change: f64 = pairs().map(|(a, b)| (a[part] - b[part]).norm_squared()).sum();
         let size = place[part].norm_squared() + pairs().map(|(_, b)| b[part].norm_squared()).sum::<f64>();
         if change == 0.0 { 0.0 } else { change / size }
     };
-    of(0) + of(1)
+    [of(0), of(1)]
 }

@@ -6,6 +6,7 @@
 mod coefficients;
 mod cotangent;
 mod lift;
+mod settling;
 mod stages;
 mod state;
 
@@ -13,7 +14,8 @@ pub use cotangent::{CotangentCarry, CotangentGauss};
 pub use state::Collocated;
 
 use coefficients::Coefficients;
-use lift::{Lift, Lifted, each, length_squared};
+use lift::{Lift, Lifted, length_squared};
+use settling::Changes;
 use stages::{Stages, WeightedRates};
 
 use crate::error::{SetupError, StepError};
@@ -117,8 +119,8 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     pub(crate) const COST: Cost = {
         #[allow(clippy::cast_precision_loss)] // at most eight
         let pairs = PAIRS as f64;
-        // Half of both kicks, half of that in lanes, and two thirds of that as below.
-        let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.16 * (S::OPERATIONS.step as f64) } else { 0.0 };
+        // Of the operations of both kicks, fitted as below.
+        let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.125 * (S::OPERATIONS.step as f64) } else { 0.0 };
         let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
         Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3, once: 0.0 }
     };
@@ -135,11 +137,11 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     #[inline(always)]
     fn advance(&self, kept: &mut Collocated<PAIRS>) -> Result<u32, StepError> {
         let Collocated { lifted: y, carry, stages } = &*kept;
-        let mut stages = match stages {
-            Some(stages) => stages.continued(&self.coefficients),
-            None => Stages::constant(&self.lift.rate(y), &self.weights[0]),
+        let (mut stages, changes) = match stages {
+            Some(stages) => (stages.continued(&self.coefficients), Changes::of_guesses()),
+            None => (Stages::constant(y, self), Changes::of_constants()),
         };
-        let iterations = stages.solve(&self.coefficients, (y, carry), self)?;
+        let iterations = stages.solve(changes, &self.coefficients, (y, carry), self)?;
         let (next, left) = compensated(y, &stages.change(), carry);
         if !next.iter().all(|component| component.is_finite()) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -229,22 +231,20 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
     }
 }
 
-/// An iteration makes so many operations at each of its stages: for the rates of quaternion and momentum, for the
-/// parameters that a torque depends on, and for each pair of stages that is summed over. Two stages in SIMD lanes count
-/// as one, here and below, and an operation as two thirds of one of (3.13): a sum over stages waits for less than a solve
-/// with its divisions does. `accuracy-cost -- --asked` shows whether choices by these numbers are the fastest.
-const OF_RATES: f64 = 48.0;
-const OF_PARAMETERS: f64 = 22.0;
-const OF_A_SUM: f64 = 6.5;
-/// Besides its iterations, a step makes so many, and so many for each pair of pairs in its guess.
+/// What an iteration takes at each of its stages: for the rates of quaternion and momentum, for the parameters that a
+/// torque depends on, and for each pair of stages that is summed over. The unit is an operation of (3.13). The numbers
+/// are fitted to times with AVX-512, of which `accuracy-cost -- --asked` shows whether choices by them are the fastest.
+const OF_RATES: f64 = 36.0;
+const OF_PARAMETERS: f64 = 16.0;
+const OF_A_SUM: f64 = 5.0;
+/// Besides its iterations, a step takes so many, and so many for each pair of pairs in its guess.
 const OF_AN_UPDATE: f64 = 33.0;
 const OF_A_GUESS: f64 = 21.0;
 
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S, PAIRS> {
     #[inline(always)]
     fn weighted_rate(&self, stage: usize, place: &Lifted) -> Lifted {
-        let (weight, rate) = (self.weights.as_flattened()[stage], self.lift.rate(place));
-        each(|component| weight * rate[component])
+        self.lift.weighted_rate(place, self.weights.as_flattened()[stage])
     }
 }
 

@@ -1,15 +1,16 @@
-//! The stages of a step: fixed-point iteration in pairs that mirror each other.
+//! The stages of a step: fixed-point iteration.
 //!
 //! Numbers of one component at all stages lie side by side, so that the compiler puts stages into SIMD lanes.
 
-use super::coefficients::Coefficients;
+use super::coefficients::{Coefficients, Columns, OfStages};
 use super::lift::{Lifted, each};
+use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::StepError;
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _; // roots and powers
 
-/// A number for each component and each stage: for those of the first half of the step, then for their mirror images.
-pub(super) type Numbers<const PAIRS: usize> = [[[f64; PAIRS]; 2]; 8];
+/// A number for each component and each stage.
+pub(super) type Numbers<const PAIRS: usize> = [OfStages<PAIRS>; 8];
 
 /// The `L_j = h b_j f(Y_j)` of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,28 +24,22 @@ pub(super) trait WeightedRates {
     fn weighted_rate(&self, stage: usize, place: &Lifted) -> Lifted;
 }
 
-/// Changes as small as these, relative to the unknowns, may be rounding: the iteration has settled where they don't
-/// fall any more.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// Where each iteration takes at least a factor of two, which is at the edge of convergence, they are enough.
-const MOST_ITERATIONS: u32 = 60;
-
 impl<const PAIRS: usize> Stages<PAIRS> {
-    /// Stages at which all rates are the same.
-    pub(super) fn constant(change: &Lifted, weights: &[f64; PAIRS]) -> Self {
-        Self(change.map(|change| [weights.map(|weight| weight * change); 2]))
+    /// Stages at one place.
+    pub(super) fn constant(place: &Lifted, equations: &impl WeightedRates) -> Self {
+        let mut stages = [[[0.0; PAIRS]; 2]; 8];
+        for stage in 0..2 * PAIRS {
+            put(&mut stages, stage, &equations.weighted_rate(stage, place));
+        }
+        Self(stages)
     }
 
     /// The polynomial through these, continued to the stages of the next step.
     #[inline(always)]
     pub(super) fn continued(&self, coefficients: &Coefficients<PAIRS>) -> Self {
-        let [from_first, from_second] = &coefficients.continuation;
         let mut next = [[[0.0; PAIRS]; 2]; 8];
-        for (next, [first, second]) in next.iter_mut().zip(&self.0) {
-            for half in 0..2 {
-                next[half] = plus(&applied(&from_first[half], first), &applied(&from_second[half], second));
-            }
+        for stage in 0..2 * PAIRS {
+            put(&mut next, stage, &each(|component| entry(&coefficients.continuation, stage, &self.0[component])));
         }
         Self(next)
     }
@@ -52,7 +47,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     /// `Σ L`, component by component.
     #[inline(always)]
     pub(super) fn change(&self) -> Lifted {
-        self.0.map(|[first, second]| total(&plus(&first, &second)))
+        each(|component| total(&self.0[component]))
     }
 
     /// Iterates from these until they are the stages from `y + carry`; returns how often.
@@ -63,29 +58,38 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     #[inline(always)]
     pub(super) fn solve(
         &mut self,
+        mut changes: Changes,
         coefficients: &Coefficients<PAIRS>,
         (y, carry): (&Lifted, &Lifted),
         equations: &impl WeightedRates,
     ) -> Result<u32, StepError> {
-        let (mut before, mut last) = (0.0, false);
+        // A body at rest has no momentum before the step. One so small that it has no inverse isn't looked at.
+        let size: f64 = (4..8).map(|k| y[k] * y[k] + self.0[k][0][0] * self.0[k][0][0]).sum();
+        let over_size = if (1.0 / size).is_finite() { 1.0 / size } else { 0.0 };
+        let (mut last, mut residual) = (false, f64::INFINITY);
         for iteration in 1..=MOST_ITERATIONS {
-            let (next, change) = self.iterated(coefficients, (y, carry), equations);
+            let (next, change) = self.iterated(coefficients, (y, carry), over_size, equations);
+            let judged = changes.judge(change, || self.change_of_quaternion(&next));
             *self = next;
-            if last {
+            if last || judged == Next::Nothing {
                 return Ok(iteration);
             }
-            // What is kept is kept as well as the last change is small. Changes fall by nearly the same factor each
-            // time, so that this one's factor tells whether the next change is rounding; that iteration is still made.
-            last = change * change <= f64::EPSILON * f64::EPSILON * before;
-            if change <= ROUNDING * ROUNDING && change >= before {
-                return Ok(iteration);
-            }
-            before = change;
+            last = judged == Next::Once;
+            residual = change.sqrt();
             if !change.is_finite() {
-                return Err(StepError::NotConverged { iterations: iteration, residual: change });
+                return Err(StepError::NotConverged { iterations: iteration, residual });
             }
         }
-        Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual: f64::sqrt(before) })
+        Err(StepError::NotConverged { iterations: MOST_ITERATIONS, residual })
+    }
+
+    /// By how much the quaternion's stages differ from these, squared.
+    #[cold]
+    #[inline(never)]
+    fn change_of_quaternion(&self, next: &Self) -> f64 {
+        let numbers =
+            |stages: &Self| stages.0.into_iter().take(4).flat_map(|of_stages| of_stages.into_iter().flatten());
+        numbers(self).zip(numbers(next)).map(|(a, b)| (a - b) * (a - b)).sum()
     }
 
     /// The next iterate, and by how much it differs: the quaternion's stages relative to one and the momentum's to the
@@ -95,48 +99,27 @@ impl<const PAIRS: usize> Stages<PAIRS> {
         &self,
         coefficients: &Coefficients<PAIRS>,
         (y, carry): (&Lifted, &Lifted),
+        over_size: f64,
         equations: &impl WeightedRates,
     ) -> (Self, f64) {
-        let places = self.places(coefficients, (y, carry));
         let mut next = [[[0.0; PAIRS]; 2]; 8];
-        let (mut quaternion, mut momentum) = ([[0.0; PAIRS]; 2], [[0.0; PAIRS]; 2]);
+        let mut change = [[0.0; PAIRS]; 2];
         // One loop over all stages, of which the compiler makes lanes.
         for stage in 0..2 * PAIRS {
-            let rate = equations.weighted_rate(stage, &each(|component| places[component].as_flattened()[stage]));
+            let places = each(|component| {
+                y[component] + (carry[component] + entry(&coefficients.places, stage, &self.0[component]))
+            });
+            let rate = equations.weighted_rate(stage, &places);
             let squared = each(|component| {
                 let difference = rate[component] - self.0[component].as_flattened()[stage];
                 difference * difference
             });
             put(&mut next, stage, &rate);
-            quaternion.as_flattened_mut()[stage] = (squared[0] + squared[1]) + (squared[2] + squared[3]);
-            momentum.as_flattened_mut()[stage] = (squared[4] + squared[5]) + (squared[6] + squared[7]);
+            let quaternion = (squared[0] + squared[1]) + (squared[2] + squared[3]);
+            let momentum = (squared[4] + squared[5]) + (squared[6] + squared[7]);
+            change.as_flattened_mut()[stage] = quaternion + momentum * over_size;
         }
-        let quaternion = total(&plus(&quaternion[0], &quaternion[1]));
-        let momentum = total(&plus(&momentum[0], &momentum[1]));
-        // A body at rest has no momentum before the step.
-        let size: f64 = (4..8).map(|k| y[k] * y[k] + next[k][0][0] * next[k][0][0]).sum();
-        let change = if momentum == 0.0 { quaternion } else { quaternion + momentum / size };
-        (Self(next), change)
-    }
-
-    /// The places `Y_j` of the stages.
-    #[inline(always)]
-    fn places(&self, coefficients: &Coefficients<PAIRS>, (y, carry): (&Lifted, &Lifted)) -> Numbers<PAIRS> {
-        let (mut sums, mut differences, mut middles) = ([[0.0; PAIRS]; 8], [[0.0; PAIRS]; 8], [0.0; 8]);
-        for component in 0..8 {
-            let [first, second] = &self.0[component];
-            sums[component] = plus(first, second);
-            differences[component] = minus(first, second);
-            middles[component] = y[component] + (carry[component] + 0.5 * total(&sums[component]));
-        }
-        let mut places = [[[0.0; PAIRS]; 2]; 8];
-        for i in 0..PAIRS {
-            let even = each(|component| middles[component] + row(&coefficients.even, i, &differences[component]));
-            let odd = each(|component| row(&coefficients.odd, i, &sums[component]));
-            put(&mut places, i, &each(|component| even[component] + odd[component]));
-            put(&mut places, PAIRS + i, &each(|component| even[component] - odd[component]));
-        }
-        places
+        (Self(next), total(&change))
     }
 }
 
@@ -153,38 +136,22 @@ fn put<const PAIRS: usize>(numbers: &mut Numbers<PAIRS>, stage: usize, values: &
     numbers[7].as_flattened_mut()[stage] = values[7];
 }
 
-/// An entry of the product of a matrix, given by its columns, and `x`.
+/// An entry of the product of a matrix and `x`.
 #[inline(always)]
-fn row<const PAIRS: usize>(columns: &[[f64; PAIRS]; PAIRS], i: usize, x: &[f64; PAIRS]) -> f64 {
-    let mut sum = columns[0][i] * x[0];
-    for k in 1..PAIRS {
-        sum += columns[k][i] * x[k];
-    }
-    sum
-}
-
-#[inline(always)]
-fn applied<const PAIRS: usize>(columns: &[[f64; PAIRS]; PAIRS], x: &[f64; PAIRS]) -> [f64; PAIRS] {
-    let mut product = [0.0; PAIRS];
-    for k in 0..PAIRS {
-        for i in 0..PAIRS {
-            product[i] += columns[k][i] * x[k];
+fn entry<const PAIRS: usize>(columns: &Columns<PAIRS>, row: usize, x: &OfStages<PAIRS>) -> f64 {
+    let half = |side: usize| {
+        let (columns, x) = (&columns[side], &x[side]);
+        let mut sum = columns[0].as_flattened()[row] * x[0];
+        for k in 1..PAIRS {
+            sum += columns[k].as_flattened()[row] * x[k];
         }
-    }
-    product
+        sum
+    };
+    half(0) + half(1)
 }
 
+/// The sum over all stages.
 #[inline(always)]
-fn plus<const PAIRS: usize>(a: &[f64; PAIRS], b: &[f64; PAIRS]) -> [f64; PAIRS] {
-    core::array::from_fn(|i| a[i] + b[i])
-}
-
-#[inline(always)]
-fn minus<const PAIRS: usize>(a: &[f64; PAIRS], b: &[f64; PAIRS]) -> [f64; PAIRS] {
-    core::array::from_fn(|i| a[i] - b[i])
-}
-
-#[inline(always)]
-fn total<const PAIRS: usize>(x: &[f64; PAIRS]) -> f64 {
-    x.iter().sum()
+fn total<const PAIRS: usize>([first, second]: &OfStages<PAIRS>) -> f64 {
+    first.iter().zip(second).map(|(first, second)| first + second).sum()
 }
