@@ -1,13 +1,20 @@
 //! Asking by accuracy: what is reached, what is refused, and that the choice is the same every time.
 
-use declarations::{FourthOrderTop, HeavyTop, Motion, Top as _};
+mod trials;
+mod varying_inertia;
+
+use declarations::{DoublePendulum, FourthOrderTop, HeavyTop, Motion, SlidingTop, Top as _};
 use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper, Candidates, SavedChoice};
 use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
-use liestep::groups::{Advected, LieGroup as _, SO2};
-use liestep::mechanics::{DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular};
+use liestep::groups::{Advected, LieGroup, SO2};
+use liestep::mechanics::{
+    ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular, Scene,
+};
 use liestep::methods::{CompositionScheme, PreprocessedFlow, PreprocessedOrder, SymmetricBody};
+use liestep::motion::RightHandSide;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
-use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3, Vector6};
+use workbench::runge_kutta;
 
 /// The five scenes of the example accuracy-cost.
 const MOTIONS: [&str; 5] = ["looping A", "cuspidal A", "third A", "chaotic", "free"];
@@ -56,9 +63,8 @@ fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Result<AccurateStepper<SO3, Ve
         for tolerance in TOLERANCES {
             match ask(&motion, Accuracy { tolerance, horizon }) {
                 Ok(stepper) => {
-                    // A run of one or two steps is less than what tells so.
                     let choice = stepper.choice();
-                    assert!(choice.trials <= 30.0 || choice.steps <= 2, "{name} {horizon} {tolerance}\n{choice}");
+                    assert!(choice.trials <= 30.0, "{name} {horizon} {tolerance}\n{choice}");
                     let error = error(&end(&stepper), &exact, &motion.velocity, horizon);
                     assert!(error <= tolerance, "{name} {horizon} {tolerance}: {error}\n{choice}");
                     worst = worst.max(error / tolerance);
@@ -97,6 +103,34 @@ fn the_tolerance_is_reached_by_compositions_alone() {
         Stepper::for_accuracy(motion.top.clone(), accuracy, motion.attitude, motion.velocity)
     });
     assert!(worst <= 1.0 && worst > 0.5, "{worst}");
+}
+
+/// Of so short a motion runs of one and two steps may agree by chance, on what isn't the motion. Four of these 1200
+/// choices rest on that; where the order promised was believed unseen, there were four times as many.
+#[test]
+fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
+    let (mut few, mut missed) = (0, Vec::new());
+    for name in MOTIONS {
+        let Motion { top, attitude, velocity, .. } = Motion::read(name);
+        let fine = Stepper::composed(top.clone(), 0.01, CompositionScheme::SOFRONIOU_SPALETTA_10).unwrap();
+        let mut state = fine.start(attitude, velocity).unwrap();
+        for _ in 0..40 {
+            fine.run(&mut state, 5).unwrap();
+            let (horizon, exact) = (fine.time(&state), (*state.attitude().as_matrix(), fine.velocity(&state)));
+            for tolerance in [0.05, 0.03, 0.01] {
+                for candidates in [Candidates::of(top.clone(), 2), Candidates::of_body(top.clone(), 2)] {
+                    let accuracy = Accuracy { tolerance, horizon };
+                    let stepper = candidates.for_accuracy(accuracy, attitude, velocity).unwrap();
+                    let error = error(&end(&stepper), &exact, &velocity, horizon);
+                    few += u32::from(stepper.choice().steps <= 4);
+                    if error > tolerance {
+                        missed.push(format!("{name} {horizon} {tolerance}: {error} with {}", stepper.choice().steps));
+                    }
+                }
+            }
+        }
+    }
+    assert!(few > 500 && missed.len() <= 4, "{few}; missed {missed:#?}");
 }
 
 /// A control: with the step taken twice as long the tolerance is missed, by as much as the order says.
@@ -258,16 +292,6 @@ fn the_report_names_the_choice_and_its_neighbours() {
     assert!(text.starts_with(&format!("1e-6 at t = 10 s: {}, ", choice.chosen().name)), "{text}");
 }
 
-/// A run whose error leaves room for longer steps, which have no solution, is chosen as it is.
-#[test]
-fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
-    let motion = Motion::read("chaotic");
-    let accuracy = Accuracy { tolerance: 0.05, horizon: 30.0 };
-    let stepper = all(&motion).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
-    // A search that goes on to a finer reference takes thousands of runs.
-    assert!(stepper.choice().trials <= 30.0, "{}", stepper.choice());
-}
-
 #[test]
 fn questions_without_an_answer() {
     let motion = Motion::read("looping A");
@@ -302,41 +326,6 @@ fn a_tolerance_below_rounding_is_refused_with_the_floor() {
     assert!(error(&end(&stepper), &motion.at(10.0), &motion.velocity, 10.0) <= 4.0 * floor);
 }
 
-/// A spin of more than a turn in the shortest step that is tried, each of which has a solution: no two trials agree,
-/// and rounding has no part in that. (No composition is of a method of order 8, so that one method is tried.)
-#[test]
-fn steps_too_long_for_the_motion_are_not_taken_for_rounding() {
-    let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 1.0, 1.0)).unwrap() };
-    let accuracy = Accuracy { tolerance: 1e-3, horizon: 1000.0 };
-    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), Vector3::z() * 1e5).unwrap_err();
-    let AccuracyError::TooManySteps { steps, is_bound: false, method, .. } = &refusal else { panic!("{refusal}") };
-    assert!(*steps > 1e6 && steps.is_finite() && method == "its own step", "{refusal}");
-    assert!(refusal.to_string().starts_with("about "), "{refusal}");
-}
-
-/// The same of a body whose long steps have no solution: that they fail isn't why. Of the shortest part's trials only the
-/// last has one.
-#[test]
-fn long_steps_without_a_solution_are_not_the_cause() {
-    let body = RigidBody { J_d: NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.5, 2.0)).unwrap() };
-    let accuracy = Accuracy { tolerance: 1e-3, horizon: 1000.0 };
-    let velocity = Vector3::z() * (0.8 * 8.0_f64.powi(20) / accuracy.horizon);
-    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
-    let AccuracyError::TooManySteps { steps, is_bound: true, method, .. } = &refusal else { panic!("{refusal}") };
-    assert!(*steps > 1e17 && method == "its own step", "{refusal}");
-    assert!(refusal.to_string().starts_with("at least 1e18 steps of the method `its own step`"), "{refusal}");
-}
-
-/// In so short a time the steps that the accuracy takes are too short for a double.
-#[test]
-fn a_set_up_that_fails_for_shorter_steps_is_the_error() {
-    let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap() };
-    let (horizon, velocity) = (1e-98, Vector3::new(0.3e98, 0.5e98, 0.8e98));
-    let accuracy = Accuracy { tolerance: 1e-12, horizon };
-    let refusal = Candidates::of(body, 8).for_accuracy(accuracy, SO3::identity(), velocity).unwrap_err();
-    assert!(matches!(refusal, AccuracyError::Setup(SetupError::InvalidStep { .. })), "{refusal}");
-}
-
 /// The free body has a flow without error: that is one step, however long.
 #[test]
 fn the_exact_motion_of_a_free_body_is_one_step() {
@@ -368,68 +357,6 @@ fn a_scene_that_cannot_be_split_has_its_own_steps() {
     let coupled = FourthOrderTop::of(&motion.top);
     let stepper = Candidates::of_body(coupled, 4).for_accuracy(accuracy, motion.attitude, motion.velocity).unwrap();
     assert!(stepper.choice().error <= 1e-5);
-}
-
-#[test]
-fn a_saved_choice_is_looked_at_once() {
-    let motion = Motion::read("chaotic");
-    let ask = |candidates: Candidates<SO3, Vector3<f64>>, accuracy, velocity| {
-        candidates.for_accuracy(accuracy, motion.attitude, velocity).unwrap()
-    };
-    let accuracy = Accuracy { tolerance: 1e-7, horizon: 10.0 };
-    let first = ask(of_body(&motion), accuracy, motion.velocity);
-    let saved = first.choice().saved();
-    let text = serde_json::to_string(&saved).unwrap();
-    let saved: SavedChoice = serde_json::from_str(&text).unwrap();
-    let again = ask(of_body(&motion).with_saved(saved.clone()), accuracy, motion.velocity);
-    assert_eq!((again.choice().saved(), end(&again)), (saved.clone(), end(&first)));
-    assert!(again.choice().trials < 3.0 && again.choice().error <= 1e-7, "{}", again.choice());
-    // What is said of the error is of the size of the true one.
-    let true_error = error(&end(&again), &motion.at(10.0), &motion.velocity, 10.0);
-    assert!((again.choice().error / true_error - 1.0).abs() < 0.2, "{} {true_error}", again.choice());
-    // Another start and horizon, for which it still does, as a search for a thousandth of the error shows.
-    let (accuracy, velocity) = (Accuracy { tolerance: 1e-6, horizon: 9.0 }, motion.velocity * 0.9);
-    let elsewhere = ask(of_body(&motion).with_saved(saved.clone()), accuracy, velocity);
-    let finer = ask(of_body(&motion), Accuracy { tolerance: 1e-9, ..accuracy }, velocity);
-    assert!(elsewhere.choice().trials < 3.0, "{}", elsewhere.choice());
-    assert!(error(&end(&elsewhere), &end(&finer), &velocity, 9.0) <= 1e-6, "{}", elsewhere.choice());
-    assert!(elsewhere.choice().saved().step <= saved.step * (1.0 + 1e-9));
-    // One for which it doesn't, and those that say nothing, are searched for as if there were none.
-    let accuracy = Accuracy { tolerance: 1e-10, horizon: 10.0 };
-    let searched = ask(of_body(&motion), accuracy, motion.velocity);
-    let nameless = SavedChoice { method: "another".to_owned(), ..saved.clone() };
-    let steps = [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-300].map(|step| SavedChoice { step, ..saved.clone() });
-    for wrong in [saved, nameless].into_iter().chain(steps) {
-        let found = ask(of_body(&motion).with_saved(wrong), accuracy, motion.velocity);
-        assert_eq!(found.choice(), searched.choice());
-    }
-}
-
-/// Trials end after so many operations, some seconds, whatever is asked, and an error says how many were made.
-#[test]
-fn hostile_scenes_are_refused_soon() {
-    let motion = Motion::read("chaotic");
-    let mut answered = 0;
-    for (gravity, horizon) in [(1e6, 10.0), (1e8, 10.0), (1e8, 1e4), (1e12, 1e9), (9.81, 1e9)] {
-        let mut top = motion.top.clone();
-        top.g = gravity;
-        let accuracy = Accuracy { tolerance: 1e-6, horizon };
-        for candidates in [Candidates::of(top.clone(), 2), Candidates::of_body(top, 2)] {
-            let operations = match candidates.for_accuracy(accuracy, motion.attitude, motion.velocity) {
-                Ok(_) => {
-                    answered += 1;
-                    0.0
-                }
-                Err(AccuracyError::Unreachable { trials, .. } | AccuracyError::TooManySteps { trials, .. }) => {
-                    assert!(trials.runs > 10 && trials.most_steps > 0.0, "{trials:?}");
-                    trials.operations
-                }
-                Err(other) => panic!("{other}"),
-            };
-            assert!(operations < 1.5e9, "{gravity} {horizon}: {operations:e}");
-        }
-    }
-    assert_eq!(answered, 0);
 }
 
 #[test]

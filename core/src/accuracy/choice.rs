@@ -68,11 +68,11 @@ pub struct Choice {
 impl Choice {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number
     pub(super) fn new<G: LieGroup, A: Advected<G>>(
-        candidates: &[Candidate<G, A>],
+        candidates: &[Candidate<'_, G, A>],
         accuracy: Accuracy,
         found: &Found,
     ) -> Self {
-        let offer = |(candidate, (steps, cost, is_bound)): (&Candidate<G, A>, &(f64, f64, bool))| Offer {
+        let offer = |(candidate, (steps, cost, is_bound)): (&Candidate<'_, G, A>, &(f64, f64, bool))| Offer {
             name: candidate.name.clone(),
             order: candidate.order,
             step: accuracy.horizon / steps,

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use super::candidates::Candidate;
 use super::error::AccuracyError;
-use super::trials::{End, Start, Trial, Trials};
+use super::trials::{End, Start, Trial, Tried};
 use crate::groups::{Advected, LieGroup};
 
 // Roots and powers without a standard library.
@@ -65,7 +65,7 @@ impl Estimate {
 
 /// The trials of a method to one horizon.
 pub(super) struct Ladder<'a, G: LieGroup<Scalar = f64>, A> {
-    pub(super) candidate: &'a Candidate<G, A>,
+    pub(super) candidate: &'a Candidate<'a, G, A>,
     /// With ever more steps.
     trials: Vec<Trial<G>>,
     /// Steps of the first.
@@ -75,12 +75,12 @@ pub(super) struct Ladder<'a, G: LieGroup<Scalar = f64>, A> {
 }
 
 impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
-    pub(super) fn new(candidate: &'a Candidate<G, A>) -> Self {
+    pub(super) fn new(candidate: &'a Candidate<'a, G, A>) -> Self {
         Self::from(candidate, 1.0)
     }
 
     /// That begins with so many steps.
-    pub(super) fn from(candidate: &'a Candidate<G, A>, first: f64) -> Self {
+    pub(super) fn from(candidate: &'a Candidate<'a, G, A>, first: f64) -> Self {
         Self { candidate, trials: Vec::new(), first, failure: None }
     }
 
@@ -95,8 +95,8 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     }
 
     /// A trial with more steps than the last.
-    pub(super) fn extend(&mut self, start: &Start<G>, steps: f64, trials: &mut Trials) {
-        let (trial, failure) = trials.run(self.candidate, start, steps);
+    pub(super) fn extend(&mut self, horizon: f64, steps: f64, tried: &mut Tried<'a, G, A>) {
+        let (trial, failure) = tried.run(self.candidate, horizon, steps);
         self.trials.push(trial);
         self.failure = failure;
     }
@@ -106,9 +106,12 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         self.finest().map_or(self.first, |finest| 2.0 * finest.steps)
     }
 
-    /// What the next trial would cost at least.
+    /// What the next trial is thought to cost.
     pub(super) fn cost_of(&self, steps: f64) -> f64 {
-        steps * self.finest().map_or(self.candidate.least, |finest| 0.5 * (finest.a_step + self.candidate.least))
+        let least = self.candidate.a_step();
+        let solved = self.finest().filter(|finest| finest.end.is_some());
+        let a_step = solved.map_or(self.candidate.a_long_step(), |finest| 0.5 * (finest.a_step + least));
+        self.candidate.once() + steps * a_step
     }
 
     /// The errors against a reference, from where they are small enough to say something; without one against the
@@ -143,10 +146,6 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         Some(shown(before, last).clamp(1.0, self.most()))
     }
 
-    fn reliable(&self, points: &[Point]) -> f64 {
-        self.shown(points).map_or(self.promised(), |shown| shown.min(self.promised()))
-    }
-
     /// The highest order that may show.
     fn most(&self) -> f64 {
         let promised = self.promised();
@@ -156,21 +155,21 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     /// What an error takes, by errors against a reference or against the finest trial.
     pub(super) fn estimate(&self, start: &Start<G>, reference: Option<&End<G>>, error: f64) -> Estimate {
         let points = self.points(start, reference);
-        let (a_step, once) = self.finest().map_or((self.candidate.least, 0.0), |trial| (trial.a_step, trial.once));
+        let (once, least) = (self.candidate.once(), self.candidate.a_step());
+        let a_step = self.finest().map_or(least, |trial| trial.a_step);
         let Some(last) = points.last() else {
-            // At least the next trial; far more, if the last has had a larger error than any that says something. Before
-            // the first nothing is known.
+            // At least the next trial; far more, if the last has had a larger error than any that says something.
+            // Before the first nothing is known.
             let (next, falls) = (self.twice_the_steps(), (LARGEST_ERROR / error).max(1.0).powf(self.most().recip()));
             let steps = if self.trials.is_empty() { 0.0 } else { next.max(0.5 * next * falls) };
-            let a_step = self.candidate.least;
-            return Estimate { steps, a_step, once, is_bound: true, is_near: false, is_short: false };
+            return Estimate { steps, a_step: least, once, is_bound: true, is_near: false, is_short: false };
         };
         let at = |steps: f64, is_near| Estimate { steps, a_step, once, is_bound: false, is_near, is_short: false };
         let Some(place) = points.iter().position(|point| point.error <= error) else {
             let order = self.shown(&points).unwrap_or(self.promised());
             let steps = last.steps * (last.error / error).powf(order.recip());
             // Shorter steps take fewer iterations than the trial's, between those and the fewest.
-            let a_step = if steps > 2.0 * last.steps { (a_step * self.candidate.least).sqrt() } else { a_step };
+            let a_step = if steps > 2.0 * last.steps { (a_step * least).sqrt() } else { a_step };
             let is_near = points.len() >= 2 && steps <= 2.0 * last.steps;
             return Estimate { a_step, ..at(steps, is_near) };
         };
@@ -195,11 +194,21 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
         Some(near.error * (near.steps / steps).powf(order))
     }
 
-    /// The error that the finest trial is left with, by those before it.
+    /// The error that the finest trial is left with, by those before it; by the order promised where these show none.
     pub(super) fn error_of_finest(&self, start: &Start<G>) -> Option<f64> {
+        self.error_left(start, self.promised())
+    }
+
+    /// The same, by order 1 where none is shown: long steps may not have the one promised.
+    pub(super) fn error_shown_of_finest(&self, start: &Start<G>) -> Option<f64> {
+        self.error_left(start, 1.0)
+    }
+
+    fn error_left(&self, start: &Start<G>, order_unseen: f64) -> Option<f64> {
         let (points, finest) = (self.points(start, None), self.finest()?);
         let last = points.last()?;
-        let ratio = (last.steps / finest.steps).powf(self.reliable(&points));
+        let order = self.shown(&points).map_or(order_unseen, |shown| shown.min(self.promised()));
+        let ratio = (last.steps / finest.steps).powf(order);
         // What is measured is the difference of two errors.
         Some(last.error * ratio / (1.0 - ratio))
     }
@@ -224,7 +233,13 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
 
     /// The order that can be relied on.
     pub(super) fn order(&self, start: &Start<G>) -> f64 {
-        self.reliable(&self.points(start, None))
+        let shown = self.shown(&self.points(start, None));
+        shown.map_or(self.promised(), |shown| shown.min(self.promised()))
+    }
+
+    /// Whether errors fall about as the order says.
+    pub(super) fn falls(&self, start: &Start<G>) -> bool {
+        self.order(start) > 0.5 * self.promised()
     }
 
     /// The least error, if errors have stopped falling.

@@ -17,9 +17,15 @@
 //! measurements: the step is taken from a run to the horizon whose error has been measured against a finer one, and of
 //! that one only the own error is extrapolated.
 //!
-//! All trials together cost at most thirty times the run, unless that has but a few dozen steps. A scene that would
-//! take more than some seconds is refused with what was tried, and a choice that was made can be [saved](SavedChoice):
-//! then one run besides the chosen one is enough.
+//! A fraction of a turn at a tolerance of some hundredths can be answered by runs of one and two steps that agree by
+//! chance: of 1200 such questions in the tests four are, and their errors are up to thirteen times the tolerance.
+//!
+//! A long step of the cheapest method tells how far the motion goes, each phase has its share, and no trial from the
+//! start is made twice. In the tests, some three hundred questions with answers of one step to thousands, all trials
+//! together cost at most thirty times the run, and half of them at most ten times. Once a run is near enough, another is
+//! made only if all are thought to stay within thirty runs of the cheapest. Before that what a run will cost isn't known,
+//! and the operations alone are bounded: a scene that would take more than some seconds is refused with what was tried. A
+//! choice that was made can be [saved](SavedChoice): then one run besides the chosen one is enough.
 
 mod candidates;
 mod choice;
@@ -88,15 +94,14 @@ impl<S: Effect> Stepper<S> {
     /// of order 4, 6, 8 or 10, with the step that is just short enough for the motion from this attitude (body to
     /// space) and body velocity.
     ///
-    /// The choice takes trial runs, which cost together up to thirty times what the run does; [`Choice::trials`] says
-    /// how much. The step is then fixed: energy and momenta are kept as by any fixed
-    /// step, and the same question gives the same bits. [`Candidates`] chooses from more methods, where a scene allows
-    /// them.
+    /// The choice takes trial runs, which cost together some ten times what the run does; [`Choice::trials`] says how
+    /// much. The step is then fixed: energy and momenta are kept as by any fixed step, and the same question gives the
+    /// same bits. [`Candidates`] chooses from more methods, where a scene allows them.
     ///
     /// # Errors
     ///
-    /// [`AccuracyError`], among others where rounding alone is larger than the tolerance at the horizon, and where trials
-    /// would take more than some seconds.
+    /// [`AccuracyError`], among others where rounding alone is larger than the tolerance at the horizon, and where
+    /// trials would take more than some seconds.
     ///
     /// # Examples
     ///

@@ -11,8 +11,8 @@ use super::Accuracy;
 use super::candidates::Candidate;
 use super::error::{AccuracyError, TooMany, refusal};
 use super::ladder::{Estimate, LARGEST_ERROR, Ladder, SMALLEST_ERROR};
-use super::search::MOST_IN_VAIN;
-use super::trials::{End, Start, Trials};
+use super::search::{MOST_IN_VAIN, MOST_RUNS};
+use super::trials::{End, Start, Trial, Tried};
 use crate::groups::{Advected, LieGroup};
 
 // Roots and powers without a standard library.
@@ -36,14 +36,15 @@ const OF_A_REFERENCE: f64 = 0.1;
 const LEAST_LEVEL: f64 = 64.0 * f64::EPSILON;
 /// A reference isn't looked for with so many times the steps of the first trial.
 const MOST_REFERENCE_STEPS: f64 = 256.0;
-/// The ranking ends where it has cost so many runs of the method that looks cheapest.
-const OF_A_RANKING: f64 = 8.0;
+/// The ranking ends where it would cost more than so many runs of the method that looks cheapest. There are up to three
+/// rankings, which leave more than a third of [`MOST_RUNS`] to the runs to the horizon.
+const OF_A_RANKING: f64 = 6.0;
 /// Methods are told apart that seem to cost up to so many times the cheapest.
 pub(super) const FAR: f64 = 2.0;
 /// How often a longer part is in the horizon.
 const LONGER: f64 = 5.0;
-/// It is shorter where a run over it would take more operations, so that the ranking ends in time.
-const OF_A_LONGER_PART: f64 = MOST_IN_VAIN / 30.0;
+/// It is shorter where a run over it would take more operations, so that as many runs as a choice may take end in time.
+const OF_A_LONGER_PART: f64 = MOST_IN_VAIN / MOST_RUNS;
 /// Of the steps that the shorter part shows, the trials over the longer one begin with these fractions.
 const ROUGHER: f64 = 4.0;
 const MUCH_ROUGHER: f64 = 16.0;
@@ -54,6 +55,8 @@ pub(super) struct Part<'a, G: LieGroup<Scalar = f64>, A> {
     /// How often it is in the horizon.
     pub(super) times: f64,
     reference: Option<End<G>>,
+    /// Its own error.
+    left: f64,
     /// Stages over the part below which no method is thought to come.
     least_stages: f64,
     /// Of the methods that are looked at.
@@ -67,17 +70,19 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
     ///
     /// That of a method, where none makes steps however short.
     pub(super) fn find(
-        candidates: &'a [Candidate<G, A>],
+        candidates: &'a [Candidate<'a, G, A>],
         accuracy: Accuracy,
-        start: &Start<G>,
-        trials: &mut Trials,
+        tried: &mut Tried<'a, G, A>,
     ) -> Result<Self, AccuracyError> {
-        // Which method needs the fewest operations, if the errors of all fell by the same law; first what has none, and
-        // last those of high orders, whose steps may be much longer than others'.
+        let start = tried.start;
+        // Sorts by what a reference would cost, if the errors of all methods fell by the same law. Methods without an
+        // error come first, and last those of high orders, whose steps may be much longer than others'.
+        let error = error_of_one_step(candidates, tried).unwrap_or(1.0);
+        let less = (error / (OF_A_REFERENCE * accuracy.tolerance)).max(1.0);
         let likely = |index: usize| {
-            let candidate: &Candidate<G, A> = &candidates[index];
-            let operations = candidate.least * accuracy.tolerance.powf(-f64::from(candidate.order).recip());
-            (!candidate.is_exact, candidate.order > HIGHEST_ORDER_OF_A_SCOUT, operations)
+            let candidate: &Candidate<'_, G, A> = &candidates[index];
+            let steps = if candidate.is_exact { 1.0 } else { less.powf(f64::from(candidate.order).recip()) };
+            (!candidate.is_exact, candidate.order > HIGHEST_ORDER_OF_A_SCOUT, candidate.untried(steps))
         };
         let mut scouts: Vec<usize> = (0..candidates.len()).collect();
         scouts.sort_by(|&a, &b| {
@@ -92,7 +97,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
                 let (start, mut ladder) = (start.until(horizon), Ladder::new(&candidates[scout]));
                 let level = level(accuracy, horizon);
                 while ladder.twice_the_steps() <= MOST_STEPS {
-                    ladder.extend(&start, ladder.twice_the_steps(), trials);
+                    ladder.extend(horizon, ladder.twice_the_steps(), tried);
                     if ladder.error_of_finest(&start).is_some_and(|error| error <= OF_A_REFERENCE * level) {
                         break;
                     }
@@ -125,21 +130,21 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
             };
             let least_stages = OF_STAGES * horizon / step * f64::from(candidates[scout].stages);
             let (start, times) = (start.until(horizon), start.horizon / horizon);
-            let mut part = Self { start, times, reference: None, least_stages, ladders };
-            if part.refer(scout, accuracy, trials).is_some() {
+            let mut part = Self { start, times, reference: None, left: 0.0, least_stages, ladders };
+            if part.refer(scout, accuracy, tried).is_some() {
                 return Ok(part);
             }
             many.get_or_insert_with(|| too_many(times * horizon / step, false));
         }
-        Err(refusal(failure, many, *trials))
+        Err(refusal(failure, many, tried.total))
     }
 
     /// A longer part, for the methods that may be cheapest; none where this one is as long.
     pub(super) fn longer(
         &self,
-        candidates: &'a [Candidate<G, A>],
+        candidates: &'a [Candidate<'a, G, A>],
         accuracy: Accuracy,
-        trials: &mut Trials,
+        tried: &mut Tried<'a, G, A>,
     ) -> Option<Self> {
         let level = self.level(accuracy);
         let scout = *self.ranking(level).first()?;
@@ -149,7 +154,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
             return None;
         }
         let most = FAR * likely;
-        let ladder = |(index, candidate): (usize, &'a Candidate<G, A>)| {
+        let ladder = |(index, candidate): (usize, &'a Candidate<'a, G, A>)| {
             let estimate = self.estimate(index, level);
             let may_be_cheaper = estimate.is_short || estimate.cost(self.times) <= most;
             let rougher = if estimate.is_short { MUCH_ROUGHER } else { ROUGHER };
@@ -158,28 +163,47 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
         };
         let ladders = candidates.iter().enumerate().map(ladder).collect();
         let start = self.start.until(accuracy.horizon / times);
-        let mut part = Self { start, times, reference: None, least_stages: 0.0, ladders };
-        part.refer(scout, accuracy, trials)?;
+        let mut part = Self { start, times, reference: None, left: 0.0, least_stages: 0.0, ladders };
+        part.refer(scout, accuracy, tried)?;
         Some(part)
     }
 
     /// Makes the reference.
-    fn refer(&mut self, scout: usize, accuracy: Accuracy, trials: &mut Trials) -> Option<()> {
+    fn refer(&mut self, scout: usize, accuracy: Accuracy, tried: &mut Tried<'a, G, A>) -> Option<()> {
         let (ladder, start) = (self.ladders[scout].as_mut()?, &self.start);
         let enough = OF_A_REFERENCE * level(accuracy, start.horizon);
         let most = MOST_REFERENCE_STEPS * ladder.twice_the_steps();
+        // Over the whole motion it isn't only compared with: the choice may rest on it.
+        let is_whole = self.times <= 1.0;
+        let left = |ladder: &Ladder<'a, G, A>| {
+            if is_whole { ladder.error_shown_of_finest(start) } else { ladder.error_of_finest(start) }
+        };
         loop {
-            let is_enough = ladder.error_of_finest(start).is_some_and(|error| error <= enough);
+            let is_enough = left(ladder).is_some_and(|error| error <= enough);
             let steps = ladder.twice_the_steps();
-            let is_too_much = steps > most || trials.operations + ladder.cost_of(steps) > MOST_IN_VAIN;
+            let is_too_much = steps > most || tried.spent() + ladder.cost_of(steps) > MOST_IN_VAIN;
             if is_enough || ladder.floor(start).is_some() || is_too_much {
                 break;
             }
-            ladder.extend(start, steps, trials);
+            ladder.extend(start.horizon, steps, tried);
         }
         let agrees = ladder.last_error(start).is_some_and(|error| error < LARGEST_ERROR);
         self.reference = ladder.finest().and_then(|finest| finest.end).filter(|_| agrees);
+        self.left = left(ladder).unwrap_or(f64::INFINITY);
         self.reference.map(|_| ())
+    }
+
+    /// What the reference is, with its own error, if the part is the whole motion.
+    pub(super) fn reference_of_whole(&self) -> Option<(End<G>, f64)> {
+        self.reference.filter(|_| self.times <= 1.0).map(|reference| (reference, self.left))
+    }
+
+    /// The trials of all methods, with the places of these.
+    pub(super) fn trials<'s>(&'s self) -> impl Iterator<Item = (usize, &'s Trial<G>)> {
+        let of = |(index, ladder): (usize, &'s Option<Ladder<'a, G, A>>)| {
+            ladder.iter().flat_map(Ladder::trials).map(move |trial| (index, trial))
+        };
+        self.ladders.iter().enumerate().flat_map(of)
     }
 
     /// The error over the part that is about the tolerance at the horizon, if errors grow in proportion to time.
@@ -229,9 +253,9 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
     }
 
     /// Tries methods over the part until all that may take less than so many times what the cheapest takes have come
-    /// near the error.
-    pub(super) fn rank(&mut self, error: f64, within: f64, trials: &mut Trials) {
-        let before = trials.operations;
+    /// near the error, or all trials have made so many operations.
+    pub(super) fn rank(&mut self, error: f64, (within, most): (f64, f64), tried: &mut Tried<'a, G, A>) {
+        let before = tried.spent();
         loop {
             let estimates: Vec<_> = (0..self.ladders.len()).map(|index| self.estimate(index, error)).collect();
             let cost = |index: usize| estimates[index].cost(self.times);
@@ -239,15 +263,30 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Part<'a, G, A> {
                 (0..self.ladders.len()).partition(|&index| estimates[index].is_near);
             let best = known.into_iter().map(cost).fold(f64::INFINITY, f64::min);
             let Some(index) = open.into_iter().min_by(|&a, &b| cost(a).total_cmp(&cost(b))) else { break };
-            let spent = trials.operations - before;
-            let is_expensive = cost(index) > within * best || spent > OF_A_RANKING * best;
-            if is_expensive || cost(index).is_infinite() || trials.operations > MOST_IN_VAIN {
+            let spent = tried.spent() - before;
+            let next = self.ladders[index].as_ref().map_or(0.0, |ladder| ladder.cost_of(ladder.twice_the_steps()));
+            let is_expensive = cost(index) > within * best || spent + next > OF_A_RANKING * best;
+            if is_expensive || cost(index).is_infinite() || tried.spent() + next > most {
                 break;
             }
             let Some(ladder) = &mut self.ladders[index] else { break };
-            ladder.extend(&self.start, ladder.twice_the_steps(), trials);
+            ladder.extend(self.start.horizon, ladder.twice_the_steps(), tried);
         }
     }
+}
+
+/// How large the error is of one step to the horizon, by the method that makes it for the least.
+fn error_of_one_step<'a, G: LieGroup<Scalar = f64>, A: Advected<G>>(
+    candidates: &'a [Candidate<'a, G, A>],
+    tried: &mut Tried<'a, G, A>,
+) -> Option<f64> {
+    let start = tried.start;
+    let cost = |candidate: &&Candidate<'_, G, A>| candidate.untried(1.0);
+    let mut ladder = Ladder::new(candidates.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)))?);
+    for steps in [1.0, 2.0] {
+        ladder.extend(start.horizon, steps, tried);
+    }
+    ladder.last_error(start)
 }
 
 fn level(accuracy: Accuracy, horizon: f64) -> f64 {

@@ -2,6 +2,22 @@
 
 use alloc::string::String;
 
+use super::Accuracy;
+use super::candidates::Candidate;
+use super::search::{Found, MOST_OPERATIONS};
+use super::trials::Tried;
+use crate::groups::{Advected, LieGroup};
+
+// Roots and powers without a standard library.
+#[cfg(not(feature = "std"))]
+use nalgebra::ComplexField as _;
+
+/// What of the tolerance the error of a choice may be that is looked at again: it is known to a tenth.
+const ACCEPTED_AGAIN: f64 = 0.9;
+/// The run that it is compared with has so many times its steps: of order 2 its own error is then less than half as
+/// large, and it costs half as much again.
+const FINER: f64 = 1.5;
+
 /// A [`Choice`](super::Choice) in short, by [`Choice::saved`](super::Choice::saved): what the same scene is given when
 /// it is asked again, by [`Candidates::with_saved`](super::Candidates::with_saved).
 ///
@@ -33,4 +49,43 @@ pub struct SavedChoice {
     pub method: String,
     /// Its step, s.
     pub step: f64,
+}
+
+impl SavedChoice {
+    /// The choice, if it is near enough: by one run besides, with shorter steps.
+    pub(super) fn again<'a, G: LieGroup<Scalar = f64>, A: Advected<G>>(
+        &self,
+        candidates: &'a [Candidate<'a, G, A>],
+        accuracy: Accuracy,
+        tried: &mut Tried<'a, G, A>,
+    ) -> Option<Found> {
+        let index = candidates.iter().position(|candidate| candidate.name == self.method)?;
+        let (candidate, start) = (&candidates[index], tried.start);
+        // A step that divides another horizon.
+        let steps = (accuracy.horizon / self.step * (1.0 - f64::EPSILON.sqrt())).ceil();
+        let finer = (FINER * steps).ceil();
+        let is_usable = self.step > 0.0 && steps >= 1.0 && candidate.untried(steps + finer) <= MOST_OPERATIONS;
+        if !is_usable {
+            return None;
+        }
+        let [run, fine] = [steps, finer].map(|steps| tried.run(candidate, accuracy.horizon, steps).0);
+        // What is measured is the difference of two errors.
+        let error =
+            start.difference(&run.end?, &fine.end?) / (1.0 - (steps / finer).powi(candidate.order.try_into().ok()?));
+        let offer = |(other, candidate): (usize, &Candidate<'_, G, A>)| {
+            if other == index { (steps, run.cost(), false) } else { (1.0, candidate.least(1.0), true) }
+        };
+        // What has no error of its own costs the same for any.
+        let by_order = |factor: f64| factor.powf(f64::from(candidate.order).recip());
+        let nearby = if candidate.is_exact { [1.0; 2] } else { [0.1, 10.0].map(by_order) };
+        (error <= ACCEPTED_AGAIN * accuracy.tolerance).then(|| Found {
+            index,
+            steps,
+            error,
+            cost: run.cost(),
+            trials: tried.total,
+            offers: candidates.iter().enumerate().map(offer).collect(),
+            nearby,
+        })
+    }
 }

@@ -8,20 +8,23 @@ use super::candidates::Candidate;
 use super::error::{AccuracyError, TooMany, refusal};
 use super::ladder::{Ladder, SMALLEST_ERROR};
 use super::part::{FAR, Part};
-use super::trials::{End, Start, Trial, Trials};
+use super::trials::{End, Start, Trial, Trials, Tried};
 use crate::groups::{Advected, LieGroup};
 
 // Roots and powers without a standard library.
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-/// All trials together may cost so many runs of the method chosen.
+/// All trials together are to cost at most so many runs of the method chosen, to which the tests hold them.
 pub(super) const MOST_RUNS: f64 = 30.0;
-/// Of that, what other methods than the first may take: the best is looked at once more.
+/// Of that, what all may have cost when the last other method has been run: the best is then run once more for
+/// rounding's sake, by about as many iterations.
 const MOST_RUNS_YET: f64 = MOST_RUNS - 2.0;
-/// Nor so many operations, some seconds of a processor,
-const MOST_OPERATIONS: f64 = 1e10;
-/// or so many before two trials to the horizon agree.
+/// And when the last ranking ends: a third of all is left to runs of other methods.
+const MOST_RUNS_RANKED: f64 = 20.0;
+/// All trials together may make so many operations, some seconds of a processor.
+pub(super) const MOST_OPERATIONS: f64 = 1e10;
+/// Before two trials to the horizon agree they may make so many: what can't be had is refused in about a second.
 pub(super) const MOST_IN_VAIN: f64 = 1e9;
 
 /// Of the tolerance, the error that is aimed at; errors aren't quite powers of the step.
@@ -31,14 +34,19 @@ const ACCEPTED: f64 = 0.8;
 /// What of the tolerance the reference may be wrong by, and what is aimed at.
 const OF_THE_REFERENCE: f64 = 0.2;
 const AIM_OF_THE_REFERENCE: f64 = 0.1;
-/// Each trial of a method has so many times the steps of the one before, or more.
+/// Each trial of a method has at least and at most so many times the steps of the one before.
 const LEAST_FACTOR: f64 = 1.5;
+const MOST_FACTOR: f64 = 4.0;
+/// Where errors fall by far less than the order says.
+const FACTOR_IN_DOUBT: f64 = 2.0;
 /// With so many times the steps the order that shows is of little importance;
 const SURE_RATIO: f64 = 1.9;
 /// with fewer an error may be so many times what was expected.
 const EXPECTED: f64 = 3.0;
 /// Errors so many times what the trials before have shown may be rounding's.
 const UNEXPECTED: f64 = 10.0;
+/// And so many times the steps.
+const UNEXPECTED_STEPS: f64 = 2.0;
 /// The first trials to the horizon are aimed at this error, if the tolerance isn't larger.
 const COARSE: f64 = 1e-2;
 /// Of the tolerance, an error so small that longer steps are tried.
@@ -85,10 +93,10 @@ struct Run<G: LieGroup> {
 
 /// A question, and what has been tried to answer it.
 struct Search<'a, G: LieGroup<Scalar = f64>, A> {
-    candidates: &'a [Candidate<G, A>],
+    candidates: &'a [Candidate<'a, G, A>],
     accuracy: Accuracy,
     start: &'a Start<G>,
-    trials: Trials,
+    tried: Tried<'a, G, A>,
     refused: Refused,
 }
 
@@ -105,19 +113,19 @@ struct Refused {
 }
 
 /// The cheapest candidate for an accuracy, by operations.
-pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
-    candidates: &[Candidate<G, A>],
+pub(super) fn search<'a, G: LieGroup<Scalar = f64>, A: Advected<G>>(
+    candidates: &'a [Candidate<'a, G, A>],
     accuracy: Accuracy,
-    start: &Start<G>,
+    mut tried: Tried<'a, G, A>,
 ) -> Result<Found, AccuracyError> {
-    let (mut trials, refused) = (Trials::default(), Refused::default());
+    tried.begin_search();
     let short = {
-        let mut part = Part::find(candidates, accuracy, start, &mut trials)?;
-        part.rank(AIM * part.level(accuracy), FAR, &mut trials);
+        let mut part = Part::find(candidates, accuracy, &mut tried)?;
+        part.rank(AIM * part.level(accuracy), (FAR, MOST_IN_VAIN), &mut tried);
         part
     };
-    let longer = short.longer(candidates, accuracy, &mut trials).map(|mut part| {
-        part.rank(AIM * part.level(accuracy), FAR, &mut trials);
+    let longer = short.longer(candidates, accuracy, &mut tried).map(|mut part| {
+        part.rank(AIM * part.level(accuracy), (FAR, MOST_IN_VAIN), &mut tried);
         part
     });
     let (short, mut part) = match longer {
@@ -125,19 +133,25 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
         None => (None, short),
     };
     let mut level = AIM * part.level(accuracy);
-    let mut search = Search { candidates, accuracy, start, trials, refused };
-    let (best, reference) = search.first(&part, level)?;
-    if let Some(error) = part.error_at(best.index, best.steps) {
+    let mut search = Search { candidates, accuracy, start: tried.start, tried, refused: Refused::default() };
+    let (best, reference) = match search.of_whole(&part) {
+        Some(found) => found,
+        None => search.first(&part, level)?,
+    };
+    if let Some(error) = part.error_at(best.index, best.steps).filter(|_| part.times > 1.0) {
         level = error * (AIM * accuracy.tolerance / best.error.max(SMALLEST_ERROR));
-        part.rank(level, NEAR, &mut search.trials);
+        part.rank(level, (NEAR, MOST_RUNS_RANKED * best.cost), &mut search.tried);
     }
     let best = search.improved(best, &reference, &part, level);
     let floor = search.rounding(&candidates[best.index], best.steps, &best.end);
     if floor > accuracy.tolerance {
-        return Err(AccuracyError::Unreachable { tolerance: accuracy.tolerance, floor, trials: search.trials });
+        return Err(AccuracyError::Unreachable { tolerance: accuracy.tolerance, floor, trials: search.tried.total });
     }
     // Of what is too expensive to be looked at over a longer part, what the shorter one says.
-    let of_short = short.as_ref().and_then(|short| Some((short, short.error_at(best.index, best.steps)?)));
+    let of_short = short.as_ref().map(|short| {
+        let level = short.error_at(best.index, best.steps);
+        (short, level.unwrap_or_else(|| AIM * short.level(accuracy)))
+    });
     let offer = |index: usize| {
         if index == best.index {
             return (best.steps, best.cost, false);
@@ -152,52 +166,27 @@ pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
         steps: best.steps,
         error: best.error,
         cost: best.cost,
-        trials: search.trials,
+        trials: search.tried.total,
         offers: (0..candidates.len()).map(offer).collect(),
         nearby: [10.0, 0.1].map(|factor| part.cost(best.index, factor * level) / usual),
     })
 }
 
-/// What of the tolerance the error of a choice may be that is looked at again: it is known to a tenth.
-const ACCEPTED_AGAIN: f64 = 0.9;
-/// The run that it is compared with has so many times its steps.
-const FINER: f64 = 1.5;
-
-/// Whether a method with so many steps is near enough: by one run besides, with shorter steps.
-pub(super) fn again<G: LieGroup<Scalar = f64>, A: Advected<G>>(
-    candidates: &[Candidate<G, A>],
-    (index, steps): (usize, f64),
-    accuracy: Accuracy,
-    start: &Start<G>,
-) -> Option<Found> {
-    let (candidate, mut trials) = (&candidates[index], Trials::default());
-    let finer = (FINER * steps).ceil();
-    if (steps + finer) * candidate.least > MOST_OPERATIONS {
-        return None;
-    }
-    let [run, fine] = [steps, finer].map(|steps| trials.run(candidate, start, steps).0);
-    // What is measured is the difference of two errors.
-    let error =
-        start.difference(&run.end?, &fine.end?) / (1.0 - (steps / finer).powi(candidate.order.try_into().ok()?));
-    let cost = run.cost();
-    let offer = |(other, candidate): (usize, &Candidate<G, A>)| {
-        if other == index { (steps, cost, false) } else { (1.0, candidate.least, true) }
-    };
-    // What has no error of its own costs the same for any.
-    let by_order = |factor: f64| factor.powf(f64::from(candidate.order).recip());
-    let nearby = if candidate.is_exact { [1.0; 2] } else { [0.1, 10.0].map(by_order) };
-    (error <= ACCEPTED_AGAIN * accuracy.tolerance).then(|| Found {
-        index,
-        steps,
-        error,
-        cost,
-        trials,
-        offers: candidates.iter().enumerate().map(offer).collect(),
-        nearby,
-    })
-}
-
 impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
+    /// The cheapest run that is near enough, and its reference, where the part is the whole motion and its trials do.
+    fn of_whole(&self, part: &Part<'a, G, A>) -> Option<(Run<G>, End<G>)> {
+        let (start, tolerance) = (self.start, self.accuracy.tolerance);
+        let (reference, left) = part.reference_of_whole().filter(|(_, left)| *left <= OF_THE_REFERENCE * tolerance)?;
+        let run = |(index, trial): (usize, &Trial<G>)| {
+            let end = trial.end?;
+            // The reference's own is what it is left with.
+            let error = start.difference(&end, &reference).max(left);
+            Some(Run { index, steps: trial.steps, error, cost: trial.cost(), end })
+        };
+        let near = part.trials().filter_map(run).filter(|run| run.error <= ACCEPTED * tolerance);
+        near.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|best| (best, reference))
+    }
+
     /// A method near enough, the one that looks cheapest if that gets there, and a run by which others are measured.
     fn first(&mut self, part: &Part<'a, G, A>, level: f64) -> Result<(Run<G>, End<G>), AccuracyError> {
         let mut floors = 0;
@@ -211,7 +200,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
                 return Ok(found);
             }
             floors += u32::from(self.refused.floor.is_some());
-            if self.refused.is_final || floors >= MOST_FLOORS || self.trials.operations > MOST_IN_VAIN {
+            if self.refused.is_final || floors >= MOST_FLOORS || self.tried.spent() > MOST_IN_VAIN {
                 break;
             }
         }
@@ -228,7 +217,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         let left = loop {
             let agree = ladder.last_error(start).is_some();
             let most = if agree { MOST_OPERATIONS } else { MOST_IN_VAIN };
-            if self.trials.operations + ladder.cost_of(steps) > most {
+            if self.tried.spent() + ladder.cost_of(steps) > most {
                 let needed = if agree { ladder.estimate(start, None, AIM * tolerance).steps } else { likely };
                 self.note_steps(index, needed.max(steps), !agree && steps >= likely);
                 if !agree {
@@ -236,7 +225,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
                 }
                 break None;
             }
-            ladder.extend(start, steps, &mut self.trials);
+            ladder.extend(start.horizon, steps, &mut self.tried);
             let Some(error) = ladder.error_of_finest(start) else {
                 steps = ladder.twice_the_steps();
                 continue;
@@ -251,14 +240,17 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
                 self.note_floor(&ladder, ABOVE_THE_FLOOR * least);
                 break None;
             }
-            // Far more than the trials before have shown: that may be rounding.
-            if last > UNEXPECTED * expected && self.note_floor(&ladder, 0.0) {
+            // Far more than the trials before have shown, and far more steps than they have: that may be rounding.
+            let is_unexpected = last > UNEXPECTED * expected || steps > UNEXPECTED_STEPS * likely;
+            if is_unexpected && self.note_floor(&ladder, 0.0) {
                 break None;
             }
             expected = error;
             let aim = ladder.estimate(start, None, AIM * tolerance).steps.ceil();
             let finer = ladder.factor(start, error / (AIM_OF_THE_REFERENCE * tolerance)).max(LEAST_FACTOR);
-            steps = if aim > 1.1 * steps { aim } else { (steps * finer).ceil() };
+            let next = if aim > 1.1 * steps { aim } else { (steps * finer).ceil() };
+            let most = if ladder.falls(start) { MOST_FACTOR } else { FACTOR_IN_DOUBT };
+            steps = next.min(most * steps);
         };
         let Some(left) = left else {
             if let (None, Some(finest)) = (&ladder.failure, ladder.finest()) {
@@ -297,7 +289,12 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     ) -> Option<Run<G>> {
         let (candidate, start, tolerance) = (&self.candidates[index], self.start, self.accuracy.tolerance);
         for _ in 0..MOST_CORRECTIONS {
-            let (trial, _) = self.trials.run(candidate, start, steps);
+            // The run may become the best, and cost less than is thought.
+            let (spent, least) = (self.tried.spent() + self.tried.price(candidate, steps), candidate.least(steps));
+            if best.is_some_and(|best| spent > MOST_RUNS_YET * best.cost.min(least)) {
+                break;
+            }
+            let (trial, _) = self.tried.run(candidate, start.horizon, steps);
             // A step that has no solution is too long.
             let error = trial.end.map_or(f64::INFINITY, |end| start.difference(&end, reference));
             let is_near = error <= ACCEPTED * tolerance;
@@ -323,12 +320,10 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         for index in part.ranking(level) {
             let estimate = part.estimate(index, level);
             let likely = estimate.cost(part.times);
-            if index == first.index {
+            if index == first.index && (part.times > 1.0 || best.error > TOO_GOOD * self.accuracy.tolerance) {
                 continue;
             }
-            if likely > WORTH_TRYING * best.cost
-                || self.trials.operations + likely > MOST_RUNS_YET * best.cost.min(likely)
-            {
+            if likely > WORTH_TRYING * best.cost {
                 break;
             }
             let steps = (estimate.steps * part.times).ceil().max(1.0);
@@ -339,13 +334,13 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     }
 
     /// By how far a run ends from one that starts some roundings away: the least tolerance that this leaves.
-    fn rounding(&mut self, candidate: &Candidate<G, A>, steps: f64, end: &End<G>) -> f64 {
-        let (trial, _) = self.trials.run(candidate, &self.start.nearby(), steps);
+    fn rounding(&mut self, candidate: &Candidate<'a, G, A>, steps: f64, end: &End<G>) -> f64 {
+        let trial = self.tried.run_nearby(candidate, steps);
         trial.end.map_or(f64::INFINITY, |nearby| self.start.difference(&nearby, end) / OF_ROUNDING)
     }
 
     /// Whether rounding leaves more than the tolerance.
-    fn note_floor(&mut self, ladder: &Ladder<'_, G, A>, least: f64) -> bool {
+    fn note_floor(&mut self, ladder: &Ladder<'a, G, A>, least: f64) -> bool {
         let Some((steps, Some(end))) = ladder.finest().map(|finest| (finest.steps, finest.end)) else { return false };
         let rounding = self.rounding(ladder.candidate, steps, &end);
         self.refused.is_final |= rounding > self.accuracy.tolerance;
@@ -364,7 +359,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
 
     fn refusal(&mut self) -> AccuracyError {
         let Refused { many, floor, failure, .. } = core::mem::take(&mut self.refused);
-        let (trials, tolerance) = (self.trials, self.accuracy.tolerance);
+        let (trials, tolerance) = (self.tried.total, self.accuracy.tolerance);
         match floor {
             Some(floor) => AccuracyError::Unreachable { tolerance, floor, trials },
             None => refusal(failure, many, trials),

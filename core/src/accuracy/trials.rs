@@ -1,7 +1,9 @@
 //! A trial: one run of one method to a horizon, and what all of them cost together.
 
+use alloc::vec::Vec;
+
 use super::Accuracy;
-use super::candidates::Candidate;
+use super::candidates::{Candidate, Method};
 use super::error::AccuracyError;
 use crate::groups::{Advected, LieGroup};
 use crate::numbers::{Coordinates as _, Entries};
@@ -74,6 +76,71 @@ impl<G: LieGroup> Trial<G> {
     }
 }
 
+/// The trials of a question. From its start none is made twice; those from a start nearby are apart, and not kept.
+pub(super) struct Tried<'a, G: LieGroup, A> {
+    pub(super) start: &'a Start<G>,
+    pub(super) total: Trials,
+    /// Operations before the search.
+    before: f64,
+    made: Vec<Made<'a, G, A>>,
+}
+
+/// A trial from the start.
+struct Made<'a, G: LieGroup, A> {
+    method: &'a Method<G, A>,
+    horizon: f64,
+    trial: Trial<G>,
+    failure: Option<AccuracyError>,
+}
+
+impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Tried<'a, G, A> {
+    pub(super) fn new(start: &'a Start<G>) -> Self {
+        Self { start, total: Trials::default(), before: 0.0, made: Vec::new() }
+    }
+
+    /// From here on trials are of the search.
+    pub(super) fn begin_search(&mut self) {
+        self.before = self.total.operations;
+    }
+
+    /// Operations of the search.
+    pub(super) fn spent(&self) -> f64 {
+        self.total.operations - self.before
+    }
+
+    #[allow(clippy::float_cmp)] // the same numbers, not computed anew
+    fn made(&self, candidate: &Candidate<'a, G, A>, horizon: f64, steps: f64) -> Option<&Made<'a, G, A>> {
+        self.made.iter().find(|made| {
+            core::ptr::eq(made.method, candidate.method) && made.horizon == horizon && made.trial.steps == steps
+        })
+    }
+
+    /// What a run to the horizon of the question is thought to add: nothing, if it has been made.
+    pub(super) fn price(&self, candidate: &Candidate<'a, G, A>, steps: f64) -> f64 {
+        self.made(candidate, self.start.horizon, steps).map_or_else(|| candidate.untried(steps), |_| 0.0)
+    }
+
+    /// A method with so many steps to a horizon, and why that failed.
+    pub(super) fn run(
+        &mut self,
+        candidate: &Candidate<'a, G, A>,
+        horizon: f64,
+        steps: f64,
+    ) -> (Trial<G>, Option<AccuracyError>) {
+        if let Some(Made { trial, failure, .. }) = self.made(candidate, horizon, steps) {
+            return (*trial, failure.clone());
+        }
+        let (trial, failure) = self.total.run(candidate, &self.start.until(horizon), steps);
+        self.made.push(Made { method: candidate.method, horizon, trial, failure: failure.clone() });
+        (trial, failure)
+    }
+
+    /// The same to the horizon of the question, from a start some roundings away.
+    pub(super) fn run_nearby(&mut self, candidate: &Candidate<'a, G, A>, steps: f64) -> Trial<G> {
+        self.total.run(candidate, &self.start.nearby(), steps).0
+    }
+}
+
 /// The trial runs that a choice has taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trials {
@@ -88,9 +155,9 @@ pub struct Trials {
 impl Trials {
     /// Runs a method with so many steps.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number, far below the largest
-    pub(super) fn run<G: LieGroup<Scalar = f64>, A: Advected<G>>(
+    fn run<G: LieGroup<Scalar = f64>, A: Advected<G>>(
         &mut self,
-        candidate: &Candidate<G, A>,
+        candidate: &Candidate<'_, G, A>,
         start: &Start<G>,
         steps: f64,
     ) -> (Trial<G>, Option<AccuracyError>) {
@@ -105,7 +172,9 @@ impl Trials {
         };
         let (trial, failure) = match run() {
             Ok(trial) => (trial, None),
-            Err(failure) => (Trial { steps, a_step: candidate.least, once: 0.0, end: None }, Some(failure)),
+            Err(failure) => {
+                (Trial { steps, a_step: candidate.a_step(), once: candidate.once(), end: None }, Some(failure))
+            }
         };
         self.runs += 1;
         self.most_steps = self.most_steps.max(steps);

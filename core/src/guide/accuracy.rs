@@ -129,7 +129,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The trials cost at most thirty times the run, mostly ten (column `trials` of
+//! In the tests the trials cost at most thirty times the run, and half of them at most ten times (column `trials` of
 //! `cargo run --release --example accuracy-cost -- --asked`). The step is then fixed: changing it from step to step would
 //! lose the long-time behaviour of the energy. [`Candidates`](crate::accuracy::Candidates)`::of_body` has splittings and
 //! collocation to choose from, too.
