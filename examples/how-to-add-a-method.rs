@@ -74,7 +74,7 @@ impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Plan<S> for Verlet<S> {
             let angle = share * self.h * momentum[axis] / self.moments[axis];
             if angle.abs() > LARGEST_TURN {
                 let (turn, largest) = (angle.abs(), self.h * LARGEST_TURN / angle.abs());
-                return Err(StepError::BeyondSolvable { step: self.h, largest, turn });
+                return Err(StepError::BeyondSolvable { step: self.h, largest, turn, body: None });
             }
             // F − I, without the cancellation of cos − 1.
             let about = Vector3::ith(axis, 1.0).cross_matrix();

@@ -254,9 +254,10 @@ impl core::error::Error for SetupError {}
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum StepError {
-    /// A part of the state isn't finite, before the step or after it.
+    /// A part of the state isn't finite, before the step or after it; or the momentum equation (2.7) isn't, where a force or
+    /// a potential has no value.
     NonFinite {
-        /// Which part.
+        /// Which part, or `"momentum equation"`.
         what: &'static str,
     },
     /// The momentum equation (2.7) has no solution that continues the identity at this step, but has one at a smaller.
@@ -265,9 +266,13 @@ pub enum StepError {
         step: f64,
         /// The largest step that this state allows, s.
         largest: f64,
-        /// How far the body would turn at the velocity that it has after the first kick, on SO(3) in rad; of several lanes
-        /// the largest.
+        /// How far the body would turn at the velocity that it has after the first kick, rad; of several lanes the largest.
+        /// A potential of the middle of a step isn't in that kick. Zero where nothing is known to turn, as in a translation.
         turn: f64,
+        /// The body of a system that this is said of, from zero: the one that would turn farthest, of several lanes in that of
+        /// the largest. None where there is but one, where none turns, or where bodies are declared as one product, of which
+        /// `turn` is that of all.
+        body: Option<usize>,
     },
     /// The body would turn by an angle of which the scalar has no digit left.
     AngleWithoutDigits {
@@ -313,19 +318,39 @@ pub enum StepError {
 impl fmt::Display for StepError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::NonFinite { what: "momentum equation" } => f.write_str(
+                "the momentum equation is not finite: a force or a potential has no value here, or one out of range; check its parameters, or start elsewhere",
+            ),
             Self::NonFinite { what } => {
                 write!(f, "the {what} is not finite; choose units in which the numbers are nearer to one")
             }
-            // In lanes that differ the largest step isn't one number.
-            Self::BeyondSolvable { step, largest, turn } if largest.is_nan() => write!(
-                f,
-                "no solution at the step {step:e} s: a body would turn by about {turn:.2e} rad, which is too far; take smaller steps, or let `or_substeps` divide such steps"
-            ),
-            Self::BeyondSolvable { step, largest, turn } => write!(
-                f,
-                "no solution at the step {step:e} s: the body would turn by about {turn:.2e} rad, and {:.2e} rad is the most from this state; take steps of at most {largest:e} s, or let `or_substeps` divide such steps. On SO(3) the kinetic part of `CayleyBody` has no such limit",
-                turn * (largest / step)
-            ),
+            Self::BeyondSolvable { step, largest, turn, body } => {
+                write!(f, "no solution at the step {step:e} s")?;
+                // In lanes that differ the largest step isn't one number.
+                let is_known = !largest.is_nan();
+                if *turn > 0.0 {
+                    f.write_str(": the body ")?;
+                    if let Some(body) = body {
+                        write!(f, "{body} (from zero) ")?;
+                    }
+                    write!(f, "would turn by about {turn:.2e} rad, ")?;
+                    if is_known {
+                        write!(f, "and {:.2e} rad is the most from this state", turn * (largest / step))?;
+                    } else {
+                        f.write_str("which is too far")?;
+                    }
+                }
+                if is_known {
+                    write!(f, "; take steps of at most {largest:e} s")?;
+                } else {
+                    f.write_str("; take smaller steps")?;
+                }
+                f.write_str(", or let `or_substeps` divide such steps")?;
+                if is_known && *turn > 0.0 {
+                    f.write_str(". On SO(3) the kinetic part of `CayleyBody` has no such limit")?;
+                }
+                Ok(())
+            }
             Self::AngleWithoutDigits { turn } => {
                 write!(f, "the body would turn by {turn:.2e} rad, of which no digit is left; take a smaller step")
             }

@@ -17,7 +17,7 @@ pub use crate::mechanics::{
     Residual, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, Sum, Term, WithKinetic, WithoutKinetic,
 };
 pub use crate::methods::{Constraint, Place, Slope};
-pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Real, real};
+pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
@@ -99,8 +99,8 @@ pub trait Parameter {
 }
 
 /// Whether all of these are finite.
-pub fn are_finite<T: Real, const N: usize>(constants: &[T; N]) -> bool {
-    constants.iter().all(|constant| crate::numbers::is_finite(*constant))
+pub fn are_finite<T: Real, const N: usize>(constants: &Numbers<T, N>) -> bool {
+    constants.0.iter().all(|constant| crate::numbers::is_finite(*constant))
 }
 
 /// As [`Parameter::validate`], for a scalar.

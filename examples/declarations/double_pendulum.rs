@@ -14,21 +14,21 @@ use nalgebra::{Matrix3, Vector3};
         - 0.5 * h * g * (w_1.dot(&(s_1 + F_1 * s_1)) + w_2.dot(&(s_2 + F_2 * s_2))),
 )]
 #[derive(Clone, Debug)]
-pub struct DoublePendulum {
+pub struct DoublePendulum<T = f64> {
     /// Nonstandard inertia of the upper link about the pivot, with the mass of the lower at their joint, kg m².
-    pub J_1: NonstandardInertia,
+    pub J_1: NonstandardInertia<T>,
     /// That of the lower link about their joint, kg m².
-    pub J_2: NonstandardInertia,
+    pub J_2: NonstandardInertia<T>,
     /// The joint from the pivot, in the upper link, m.
-    pub rho: Vector3<f64>,
+    pub rho: Vector3<T>,
     /// First moment of the upper link about the pivot, with the mass of the lower at their joint, kg m.
-    pub s_1: Vector3<f64>,
+    pub s_1: Vector3<T>,
     /// That of the lower link about their joint, kg m.
-    pub s_2: Vector3<f64>,
+    pub s_2: Vector3<T>,
     /// Gravitational acceleration, m/s².
-    pub g: f64,
+    pub g: T,
     /// The vertical, in space.
-    pub up: Vector3<f64>,
+    pub up: Vector3<T>,
 }
 
 impl DoublePendulum {

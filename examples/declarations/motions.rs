@@ -42,6 +42,7 @@ files! {
     "free symmetric": "free_axisymmetric_Jd221",
     "golden steps": "golden_steps",
     "several bodies": "several_bodies",
+    "chain steps": "chain_steps",
     "closed loop": "closed_loop",
 }
 

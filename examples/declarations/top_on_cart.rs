@@ -18,13 +18,13 @@ use nalgebra::Vector3;
     },
 )]
 #[derive(Clone, Debug)]
-pub struct TopOnCart {
-    /// Nonstandard inertia of the top about its pivot, kg m².
-    pub J_d: NonstandardInertia,
-    /// First moment of the top about its pivot, its mass times the place of its centre of mass, kg m.
-    pub s: Vector3<f64>,
+pub struct TopOnCart<T = f64> {
+    /// Nonstandard inertia of the top about its pivot, in its frame, kg m².
+    pub J_d: NonstandardInertia<T>,
+    /// First moment of the top about its pivot, its mass times the place of its centre of mass in the top's frame, kg m.
+    pub s: Vector3<T>,
     /// Mass of the cart and of the top, kg.
-    pub M: f64,
+    pub M: T,
     /// Gravitational acceleration, m/s².
-    pub g: f64,
+    pub g: T,
 }

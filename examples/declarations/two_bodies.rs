@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
     advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
     l_d = {
         // From the first body to the second, as the first sees it.
-        let U = |Q: Matrix3<f64>, y: Vector3<f64>| {
+        let U = |Q: Matrix3<T>, y: Vector3<T>| {
             let s = y.norm_squared();
             let moments = m_2 * J_1.trace() + m_1 * J_2.trace();
             let along = m_2 * y.dot(&(J_1 * y)) + m_1 * y.dot(&(Q * (J_2 * (Q.transpose() * y))));
@@ -26,19 +26,19 @@ use nalgebra::{Matrix3, Vector3};
     },
 )]
 #[derive(Clone, Debug)]
-pub struct TwoBodies {
+pub struct TwoBodies<T = f64> {
     /// Mass of the first body, kg.
-    pub m_1: f64,
+    pub m_1: T,
     /// That of the second.
-    pub m_2: f64,
+    pub m_2: T,
     /// Nonstandard inertia of the first body about its centre of mass, kg m².
-    pub K_1: NonstandardInertia,
+    pub K_1: NonstandardInertia<T>,
     /// That of the second.
-    pub K_2: NonstandardInertia,
+    pub K_2: NonstandardInertia<T>,
     /// The inertia of the first body, kg m².
-    pub J_1: Inertia,
+    pub J_1: Inertia<T>,
     /// That of the second.
-    pub J_2: Inertia,
+    pub J_2: Inertia<T>,
     /// Gravitational constant, m³/(kg s²).
-    pub G: f64,
+    pub G: T,
 }

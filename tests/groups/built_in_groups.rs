@@ -160,3 +160,20 @@ fn single_precision() {
         assert!((back.cast::<f64>() - expected).norm() < 1e-5 * (1.0 + PI));
     }
 }
+
+/// Angles, metres and stretches told apart.
+#[test]
+fn components_that_turn() {
+    let turning = |components: &[usize], of: Vec<bool>| {
+        let found: Vec<usize> = (0..of.len()).filter(|&component| of[component]).collect();
+        assert_eq!(found, components);
+    };
+    turning(&[0, 1, 2], SO3::<f64>::turning_components());
+    turning(&[0], SO2::<f64>::turning_components());
+    turning(&[0], SE2::<f64>::turning_components());
+    turning(&[0, 1, 2], SE3::<f64>::turning_components());
+    turning(&[0, 1, 2], SU2::<f64>::turning_components());
+    turning(&[2], SL2::<f64>::turning_components());
+    turning(&[], R3::<f64>::turning_components());
+    turning(&[3, 4, 5, 9, 10, 11], <[(R3, SO3); 2]>::turning_components());
+}

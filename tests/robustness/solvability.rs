@@ -2,7 +2,7 @@
 
 use checks::random::Random;
 use declarations::{CayleyTop, FreeBody, FullTop, HeavyTop, Motion, Top as _};
-use liestep::mechanics::Regular;
+use liestep::mechanics::{Effect as _, Regular};
 use liestep::motion::{DiscreteLiePoisson, Solvability};
 use liestep::prelude::*;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -137,4 +137,34 @@ fn s1_a_lost_jacobian_is_no_solution() {
     let mut state = stepper.start_with_momentum(attitude, momentum).unwrap();
     assert_eq!(stepper.solvability(&state), Solvability::Impossible);
     assert!(matches!(stepper.step(&mut state), Err(StepError::BeyondSolvable { .. })));
+}
+
+/// Repelled from the plane across `n`, by the reciprocal of how far a direction is from it.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * k * (1.0 / w.dot(&n) + 1.0 / w.dot(&(F * n))),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Repelled {
+    J_d: NonstandardInertia,
+    k: f64,
+    n: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+/// Where the torque is infinite no smaller step would do, and no bound is asked.
+#[test]
+fn an_infinite_torque_is_said() {
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    // At right angles to the last digit, with no component of their product zero.
+    let scene = Repelled { J_d, k: 1.0, n: Vector3::new(1.0, -1.0, 1.0), up: Vector3::new(1.0, 1.0, 0.0) };
+    let kick = Repelled::kick_before(&scene.constants(0.01), &scene.up);
+    assert!(kick.iter().all(|torque| torque.is_infinite()), "{kick}");
+    let stepper = Stepper::new(scene, 0.01).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::z()).unwrap();
+    let before = state;
+    let error = stepper.step(&mut state).unwrap_err();
+    assert_eq!(error, StepError::NonFinite { what: "momentum equation" });
+    assert_eq!(state, before);
 }

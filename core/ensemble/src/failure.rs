@@ -118,7 +118,8 @@ impl Failure {
             "inertia.range" => InertiaError::OutOfRange { trace: number()? }.into(),
             "step.finite" => StepError::NonFinite { what: text()? }.into(),
             "step.solvable" => {
-                StepError::BeyondSolvable { step: number()?, largest: number()?, turn: number()? }.into()
+                let (step, largest, turn) = (number()?, number()?, number()?);
+                StepError::BeyondSolvable { step, largest, turn, body: number().map(whole) }.into()
             }
             "step.angle" => StepError::AngleWithoutDigits { turn: number()? }.into(),
             "step.body" => {
@@ -194,7 +195,10 @@ fn of_inertia(error: &InertiaError) -> Parts<'_> {
 fn of_step(error: &StepError) -> Parts<'_> {
     match error {
         StepError::NonFinite { what } => ("step.finite", vec![], vec![what]),
-        StepError::BeyondSolvable { step, largest, turn } => ("step.solvable", vec![*step, *largest, *turn], vec![]),
+        StepError::BeyondSolvable { step, largest, turn, body } => {
+            let numbers = [*step, *largest, *turn].into_iter().chain(body.map(count)).collect();
+            ("step.solvable", numbers, vec![])
+        }
         StepError::AngleWithoutDigits { turn } => ("step.angle", vec![*turn], vec![]),
         StepError::NotConverged { iterations, residual } => {
             ("step.converged", vec![f64::from(*iterations), *residual], vec![])
@@ -230,7 +234,7 @@ mod tests {
 
     #[test]
     fn a_failure_is_read_as_it_was_written() {
-        let failures: [Failure; 36] = [
+        let failures: [Failure; 37] = [
             SetupError::Parameter { field: "rho", cause: "is not finite" }.into(),
             SetupError::BodyParameter { body: 99, field: "m", cause: "is not a mass" }.into(),
             SetupError::Joint { joint: 2, cause: "closes a loop" }.into(),
@@ -258,7 +262,8 @@ mod tests {
             InertiaError::Singular { smallest: 0.0 }.into(),
             InertiaError::OutOfRange { trace: 1e300 }.into(),
             StepError::NonFinite { what: "momentum after the step" }.into(),
-            StepError::BeyondSolvable { step: 0.1, largest: 1.0 / 3.0, turn: 2.0 }.into(),
+            StepError::BeyondSolvable { step: 0.1, largest: 1.0 / 3.0, turn: 2.0, body: None }.into(),
+            StepError::BeyondSolvable { step: 0.1, largest: 1.0 / 3.0, turn: 2.0, body: Some(3) }.into(),
             StepError::AngleWithoutDigits { turn: 1e20 }.into(),
             StepError::NotConverged { iterations: 20, residual: 0.5 }.into(),
             StepError::WrongBranch { determinant: -1.0 }.into(),

@@ -96,8 +96,11 @@ fn setup_errors() {
 fn step_errors() {
     let errors = [
         StepError::NonFinite { what: "momentum" },
-        StepError::BeyondSolvable { step: 0.125, largest: 0.0815, turn: 2.5 },
-        StepError::BeyondSolvable { step: 0.125, largest: f64::NAN, turn: 2.5 },
+        StepError::NonFinite { what: "momentum equation" },
+        StepError::BeyondSolvable { step: 0.125, largest: 0.0815, turn: 2.5, body: None },
+        StepError::BeyondSolvable { step: 0.125, largest: 0.0815, turn: 2.5, body: Some(7) },
+        StepError::BeyondSolvable { step: 0.125, largest: f64::NAN, turn: 2.5, body: Some(7) },
+        StepError::BeyondSolvable { step: 0.125, largest: 0.0815, turn: 0.0, body: None },
         StepError::AngleWithoutDigits { turn: 5e15 },
         StepError::NotConverged { iterations: 60, residual: 0.5 },
         StepError::WrongBranch { determinant: -0.25 },
@@ -107,10 +110,19 @@ fn step_errors() {
     ];
     for error in errors {
         let parts: &[&str] = match error {
-            StepError::NonFinite { .. } => &["momentum", "not finite"],
-            StepError::BeyondSolvable { largest, .. } if largest.is_nan() => {
-                &["1.25e-1 s", "2.50e0 rad", "or_substeps"]
+            StepError::NonFinite { what: "momentum equation" } => &["a force or a potential has no value here"],
+            StepError::NonFinite { .. } => &["momentum", "not finite", "choose units"],
+            StepError::BeyondSolvable { largest, .. } if largest.is_nan() => &[
+                "1.25e-1 s",
+                "the body 7 (from zero) would",
+                "2.50e0 rad, which is too far; take smaller",
+                "or_substeps",
+            ],
+            StepError::BeyondSolvable { turn: 0.0, .. } => {
+                assert!(!error.to_string().contains("rad"), "{error}");
+                &["at the step 1.25e-1 s; take steps of at most 8.15e-2 s"]
             }
+            StepError::BeyondSolvable { body: Some(_), .. } => &["the body 7 (from zero) would", "2.50e0 rad"],
             StepError::BeyondSolvable { .. } => &[
                 "no solution",
                 "1.25e-1 s",

@@ -30,78 +30,78 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
     }
 
     fn compose(&self, right: &Self) -> Self {
-        filled(*self, |k| self[k].compose(&right[k]))
+        filled!(*self, |k| self[k].compose(&right[k]))
     }
 
     fn inverse(&self) -> Self {
-        filled(*self, |k| self[k].inverse())
+        filled!(*self, |k| self[k].inverse())
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn matrix(&self) -> Self::Matrix {
-        filled(zero::<G, N>(), |k| self[k].matrix())
+        filled!(zero::<G, N>(), |k| self[k].matrix())
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_matrix_unchecked(matrix: Self::Matrix) -> Self {
-        filled([G::identity(); N], |k| G::from_matrix_unchecked(matrix[k]))
+        filled!([G::identity(); N], |k| G::from_matrix_unchecked(matrix[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn hat(components: &Self::Vector) -> Self::Matrix {
-        filled(zero::<G, N>(), |k| G::hat(&components.0[k]))
+        filled!(zero::<G, N>(), |k| G::hat(&components.0[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn vee(matrix: &Self::Matrix) -> Self::Vector {
-        Bodies(filled([G::Vector::zero(); N], |k| G::vee(&matrix[k])))
+        Bodies(filled!([G::Vector::zero(); N], |k| G::vee(&matrix[k])))
     }
 
     fn adjoint(&self, velocity: &Self::Vector) -> Self::Vector {
-        Bodies(filled(velocity.0, |k| self[k].adjoint(&velocity.0[k])))
+        Bodies(filled!(velocity.0, |k| self[k].adjoint(&velocity.0[k])))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_transpose(&self, momentum: &Self::Vector) -> Self::Vector {
-        Bodies(filled(momentum.0, |k| self[k].adjoint_transpose(&momentum.0[k])))
+        Bodies(filled!(momentum.0, |k| self[k].adjoint_transpose(&momentum.0[k])))
     }
 
     fn lie_bracket(xi: &Self::Vector, eta: &Self::Vector) -> Self::Vector {
-        Bodies(filled(xi.0, |k| G::lie_bracket(&xi.0[k], &eta.0[k])))
+        Bodies(filled!(xi.0, |k| G::lie_bracket(&xi.0[k], &eta.0[k])))
     }
 
     fn lie_bracket_transpose(xi: &Self::Vector, momentum: &Self::Vector) -> Self::Vector {
-        Bodies(filled(xi.0, |k| G::lie_bracket_transpose(&xi.0[k], &momentum.0[k])))
+        Bodies(filled!(xi.0, |k| G::lie_bracket_transpose(&xi.0[k], &momentum.0[k])))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_increment(increment: &Self::Matrix) -> Self {
-        filled([G::identity(); N], |k| G::from_increment(&increment[k]))
+        filled!([G::identity(); N], |k| G::from_increment(&increment[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment(&self) -> Self::Matrix {
-        filled(zero::<G, N>(), |k| self[k].increment())
+        filled!(zero::<G, N>(), |k| self[k].increment())
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn inverse_increment(increment: &Self::Matrix) -> Self::Matrix {
-        filled(*increment, |k| G::inverse_increment(&increment[k]))
+        filled!(*increment, |k| G::inverse_increment(&increment[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &Self::Matrix) -> Self::Matrix {
-        filled(*increment, |k| self[k].change(&increment[k]))
+        filled!(*increment, |k| self[k].change(&increment[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn advance(&self, increment: &Self::Matrix) -> Self {
-        filled(*self, |k| self[k].advance(&increment[k]))
+        filled!(*self, |k| self[k].advance(&increment[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_transpose_increment(increment: &Self::Matrix, momentum: &Self::Vector) -> Self::Vector {
-        Bodies(filled(momentum.0, |k| G::adjoint_transpose_increment(&increment[k], &momentum.0[k])))
+        Bodies(filled!(momentum.0, |k| G::adjoint_transpose_increment(&increment[k], &momentum.0[k])))
     }
 
     fn named_numbers() -> Vec<(String, &'static str)> {
@@ -114,6 +114,10 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
 
     fn named_components() -> Vec<(String, [&'static str; 2])> {
         of_bodies::<_, N>(&G::named_components())
+    }
+
+    fn turning_components() -> Vec<bool> {
+        G::turning_components().repeat(N)
     }
 
     /// The sum of those of the bodies.
@@ -139,16 +143,27 @@ fn of_bodies<U: Copy, const N: usize>(names: &[(String, U)]) -> Vec<(String, U)>
     (1..=N).flat_map(of_body).collect()
 }
 
+/// The lanes in which all bodies are near the identity. A macro, as a function given to another isn't inlined for sure.
+macro_rules! all_near {
+    ($is_near:ident, $coordinates:ident) => {{
+        let mut near = !nowhere::<G::Scalar>();
+        for body in &$coordinates.0 {
+            near = near & R::$is_near(body);
+        }
+        near
+    }};
+}
+
 /// Body by body.
 impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment(xi: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
-        filled(zero::<G, N>(), |k| R::increment(&xi.0[k]))
+        filled!(zero::<G, N>(), |k| R::increment(&xi.0[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment_of_half(half: &Bodies<G::Vector, N>) -> [G::Matrix; N] {
-        filled(zero::<G, N>(), |k| R::increment_of_half(&half.0[k]))
+        filled!(zero::<G, N>(), |k| R::increment_of_half(&half.0[k]))
     }
 
     fn local_coordinates(element: &[G; N]) -> Option<Bodies<G::Vector, N>> {
@@ -165,17 +180,17 @@ impl<R: Retraction<G>, G: LieGroup, const N: usize> Retraction<[G; N]> for R {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_near_identity(xi: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
-        xi.0.iter().fold(!nowhere::<G::Scalar>(), |near, xi| near & R::is_near_identity(xi))
+        all_near!(is_near_identity, xi)
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_half_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
-        half.0.iter().fold(!nowhere::<G::Scalar>(), |near, half| near & R::is_half_near_identity(half))
+        all_near!(is_half_near_identity, half)
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_half_well_near_identity(half: &Bodies<G::Vector, N>) -> Mask<G::Scalar> {
-        half.0.iter().fold(!nowhere::<G::Scalar>(), |near, half| near & R::is_half_well_near_identity(half))
+        all_near!(is_half_well_near_identity, half)
     }
 }
 
@@ -205,25 +220,25 @@ impl<G: LieGroup, const K: usize, const N: usize> Factor<K> for [G; N] {
 /// What each body sees.
 impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
     fn seen_from(&self, attitude: &[G; N]) -> Self {
-        filled(*self, |k| self[k].seen_from(&attitude[k]))
+        filled!(*self, |k| self[k].seen_from(&attitude[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
-        filled(*self, |k| self[k].change(&increment[k]))
+        filled!(*self, |k| self[k].change(&increment[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
-        filled(*self, |k| self[k].advect(&increment[k]))
+        filled!(*self, |k| self[k].advect(&increment[k]))
     }
 
     fn rate(&self, velocity: &[G::Matrix; N]) -> Self {
-        filled(*self, |k| self[k].rate(&velocity[k]))
+        filled!(*self, |k| self[k].rate(&velocity[k]))
     }
 
     fn seen_through(&self, matrix: &[G::Matrix; N], inverse: &[G::Matrix; N]) -> Self {
-        filled(*self, |k| self[k].seen_through(&matrix[k], &inverse[k]))
+        filled!(*self, |k| self[k].seen_through(&matrix[k], &inverse[k]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]

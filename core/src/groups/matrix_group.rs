@@ -1,15 +1,16 @@
 //! The group of matrices that a set of generators declares.
 
+use alloc::vec::Vec;
 use core::fmt;
 use core::marker::PhantomData;
 
-use nalgebra::{RealField, SMatrix, SVector};
+use nalgebra::{RealField, SMatrix, SVector, Vector1};
 
 use super::LieGroup;
 use super::generators::{
     Generators, NonZero, dynamic, nonzero_entries, products_vanish, squared_lengths, structure_constants,
 };
-use crate::numbers::{Lanes, Real, real, reported};
+use crate::numbers::{Lanes, Real, lanes_of_fields, real, reported};
 
 /// An element of the matrix group that `K` declares by its [`Generators`].
 ///
@@ -42,7 +43,7 @@ impl fmt::Display for NotInGroup {
 
 impl core::error::Error for NotInGroup {}
 
-impl<K: fmt::Debug, T: RealField + Copy, const N: usize, const D: usize> fmt::Debug for MatrixGroup<K, T, N, D> {
+impl<K: fmt::Debug, T: Real, const N: usize, const D: usize> fmt::Debug for MatrixGroup<K, T, N, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("MatrixGroup").field(&self.0).finish()
     }
@@ -79,12 +80,24 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> T
     }
 }
 
-impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
+impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
     const ENTRIES: [NonZero<N>; D] = nonzero_entries(&K::GENERATORS);
     const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
     /// Elements are multiplied by adding what they have beside `I`.
     const IS_ADDED: bool = products_vanish(&K::GENERATORS);
+
+    /// The inverse of an element, lane by lane: what the group's own formula asks of its entries differs between lanes.
+    #[inline]
+    fn inverse_of(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+        lane_by_lane(matrix, K::inverse::<T::Element>)
+    }
+
+    /// How far the element is from the relation, likewise.
+    #[inline]
+    fn relation(&self) -> T {
+        lane_by_lane::<T, Vector1<T>, N>(&self.0, |lane| Vector1::new(K::relation(lane))).x
+    }
 
     /// `tr(E_kᵀ M)` for all `k`.
     #[inline]
@@ -103,13 +116,27 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> M
     }
 }
 
+/// What a function makes of the matrix in each lane.
+#[inline]
+pub(crate) fn lane_by_lane<T: Real, V: Lanes, const N: usize>(
+    matrix: &SMatrix<T, N, N>,
+    of: impl Fn(&SMatrix<T::Element, N, N>) -> V::Lane,
+) -> V {
+    let mut all = V::splat(&of(&Lanes::lane(matrix, 0)));
+    for lane in 1..T::LANES {
+        // Numbers alone, which any lane can have.
+        let _ = all.set_lane(lane, &of(&Lanes::lane(matrix, lane)));
+    }
+    all
+}
+
 /// The entries that aren't zero, with their places.
 #[inline]
 fn nonzero<const N: usize>(matrix: &[[f64; N]; N]) -> impl Iterator<Item = (usize, usize, f64)> {
     (0..N * N).map(|place| (place / N, place % N, matrix[place / N][place % N])).filter(|entry| entry.2 != 0.0)
 }
 
-impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> LieGroup for MatrixGroup<K, T, N, D> {
+impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for MatrixGroup<K, T, N, D> {
     type Scalar = T;
     type Vector = SVector<T, D>;
     type Matrix = SMatrix<T, N, N>;
@@ -120,27 +147,27 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
         Self::from_matrix_unchecked(SMatrix::identity())
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn compose(&self, right: &Self) -> Self {
         Self::from_matrix_unchecked(self.0 * right.0)
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn inverse(&self) -> Self {
-        Self::from_matrix_unchecked(K::inverse(&self.0))
+        Self::from_matrix_unchecked(Self::inverse_of(&self.0))
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn matrix(&self) -> SMatrix<T, N, N> {
         self.0
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_matrix_unchecked(matrix: SMatrix<T, N, N>) -> Self {
         Self(matrix, PhantomData)
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn hat(components: &SVector<T, D>) -> SMatrix<T, N, N> {
         let mut algebra = SMatrix::zeros();
         for (k, (entries, count)) in Self::ENTRIES.iter().enumerate() {
@@ -152,24 +179,24 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     }
 
     /// Of a matrix that isn't in the algebra, the components of its orthogonal projection.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn vee(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
         let pairings = Self::pairings(matrix);
         SVector::from_fn(|k, _| pairings[k] * real(1.0 / Self::SQUARED_LENGTHS[k]))
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint(&self, velocity: &SVector<T, D>) -> SVector<T, D> {
-        Self::vee(&(self.0 * Self::hat(velocity) * K::inverse(&self.0)))
+        Self::vee(&(self.0 * Self::hat(velocity) * Self::inverse_of(&self.0)))
     }
 
     /// Components `⟨μ, F E_k F⁻¹⟩`.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_transpose(&self, momentum: &SVector<T, D>) -> SVector<T, D> {
-        Self::pairings(&(self.0.transpose() * Self::dual_hat(momentum) * K::inverse(&self.0).transpose()))
+        Self::pairings(&(self.0.transpose() * Self::dual_hat(momentum) * Self::inverse_of(&self.0).transpose()))
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lie_bracket(xi: &SVector<T, D>, eta: &SVector<T, D>) -> SVector<T, D> {
         let mut bracket = SVector::zeros();
         for (i, constants) in Self::STRUCTURE.iter().enumerate() {
@@ -180,7 +207,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
         bracket
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn lie_bracket_transpose(xi: &SVector<T, D>, momentum: &SVector<T, D>) -> SVector<T, D> {
         let mut transposed = SVector::zeros();
         for (i, constants) in Self::STRUCTURE.iter().enumerate() {
@@ -191,25 +218,25 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
         transposed
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn from_increment(increment: &SMatrix<T, N, N>) -> Self {
         Self::from_matrix_unchecked(increment + SMatrix::identity())
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment(&self) -> SMatrix<T, N, N> {
         self.0 - SMatrix::identity()
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn inverse_increment(increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return -increment;
         }
-        -(K::inverse(&(increment + SMatrix::identity())) * increment)
+        -(Self::inverse_of(&(increment + SMatrix::identity())) * increment)
     }
 
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return *increment;
@@ -218,7 +245,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
     }
 
     /// With `F⁻¹ = I + E`, `E = −F⁻¹D`: components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
         if const { Self::IS_ADDED } {
             return SVector::zeros();
@@ -229,31 +256,25 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> L
         Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))
     }
 
+    /// Those whose generators are skew.
+    fn turning_components() -> Vec<bool> {
+        let is_skew =
+            |e: &[[f64; N]; N]| (0..N * N).all(|place| e[place / N][place % N] + e[place % N][place / N] == 0.0);
+        K::GENERATORS.iter().map(is_skew).collect()
+    }
+
     /// NaN where an entry isn't finite, whether or not the relation depends on it.
     fn defect(&self) -> T {
-        K::relation(&self.0) + self.0.sum() * T::zero()
+        self.relation() + self.0.sum() * T::zero()
     }
 }
 
-impl<K, T: Real<Element: Real>, const N: usize, const D: usize> Lanes for MatrixGroup<K, T, N, D> {
-    type Lane = MatrixGroup<K, T::Element, N, D>;
-
-    fn splat(lane: &Self::Lane) -> Self {
-        Self::from_matrix_unchecked(Lanes::splat(&lane.0))
-    }
-
-    fn lane(&self, k: usize) -> Self::Lane {
-        MatrixGroup::from_matrix_unchecked(Lanes::lane(&self.0, k))
-    }
-
-    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        Lanes::set_lane(&mut self.0, k, &lane.0)
-    }
-}
+lanes_of_fields!(
+    impl[K, T: Real, const N: usize, const D: usize] MatrixGroup<K, T, N, D> => MatrixGroup<K, T::Element, N, D>, as MatrixGroup
+    { lanes: [0], scalars: [], shared: [1] }
+);
 
 /// The generators as matrices of the scalar.
-pub(crate) fn basis<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize>(
-    k: usize,
-) -> SMatrix<T, N, N> {
+pub(crate) fn basis<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(k: usize) -> SMatrix<T, N, N> {
     dynamic(&K::GENERATORS[k])
 }

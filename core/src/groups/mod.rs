@@ -53,8 +53,8 @@ pub use generators::{Generators, matrix};
 pub(crate) use generators::{inverse, is_closed_under_cayley, products_vanish};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
-pub(crate) use matrix_group::basis;
 pub use matrix_group::{MatrixGroup, NotInGroup};
+pub(crate) use matrix_group::{basis, lane_by_lane};
 pub use product::Factor;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub(crate) use rotation_functions::rotation_coefficients;
@@ -69,6 +69,7 @@ pub use translations::{R1, R2, R3, TranslationGenerators};
 use alloc::format;
 use alloc::string::String;
 use alloc::string::ToString as _;
+use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt::Debug;
 
@@ -213,6 +214,13 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     #[must_use]
     fn named_components() -> Vec<(String, [&'static str; 2])> {
         (1..=Self::DIMENSION).map(|component| (component.to_string(), [""; 2])).collect()
+    }
+
+    /// Which components of a velocity are angular ones, rad/s: all of SO(3), none of a translation, on a product those of its
+    /// factors. Errors say by these how far a body would turn. Nothing is known of a group by default.
+    #[must_use]
+    fn turning_components() -> Vec<bool> {
+        vec![false; Self::DIMENSION]
     }
 
     /// How far the matrix is from satisfying the relation of the group; zero on it.

@@ -181,6 +181,10 @@ macro_rules! product {
                 of_factors([$($group::named_components()),+])
             }
 
+            fn turning_components() -> Vec<bool> {
+                [$($group::turning_components()),+].concat()
+            }
+
             /// The sum of those of the factors.
             fn defect(&self) -> $scalar {
                 $scalar::zero() $(+ self.$place.defect())+

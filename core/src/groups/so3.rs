@@ -2,6 +2,7 @@
 
 use alloc::borrow::ToOwned as _;
 use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -315,6 +316,10 @@ impl<T: Real> LieGroup for SO3<T> {
 
     fn named_components() -> Vec<(String, [&'static str; 2])> {
         ["x", "y", "z"].map(|name| (name.to_owned(), ["rad/s", "kg m²/s"])).into()
+    }
+
+    fn turning_components() -> Vec<bool> {
+        vec![true; 3]
     }
 
     /// `‖RᵀR − I‖` in the Frobenius norm.

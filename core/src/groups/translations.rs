@@ -4,6 +4,7 @@ use nalgebra::{RealField, SMatrix, SVector};
 
 use super::generators::{Generators, matrix};
 use super::matrix_group::MatrixGroup;
+use crate::numbers::Real;
 
 /// The translations of the line; see [`R3`].
 pub type R1<T = f64> = MatrixGroup<TranslationGenerators, T, 2, 1>;
@@ -58,13 +59,13 @@ macro_rules! translations {
             }
         }
 
-        impl<T: RealField + Copy> From<SVector<T, $dimension>> for MatrixGroup<TranslationGenerators, T, $size, $dimension> {
+        impl<T: Real> From<SVector<T, $dimension>> for MatrixGroup<TranslationGenerators, T, $size, $dimension> {
             fn from(x: SVector<T, $dimension>) -> Self {
                 Self::from_matrix_unchecked(translation(&x))
             }
         }
 
-        impl<T: RealField + Copy> MatrixGroup<TranslationGenerators, T, $size, $dimension> {
+        impl<T: Real> MatrixGroup<TranslationGenerators, T, $size, $dimension> {
             /// The translation `x`.
             #[must_use]
             pub fn translation(&self) -> SVector<T, $dimension> {
@@ -79,7 +80,7 @@ translations!(3, 2, [0, 1]);
 translations!(4, 3, [0, 1, 2]);
 
 /// `[I, x; 0, 1]`.
-fn translation<T: RealField + Copy, const N: usize, const D: usize>(x: &SVector<T, D>) -> SMatrix<T, N, N> {
+fn translation<T: Real, const N: usize, const D: usize>(x: &SVector<T, D>) -> SMatrix<T, N, N> {
     let mut matrix = SMatrix::identity();
     for k in 0..D {
         matrix[(k, D)] = x[k];

@@ -156,10 +156,13 @@
 //! | [`Between<A, B, N>`](crate::mechanics::Between), [`Pairs<N>`](crate::mechanics::Pairs) | two bodies: put at `A` and `B`, or at all pairs |
 //! | [`Coupled<N>`](crate::mechanics::Coupled) | two bodies, by a potential that depends on where both are within the step: put at neighbours in a row |
 //!
-//! [`Placed`](crate::mechanics::Placed) has a row of three as a listing. With potentials of the ends of a step each body is
-//! solved by itself, and a step has to be short for the stiffest of them. With one of the middle, at `Coupled` places, the
-//! row is solved together, and the step isn't bounded by 2/ω of what is stiff there, as a rod. A term that couples velocities doesn't
-//! compile there. Links on ball joints couple them, and have a stepper of their own, whose step takes a time proportional to their number:
+//! [`Placed`](crate::mechanics::Placed) has a row of three as a listing. With potentials of the ends of a step each
+//! body is solved by itself, and a step has to be short for the stiffest of them. With one of the middle, at `Coupled`
+//! places, the row is solved together, and the step isn't bounded by 2/ω of what is stiff there, as a rod. No body may
+//! turn by more than a right angle then: such a step is an error that names the body. `examples/elastic-rod.rs` has one
+//! either way, and what a step takes: with `times` some 5 µs a body in a row of 10 as of 100, three iterations, and 0.3
+//! µs with potentials of the ends. A term that couples velocities doesn't compile there. Links on ball joints couple
+//! them, and have a stepper of their own, whose step takes a time proportional to their number:
 //! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
 //!
 //! # Joints

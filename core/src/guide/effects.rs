@@ -171,6 +171,6 @@
 //! | dipole | 663 | 66 |
 //! | gravity gradient | 706 | 82 |
 //! | spring | 779 | 110 |
-//! | rotor (in one declaration: 817, 78) | 874 | 70 |
-//! | drag | 755 | 76 |
+//! | rotor (in one declaration: 817, 78) | 847 | 70 |
+//! | drag | 756 | 76 |
 //! | magnetic damping | 1792 | 160 |

@@ -72,8 +72,8 @@ pub struct Residual<V> {
 pub struct NewtonUpdate<V, S, T> {
     /// What is to be subtracted from half the coordinates.
     pub update: V,
-    /// The Jacobian in factors, by which another update is solved.
-    pub factors: S,
+    /// The Jacobian in factors, by which another update is solved; none are kept where neighbours are joined.
+    pub factors: Option<S>,
     /// Its determinant, of several bodies relative to the diagonal.
     pub det: T,
 }
@@ -84,21 +84,26 @@ impl<T: Real, V: Coordinates<T>> NewtonUpdate<V, V::Square, T> {
     #[must_use]
     pub fn of(residual: &V, jacobian: &V::Square, pattern: Pattern) -> Self {
         let (factors, det) = V::factorise_with(jacobian, pattern);
-        Self { update: V::solve_again_with(&factors, det, pattern, residual), factors, det }
+        Self { update: V::solve_again_with(&factors, det, pattern, residual), factors: Some(factors), det }
     }
 }
 
-/// One of Newton's iterations whose matrix joins neighbours. There are no factors for another update.
+/// One of Newton's iterations, by this residual and Jacobian unless neighbours are joined.
 #[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn linked_update<E: Effect + ?Sized>(
+pub(crate) fn update_by<E: Effect + ?Sized>(
+    system: impl FnOnce(&E::Constants, &E::StepTerms, &Vector<E>) -> (Vector<E>, Square<E>),
     constants: &E::Constants,
     terms: &E::StepTerms,
     half: &Vector<E>,
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
+    if const { !E::LINKS_NEIGHBOURS } {
+        let (residual, jacobian) = system(constants, terms, half);
+        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
+    }
     let mut links = Vector::<E>::no_links();
     let (residual, jacobian) = E::newton_linked(constants, terms, half, &mut links);
     let (update, det) = Vector::<E>::solve_linked(&jacobian, &links, pattern::<E>(), &residual);
-    NewtonUpdate { update, factors: jacobian, det }
+    NewtonUpdate { update, factors: None, det }
 }
 
 /// What is known of the Newton matrix of an effect.
@@ -277,11 +282,7 @@ pub trait Effect: Term {
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        if const { Self::LINKS_NEIGHBOURS } {
-            return linked_update::<Self>(constants, terms, half);
-        }
-        let (residual, jacobian) = Self::newton_system(constants, terms, half);
-        NewtonUpdate::of(&residual, &jacobian, pattern::<Self>())
+        update_by::<Self>(Self::newton_system, constants, terms, half)
     }
 
     /// [`newton_system`](Self::newton_system), with the blocks that join neighbours in a row of bodies added to those that

@@ -8,7 +8,7 @@ use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{
-    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, linked_update, pattern,
+    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_by,
 };
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
@@ -269,11 +269,7 @@ where
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         match (A::PARTS.unknown, B::PARTS.unknown) {
-            (true, true) if Self::LINKS_NEIGHBOURS => linked_update::<Self>(constants, terms, half),
-            (true, true) => {
-                let (residual, jacobian) = Self::newton_system(constants, terms, half);
-                NewtonUpdate::of(&residual, &jacobian, pattern::<Self>())
-            }
+            (true, true) => update_by::<Self>(Self::newton_system, constants, terms, half),
             (true, false) => A::newton_update(&constants.0, &terms.0, half),
             (false, _) => B::newton_update(&constants.1, &terms.1, half),
         }

@@ -6,6 +6,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 use super::blocks::{Blocks, Pattern};
 use super::coordinates::Coordinates;
 use super::entries::Entries;
+use super::lanes::{Lanes, lanes_of_fields};
 use super::scalar::{Mask, Real, real};
 
 /// The components of `N` equal bodies, one after the other.
@@ -16,22 +17,27 @@ pub struct Bodies<V, const N: usize>(pub [V; N]);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockDiagonal<S, const N: usize>(pub [S; N]);
 
-/// Something for each body, in an array that is full of something before. `core::array::from_fn` isn't always inlined,
-/// and copies what it makes.
-#[cfg_attr(not(debug_assertions), inline(always))]
-pub(crate) fn filled<X: Copy, const N: usize>(mut array: [X; N], mut of: impl FnMut(usize) -> X) -> [X; N] {
-    for (k, entry) in array.iter_mut().enumerate() {
-        *entry = of(k);
-    }
-    array
+/// An array with an entry for each body, made of one that is full already. A macro, as what isn't inlined has no vector
+/// instructions of the machine: the compiler doesn't always inline `core::array::from_fn`, which copies besides, nor the
+/// closure that a function would take.
+macro_rules! filled {
+    ($array:expr, |$k:ident| $of:expr $(,)?) => {{
+        let mut array = $array;
+        for ($k, entry) in array.iter_mut().enumerate() {
+            *entry = $of;
+        }
+        array
+    }};
 }
+
+pub(crate) use filled;
 
 impl<V: Copy + Add<Output = V>, const N: usize> Add for Bodies<V, N> {
     type Output = Self;
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
-        Self(filled(self.0, |k| self.0[k] + other.0[k]))
+        Self(filled!(self.0, |k| self.0[k] + other.0[k]))
     }
 }
 
@@ -40,7 +46,7 @@ impl<V: Copy + Sub<Output = V>, const N: usize> Sub for Bodies<V, N> {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn sub(self, other: Self) -> Self {
-        Self(filled(self.0, |k| self.0[k] - other.0[k]))
+        Self(filled!(self.0, |k| self.0[k] - other.0[k]))
     }
 }
 
@@ -49,7 +55,7 @@ impl<V: Copy + Neg<Output = V>, const N: usize> Neg for Bodies<V, N> {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn neg(self) -> Self {
-        Self(filled(self.0, |k| -self.0[k]))
+        Self(filled!(self.0, |k| -self.0[k]))
     }
 }
 
@@ -58,7 +64,7 @@ impl<T: Real, V: Copy + Mul<T, Output = V>, const N: usize> Mul<T> for Bodies<V,
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, factor: T) -> Self {
-        Self(filled(self.0, |k| self.0[k] * factor))
+        Self(filled!(self.0, |k| self.0[k] * factor))
     }
 }
 
@@ -67,7 +73,7 @@ impl<S: Copy + Add<Output = S>, const N: usize> Add for BlockDiagonal<S, N> {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn add(self, other: Self) -> Self {
-        Self(filled(self.0, |k| self.0[k] + other.0[k]))
+        Self(filled!(self.0, |k| self.0[k] + other.0[k]))
     }
 }
 
@@ -76,7 +82,7 @@ impl<T: Real, S: Copy + Mul<T, Output = S>, const N: usize> Mul<T> for BlockDiag
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, factor: T) -> Self {
-        Self(filled(self.0, |k| self.0[k] * factor))
+        Self(filled!(self.0, |k| self.0[k] * factor))
     }
 }
 
@@ -85,7 +91,7 @@ impl<V: Copy, S: Copy + Mul<V, Output = V>, const N: usize> Mul<Bodies<V, N>> fo
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn mul(self, components: Bodies<V, N>) -> Bodies<V, N> {
-        Bodies(filled(components.0, |k| self.0[k] * components.0[k]))
+        Bodies(filled!(components.0, |k| self.0[k] * components.0[k]))
     }
 }
 
@@ -103,7 +109,7 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for [E; N] {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn zip(&self, other: &Self, combine: &mut impl FnMut(T, T) -> T) -> Self {
-        filled(*self, |k| self[k].zip(&other[k], combine))
+        filled!(*self, |k| self[k].zip(&other[k], combine))
     }
 }
 
@@ -122,6 +128,11 @@ impl<T: Real, E: Entries<T>, const N: usize> Entries<T> for Bodies<E, N> {
         Self(self.0.zip(&other.0, combine))
     }
 }
+
+lanes_of_fields!(
+    impl[V: Lanes, const N: usize] Bodies<V, N> => Bodies<V::Lane, N>, as Bodies
+    { lanes: [0], scalars: [], shared: [] }
+);
 
 /// One block a body.
 const WHOLE: Pattern = Pattern { factors: Blocks::WHOLE, apart: Blocks::WHOLE };
@@ -168,7 +179,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn map_four(matrix: &Self::Square, four: &Self::Four) -> Self::Four {
-        Bodies(filled(four.0, |body| V::map_four(&matrix.0[body], &four.0[body])))
+        Bodies(filled!(four.0, |body| V::map_four(&matrix.0[body], &four.0[body])))
     }
 
     fn square(column: impl Fn(usize) -> Self) -> Self::Square {
@@ -209,7 +220,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn select(self, mask: Mask<T>, other: Self) -> Self {
-        Self(filled(self.0, |k| self.0[k].select(mask, other.0[k])))
+        Self(filled!(self.0, |k| self.0[k].select(mask, other.0[k])))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -235,7 +246,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn inverse_with(factors: &Self::Square, _: T, pattern: Pattern) -> Self::Square {
         let of_body = |factors| V::square(|k| V::solve_apart(factors, pattern, &V::axis(k)));
-        BlockDiagonal(filled(factors.0, |body| of_body(&factors.0[body])))
+        BlockDiagonal(filled!(factors.0, |body| of_body(&factors.0[body])))
     }
 
     /// The pattern is that of one body.
@@ -252,7 +263,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn solve_apart(factors: &Self::Square, pattern: Pattern, right_side: &Self) -> Self {
-        Self(filled(right_side.0, |k| V::solve_apart(&factors.0[k], pattern, &right_side.0[k])))
+        Self(filled!(right_side.0, |k| V::solve_apart(&factors.0[k], pattern, &right_side.0[k])))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -297,7 +308,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn transpose(matrix: &Self::Square) -> Self::Square {
-        BlockDiagonal(filled(matrix.0, |k| V::transpose(&matrix.0[k])))
+        BlockDiagonal(filled!(matrix.0, |k| V::transpose(&matrix.0[k])))
     }
 
     fn least_pivot(matrix: &Self::Square) -> T {

@@ -1,6 +1,7 @@
 //! Values of several lanes, put together of one for each and taken apart again.
 
 use alloc::vec::Vec;
+use core::marker::PhantomData;
 
 use nalgebra::{Point, SMatrix};
 
@@ -65,7 +66,8 @@ pub trait Lanes: Sized {
 
 /// What can be put into lanes of the scalar `W`, and what it is there.
 ///
-/// Scenes that are generic over their scalar can, of one body or of several that are declared together and turn, and the methods [`Stepper::new`](crate::Stepper::new),
+/// Scenes that are generic over their scalar can: of one body, of several that are declared together, and
+/// [systems](crate::mechanics::Placed) of bodies with terms at their places. So can the methods [`Stepper::new`](crate::Stepper::new),
 /// [`composed`](crate::Stepper::composed), [`split`](crate::Stepper::split) and [`processed`](crate::Stepper::processed), and
 /// all of them [`compensated`](crate::Stepper::compensated), and [`preprocessed`](crate::Stepper::preprocessed).
 ///
@@ -75,8 +77,10 @@ pub trait Lanes: Sized {
 ///   With bodies side by side its sums would have another order, and a body other bits than alone.
 /// - A remedy does something else in the steps that it finds amiss, a body at a time. The other lanes would have to wait
 ///   for it.
-/// - Systems of many bodies, chains, and bodies in joints fill the registers with the bodies of one scene already. Lanes would
-///   make nothing faster.
+/// - Bodies in joints are solved along a graph: pivots, the joint that is named, and how often a step is begun anew are
+///   those of one system, and would have to be found for all lanes at once.
+/// - [`ChainStepper`](crate::methods::ChainStepper) isn't generic over its scalar. It is written with branches that a
+///   chain takes alone.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can't be put into lanes of `{W}`",
     label = "can't be put into lanes",
@@ -88,7 +92,7 @@ pub trait InLanes<W>: Sized {
     type Together: Lanes<Lane = Self>;
 }
 
-impl<T: Real<Element: Real>, const R: usize, const C: usize> Lanes for SMatrix<T, R, C> {
+impl<T: Real, const R: usize, const C: usize> Lanes for SMatrix<T, R, C> {
     type Lane = SMatrix<T::Element, R, C>;
 
     fn splat(lane: &Self::Lane) -> Self {
@@ -105,7 +109,7 @@ impl<T: Real<Element: Real>, const R: usize, const C: usize> Lanes for SMatrix<T
     }
 }
 
-impl<T: Real<Element: Real>, const D: usize> Lanes for Point<T, D> {
+impl<T: Real, const D: usize> Lanes for Point<T, D> {
     type Lane = Point<T::Element, D>;
 
     fn splat(lane: &Self::Lane) -> Self {
@@ -121,20 +125,41 @@ impl<T: Real<Element: Real>, const D: usize> Lanes for Point<T, D> {
     }
 }
 
-impl<T: Real<Element: Real>, const N: usize> Lanes for [T; N] {
-    type Lane = [T::Element; N];
+/// Scalars in a row. Lanes of a plain array are those of its entries, and a scalar has none by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Numbers<T, const N: usize>(pub [T; N]);
+
+impl<T: Real, const N: usize> Lanes for Numbers<T, N> {
+    type Lane = Numbers<T::Element, N>;
 
     fn splat(lane: &Self::Lane) -> Self {
-        lane.map(T::splat)
+        Self(lane.0.map(T::splat))
     }
 
     fn lane(&self, k: usize) -> Self::Lane {
-        self.map(|entry| entry.extract(k))
+        Numbers(self.0.map(|entry| entry.extract(k)))
     }
 
     fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
-        self.iter_mut().zip(lane).for_each(|(entry, lane)| entry.replace(k, *lane));
+        self.0.iter_mut().zip(lane.0).for_each(|(entry, lane)| entry.replace(k, lane));
         true
+    }
+}
+
+/// One for each.
+impl<V: Lanes, const N: usize> Lanes for [V; N] {
+    type Lane = [V::Lane; N];
+
+    fn splat(lane: &Self::Lane) -> Self {
+        lane.each_ref().map(V::splat)
+    }
+
+    fn lane(&self, k: usize) -> Self::Lane {
+        self.each_ref().map(|value| value.lane(k))
+    }
+
+    fn set_lane(&mut self, k: usize, lane: &Self::Lane) -> bool {
+        self.iter_mut().zip(lane).all(|(value, lane)| value.set_lane(k, lane))
     }
 }
 
@@ -173,6 +198,23 @@ impl<V: Lanes> Lanes for Option<V> {
             (None, None) => true,
             _ => false,
         }
+    }
+}
+
+/// What a type stands for, in the lane.
+impl<V: Lanes> Lanes for PhantomData<V> {
+    type Lane = PhantomData<V::Lane>;
+
+    fn splat(_: &Self::Lane) -> Self {
+        Self
+    }
+
+    fn lane(&self, _: usize) -> Self::Lane {
+        PhantomData
+    }
+
+    fn set_lane(&mut self, _: usize, _: &Self::Lane) -> bool {
+        true
     }
 }
 
@@ -219,7 +261,7 @@ macro_rules! lanes_of_wrapper {
     ($([$($generics:tt)*] $type:ident<$scalar:ident $(, $argument:ident)*>),+ $(,)?) => {$(
         impl<$($generics)*> $crate::numbers::Lanes for $type<$scalar $(, $argument)*>
         where
-            $scalar: $crate::numbers::Real<Element: $crate::numbers::Real>,
+            $scalar: $crate::numbers::Real,
         {
             type Lane = $type<$scalar::Element $(, $argument)*>;
 
@@ -243,7 +285,7 @@ macro_rules! lanes_of_fields {
     (
         impl[$($generics:tt)*] $self:ty => $lane:ty, as $name:ident
         $(where [$($bounds:tt)*])?
-        { lanes: [$($field:ident),*], scalars: [$($scalar:ident),*], shared: [$($shared:ident),*] }
+        { lanes: [$($field:tt),*], scalars: [$($scalar:ident),*], shared: [$($shared:tt),*] }
     ) => {
         impl<$($generics)*> $crate::numbers::Lanes for $self
         $(where $($bounds)*)?

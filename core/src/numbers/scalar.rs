@@ -1,10 +1,10 @@
 //! The scalars that the steppers run on.
 
-use nalgebra::{SimdBool as _, SimdRealField, SimdValue};
+use nalgebra::{RealField, SimdBool as _, SimdRealField, SimdValue};
 
 /// A real scalar: `f64`, `f32`, a dual number, or several of them in SIMD lanes.
 ///
-/// Everything that nalgebra accepts as a (lane-wise) real field is a `Real`; there is nothing to implement.
+/// Everything that nalgebra accepts as a real field is a `Real`, and lanes of these; there is nothing to implement.
 ///
 /// # Dual numbers
 ///
@@ -14,8 +14,8 @@ use nalgebra::{SimdBool as _, SimdRealField, SimdValue};
 ///
 /// # Lanes
 ///
-/// With a scalar of several lanes, such as `AutoF64x8` of the crate simba, one stepper moves as many bodies at once.
-/// [`Lanes`](crate::numbers::Lanes) puts scenes, steppers and states of single bodies together and takes them apart, and
+/// With a scalar of several lanes, such as `AutoF64x8` of the crate simba, one stepper moves as many scenes at once.
+/// [`Lanes`](crate::numbers::Lanes) puts scenes, steppers and states of single bodies or systems together and takes them apart, and
 /// a [`Batch`](crate::motion::Batch) does it for a run in which each body may stop by itself:
 ///
 /// - Each lane moves, bit for bit, as a stepper of its own would; Newton's iteration goes on until all have settled.
@@ -23,9 +23,9 @@ use nalgebra::{SimdBool as _, SimdRealField, SimdValue};
 ///   identity, and sines and cosines, which differ by roundings where the lanes compute them in their own way.
 /// - Every lane's step is solved, or the whole step is an error and the state of all lanes is what it was. An error's
 ///   numbers are NaN where the lanes differ. All steps `h` are zero, or none is. In a `Batch` only the lane itself stops.
-/// - The group is [`SO3`](crate::groups::SO3), or a product of these, in Cayley coordinates: a
-///   [`MatrixGroup`](crate::groups::MatrixGroup), translations among them, inverts matrices by pivots and asks for `RealField`, of
-///   which lanes aren't one.
+/// - Coordinates are Cayley's. The group is [`SO3`](crate::groups::SO3), one of translations, a product of these or an array
+///   of them, whose steps are vector instructions; or another [`MatrixGroup`](crate::groups::MatrixGroup), whose
+///   inverses and relations are computed lane by lane, as pivots differ from lane to lane.
 ///
 /// [`Stepper::step`](crate::motion::Stepper::step) finds out which vector instructions the machine has and takes them,
 /// up to [four `f64`](crate::numbers::Vectors::Four) a register, and so does every method's: a program needn't be compiled for one
@@ -36,9 +36,9 @@ use nalgebra::{SimdBool as _, SimdRealField, SimdValue};
 /// With `-C target-cpu=native` on a machine with AVX-512 lanes that are arrays are two to three times slower,
 /// probably as the compiler then makes registers of eight `f64` of parts of different arrays. `-C
 /// target-feature=-avx512f` beside it takes that back; collocation finds AVX-512 by itself all the same.
-pub trait Real: SimdRealField + Copy {}
+pub trait Real: SimdRealField<Element: RealField + Copy> + Copy {}
 
-impl<T: SimdRealField + Copy> Real for T {}
+impl<T: SimdRealField<Element: RealField + Copy> + Copy> Real for T {}
 
 /// One truth value for each lane of a scalar; `bool` for a scalar of one lane.
 pub type Mask<T> = <T as SimdValue>::SimdBool;

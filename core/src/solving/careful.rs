@@ -6,22 +6,26 @@
 use core::marker::PhantomData;
 
 use super::iteration::{
-    Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SquareOf, System, is_positive,
+    Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, System, is_positive,
 };
 use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
-use crate::groups::{LieGroup, Retraction};
-use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, linked_update, pattern};
+use crate::groups::{LieGroup, Retraction, SquareOf};
+use crate::mechanics::{Effect, Group, NewtonUpdate, Square, Vector, pattern, update_by};
 use crate::numbers::{Coordinates as _, Mask, Pattern, nowhere, real, reported};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue as _};
 
 /// What else is asked of a momentum equation where a solution is doubtful.
 trait Equation<G: LieGroup>: System<G> {
-    /// The system with nothing on its right side.
+    /// The residual and the Jacobian.
+    fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
+
+    /// The same with nothing on its right side.
     fn unforced_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
 
-    /// `h` times the [right-trivialised Jacobian](Effect::momentum_jacobian).
-    fn momentum_jacobian(&self, half: &G::Vector) -> SquareOf<G>;
+    /// `h` times the [right-trivialised Jacobian](Effect::momentum_jacobian). None where neighbours are joined: it lacks the
+    /// blocks between them.
+    fn momentum_jacobian(&self, half: &G::Vector) -> Option<SquareOf<G>>;
 }
 
 /// The equation of a [`Problem`], by functions that aren't inlined.
@@ -45,20 +49,8 @@ impl<L: Effect> System<Group<L>> for Seldom<'_, L> {
         pattern::<L>()
     }
 
-    fn has_factors(&self) -> bool {
-        !L::LINKS_NEIGHBOURS
-    }
-
-    fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
-        newton_system::<L>(self.problem.constants, &self.terms, half)
-    }
-
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
-        if const { L::LINKS_NEIGHBOURS } {
-            return linked_update::<L>(self.problem.constants, &self.terms, half);
-        }
-        let (residual, jacobian) = self.newton_system(half);
-        NewtonUpdate::of(&residual, &jacobian, self.pattern())
+        update_by::<L>(newton_system::<L>, self.problem.constants, &self.terms, half)
     }
 
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
@@ -67,15 +59,22 @@ impl<L: Effect> System<Group<L>> for Seldom<'_, L> {
 }
 
 impl<L: Effect> Equation<Group<L>> for Seldom<'_, L> {
+    fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
+        newton_system::<L>(self.problem.constants, &self.terms, half)
+    }
+
     fn unforced_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         let Problem { constants, w, .. } = *self.problem;
         newton_system::<L>(constants, &step_terms::<L>(constants, &Vector::<L>::zero(), w), half)
     }
 
-    fn momentum_jacobian(&self, half: &Vector<L>) -> Square<L> {
+    fn momentum_jacobian(&self, half: &Vector<L>) -> Option<Square<L>> {
+        if const { L::LINKS_NEIGHBOURS } {
+            return None;
+        }
         let Problem { scene, w, h, .. } = *self.problem;
         let f = L::Retraction::retract(&(*half + *half)).matrix();
-        scene.momentum_jacobian(&f, w, h) * h
+        Some(scene.momentum_jacobian(&f, w, h) * h)
     }
 }
 
@@ -154,12 +153,10 @@ impl<G: LieGroup, R: Retraction<G>> Careful<'_, G, R> {
     }
 
     /// Far from the identity the trace of the right-trivialised Jacobian must have kept its sign too, that of each body's
-    /// part where there are several. Where neighbours are joined the whole of it isn't at hand, and nothing is accepted.
+    /// part where there are several. Where the whole of it isn't at hand, nothing is accepted.
     fn look_closer(&self, half: &G::Vector) -> Mask<G::Scalar> {
-        if !self.equation.has_factors() {
-            return nowhere::<G::Scalar>();
-        }
-        let (jacobian, pattern) = (self.equation.momentum_jacobian(half), self.equation.pattern());
+        let Some(jacobian) = self.equation.momentum_jacobian(half) else { return nowhere::<G::Scalar>() };
+        let pattern = self.equation.pattern();
         let (_, det) = G::Vector::factorise_with(&jacobian, pattern);
         is_positive(det) & is_positive(G::Vector::least_trace(&jacobian, pattern.factors))
     }

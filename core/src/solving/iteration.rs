@@ -1,6 +1,6 @@
 //! Newton's iteration, of the lanes that haven't settled.
 
-use crate::groups::{LieGroup, Retraction};
+use crate::groups::{LieGroup, Retraction, SquareOf};
 use crate::mechanics::NewtonUpdate;
 use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
@@ -17,9 +17,6 @@ pub(crate) const LONGEST_DAMPED: f64 = 0.25;
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
 pub(crate) const SETTLED: f64 = 1.0 / 64.0;
 
-/// Of the group's vectors, the square matrices.
-pub(super) type SquareOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordinates<<G as LieGroup>::Scalar>>::Square;
-
 /// A Newton iteration: its update, and its Jacobian in factors, for another update.
 pub(super) type Iteration<G> = NewtonUpdate<<G as LieGroup>::Vector, SquareOf<G>, <G as LieGroup>::Scalar>;
 
@@ -28,24 +25,13 @@ pub(super) trait System<G: LieGroup> {
     /// What is known of the Jacobian.
     fn pattern(&self) -> Pattern;
 
-    /// Whether its Jacobian is that of [`newton_system`](Self::newton_system), and so may serve for
-    /// [another update](Self::simplified): not where neighbours are joined.
-    fn has_factors(&self) -> bool;
+    /// One of Newton's iterations from half the coordinates.
+    fn newton_update(&self, half: &G::Vector) -> Iteration<G>;
 
-    /// The residual and the Jacobian at half the coordinates.
-    fn newton_system(&self, half: &G::Vector) -> (G::Vector, SquareOf<G>);
-
-    /// One of Newton's iterations from there.
+    /// The update from another place by the same Jacobian, in these factors.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn newton_update(&self, half: &G::Vector) -> Iteration<G> {
-        let (residual, jacobian) = self.newton_system(half);
-        NewtonUpdate::of(&residual, &jacobian, self.pattern())
-    }
-
-    /// The update from another place by the same Jacobian.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn simplified(&self, made: &Iteration<G>, half: &G::Vector) -> G::Vector {
-        G::Vector::solve_again_with(&made.factors, made.det, self.pattern(), &self.residual(half))
+    fn simplified(&self, factors: &SquareOf<G>, det: G::Scalar, half: &G::Vector) -> G::Vector {
+        G::Vector::solve_again_with(factors, det, self.pattern(), &self.residual(half))
     }
 
     /// The residual alone.

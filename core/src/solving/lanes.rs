@@ -32,10 +32,13 @@ impl<L: Effect> Problem<'_, L> {
             return self.usual(&half, made.det, 1, largest);
         }
         // As in `reuse_jacobian`: with one function for both, lanes were a quarter slower.
-        if REUSE && equation.has_factors() && has_no_derivatives::<Scalar<L>>() {
+        if REUSE
+            && has_no_derivatives::<Scalar<L>>()
+            && let Some(factors) = &made.factors
+        {
             let is_near = may_suffice(first, half.dot(&half)) & made.det.simd_gt(self.safe) & !settled;
             if is_near.all() {
-                let second = equation.simplified(&made, &half);
+                let second = equation.simplified(factors, made.det, &half);
                 let half = half - second;
                 if has_sufficed(first, second.dot(&second), half.dot(&half)).all() {
                     return self.usual(&half, made.det, 2, largest);

@@ -16,10 +16,10 @@
 //! it.
 
 use super::careful::Seldom;
-use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
+use super::iteration::{Iteration, Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
 use crate::error::StepError;
 use crate::groups::Retraction;
-use crate::mechanics::{Effect, Group, NewtonUpdate, Scalar, Square, Vector, pattern};
+use crate::mechanics::{Effect, Group, Scalar, Square, Vector, pattern};
 use crate::numbers::{Coordinates as _, Pattern};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
@@ -49,17 +49,7 @@ impl<L: Effect> System<Group<L>> for Usual<'_, L> {
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn has_factors(&self) -> bool {
-        !L::LINKS_NEIGHBOURS
-    }
-
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
-        L::newton_system(self.constants, &self.terms, half)
-    }
-
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn newton_update(&self, half: &Vector<L>) -> NewtonUpdate<Vector<L>, Square<L>, Scalar<L>> {
+    fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
         L::newton_update(self.constants, &self.terms, half)
     }
 

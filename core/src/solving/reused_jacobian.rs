@@ -70,15 +70,16 @@ impl<G: LieGroup> Lanes<G> {
         made: &Iteration<G>,
         safe: G::Scalar,
     ) -> bool {
-        if !REUSE || !equation.has_factors() || !has_no_derivatives::<G::Scalar>() || self.settled.all() {
+        if !REUSE || !has_no_derivatives::<G::Scalar>() || self.settled.all() {
             return false;
         }
+        let Some(factors) = &made.factors else { return false };
         let before = made.update.dot(&made.update);
         let is_near = may_suffice(before, self.half.dot(&self.half)) & made.det.simd_gt(safe) & !self.settled;
         if !is_near.any() {
             return false;
         }
-        let second = equation.simplified(made, &self.half);
+        let second = equation.simplified(factors, made.det, &self.half);
         let next = self.half - second;
         self.half = next.select(is_near, self.half);
         let settled = is_near & has_sufficed(before, second.dot(&second), next.dot(&next));

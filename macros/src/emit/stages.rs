@@ -35,13 +35,13 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
     let from_parameters = |id: NodeId| input(emitter, graph, id);
     let from_constants = |id: NodeId| slot(&constants, id, "constants").or_else(|| input(emitter, graph, id));
     let from_terms = |id: NodeId| slot(&step_terms, id, "terms").or_else(|| from_constants(id));
-    let array = |nodes: &BTreeMap<NodeId, usize>, given: super::code::Given| {
+    let numbers = |nodes: &BTreeMap<NodeId, usize>, given: super::code::Given| {
         let nodes: Vec<NodeId> = nodes.keys().copied().collect();
         let (lets, values) = emitter.statements(graph, &nodes, given);
-        quote_spanned!(span=> #lets [#(#values),*])
+        quote_spanned!(span=> #lets #private::Numbers([#(#values),*]))
     };
-    let constants_body = array(&constants, &from_parameters);
-    let step_terms_body = array(&step_terms, &from_constants);
+    let constants_body = numbers(&constants, &from_parameters);
+    let step_terms_body = numbers(&step_terms, &from_constants);
     let value = |outputs: &[NodeId], given: super::code::Given| {
         let (lets, values) = emitter.statements(graph, outputs, given);
         let value = emitter.assembled(Form::Vector, &values);
@@ -67,7 +67,7 @@ pub(super) fn stages(emitter: &Emitter, kernel: &Kernel, equations: &[super::doc
         });
     let length = |nodes: &BTreeMap<NodeId, usize>| {
         let length = Literal::usize_unsuffixed(nodes.len());
-        quote_spanned!(span=> [#scalar; #length])
+        quote_spanned!(span=> #private::Numbers<#scalar, #length>)
     };
     let iteration = super::docs::stage(graph, &system, Stage::Iteration, "a Newton iteration, residual and Jacobian");
     let iteration = format!("```text\n{}\n```\n\n{iteration}", super::docs::candidates(kernel));
@@ -260,9 +260,9 @@ fn input(emitter: &Emitter, graph: &Graph, id: NodeId) -> Option<TokenStream> {
     }
 }
 
-fn slot(slots: &BTreeMap<NodeId, usize>, id: NodeId, array: &str) -> Option<TokenStream> {
-    let (array, index) = (syn::Ident::new(array, Span::mixed_site()), Literal::usize_unsuffixed(*slots.get(&id)?));
-    Some(quote_spanned!(Span::mixed_site()=> #array[#index]))
+fn slot(slots: &BTreeMap<NodeId, usize>, id: NodeId, numbers: &str) -> Option<TokenStream> {
+    let (numbers, index) = (syn::Ident::new(numbers, Span::mixed_site()), Literal::usize_unsuffixed(*slots.get(&id)?));
+    Some(quote_spanned!(Span::mixed_site()=> #numbers.0[#index]))
 }
 
 /// Whether the outputs need an entry of a symbol.

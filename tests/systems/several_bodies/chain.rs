@@ -8,6 +8,7 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+use checks::solvers::Badly;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::{CayleyRetraction, LieGroup as _, Relative, Retraction, SeenFrom};
 use liestep::mechanics::{DiscreteLagrangian, Effect, SceneVisitor, Term, WithKinetic};
@@ -15,7 +16,7 @@ use liestep::methods::CompositionScheme;
 use liestep::{SO3, SetupError, StepError, Stepper};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-use super::{End, all, apart, attitudes_of, increments, momentum, part, put, stacked, twice_vee};
+use super::{End, all, apart, assert_reference, attitudes_of, increments, momentum, part, put, stacked, twice_vee};
 
 type Group = (SO3, SO3, SO3);
 type Matrices = (Matrix3<f64>, Matrix3<f64>, Matrix3<f64>);
@@ -257,31 +258,49 @@ fn golden_step() {
     assert_eq!(state.momentum_of::<2>(), part(&state.momentum(), 2));
 }
 
-/// The order, and the errors that a prototype of other equations had.
+/// The order, and the errors of unreduced steps.
 #[test]
 fn trajectory() {
     let (attitude, velocity, [first, last]) = motion();
-    let errors = [(0.01, 200), (0.005, 400), (0.0025, 800)].map(|(h, steps)| {
+    let errors = [(0.02, 100), (0.01, 200), (0.005, 400), (0.0025, 800)].map(|(h, steps)| {
         let stepper = Stepper::new(Chain::read(), h).unwrap();
         let mut state = stepper.start(attitude, velocity).unwrap();
-        let vertical = |state: &liestep::State<Group, Seen>| {
-            let spatial = state.spatial_momentum();
-            (0..3).map(|body| part(&spatial, body).z).sum::<f64>()
-        };
         let before = (vertical(&state), stepper.energy(&state));
         stepper.run(&mut state, steps).unwrap();
         assert!((vertical(&state) - before.0).abs() < 1e-12, "{}", vertical(&state) - before.0);
-        assert!((stepper.energy(&state) - before.1).abs() < 0.04);
+        // Of second order, as the step is; steps of 0.01 s keep it within 0.04 J.
+        let off = (stepper.energy(&state) - before.1).abs();
+        println!("energy off by {off:.2e} at {h}");
+        assert!(off < 0.04 * (h / 0.01).powi(2), "{off:e} {h}");
         let attitude = (state.attitude().0.as_matrix() - first.0).amax();
         (attitude, (part(&stepper.velocity(&state), 2) - last.1).amax())
     });
-    println!("{errors:?}");
-    for (found, expected) in errors.iter().zip([(1.323e-3, 1.091e-2), (3.315e-4, 2.730e-3)]) {
-        let off = ((found.0 / expected.0 - 1.0).abs(), (found.1 / expected.1 - 1.0).abs());
-        assert!(off.0 < 0.01 && off.1 < 0.01, "{found:?}");
+    assert_reference(&errors);
+}
+
+/// Along the vertical the momentum of all.
+fn vertical(motion: &liestep::motion::Motion<Group, Seen>) -> f64 {
+    let spatial = motion.spatial_momentum();
+    (0..3).map(|body| part(&spatial, body).z).sum()
+}
+
+/// It is kept by increments that miss their equation by far, over a hundred thousand steps.
+#[test]
+fn vertical_momentum_of_steps_solved_badly() {
+    let ((attitude, velocity, _), chain) = (motion(), Chain::read());
+    let stepper = Stepper::new(Badly(chain), 0.01).unwrap();
+    let mut state = stepper.start(attitude, velocity).unwrap();
+    let (before, mut most, mut least) = (vertical(&state), 0.0_f64, f64::INFINITY);
+    for _ in 0..100_000 {
+        let last = state;
+        stepper.step(&mut state).unwrap();
+        let f = last.attitude().inverse().compose(&state.attitude()).matrix();
+        let missed = chain.legendre_minus(&f, &last.advected(), 0.01) - last.momentum();
+        least = least.min(missed.norm() / last.momentum().norm());
+        most = most.max((vertical(&state) - before).abs());
     }
-    let order = (errors[1].1 / errors[2].1).log2();
-    assert!((order - 2.0).abs() < 0.02, "{order}");
+    println!("momentum {most:.1e}, (2.7) missed by {least:.1e} at least");
+    assert!(most < 2e-12 && least > 1e-6, "{most:e} {least:e}");
 }
 
 /// Compositions, compensated sums and checkpoints go around a product as around a group.

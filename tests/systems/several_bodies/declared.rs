@@ -26,7 +26,7 @@ fn element(random: &mut Random, size: f64) -> Group {
 #[test]
 fn what_is_derived_is_what_is_declared() {
     check_derived::<_, 6>(&DoublePendulum::asymmetric(), &mut Random::new(5));
-    const { assert!(!DoublePendulum::INERTIA_IS_CONSTANT) };
+    const { assert!(!DoublePendulum::<f64>::INERTIA_IS_CONSTANT) };
 }
 
 #[test]

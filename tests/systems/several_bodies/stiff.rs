@@ -5,12 +5,12 @@
 
 use core::array::from_fn;
 
-use liestep::groups::{Advected as _, LieGroup as _, R3};
+use liestep::groups::{Advected as _, LieGroup as _, R3, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Along, Coupled, DiscreteLagrangian, Each, Placed, Sum, Term as _};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
-use nalgebra::{Vector3, Vector6};
+use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
 
 use super::check_derived;
 use super::translated::{Free, Tied};
@@ -241,20 +241,66 @@ fn steps_of_a_row_beyond_a_right_angle_are_refused() {
     let K = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 1.0)).unwrap();
     let l = Each::<2>::of([Free { m: 1.0, K }]) + Coupled::<2>::of([Held { c: 1.0 }]);
     let stepper = Stepper::new(l, 1.0).unwrap();
-    let turned = |angle: f64| [(SO3::exp(Vector3::z() * angle), R3::identity()); 2];
-    let stepped = |angle: f64| {
-        let w = l.advected().seen_from(&turned(1.0));
-        let momentum = l.legendre_minus(&turned(angle).matrix(), &w, 1.0);
-        let mut state = stepper.start(turned(1.0), momentum * 0.5).unwrap();
+    let turned = |angles: [f64; 2]| angles.map(|angle| (SO3::exp(Vector3::z() * angle), R3::identity()));
+    let stepped = |angles: [f64; 2]| {
+        let w = l.advected().seen_from(&turned([1.0; 2]));
+        let momentum = l.legendre_minus(&turned(angles).matrix(), &w, 1.0);
+        let mut state = stepper.start(turned([1.0; 2]), momentum * 0.5).unwrap();
         stepper.step(&mut state).map(|_| state.attitude())
     };
     for angle in [0.5, 1.2, 1.55] {
-        let [first, second] = stepped(angle).unwrap();
+        let [first, second] = stepped([angle; 2]).unwrap();
         for attitude in [first, second] {
-            assert!((attitude.0.as_matrix() - turned(1.0 + angle)[0].0.as_matrix()).amax() < 1e-12, "{angle}");
+            assert!((attitude.0.as_matrix() - turned([1.0 + angle; 2])[0].0.as_matrix()).amax() < 1e-12, "{angle}");
         }
     }
-    for angle in [1.6, 1.65] {
-        assert!(matches!(stepped(angle), Err(StepError::BeyondSolvable { .. })), "{angle}");
+    for (angles, farthest) in [([1.6, 1.5], 0), ([1.65, 0.3], 0), ([0.3, 1.6], 1)] {
+        let refused = stepped(angles);
+        assert!(
+            matches!(refused, Err(StepError::BeyondSolvable { body: Some(body), .. }) if body == farthest),
+            "{refused:?}"
+        );
     }
+}
+
+/// Springs that push their ends apart, so that beyond `2/ω` of the fastest mode no step continues the identity. Metres
+/// aren't told as an angle.
+#[test]
+fn masses_that_cannot_turn_are_not_said_to() {
+    const M: usize = 4;
+    let (k, m) = (50.0_f64, 0.8);
+    let fastest = 2.0 * (k / m).sqrt() * (3.0 * core::f64::consts::PI / 8.0).sin();
+    let row = Each::<M>::of([Mass { m }]) + Coupled::<M>::of([Spring { k: -k }]);
+    let stepper = Stepper::new(row, 3.0 / fastest).unwrap();
+    let start = [0.0, 1.0, 2.1, 2.9].map(|x| R3::from(Vector3::x() * x));
+    let mut state = stepper.start(start, Bodies([Vector3::y(); M])).unwrap();
+    let error = stepper.step(&mut state).unwrap_err();
+    println!("{error}");
+    let StepError::BeyondSolvable { largest, turn, body, .. } = error else { panic!("{error:?}") };
+    assert!((largest * fastest / 2.0 - 1.0).abs() < 1e-5, "{largest:e}");
+    assert_eq!((turn, body), (0.0, None));
+    assert!(!error.to_string().contains("rad"), "{error}");
+}
+
+/// A rigid body on SE(3).
+#[lagrangian(group = SE3, l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h))]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Floating {
+    K: Matrix4<f64>,
+}
+
+/// Of bodies on SE(3) the one that turns is named, by its angle, not the one that is shifted farther than that.
+#[test]
+fn bodies_that_are_only_shifted_are_not_blamed() {
+    let K = Matrix4::from_diagonal(&Vector4::new(0.5, 0.5, 0.5, 2.0));
+    let stepper = Stepper::new(Each::<3>::of([Floating { K }]), 1.0).unwrap();
+    let velocities =
+        [Vector6::x() * 0.2, Vector6::z() * 3.0, Vector6::y() * 0.1 + Vector6::new(0.0, 0.0, 0.0, 7.0, 0.0, 0.0)];
+    let mut state = stepper.start([SE3::identity(); 3], Bodies(velocities)).unwrap();
+    let error = stepper.step(&mut state).unwrap_err();
+    println!("{error}");
+    let StepError::BeyondSolvable { largest, turn, body, .. } = error else { panic!("{error:?}") };
+    // Of a sphere `sin θ = h ω`.
+    assert!((3.0 * largest - 1.0).abs() < 1e-5 && (turn - 3.0).abs() < 1e-12, "{largest:e}, {turn:e}");
+    assert_eq!(body, Some(1));
 }

@@ -167,7 +167,7 @@ fn pair(state: &Value) -> (Pair, SVector<f64, 12>) {
 }
 
 /// The momentum of both, and their whole angular momentum about the origin.
-fn whole<W>(state: &liestep::motion::Motion<Pair, W>) -> (Vector3<f64>, Vector3<f64>)
+pub(super) fn whole<W>(state: &liestep::motion::Motion<Pair, W>) -> (Vector3<f64>, Vector3<f64>)
 where
     W: liestep::groups::Advected<Pair> + Copy,
 {
@@ -209,7 +209,7 @@ fn two_bodies_that_attract_each_other() {
     println!("of order 8: {:.1e}", error(&state.attitude()));
     assert!(error(&state.attitude()) < 1e-9 && (composed.velocity(&state) - end_velocity).amax() < 1e-8);
     // Potentials are at the ends of steps, so that each body, and each translation, is solved by itself.
-    assert_eq!(TwoBodies::APART, <Pair as liestep::groups::LieGroup>::FACTORS);
+    assert_eq!(TwoBodies::<f64>::APART, <Pair as liestep::groups::LieGroup>::FACTORS);
 }
 
 /// A body that nothing moves.

@@ -9,7 +9,7 @@ use liestep::mechanics::Each;
 use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
 use liestep::numbers::Bodies;
 use liestep::prelude::*;
-use liestep_scene::{Scene, System};
+use liestep_scene::{BodySample, Scene, System};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::called::{PROGRAM, TOP, folder, printed, simulate};
@@ -164,6 +164,46 @@ fn bodies_on_a_spring() {
     let phase = 2.0 * (0.5 * 15.0_f64.sqrt() * 0.02).asin();
     let last = run_of.samples().last().unwrap();
     assert!((last.bodies[0].position.z - (1.0 - (200.0 * phase).cos())).abs() < 1e-12);
+}
+
+/// What a run has of a body.
+fn bits(body: &BodySample) -> Vec<u64> {
+    let attitude = body.attitude.as_matrix().as_slice();
+    let vectors = [&body.position, &body.velocity, &body.moving].map(nalgebra::Matrix::as_slice);
+    [attitude, &body.quaternion[..], &vectors.concat()[..]].concat().into_iter().map(f64::to_bits).collect()
+}
+
+/// Whatever the size of the system that a file's bodies are stepped in, what rests in it changes no bit, and stays where it
+/// is: beside bodies on a spring and beside joined ones.
+#[test]
+fn bodies_that_rest_change_nothing() {
+    let still = "start.velocity = [0, 0, 0]";
+    let spring = "[[spring]]\nbodies = [\"a\", \"b\"]\nat = [[0.2, 0.1, 0], [-0.1, 0, 0.2]]\nk = 30\nlength = 0.3\n";
+    let joint = "[[joint]]\nkind = \"ball\"\nbodies = [\"a\", \"b\"]\nat = [[0.5, 0, 0.1], [-0.4, 0, 0]]\n";
+    let moving = free("a", [0.0; 3], TURNING) + &free("b", [0.9, 0.0, 0.1], still);
+    for held in [spring, joint] {
+        let runs = [0, 1, 3, 6].map(|resting| {
+            let rest: String =
+                (0..resting).map(|k| free(&format!("rest-{k}"), [0.0, 9.0, f64::from(k)], still)).collect();
+            let run = "[run]\nstep = 0.005\nduration = 1\nnearest = true\n";
+            system(&format!("title = \"rest\"\n{moving}{rest}{held}{run}")).run().unwrap()
+        });
+        let first = &runs[0].samples()[0];
+        let last = runs[0].samples().last().unwrap();
+        assert!((0..2).all(|body| bits(&last.bodies[body]) != bits(&first.bodies[body])));
+        for run in &runs {
+            assert_eq!(run.samples().len(), 201);
+            for (sample, expected) in run.samples().iter().zip(runs[0].samples()) {
+                let all = sample.bodies.len();
+                for (body, expected) in sample.bodies.iter().zip(&expected.bodies) {
+                    assert_eq!(bits(body), bits(expected), "{all} bodies");
+                }
+                for (body, start) in sample.bodies.iter().zip(&run.samples()[0].bodies).skip(2) {
+                    assert_eq!(body, start, "{all} bodies");
+                }
+            }
+        }
+    }
 }
 
 /// Four rods between two pivots: joints that close a loop are found, whatever their order.

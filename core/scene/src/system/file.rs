@@ -259,7 +259,7 @@ fn of_table(table: SystemTable, path: &Path, places: Places) -> Result<System, W
     let spans: Vec<Range<usize>> = table.joint.iter().map(Spanned::span).collect();
     let joints: Vec<_> =
         table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies)).collect::<Result<_, _>>()?;
-    let arranged = Arranged::of(&joints).map_err(|joint| {
+    let arranged = Arranged::of(&joints, bodies.len()).map_err(|joint| {
         let message = format!(
             "this joint closes one loop more than the {LOOPS} that a file may have; a program may have any number"
         );

@@ -1,4 +1,5 @@
-//! The bodies of a file in a system of one size: what is behind them rests, and joints that aren't there hold nothing.
+//! The bodies of a file in a system of one of a few sizes: what is behind them rests, and joints that aren't there hold
+//! nothing.
 
 // The letters of the field.
 #![allow(non_snake_case)]
@@ -13,6 +14,7 @@ use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
 use super::file::{BODIES, Between, LOOPS, System};
+use super::run::{SIZES, Size};
 use super::springs::Springs;
 
 /// A body and its weight.
@@ -33,9 +35,8 @@ pub(super) struct Heavy {
     pub(super) up: Vector3<f64>,
 }
 
-type Parts = Sum<Placed<Each<BODIES>, Heavy, BODIES>, Springs>;
-pub(super) type Held = Stepper<Parts, Jointed<Parts, Link, 5, BODIES, BODIES, LOOPS>>;
-pub(super) type HeldBodies = [(SO3, R3); BODIES];
+type Parts<const N: usize> = Sum<Placed<Each<N>, Heavy, N>, Springs<N>>;
+pub(super) type Held<const N: usize, const L: usize> = Stepper<Parts<N>, Jointed<Parts<N>, Link, 5, N, N, L>>;
 
 /// What joints hold, as in the documentation of `BallJoint` and `PinJoint`.
 const BALLS: &str =
@@ -45,23 +46,21 @@ const PINS: &str = "pins, with e_1 and e_2 across the axis n_a: R_a e_1 · R_b n
 /// A joint, or the place of one.
 type Link = Option<Joint>;
 
-/// Joints as the library takes them, each with its number in the file.
+/// Joints as the library takes them, by their numbers in the file.
 #[derive(Clone)]
 pub(super) struct Arranged {
-    joints: Joints<Link, BODIES, LOOPS>,
-    /// Those of the tree, then those of loops.
-    numbers: Vec<Option<usize>>,
+    tree: Vec<usize>,
+    loops: Vec<usize>,
+    /// One body of each tree that no joint connects to space. Nothing holds it there.
+    free: Vec<usize>,
+    /// Of the system that they are stepped in.
+    pub(super) size: Size,
 }
 
 impl Arranged {
     /// The first joints that lead to a body which none before leads to are those of trees, the others close loops; `Err`
     /// has the number of the first that is too many.
-    pub(super) fn of(joints: &[Between<Joint>]) -> Result<Self, usize> {
-        let joined = |number: usize| {
-            let between = &joints[number];
-            let [above, below] = between.bodies;
-            Joined { joint: Some(between.of), above, below: below.unwrap_or_default() }
-        };
+    pub(super) fn of(joints: &[Between<Joint>], bodies: usize) -> Result<Self, usize> {
         // Space is behind the last.
         let mut group: [usize; BODIES + 1] = from_fn(|body| body);
         let (mut tree, mut loops) = (Vec::new(), Vec::new());
@@ -77,23 +76,31 @@ impl Arranged {
         if let Some(&number) = loops.get(LOOPS) {
             return Err(number);
         }
-        // What no joint connects to space is held there by nothing, at one body of each such tree.
-        let free: Vec<usize> =
+        let free =
             (0..BODIES).filter(|&body| group[body] != group[BODIES] && !group[..body].contains(&group[body])).collect();
+        let [.., largest] = SIZES;
+        let fits = |size: &Size| size.bodies >= bodies && size.loops >= loops.len();
+        let size = SIZES.into_iter().find(fits).unwrap_or(largest);
+        Ok(Self { tree, loops, free, size })
+    }
+
+    fn joints<const N: usize, const L: usize>(&self, joints: &[Between<Joint>]) -> Joints<Link, N, L> {
+        let joined = |&number: &usize| {
+            let between = &joints[number];
+            let [above, below] = between.bodies;
+            Joined { joint: Some(between.of), above, below: below.unwrap_or_default() }
+        };
         let loose = |below: usize| Joined::to_space(None, below);
         let of_tree =
-            |place: usize| tree.get(place).map_or_else(|| loose(free[place - tree.len()]), |&number| joined(number));
-        let joints = Joints::tree(from_fn(of_tree));
-        let joints =
-            joints.closed_by(from_fn(|place| loops.get(place).map_or_else(|| loose(0), |&number| joined(number))));
-        let numbers =
-            (0..BODIES).map(|place| tree.get(place).copied()).chain(loops.iter().copied().map(Some)).collect();
-        Ok(Self { joints, numbers })
+            |place: usize| self.tree.get(place).map_or_else(|| loose(self.free[place - self.tree.len()]), joined);
+        Joints::tree(from_fn(of_tree))
+            .closed_by(from_fn(|place| self.loops.get(place).map_or_else(|| loose(0), joined)))
     }
 
     /// The number in the file of a joint that an error names.
     pub(super) fn number(&self, joint: usize) -> Option<usize> {
-        self.numbers.get(joint).copied().flatten()
+        let of_loop = || self.loops.get(joint.checked_sub(self.size.bodies)?);
+        self.tree.get(joint).or_else(of_loop).copied()
     }
 }
 
@@ -102,24 +109,24 @@ impl System {
     #[must_use]
     pub fn derivation(&self) -> String {
         let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };
-        let springs = if self.springs.is_empty() { "" } else { Springs::DERIVATION };
+        let springs = if self.springs.is_empty() { "" } else { Springs::<BODIES>::DERIVATION };
         let joints = if self.joints.is_empty() { "" } else { BALLS };
         let pins = if self.has_pins() { PINS } else { "" };
         format!("{}{gravity}{springs}{joints}{pins}", Heavy::DERIVATION)
     }
 
-    pub(super) fn stepper(&self) -> Result<Held, SetupError> {
+    pub(super) fn stepper<const N: usize, const L: usize>(&self) -> Result<Held<N, L>, SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
         // What is behind the bodies is like the first without gravity, and rests.
         let heavy = |place: usize| {
             let (body, g) = self.bodies.get(place).map_or((&self.bodies[0], 0.0), |body| (body, g));
             Heavy { J_d: body.J_d, m: body.m, g, up }
         };
-        let parts = Each::<BODIES>::of(from_fn(heavy)) + Springs::of(&self.springs);
-        Stepper::jointed(parts, self.arranged.joints, self.step)
+        let parts = Each::<N>::of(from_fn::<_, N, _>(heavy)) + Springs::of(&self.springs);
+        Stepper::jointed(parts, self.arranged.joints(&self.joints), self.step)
     }
 
-    pub(super) fn start(&self) -> (HeldBodies, Bodies<Vector6<f64>, BODIES>) {
+    pub(super) fn start<const N: usize>(&self) -> ([(SO3, R3); N], Bodies<Vector6<f64>, N>) {
         let at = |place: usize| {
             let Some(body) = self.bodies.get(place) else {
                 return ((SO3::identity(), R3::identity()), Vector6::zeros());
@@ -128,7 +135,7 @@ impl System {
             let velocity = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);
             ((SO3::from(body.start.attitude), R3::from(body.position)), velocity)
         };
-        let all: [_; BODIES] = from_fn(at);
+        let all: [_; N] = from_fn(at);
         (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
     }
 }

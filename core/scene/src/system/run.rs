@@ -6,10 +6,31 @@ use liestep::with::{RunError, Sink};
 use liestep::{SO3, SetupError, StepError};
 use nalgebra::Vector3;
 
-use super::file::System;
+use super::file::{BODIES, LOOPS, System};
 use super::held::Held;
 use crate::columns::drawn;
 use crate::mistake::Mistake;
+
+/// The systems that there are, the smallest first. With loops there is the largest only: each is code of its own.
+pub(super) const SIZES: [Size; 4] =
+    [Size::of::<2, 0>(), Size::of::<4, 0>(), Size::of::<BODIES, 0>(), Size::of::<BODIES, LOOPS>()];
+
+/// A system of so many bodies and loops.
+#[derive(Clone, Copy)]
+pub(super) struct Size {
+    pub(super) bodies: usize,
+    pub(super) loops: usize,
+    simulate: Simulate,
+}
+
+/// Simulates so many steps.
+type Simulate = fn(&System, u64, &mut dyn FnMut(f64), Option<&mut dyn Sink>) -> Result<SystemRun, Mistake>;
+
+impl Size {
+    const fn of<const N: usize, const L: usize>() -> Self {
+        Self { bodies: N, loops: L, simulate: System::simulate_in::<N, L> }
+    }
+}
 
 /// What tells how far joints are open.
 const GAP: &str = "lengths in m and cosines of axes together";
@@ -94,14 +115,14 @@ impl SystemRun {
 }
 
 /// The states of a run, one after the other.
-struct Samples<'a> {
-    stepper: &'a Held,
+struct Samples<'a, const N: usize, const L: usize> {
+    stepper: &'a Held<N, L>,
     /// Of the bodies that the file has.
     quaternions: Vec<[f64; 4]>,
 }
 
-impl Samples<'_> {
-    fn of(&mut self, now: &Moment<'_, Held>) -> SystemSample {
+impl<const N: usize, const L: usize> Samples<'_, N, L> {
+    fn of(&mut self, now: &Moment<'_, Held<N, L>>) -> SystemSample {
         let (attitudes, momenta, velocities) = (now.attitude(), now.momentum(), now.velocity());
         let three = |of: &nalgebra::Vector6<f64>, first: usize| of.fixed_rows::<3>(first).into_owned();
         let (mut momentum, mut angular_momentum) = (Vector3::zeros(), Vector3::zeros());
@@ -164,13 +185,23 @@ impl System {
         self.simulate(u64::from(most.min(self.steps)), &mut |_| (), None)
     }
 
+    /// In a system with room for its bodies and loops.
     fn simulate(
+        &self,
+        steps: u64,
+        told: &mut dyn FnMut(f64),
+        table: Option<&mut dyn Sink>,
+    ) -> Result<SystemRun, Mistake> {
+        (self.arranged.size.simulate)(self, steps, told, table)
+    }
+
+    fn simulate_in<const N: usize, const L: usize>(
         &self,
         steps: u64,
         told: &mut dyn FnMut(f64),
         mut table: Option<&mut dyn Sink>,
     ) -> Result<SystemRun, Mistake> {
-        let stepper = self.stepper().map_err(|error| self.refused(error))?;
+        let stepper = self.stepper::<N, L>().map_err(|error| self.refused(error))?;
         let (bodies, velocities) = self.start();
         let started =
             if self.nearest { stepper.start_nearest(bodies, velocities) } else { stepper.start(bodies, velocities) };
@@ -289,8 +320,8 @@ impl System {
     }
 }
 
-impl<'a> Samples<'a> {
-    fn new(system: &System, stepper: &'a Held) -> Self {
+impl<'a, const N: usize, const L: usize> Samples<'a, N, L> {
+    fn new(system: &System, stepper: &'a Held<N, L>) -> Self {
         Self { stepper, quaternions: vec![[0.0; 4]; system.bodies.len()] }
     }
 }

@@ -6,17 +6,17 @@ use liestep::numbers::{BlockDiagonal, Bodies};
 use liestep::{SO3, SetupError};
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use super::file::{BODIES, Between, SPRINGS, Spring};
+use super::file::{Between, SPRINGS, Spring};
 
-/// All springs of a file, `V = Σ k (|y| − l)²/2` of `y` from one point to the other.
+/// All springs of a file, `V = Σ k (|y| − l)²/2` of `y` from one point to the other, between `N` bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Springs([Option<Between<Spring>>; SPRINGS]);
+pub(super) struct Springs<const N: usize>([Option<Between<Spring>>; SPRINGS]);
 
 type Body = (SO3, R3);
-type Seen = WhereAllAre<Body, BODIES>;
-type Kick = Bodies<Vector6<f64>, BODIES>;
+type Seen<const N: usize> = WhereAllAre<Body, N>;
+type Kick<const N: usize> = Bodies<Vector6<f64>, N>;
 
-impl Springs {
+impl<const N: usize> Springs<N> {
     pub(super) fn of(springs: &[Between<Spring>]) -> Self {
         Self(std::array::from_fn(|place| springs.get(place).copied()))
     }
@@ -26,8 +26,8 @@ impl Springs {
     }
 
     /// `h/2` of the forces and the torques, these in the axes of the bodies.
-    fn kick(&self, seen: &Seen, half_step: f64) -> Kick {
-        let mut kick = Bodies([Vector6::zeros(); BODIES]);
+    fn kick(&self, seen: &Seen<N>, half_step: f64) -> Kick<N> {
+        let mut kick = Bodies([Vector6::zeros(); N]);
         for between in self.all() {
             let along = between.along(seen);
             let (Spring { k, length, at }, size) = (&between.of, along.norm());
@@ -46,7 +46,7 @@ impl Springs {
 
 impl Between<Spring> {
     /// From one point to the other, in space.
-    fn along(&self, seen: &Seen) -> Vector3<f64> {
+    fn along<const N: usize>(&self, seen: &Seen<N>) -> Vector3<f64> {
         let [one, other] = [0, 1].map(|side| {
             let point = self.of.at[side];
             self.bodies[side].map_or(point, |body| {
@@ -58,22 +58,22 @@ impl Between<Spring> {
     }
 }
 
-impl Term for Springs {
+impl<const N: usize> Term for Springs<N> {
     type Scalar = f64;
-    type Group = [Body; BODIES];
-    type Advected = Seen;
+    type Group = [Body; N];
+    type Advected = Seen<N>;
 
     fn validate(&self) -> Result<(), SetupError> {
         Ok(())
     }
 
-    fn advected(&self) -> Seen {
+    fn advected(&self) -> Seen<N> {
         Seen::default()
     }
 }
 
 /// Kicks alone: what a step's equation is solved for hasn't a part of them.
-impl Effect for Springs {
+impl<const N: usize> Effect for Springs<N> {
     type Retraction = CayleyRetraction;
     type Kinetic = WithoutKinetic;
     type Constants = (Self, f64);
@@ -99,19 +99,19 @@ impl Effect for Springs {
         }
     }
 
-    fn momentum_jacobian(&self, _: &Matrix<Self>, _: &Seen, _: f64) -> Square<Self> {
-        BlockDiagonal([Matrix6::zeros(); BODIES])
+    fn momentum_jacobian(&self, _: &Matrix<Self>, _: &Seen<N>, _: f64) -> Square<Self> {
+        BlockDiagonal([Matrix6::zeros(); N])
     }
 
-    fn inertia(&self, _: &Seen) -> Square<Self> {
-        BlockDiagonal([Matrix6::zeros(); BODIES])
+    fn inertia(&self, _: &Seen<N>) -> Square<Self> {
+        BlockDiagonal([Matrix6::zeros(); N])
     }
 
-    fn momentum_bias(&self, _: &Seen) -> Vector<Self> {
-        Bodies([Vector6::zeros(); BODIES])
+    fn momentum_bias(&self, _: &Seen<N>) -> Vector<Self> {
+        Bodies([Vector6::zeros(); N])
     }
 
-    fn potential(&self, seen: &Seen) -> f64 {
+    fn potential(&self, seen: &Seen<N>) -> f64 {
         let of_one = |between: &Between<Spring>| {
             let stretch = between.along(seen).norm() - between.of.length;
             0.5 * between.of.k * stretch * stretch
@@ -123,17 +123,17 @@ impl Effect for Springs {
         (*self, 0.5 * h)
     }
 
-    fn kick_before((springs, half_step): &(Self, f64), seen: &Seen) -> Kick {
+    fn kick_before((springs, half_step): &(Self, f64), seen: &Seen<N>) -> Kick<N> {
         springs.kick(seen, *half_step)
     }
 
-    fn step_terms(_: &(Self, f64), _: &Kick, _: &Seen) {}
+    fn step_terms(_: &(Self, f64), _: &Kick<N>, _: &Seen<N>) {}
 
-    fn newton_system(_: &(Self, f64), (): &(), _: &Kick) -> (Kick, Square<Self>) {
-        (Bodies([Vector6::zeros(); BODIES]), BlockDiagonal([Matrix6::zeros(); BODIES]))
+    fn newton_system(_: &(Self, f64), (): &(), _: &Kick<N>) -> (Kick<N>, Square<Self>) {
+        (Bodies([Vector6::zeros(); N]), BlockDiagonal([Matrix6::zeros(); N]))
     }
 
-    fn kick_after((springs, half_step): &(Self, f64), _: &Matrix<Self>, next: &Seen) -> Kick {
+    fn kick_after((springs, half_step): &(Self, f64), _: &Matrix<Self>, next: &Seen<N>) -> Kick<N> {
         springs.kick(next, *half_step)
     }
 }

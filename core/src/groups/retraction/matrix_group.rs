@@ -1,13 +1,13 @@
 //! The two retractions of a group that is declared by generators.
 
-use nalgebra::{RealField, SMatrix, SVector};
+use nalgebra::{RealField, SMatrix, SVector, Vector1, one, zero};
 
 use super::{CayleyRetraction, ExponentialRetraction, Retraction};
 use crate::groups::{
-    Generators, LieGroup as _, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, logarithm,
-    products_vanish,
+    Generators, LieGroup as _, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, lane_by_lane,
+    logarithm, products_vanish,
 };
-use crate::numbers::{Coordinates as _, Mask, real};
+use crate::numbers::{Coordinates as _, Mask, Real, real};
 
 /// Fails to compile for a group that the Cayley map leaves.
 struct Closure<K, const N: usize, const D: usize>(K);
@@ -18,17 +18,22 @@ impl<K: Generators<N, D>, const N: usize, const D: usize> Closure<K, N, D> {
 }
 
 /// The two factors `I − ξ̂/2` and `I + ξ̂/2`.
-fn factors<T: RealField + Copy, const N: usize>(hat: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
+fn factors<T: Real, const N: usize>(hat: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
     let half = hat * real::<T>(0.5);
     (SMatrix::identity() - half, SMatrix::identity() + half)
 }
 
+/// The inverse of a matrix, lane by lane: it takes other pivots in each.
+fn inverse_of<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
+    lane_by_lane(matrix, inverse::<T::Element, N>)
+}
+
 /// Compiles for the groups that the Cayley map doesn't leave; it is an error for others, like SL(3).
-impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>
+impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>
     for CayleyRetraction
 {
     /// `D = (I − ξ̂/2)⁻¹ ξ̂`.
-    #[inline]
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn increment(xi: &SVector<T, D>) -> SMatrix<T, N, N> {
         let () = Closure::<K, N, D>::CHECKED;
         let hat = MatrixGroup::<K, T, N, D>::hat(xi);
@@ -36,13 +41,13 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
         if const { products_vanish(&K::GENERATORS) } {
             return hat;
         }
-        inverse(&factors(&hat).0) * hat
+        inverse_of(&factors(&hat).0) * hat
     }
 
     /// `2 ((F + I)⁻¹ (F − I))^∨`.
     fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
         let sum = element.matrix() + SMatrix::identity();
-        let xi = MatrixGroup::<K, T, N, D>::vee(&(inverse(&sum) * element.increment())) * real::<T>(2.0);
+        let xi = MatrixGroup::<K, T, N, D>::vee(&(inverse_of(&sum) * element.increment())) * real::<T>(2.0);
         xi.is_finite().then_some(xi)
     }
 
@@ -52,7 +57,7 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
             return SMatrix::identity();
         }
         let (minus, plus) = factors(&MatrixGroup::<K, T, N, D>::hat(xi));
-        let (minus, plus) = (inverse(&minus), inverse(&plus));
+        let (minus, plus) = (inverse_of(&minus), inverse_of(&plus));
         let mut tangent = SMatrix::<T, D, D>::zeros();
         for j in 0..D {
             let moved = minus * basis::<K, T, N, D>(j) * plus;
@@ -61,9 +66,13 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> R
         tangent
     }
 
-    #[inline]
+    /// Lane by lane, as the group's own answer is.
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn is_near_identity(xi: &SVector<T, D>) -> Mask<T> {
-        K::is_near_identity(&MatrixGroup::<K, T, N, D>::hat(xi))
+        let far = lane_by_lane::<T, Vector1<T>, N>(&MatrixGroup::<K, T, N, D>::hat(xi), |lane| {
+            Vector1::new(if K::is_near_identity(lane) { zero() } else { one() })
+        });
+        far.x.simd_eq(T::zero())
     }
 }
 

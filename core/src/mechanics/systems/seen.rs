@@ -3,7 +3,7 @@
 use core::marker::PhantomData;
 
 use crate::groups::{Advected, LieGroup, Pair};
-use crate::numbers::{Entries, Real, filled, zero};
+use crate::numbers::{Entries, Lanes, Real, filled, lanes_of_fields, zero};
 
 /// What each two neighbours see, as a group `P` of two bodies moves it. Behind it there is one more, which never changes:
 /// stable Rust has no arrays of `N − 1`.
@@ -48,24 +48,30 @@ entries!([P: Copy, W: Entries<S>, const N: usize] Neighbours<P, W, N>, PhantomDa
 entries!([P: Copy, W: Entries<S>, const A: usize, const B: usize] SeenBetween<P, W, A, B>, PhantomData);
 entries!([G: LieGroup<Scalar = S>, const N: usize] WhereAllAre<G, N>,);
 
-impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
-    /// Something of each two neighbours, and of the one behind.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    fn map(&self, each: impl Fn(&W, usize) -> W, behind: impl Fn(&W) -> W) -> Self {
-        let mut mapped = self.0;
-        for k in 1..N {
-            mapped[k - 1] = each(&self.0[k - 1], k - 1);
-        }
-        if let Some(last) = mapped.last_mut() {
-            *last = behind(last);
-        }
-        Self(mapped, PhantomData)
-    }
-}
+lanes_of_fields!(
+    impl[P: Lanes, W: Lanes, const N: usize] Neighbours<P, W, N> => Neighbours<P::Lane, W::Lane, N>, as Neighbours
+    { lanes: [0, 1], scalars: [], shared: [] }
+);
+lanes_of_fields!(
+    impl[P: Lanes, W: Lanes, const A: usize, const B: usize] SeenBetween<P, W, A, B>
+        => SeenBetween<P::Lane, W::Lane, A, B>, as SeenBetween
+    { lanes: [0, 1], scalars: [], shared: [] }
+);
+lanes_of_fields!(
+    impl[G, const N: usize] WhereAllAre<G, N> => WhereAllAre<G::Lane, N>, as WhereAllAre
+    where [G: LieGroup<Matrix: Lanes<Lane = <G::Lane as LieGroup>::Matrix>> + Lanes<Lane: LieGroup>]
+    { lanes: [0], scalars: [], shared: [] }
+);
 
-/// No change of what never changes.
-fn unchanged<T: Real, W: Entries<T>>(_: &W) -> W {
-    zero::<T, W>()
+impl<P, W: Copy, const N: usize> Neighbours<P, W, N> {
+    /// Something of each two neighbours in the place of what is there; the one behind stays.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn with(mut self, each: impl Fn(usize) -> W) -> Self {
+        for k in 1..N {
+            self.0[k - 1] = each(k - 1);
+        }
+        self
+    }
 }
 
 impl<G, P, W, const N: usize> Advected<[G; N]> for Neighbours<P, W, N>
@@ -75,26 +81,33 @@ where
     W: Advected<P>,
 {
     fn seen_from(&self, attitude: &[G; N]) -> Self {
-        self.map(|w, k| w.seen_from(&P::pair(&attitude[k], &attitude[k + 1])), W::clone)
+        Self(self.0, PhantomData).with(|k| self.0[k].seen_from(&P::pair(&attitude[k], &attitude[k + 1])))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
-        self.map(|w, k| w.change(&P::matrices(&increment[k], &increment[k + 1])), unchanged::<G::Scalar, W>)
+        Self([zero::<G::Scalar, W>(); N], PhantomData).with(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |k| self.0[k].change(&P::matrices(&increment[k], &increment[k + 1])),
+        )
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn advect(&self, increment: &[G::Matrix; N]) -> Self {
-        self.map(|w, k| w.advect(&P::matrices(&increment[k], &increment[k + 1])), W::clone)
+        Self(self.0, PhantomData).with(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |k| self.0[k].advect(&P::matrices(&increment[k], &increment[k + 1])),
+        )
     }
 
     fn rate(&self, velocity: &[G::Matrix; N]) -> Self {
-        self.map(|w, k| w.rate(&P::matrices(&velocity[k], &velocity[k + 1])), unchanged::<G::Scalar, W>)
+        Self([zero::<G::Scalar, W>(); N], PhantomData)
+            .with(|k| self.0[k].rate(&P::matrices(&velocity[k], &velocity[k + 1])))
     }
 
     fn seen_through(&self, matrix: &[G::Matrix; N], inverse: &[G::Matrix; N]) -> Self {
         let pair = |of: &[G::Matrix; N], k: usize| P::matrices(&of[k], &of[k + 1]);
-        self.map(|w, k| w.seen_through(&pair(matrix, k), &pair(inverse, k)), W::clone)
+        Self(self.0, PhantomData).with(|k| self.0[k].seen_through(&pair(matrix, k), &pair(inverse, k)))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -141,7 +154,7 @@ impl<G: LieGroup, const N: usize> Advected<[G; N]> for WhereAllAre<G, N> {
     /// `R D`.
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn change(&self, increment: &[G::Matrix; N]) -> Self {
-        Self(filled(self.0, |k| G::from_matrix_unchecked(self.0[k]).change(&increment[k])))
+        Self(filled!(self.0, |k| G::from_matrix_unchecked(self.0[k]).change(&increment[k])))
     }
 
     /// `R ξ̂`.
@@ -151,7 +164,7 @@ impl<G: LieGroup, const N: usize> Advected<[G; N]> for WhereAllAre<G, N> {
 
     fn seen_through(&self, matrix: &[G::Matrix; N], _: &[G::Matrix; N]) -> Self {
         let moved = |k: usize| G::from_matrix_unchecked(self.0[k]).compose(&G::from_matrix_unchecked(matrix[k]));
-        Self(filled(self.0, |k| moved(k).matrix()))
+        Self(filled!(self.0, |k| moved(k).matrix()))
     }
 
     fn is_finite(&self) -> bool {

@@ -207,7 +207,7 @@ where
 {
     /// Where the increments lead, to the bit.
     fn next(&self) -> Places<N> {
-        Places(filled([Place::SPACE; N], |k| {
+        Places(filled!([Place::SPACE; N], |k| {
             let (turn, shift) = parts(&self.half.0[k]);
             let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&turn);
             let attitude = *self.attitude[k].0.advance(&increment).as_matrix();
@@ -220,7 +220,7 @@ where
         let (residuals, matrices) = &newton_system::<S>(&self.plan.constants, &self.terms, &self.half);
         let next = self.next();
         // With half of each gap, as with half the coordinates a shift is twice its unknown.
-        let turns = filled([Matrix3::zeros(); N], |k| {
+        let turns = filled!([Matrix3::zeros(); N], |k| {
             let tangent = <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&self.half.0[k]).0);
             self.places.0[k].attitude * tangent * 0.5
         });

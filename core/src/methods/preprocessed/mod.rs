@@ -94,11 +94,11 @@ pub struct Preprocessed<T: Real = f64> {
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] Preprocessed<T> => Preprocessed<T::Element>, as Preprocessed
+    impl[T: Real] Preprocessed<T> => Preprocessed<T::Element>, as Preprocessed
     { lanes: [modified], scalars: [h], shared: [order] }
 );
 
-impl<W: Real<Element: Real>> InLanes<W> for Preprocessed<W::Element>
+impl<W: Real> InLanes<W> for Preprocessed<W::Element>
 where
     Preprocessed<W>: Lanes<Lane = Self>,
 {

@@ -7,7 +7,7 @@ use crate::effects::PrincipalBody;
 use crate::error::StepError;
 use crate::groups::SO3;
 use crate::mechanics::{DiagonalNonstandardInertia, Effect as _};
-use crate::numbers::{Real, lanes_of_fields, real};
+use crate::numbers::{Numbers, Real, lanes_of_fields, real};
 use crate::solving::{Problem, Root, safe};
 
 /// A body and the series for its modified moments.
@@ -16,12 +16,12 @@ pub(crate) struct ModifiedBody<T> {
     pub(crate) inverse_moments: Vector3<T>,
     /// In `h² H` and `h² C`, to which the series are taken.
     degree: usize,
-    s: [T; TERMS],
-    d: [T; TERMS],
+    s: Numbers<T, TERMS>,
+    d: Numbers<T, TERMS>,
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] ModifiedBody<T> => ModifiedBody<T::Element>, as ModifiedBody
+    impl[T: Real] ModifiedBody<T> => ModifiedBody<T::Element>, as ModifiedBody
     { lanes: [inverse_moments, s, d], scalars: [], shared: [degree] }
 );
 
@@ -31,7 +31,7 @@ impl<T: Real> ModifiedBody<T> {
         let moments = Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y);
         let inverse_moments = moments.map(|moment| T::one() / moment);
         let (s, d) = series(&moments);
-        Self { inverse_moments, degree, s, d }
+        Self { inverse_moments, degree, s: Numbers(s), d: Numbers(d) }
     }
 
     /// The increment over the time `h`, s, from the body momentum `y`; the guess is of half the coordinates.
@@ -40,8 +40,8 @@ impl<T: Real> ModifiedBody<T> {
         let (yy, half_squared) = (y.component_mul(y), h * h * real(0.5));
         let energy = yy.dot(&self.inverse_moments) * half_squared;
         let casimir = (yy.x + yy.y + yy.z) * half_squared;
-        let s = T::one() + sum(&self.s, self.degree, casimir, energy);
-        let d = sum(&self.d, self.degree, casimir, energy);
+        let s = T::one() + sum(&self.s.0, self.degree, casimir, energy);
+        let d = sum(&self.d.0, self.degree, casimir, energy);
         let inverse = self.inverse_moments.map(|inverse| inverse * s + d);
         if !inverse.iter().all(|inverse| inverse.simd_gt(T::zero()).all()) {
             return Err(StepError::Singular);

@@ -131,12 +131,12 @@ pub struct SymmetricDrift<T> {
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] SymmetricBody<T> => SymmetricBody<T::Element>, as SymmetricBody
+    impl[T: Real] SymmetricBody<T> => SymmetricBody<T::Element>, as SymmetricBody
     { lanes: [], scalars: [transverse, axial], shared: [] }
 );
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] SymmetricDrift<T> => SymmetricDrift<T::Element>, as SymmetricDrift
+    impl[T: Real] SymmetricDrift<T> => SymmetricDrift<T::Element>, as SymmetricDrift
     { lanes: [], scalars: [about_momentum, about_axis], shared: [] }
 );
 
@@ -278,7 +278,7 @@ pub struct DeclaredDrift<L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>, T: R
 lanes_of_fields!(
     impl[L, T] DeclaredDrift<L, T> => DeclaredDrift<L::Lane, T::Element>, as DeclaredDrift
     where [
-        T: Real<Element: Real>,
+        T: Real,
         L: DiscreteLagrangian<Group = SO3<T>, Scalar = T>
             + Lanes<Lane: DiscreteLagrangian<Group = SO3<T::Element>, Scalar = T::Element>>,
         DiscreteLiePoisson<L>: Lanes<Lane = DiscreteLiePoisson<L::Lane>>

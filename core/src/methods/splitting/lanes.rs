@@ -11,7 +11,7 @@ type Element<S> = <Scalar<S> as SimdValue>::Element;
 lanes_of_fields!(
     impl[S, K] Split<S, K> => Split<S::Lane, K::Lane>, as Split
     where [
-        S: Effect<Scalar: Real<Element: Real>, Constants: Lanes<Lane = <S::Lane as Effect>::Constants>>
+        S: Effect<Constants: Lanes<Lane = <S::Lane as Effect>::Constants>>
             + Lanes<Lane: Effect<Scalar = Element<S>>>,
         K: KineticFlow<Scalar<S>, Drift: Lanes<Lane = <K::Lane as KineticFlow<Element<S>>>::Drift>>
             + Lanes<Lane: KineticFlow<Element<S>>>
@@ -29,28 +29,28 @@ where
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] Spin<T> => Spin<T::Element>, as Spin { lanes: [], scalars: [angle], shared: [] }
+    impl[T: Real] Spin<T> => Spin<T::Element>, as Spin { lanes: [], scalars: [angle], shared: [] }
 );
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] Kick<T> => Kick<T::Element>, as Kick
+    impl[T: Real] Kick<T> => Kick<T::Element>, as Kick
     { lanes: [mobility], scalars: [time], shared: [] }
 );
 
 lanes_of_fields!(
-    impl[D: Lanes, T: Real<Element: Real>] Stage<D, T> => Stage<D::Lane, T::Element>, as Stage
+    impl[D: Lanes, T: Real] Stage<D, T> => Stage<D::Lane, T::Element>, as Stage
     { lanes: [drift, kick], scalars: [], shared: [] }
 );
 
 lanes_of_fields!(
-    impl[D: Lanes, T: Real<Element: Real>] Stages<D, T> => Stages<D::Lane, T::Element>, as Stages
+    impl[D: Lanes, T: Real] Stages<D, T> => Stages<D::Lane, T::Element>, as Stages
     { lanes: [lead, stages], scalars: [], shared: [] }
 );
 
 /// A flow of the free body that is a type of its scalar.
 macro_rules! flow_in_lanes {
     ($([$($generics:tt)*] $flow:ident<$($before:ident,)* _>),+ $(,)?) => {$(
-        impl<$($generics)* W: Real<Element: Real>> InLanes<W> for super::$flow<$($before,)* W::Element> {
+        impl<$($generics)* W: Real> InLanes<W> for super::$flow<$($before,)* W::Element> {
             type Together = super::$flow<$($before,)* W>;
         }
     )+};
@@ -61,11 +61,11 @@ flow_in_lanes!(
 );
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] PreprocessedFlow<T> => PreprocessedFlow<T::Element>, as PreprocessedFlow
+    impl[T: Real] PreprocessedFlow<T> => PreprocessedFlow<T::Element>, as PreprocessedFlow
     { lanes: [inertia], scalars: [], shared: [order] }
 );
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] PreprocessedDrift<T> => PreprocessedDrift<T::Element>, as PreprocessedDrift
+    impl[T: Real] PreprocessedDrift<T> => PreprocessedDrift<T::Element>, as PreprocessedDrift
     { lanes: [modified], scalars: [h], shared: [] }
 );

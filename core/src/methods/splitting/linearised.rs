@@ -5,7 +5,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::kinetic_flow::SymmetricBody;
-use super::{Flow, KineticFlow, Length, Split};
+use super::{Flow, KineticFlow, Length, Split, StagesOf};
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::groups::rotation_functions::stumpff;
@@ -134,13 +134,7 @@ where
         if self.spin.is_none() {
             return self.step(scene, motion, kept);
         }
-        let (mut whole, mut plain) = (*motion, *motion.now());
-        for shares in [&self.first, &self.last] {
-            self.make_all::<true, M>(shares, &mut whole, &mut 0)?;
-        }
-        let report = self.step(scene, &mut plain, kept)?;
-        motion.replace(plain);
-        Ok(report)
+        self.record_beside((self, kept), scene, motion, (*motion, [&self.first, &self.last]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -163,6 +157,25 @@ where
     S: RigidScene + SecondDerivatives,
     K: DifferentiableFlow<Scalar<S>>,
 {
+    /// A step of a plan of these drifts and kicks, beside the changes that it is made of: these shares one after another,
+    /// from a copy of the motion.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(super) fn record_beside<P: Plan<S>, M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        (plan, kept): (&P, &mut P::Kept),
+        scene: &S,
+        motion: &mut M,
+        (mut whole, shares): (M, [&StagesOf<S, K>; 2]),
+    ) -> Result<StepReport, StepError> {
+        for shares in shares {
+            self.make_all::<true, M>(shares, &mut whole, &mut 0)?;
+        }
+        let mut plain = *motion.now();
+        let report = plan.step(scene, &mut plain, kept)?;
+        motion.replace(plain);
+        Ok(report)
+    }
+
     /// Whether the derivatives of force gradients are known.
     pub(super) fn check_gradients(scene: &S) -> Result<(), SetupError> {
         let (w, zero) = (scene.advected(), Vector3::repeat(real(0.0)));

@@ -1,11 +1,12 @@
 //! Why a step has no solution, what is proved about that before it is solved, and which step would have one.
 
+use alloc::vec::Vec;
+
 use super::{Declared, kicked};
 use crate::error::StepError;
-use crate::groups::Advected as _;
-use crate::groups::Retraction as _;
+use crate::groups::{Advected as _, LieGroup, Retraction as _};
 use crate::mechanics::{Effect, Group, Scalar, Vector, estimated_velocity};
-use crate::numbers::{Coordinates as _, largest_lane, real, reported};
+use crate::numbers::{Coordinates as _, Entries as _, largest_lane, real, reported};
 use crate::solving::{
     Problem, Root, Solvability, TurningLimits, largest_fraction, newton_system, six_digits, step_terms, turning_limits,
 };
@@ -22,7 +23,8 @@ impl<S: Effect> Declared<S> {
         advected: &S::Advected,
         half_guess: &Vector<S>,
     ) -> Result<Root<Group<S>>, StepError> {
-        let is_finite = momentum.is_finite() && advected.is_finite();
+        // No bound says anything of an infinite kick, which `explain` finds.
+        let is_finite = kicked::<S>(&self.constants, momentum, advected).is_finite() && advected.is_finite();
         if is_finite && self.solvability(scene, momentum, advected) == Solvability::Impossible {
             let largest = self.largest_solvable(scene, momentum, advected);
             return Err(beyond_solvable(scene, self.h, momentum, advected, largest));
@@ -39,6 +41,11 @@ impl<S: Effect> Declared<S> {
         }
         if !advected.is_finite() {
             return StepError::NonFinite { what: "advected parameter" };
+        }
+        // An attraction between bodies at one place is an example.
+        let terms = step_terms::<S>(&self.constants, &kicked::<S>(&self.constants, momentum, advected), advected);
+        if !newton_system::<S>(&self.constants, &terms, &Vector::<S>::zero()).0.is_finite() {
+            return StepError::NonFinite { what: "momentum equation" };
         }
         let largest = self.largest_solvable(scene, momentum, advected);
         if largest == real(0.0) {
@@ -122,10 +129,25 @@ pub(crate) fn beyond_solvable<S: Effect>(
 ) -> StepError {
     // With the kick at the beginning of the step.
     let kicked = kicked::<S>(&scene.constants(h), momentum, advected);
-    let turn = estimated_velocity(scene, &kicked, advected) * h;
-    StepError::BeyondSolvable {
-        step: reported(h),
-        largest: six_digits(reported(largest)),
-        turn: largest_lane(turn.dot(&turn).simd_sqrt()),
+    let (turn, body) = farthest::<Group<S>>(&(estimated_velocity(scene, &kicked, advected) * h));
+    StepError::BeyondSolvable { step: reported(h), largest: six_digits(reported(largest)), turn, body }
+}
+
+/// How far the body turns that turns farthest, of several lanes the largest, and of a system which it is. What doesn't
+/// turn, as translations, doesn't count: a metre isn't a radian.
+fn farthest<G: LieGroup>(change: &G::Vector) -> (f64, Option<usize>) {
+    let mut squares = Vec::new();
+    change.each(&mut |component| squares.push(component * component));
+    let turns = G::turning_components();
+    let of_each = G::DIMENSION / G::BODIES.max(1);
+    let mut farthest = (0.0, None);
+    for body in 0..G::BODIES {
+        let components = (body * of_each..(body + 1) * of_each).filter(|&component| turns[component]);
+        let square = components.fold(real::<G::Scalar>(0.0), |sum, component| sum + squares[component]);
+        let turn = largest_lane(square.simd_sqrt());
+        if turn > farthest.0 {
+            farthest = (turn, (G::BODIES > 1).then_some(body));
+        }
     }
+    farthest
 }

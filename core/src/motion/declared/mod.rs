@@ -13,7 +13,7 @@ use crate::motion::flows::{Increment, Stepped};
 use crate::motion::plan::{Cost, Plan, Steerable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, Summation, is_due};
-use crate::numbers::{Coordinates as _, InLanes, Lanes, Real, is_finite, lanes_of_fields, real, reported};
+use crate::numbers::{Coordinates as _, InLanes, Lanes, is_finite, lanes_of_fields, real, reported};
 use crate::solving::{Continued, Kick, Problem, Root, Warm, newton_system, safe, step_terms, trusted_radius};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
@@ -32,7 +32,7 @@ pub struct Declared<S: Effect> {
 lanes_of_fields!(
     impl[S] Declared<S> => Declared<S::Lane>, as Declared
     where [
-        S: Effect<Scalar: Real<Element: Real>, Constants: Lanes<Lane = <S::Lane as Effect>::Constants>>
+        S: Effect<Constants: Lanes<Lane = <S::Lane as Effect>::Constants>>
             + Lanes<Lane: Effect<Scalar = Element<S>>>
     ]
     { lanes: [constants], scalars: [h, largest_target, trusted, safe], shared: [] }

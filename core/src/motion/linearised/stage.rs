@@ -1,6 +1,6 @@
 //! The tangent map of one stage and its transpose.
 
-use crate::groups::{Advected as _, LieGroup, seen_of_unit};
+use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
 use crate::mechanics::pattern;
 use crate::mechanics::{Effect, Group, Matrix, Scalar, SecondDerivatives, Square, StepDerivatives, Vector};
 use crate::motion::linearised::recorded::Change;
@@ -271,8 +271,6 @@ pub struct Flown<'a, G: LieGroup> {
     /// `∂ε/∂θ` by the numbers of the parameters.
     pub(crate) by_parameters: &'a [(usize, G::Vector)],
 }
-
-pub(crate) type SquareOf<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
 impl<G: LieGroup> Flown<'_, G> {
     /// Takes the gradient at the end to the beginning, and adds the parameters' shares.

@@ -352,7 +352,7 @@ fn a_joint_of_ones_own() {
         off = off.max((stepper.energy(&state) - energy).abs());
     }
     println!("energy {energy:.3} within {off:.1e}, gap {gap:.1e}");
-    assert!(off < 0.6 && gap < 8.0 * EPSILON * 3.0);
+    assert!(off < 0.6 && gap < 4.0 * EPSILON * 3.0);
 
     let saved = stepper.checkpoint(&state);
     assert_eq!(stepper.resume(&saved).unwrap(), state);

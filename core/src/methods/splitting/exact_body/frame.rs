@@ -69,7 +69,7 @@ impl<T: Real> Frame<T> {
 }
 
 /// Of one kind in all lanes.
-impl<T: Real<Element: Real>> Lanes for Frame<T> {
+impl<T: Real> Lanes for Frame<T> {
     type Lane = Frame<T::Element>;
 
     fn splat(lane: &Self::Lane) -> Self {

@@ -22,8 +22,8 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     const PARAMETERS: usize = 6;
 
     fn describe_parameters(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
-        let mut moments = flow.moments;
-        flow.frame.places().into_iter().zip(flow.moments).for_each(|(place, moment)| moments[place] = moment);
+        let mut moments = flow.moments.0;
+        flow.frame.places().into_iter().zip(flow.moments.0).for_each(|(place, moment)| moments[place] = moment);
         for moment in moments {
             visitor.parameter("moment", moment);
         }
@@ -37,12 +37,12 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
         let (momentum, increment) = (event.before.momentum, event.increment);
         let along = flow.frame.within(&momentum);
         let (time, constant) = (Dual::constant(time), Dual::constant);
-        let fixed = Form::of(flow.moments.map(constant), time);
+        let fixed = Form::of(flow.moments.0.map(constant), time);
         let turns = flow.turns(&fixed, |k| fixed.scale * Dual::along(along[k], k));
         let inward = |k: usize| flow.frame.within(&Matrix3::identity().column(k).into_owned());
         let turn_by_momentum =
             Matrix3::from_columns(&turns) * Matrix3::from_columns(&[0, 1, 2].map(|k| Vector3::from(inward(k))));
-        let varied = Form::of(core::array::from_fn(|k| Dual::along(flow.moments[k], k)), time);
+        let varied = Form::of(core::array::from_fn(|k| Dual::along(flow.moments.0[k], k)), time);
         let by_moments = flow.turns(&varied, |k| varied.scale * constant(along[k]));
         // F(R J Rᵀ, p) = R F(J, Rᵀ p) Rᵀ.
         let by_axes = turn_by_momentum * momentum.cross_matrix() - increment;

@@ -45,7 +45,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
-use crate::numbers::{Number, Real, is_finite, lanes_of_fields, reported};
+use crate::numbers::{Number, Numbers, Real, is_finite, lanes_of_fields, reported};
 
 /// The free motion of a body with any three moments, exactly: to rounding, over any time.
 ///
@@ -104,7 +104,7 @@ use crate::numbers::{Number, Real, is_finite, lanes_of_fields, reported};
 pub struct ExactBody<T = f64> {
     inertia: Matrix3<T>,
     /// About the three axes, the last the middle one.
-    moments: [T; 3],
+    moments: Numbers<T, 3>,
     frame: Frame<T>,
 }
 
@@ -114,7 +114,7 @@ impl<T: Real> ExactBody<T> {
     pub fn new(inertia: &Inertia<T>) -> Self {
         let inertia = *inertia.as_matrix();
         let (moments, frame) = Frame::of(&inertia);
-        Self { inertia, moments, frame }
+        Self { inertia, moments: Numbers(moments), frame }
     }
 }
 
@@ -140,17 +140,17 @@ struct Form<T> {
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] ExactBody<T> => ExactBody<T::Element>, as ExactBody
+    impl[T: Real] ExactBody<T> => ExactBody<T::Element>, as ExactBody
     { lanes: [inertia, moments, frame], scalars: [], shared: [] }
 );
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] ExactDrift<T> => ExactDrift<T::Element>, as ExactDrift
+    impl[T: Real] ExactDrift<T> => ExactDrift<T::Element>, as ExactDrift
     { lanes: [frame, form], scalars: [], shared: [] }
 );
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] Form<T> => Form<T::Element>, as Form
+    impl[T: Real] Form<T> => Form<T::Element>, as Form
     { lanes: [], scalars: [scale, a, b, b_less_a, c_squared, a_squared, b_squared], shared: [] }
 );
 
@@ -174,7 +174,7 @@ impl<T: Real> KineticFlow<T> for ExactBody<T> {
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {
-        let form = Form::of(self.moments, h);
+        let form = Form::of(self.moments.0, h);
         if !is_finite(form.scale + form.a_squared + form.b_squared) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }

@@ -20,7 +20,7 @@ pub(super) struct Stepped<T: Real, A> {
     pub(super) h: T,
 }
 
-impl<T: Real<Element: Real>, A: Lanes> Lanes for Inside<T, A> {
+impl<T: Real, A: Lanes> Lanes for Inside<T, A> {
     type Lane = Inside<T::Element, A::Lane>;
 
     fn splat(lane: &Self::Lane) -> Self {
@@ -37,7 +37,7 @@ impl<T: Real<Element: Real>, A: Lanes> Lanes for Inside<T, A> {
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>, A: Lanes] Stepped<T, A> => Stepped<T::Element, A::Lane>, as Stepped
+    impl[T: Real, A: Lanes] Stepped<T, A> => Stepped<T::Element, A::Lane>, as Stepped
     { lanes: [attitude, momentum, advected], scalars: [h], shared: [] }
 );
 

@@ -10,7 +10,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{RigidScene, Scalar, SceneVisitor, SecondDerivatives};
 use crate::motion::linearised::{Change, Linearisable, Pass};
-use crate::motion::{Plan, StepReport, Summation};
+use crate::motion::{StepReport, Summation};
 use nalgebra::SimdComplexField as _;
 
 impl<S, K> Linearisable<S> for Processed<S, K>
@@ -45,17 +45,12 @@ where
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
-        let (mut whole, mut plain) = (*motion, *motion.now());
+        let mut whole = *motion;
         self.kernel.make_all::<true, M>(&self.enter, &mut whole, &mut 0)?;
         if let Some(inside) = self.inside(kept) {
-            whole.replace(inside.after(plain.steps));
+            whole.replace(inside.after(motion.now().steps));
         }
-        for shares in [&self.kernel.step, &self.leave] {
-            self.kernel.make_all::<true, M>(shares, &mut whole, &mut 0)?;
-        }
-        let report = self.step(scene, &mut plain, kept)?;
-        motion.replace(plain);
-        Ok(report)
+        self.kernel.record_beside((self, kept), scene, motion, (whole, [&self.kernel.step, &self.leave]))
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]

@@ -120,11 +120,11 @@ pub struct SplitDrift<T> {
 }
 
 lanes_of_fields!(
-    impl[const ROTATIONS: usize, T: Real<Element: Real>] SplitBody<ROTATIONS, T> => SplitBody<ROTATIONS, T::Element>,
+    impl[const ROTATIONS: usize, T: Real] SplitBody<ROTATIONS, T> => SplitBody<ROTATIONS, T::Element>,
     as SplitBody { lanes: [moments], scalars: [], shared: [axes] }
 );
 
-impl<T: Real<Element: Real>> Lanes for SplitDrift<T> {
+impl<T: Real> Lanes for SplitDrift<T> {
     type Lane = SplitDrift<T::Element>;
 
     fn splat(lane: &Self::Lane) -> Self {

@@ -1,7 +1,7 @@
 //! One rotation about a body axis by an angle in proportion to the momentum about it, and how many there are.
 
 use crate::groups::rotation_coefficients;
-use crate::numbers::{Real, lanes_of_fields, real};
+use crate::numbers::{Numbers, Real, lanes_of_fields, real};
 
 /// Shares of the first and the second axis by turns, from the first to the middle one. \[FR90\]
 pub(super) const SEVEN: [f64; 5] =
@@ -30,22 +30,22 @@ pub(super) struct Rotor<T> {
     /// `κ`.
     rate: T,
     /// Of `sin(κ p)/p` and `cos(κ p)`, in powers of `p²`: that `κ` is in them is a product less to wait for.
-    sine: [T; 6],
-    cosine: [T; 6],
+    sine: Numbers<T, 6>,
+    cosine: Numbers<T, 6>,
 }
 
 lanes_of_fields!(
-    impl[T: Real<Element: Real>] Rotor<T> => Rotor<T::Element>, as Rotor
+    impl[T: Real] Rotor<T> => Rotor<T::Element>, as Rotor
     { lanes: [sine, cosine], scalars: [rate], shared: [] }
 );
 
 impl<T: Real> Rotor<T> {
     pub(super) fn new(rate: T) -> Self {
-        let mut rotor = Self { rate, sine: [rate; 6], cosine: [T::one(); 6] };
+        let mut rotor = Self { rate, sine: Numbers([rate; 6]), cosine: Numbers([T::one(); 6]) };
         let (square, mut n) = (rate * rate, 1.0);
         for k in 1..6 {
-            rotor.cosine[k] = rotor.cosine[k - 1] * square * real(-1.0 / (n * (n + 1.0)));
-            rotor.sine[k] = rotor.sine[k - 1] * square * real(-1.0 / ((n + 1.0) * (n + 2.0)));
+            rotor.cosine.0[k] = rotor.cosine.0[k - 1] * square * real(-1.0 / (n * (n + 1.0)));
+            rotor.sine.0[k] = rotor.sine.0[k - 1] * square * real(-1.0 / ((n + 1.0) * (n + 2.0)));
             n += 2.0;
         }
         rotor
@@ -63,7 +63,7 @@ impl<T: Real> Rotor<T> {
         let q2 = q * q;
         let q4 = q2 * q2;
         let polynomial = |a: &[T; 6]| (a[0] + q * a[1]) + (q2 * (a[2] + q * a[3]) + q4 * (a[4] + q * a[5]));
-        (polynomial(&self.sine), polynomial(&self.cosine))
+        (polynomial(&self.sine.0), polynomial(&self.cosine.0))
     }
 
     /// The same for any angle.

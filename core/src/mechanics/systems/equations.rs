@@ -1,0 +1,275 @@
+//! What terms at the places of a system add to a scene: sums over their places.
+
+use alloc::string::String;
+use core::fmt::Debug;
+
+use super::places::{At, Places};
+use super::{Folded, Placed, term_at};
+use crate::groups::Retraction;
+use crate::mechanics::description::SceneVisitor;
+use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
+use crate::mechanics::kinetic_part::KineticPart as _;
+use crate::mechanics::lagrangian::DiscreteLagrangian;
+use crate::mechanics::operations::Operations;
+use crate::numbers::{Blocks, Coordinates as _, real};
+
+impl<P, E, const M: usize> Placed<P, E, M>
+where
+    P: Places<E> + Copy + Debug + PartialEq,
+    E: Effect,
+    E::Retraction: Retraction<P::Group>,
+{
+    /// The sum of a number of each place.
+    fn total(&self, w: &P::Advected, of: impl Fn(&E, &E::Advected, At) -> E::Scalar) -> E::Scalar {
+        let mut total = real(0.0);
+        P::visit(|at| total += of(self.term(at), &P::seen(w, &self.term(at).advected(), at), at));
+        total
+    }
+
+    /// The sum of the components at each place.
+    fn gathered(&self, w: &P::Advected, of: impl Fn(&E, &E::Advected, At) -> Vector<E>) -> Vector<Self> {
+        P::sum(|at| of(self.term(at), &P::seen(w, &self.term(at).advected(), at), at))
+    }
+
+    fn term(&self, at: At) -> &E {
+        &self.terms[term_at::<M>(at.place)]
+    }
+
+    /// Residual and Jacobian at each place.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn systems(
+        constants: &Folded<E, M>,
+        terms: &P::Of<E::StepTerms>,
+        half: &Vector<Self>,
+    ) -> impl Fn(At) -> (Vector<E>, Square<E>) {
+        #[cfg_attr(not(debug_assertions), inline(always))]
+        move |at| {
+            let (constants, _) = &constants[term_at::<M>(at.place)];
+            E::newton_system(constants, &terms.as_ref()[at.place], &P::components(half, at))
+        }
+    }
+}
+
+impl<P, E, const M: usize> Effect for Placed<P, E, M>
+where
+    P: Places<E> + Copy + Debug + PartialEq,
+    E: Effect,
+    E::Retraction: Retraction<P::Group>,
+{
+    type Retraction = E::Retraction;
+    type Kinetic = E::Kinetic;
+    type Constants = Folded<E, M>;
+    type StepTerms = P::Of<E::StepTerms>;
+
+    const PARTS: Parts = {
+        assert!(
+            P::AT_ONE_BODY || !E::PARTS.unknown || !E::Kinetic::IS_THERE,
+            "between the bodies of a system only potentials are possible: this term couples their velocities; declare all of \
+             these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::ChainStepper`"
+        );
+        assert!(
+            P::AT_ONE_BODY || P::LINKS_NEIGHBOURS || !E::PARTS.unknown,
+            "this term depends on where two bodies are within the step: put it at neighbours in a row, by \
+             `Coupled::<N>::of`, or take the means of what it has at the ends of the step"
+        );
+        assert!(
+            !P::LINKS_NEIGHBOURS || (E::IS_QUADRATIC && E::DENOMINATORS == 0),
+            "a term with cleared denominators, or one that isn't quadratic in the velocity, can't join neighbours"
+        );
+        E::PARTS
+    };
+    const DENOMINATORS: u32 = E::DENOMINATORS;
+    const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
+    const IS_QUADRATIC: bool = E::IS_QUADRATIC;
+    // What lies between neighbours isn't in the blocks of bodies, which elimination fills.
+    const APART: Blocks = if P::LINKS_NEIGHBOURS { Blocks::WHOLE } else { E::APART };
+    const LINKS_NEIGHBOURS: bool = P::LINKS_NEIGHBOURS;
+    const OPERATIONS: Operations = Operations {
+        step: E::OPERATIONS.step.saturating_mul(places_of::<P, E>()),
+        iteration: E::OPERATIONS.iteration.saturating_mul(places_of::<P, E>()),
+    };
+    const DERIVATION: &'static str = "a term at places of a system; see its DERIVATION\n";
+
+    fn derivation() -> String {
+        E::derivation()
+    }
+
+    #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
+    fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
+        visitor.term(P::NAME.0);
+        P::NAME.1.iter().for_each(|&body| visitor.parameter("body", real(body as f64)));
+        self.terms.iter().for_each(|term| term.describe(visitor));
+    }
+
+    fn momentum_jacobian(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Square<Self> {
+        P::squares(|at| {
+            let term = self.term(at);
+            term.momentum_jacobian(&P::matrix(f, at), &P::seen(w, &term.advected(), at), h)
+        })
+    }
+
+    fn inertia(&self, w: &P::Advected) -> Square<Self> {
+        P::squares(|at| self.term(at).inertia(&P::seen(w, &self.term(at).advected(), at)))
+    }
+
+    fn momentum_bias(&self, w: &P::Advected) -> Vector<Self> {
+        self.gathered(w, |term, w, _| term.momentum_bias(w))
+    }
+
+    fn potential(&self, w: &P::Advected) -> Self::Scalar {
+        self.total(w, |term, w, _| term.potential(w))
+    }
+
+    fn limit(&self, velocity: &Vector<Self>, w: &P::Advected) -> Limit<Self> {
+        let at_its_place = |at: At| {
+            let term = self.term(at);
+            term.limit(&P::components(velocity, at), &P::seen(w, &term.advected(), at))
+        };
+        let mut l = real(0.0);
+        P::visit(|at| l += at_its_place(at).l);
+        Limit {
+            l,
+            momentum: P::sum(|at| at_its_place(at).momentum),
+            hessian: P::squares(|at| at_its_place(at).hessian),
+        }
+    }
+
+    fn constants(&self, h: Self::Scalar) -> Self::Constants {
+        self.terms.each_ref().map(|term| (term.constants(h), term.advected()))
+    }
+
+    fn are_finite(constants: &Self::Constants) -> bool {
+        constants.iter().all(|(constants, _)| E::are_finite(constants))
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn kick_before(constants: &Self::Constants, w: &P::Advected) -> Vector<Self> {
+        P::sum(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |at| {
+                let (constants, spatial) = &constants[term_at::<M>(at.place)];
+                E::kick_before(constants, &P::seen(w, spatial, at))
+            },
+        )
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn kick_derivative(constants: &Self::Constants, w: &P::Advected, velocity: &Vector<Self>) -> Option<Vector<Self>> {
+        let mut is_known = true;
+        let all = P::sum(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |at| {
+                let (constants, spatial) = &constants[term_at::<M>(at.place)];
+                let part = E::kick_derivative(constants, &P::seen(w, spatial, at), &P::components(velocity, at));
+                is_known &= part.is_some();
+                part.unwrap_or_else(Vector::<E>::zero)
+            },
+        );
+        is_known.then_some(all)
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn step_terms(constants: &Self::Constants, a: &Vector<Self>, w: &P::Advected) -> Self::StepTerms {
+        P::gather(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |at| {
+                let (constants, spatial) = &constants[term_at::<M>(at.place)];
+                E::step_terms(constants, &P::components(a, at), &P::seen(w, spatial, at))
+            },
+        )
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn newton_system(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        P::system(Self::systems(constants, terms, half))
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn newton_linked(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+        links: &mut Links<Self>,
+    ) -> (Vector<Self>, Square<Self>) {
+        P::linked(links, Self::systems(constants, terms, half))
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn newton_update(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
+        P::newton_update(pattern::<Self>(), Self::systems(constants, terms, half))
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn newton_residual(
+        constants: &Self::Constants,
+        terms: &Self::StepTerms,
+        half: &Vector<Self>,
+    ) -> Residual<Vector<Self>> {
+        let momentum_defect = P::sum(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |at| {
+                let (constants, _) = &constants[term_at::<M>(at.place)];
+                E::newton_residual(constants, &terms.as_ref()[at.place], &P::components(half, at)).momentum_defect
+            },
+        );
+        Residual { momentum_defect, moving_kick: None }
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &P::Advected) -> Vector<Self> {
+        P::sum(
+            #[cfg_attr(not(debug_assertions), inline(always))]
+            |at| {
+                let (constants, spatial) = &constants[term_at::<M>(at.place)];
+                E::kick_after(constants, &P::matrix(increment, at), &P::seen(next, spatial, at))
+            },
+        )
+    }
+}
+
+/// How many there are, as operations are counted.
+#[allow(clippy::cast_possible_truncation)] // far fewer
+const fn places_of<P: Places<E>, E: Effect>() -> u32 {
+    P::PLACES as u32
+}
+
+impl<P, E, const M: usize> DiscreteLagrangian for Placed<P, E, M>
+where
+    P: Places<E> + Copy + Debug + PartialEq,
+    E: DiscreteLagrangian,
+    E::Retraction: Retraction<P::Group>,
+{
+    const SELF_ADJOINT: bool = E::SELF_ADJOINT;
+
+    fn l_d(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Self::Scalar {
+        self.total(w, |term, w, at| term.l_d(&P::matrix(f, at), w, h))
+    }
+
+    fn right_momentum(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.gathered(w, |term, w, at| term.right_momentum(&P::matrix(f, at), w, h))
+    }
+
+    fn left_momentum(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.gathered(w, |term, w, at| term.left_momentum(&P::matrix(f, at), w, h))
+    }
+
+    fn diamond(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.gathered(w, |term, w, at| term.diamond(&P::matrix(f, at), w, h))
+    }
+
+    fn legendre_minus(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Vector<Self> {
+        self.gathered(w, |term, w, at| term.legendre_minus(&P::matrix(f, at), w, h))
+    }
+
+    fn discrete_energy(&self, f: &Matrix<Self>, w: &P::Advected, h: Self::Scalar) -> Self::Scalar {
+        self.total(w, |term, w, at| term.discrete_energy(&P::matrix(f, at), w, h))
+    }
+}

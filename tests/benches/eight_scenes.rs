@@ -1,0 +1,106 @@
+//! Scenes of several bodies. Each stands eight times, from eight different starts.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use core::array::from_fn;
+use core::fmt::Debug;
+
+use declarations::{DoublePendulum, TopOnCart, TwoBodies};
+use liestep::effects::PrincipalBody;
+use liestep::groups::{R2, R3};
+use liestep::mechanics::{Along, DiagonalNonstandardInertia, Each};
+use liestep::motion::{Batchable, Integrator};
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use nalgebra::{SVector, Vector2, Vector3};
+use simba::simd::AutoF64x8;
+
+/// Two bodies would like to stand alike.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    l_d = 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Alike<T> {
+    kappa: T,
+}
+
+/// What is done with each scene.
+pub(crate) trait Visit {
+    fn visit<M>(&mut self, name: &str, scenes: [(M, M::State); 8])
+    where
+        M: Batchable<AutoF64x8> + Integrator<State: PartialEq + Debug>;
+}
+
+const STEP: f64 = 0.01;
+
+/// A small turn that is another for each scene and body.
+fn turn(scene: usize, body: usize) -> SO3 {
+    #[allow(clippy::cast_precision_loss)] // small counts
+    let (a, b) = (scene as f64, body as f64);
+    SO3::exp(Vector3::new(0.5 + 0.05 * a, 0.1 * b, -0.3 + 0.02 * a * b))
+}
+
+/// Components of a velocity.
+fn velocity<const D: usize>(scene: usize) -> SVector<f64, D> {
+    #[allow(clippy::cast_precision_loss)] // small counts
+    SVector::from_fn(|k, _| 0.5 - 0.3 * (k % 4) as f64 + 0.04 * scene as f64)
+}
+
+fn body() -> NonstandardInertia {
+    NonstandardInertia::from_principal_moments(Vector3::new(0.5, 0.4, 1.0 / 3.0)).expect("a body")
+}
+
+/// So many bodies, neighbours of which would like to stand alike.
+fn row<const N: usize>(visit: &mut impl Visit) {
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).expect("a body");
+    let scene = Each::<N>::of([PrincipalBody { J_d }]) + Along::<N>::of([Alike { kappa: 2.0 }]);
+    let started = |number: usize| {
+        let stepper = Stepper::new(scene, STEP).expect("a usable step");
+        let velocities = Bodies([velocity(number); N]);
+        let state = stepper.start(from_fn::<_, N, _>(|body| turn(number, body)), velocities).expect("a usable start");
+        (stepper, state)
+    };
+    visit.visit(&format!("row of {N}"), from_fn(started));
+}
+
+pub(crate) fn visit_all(visit: &mut impl Visit) {
+    visit.visit(
+        "double pendulum",
+        from_fn(|number| {
+            let stepper = Stepper::new(DoublePendulum::asymmetric(), STEP).expect("a usable step");
+            let state = stepper.start((turn(number, 0), turn(number, 1)), velocity(number)).expect("a usable start");
+            (stepper, state)
+        }),
+    );
+    visit.visit(
+        "top on a cart",
+        from_fn(|number| {
+            let top = TopOnCart { J_d: body(), s: Vector3::z() * 0.4, M: 2.0, g: 9.81 };
+            let stepper = Stepper::new(top, STEP).expect("a usable step");
+            let place = (turn(number, 0), R2::from(Vector2::zeros()));
+            let state = stepper.start(place, velocity(number)).expect("a usable start");
+            (stepper, state)
+        }),
+    );
+    visit.visit(
+        "two-body problem",
+        from_fn(|number| {
+            let (K_1, K_2) = (body(), body());
+            let (J_1, J_2) = (K_1.to_inertia(), K_2.to_inertia());
+            let scene = TwoBodies { m_1: 1.0, m_2: 0.4, K_1, K_2, J_1, J_2, G: 1.0 };
+            let stepper = Stepper::new(scene, STEP).expect("a usable step");
+            let [near, far] = [0.0, 4.0].map(|x| R3::from(Vector3::x() * x));
+            // They run beside each other.
+            let turning = velocity::<3>(number);
+            let moving: SVector<f64, 12> =
+                from_fn::<_, 12, _>(|k| if k % 6 < 3 { turning[k % 3] } else { 0.1 * turning[k % 3] }).into();
+            let state = stepper.start((turn(number, 0), near, turn(number, 1), far), moving).expect("a usable start");
+            (stepper, state)
+        }),
+    );
+    row::<4>(visit);
+    row::<32>(visit);
+}

@@ -1,0 +1,177 @@
+//! Several bodies at the edges of what a step can do: steps up to the longest that has a solution, and bodies that nearly
+//! touch.
+
+// The letters of the field.
+#![allow(non_snake_case)]
+
+use core::f64::consts::{FRAC_PI_2, PI};
+use core::fmt::Debug;
+
+use declarations::{DoublePendulum, TwoBodies};
+use liestep::groups::R3;
+use liestep::methods::ChainStepper;
+use liestep::motion::Integrator;
+use liestep::numbers::Bodies;
+use liestep::{NonstandardInertia, SO3, StepError, Stepper};
+use nalgebra::{SVector, Vector3, Vector6};
+
+use super::assert_same;
+use super::links::irregular;
+use super::translated::whole;
+use liestep::laws::samples::Random;
+
+/// Steps of every length up to the longest are solved, with increments that go on from one length to the next and turn no
+/// body by much more than a right angle; a longer one is an error, and leaves the state. How long that was.
+fn scanned<I>(
+    started: impl Fn(f64) -> (I, I::State),
+    bodies: impl Fn(&I::State) -> Vec<SO3>,
+    refused: fn(&StepError) -> bool,
+) -> f64
+where
+    I: Integrator<State: Clone + PartialEq + Debug>,
+{
+    let turns = |h: f64| -> Result<Vec<Vector3<f64>>, StepError> {
+        let (stepper, first) = started(h);
+        let mut state = first.clone();
+        match stepper.step(&mut state) {
+            Ok(report) => {
+                // Twenty from the velocity, and up to sixty shortened ones from rest: these settle before they are used up.
+                assert!(report.iterations < 80, "{h}: {report:?}");
+                let turn = |(from, to): (SO3, SO3)| (from.inverse().compose(&to)).log();
+                Ok(bodies(&first).into_iter().zip(bodies(&state)).map(turn).collect())
+            }
+            Err(error) => {
+                assert!(refused(&error), "{h}: {error:?}");
+                assert_eq!(state, first, "{h}");
+                Err(error)
+            }
+        }
+    };
+    // Twice as long until there is none, then by halves.
+    let mut longest = [1e-3, 2e-3];
+    while turns(longest[1]).is_ok() {
+        longest = [longest[1], 2.0 * longest[1]];
+        assert!(longest[1] < 10.0);
+    }
+    for _ in 0..40 {
+        let middle = 0.5 * (longest[0] + longest[1]);
+        longest[usize::from(turns(middle).is_err())] = middle;
+    }
+    let longest = longest[0];
+    // At a fold `h*` increments change as `√(h* − h)`; so steps are denser there, and increments change evenly. They go on
+    // without a jump where steps twice as dense halve the largest change: a jump would stay as it is.
+    let largest_change = |parts: u32| {
+        let share = |k: u32| 1.0 - (f64::from(k) / f64::from(parts)).powi(2);
+        let found: Vec<_> = (0..parts).map(|k| turns(share(k) * longest).unwrap()).collect();
+        // A body alone is solved up to a right angle. For links there is no theorem, and one turns 1.60 rad here, 2 % more.
+        assert!(found.iter().flatten().all(|turn| turn.norm() < 1.05 * FRAC_PI_2), "{found:?}");
+        let changes = found.windows(2).flat_map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| (a - b).norm()));
+        changes.fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [200, 400].map(largest_change);
+    assert!(fine < 0.6 * coarse, "{fine} after {coarse}");
+    for more in [1.0001, 1.01, 1.1, 1.5, 2.0, 5.0] {
+        assert!(turns(more * longest).is_err(), "{more}");
+    }
+    longest
+}
+
+#[test]
+fn steps_of_a_double_pendulum_up_to_the_longest() {
+    let attitudes = (SO3::from_euler_angles(0.3, 1.0, -0.2), SO3::from_euler_angles(-0.5, 0.4, 0.1));
+    for velocity in [Vector6::new(0.5, -1.0, 2.0, 1.0, 0.3, -0.5), Vector6::new(4.0, 1.0, 9.0, -3.0, 2.0, -8.0)] {
+        let started = |h: f64| {
+            let stepper = Stepper::new(DoublePendulum::asymmetric(), h).unwrap();
+            let state = stepper.start(attitudes, velocity).unwrap();
+            (stepper, state)
+        };
+        let longest = scanned(
+            started,
+            |state| vec![state.attitude().0, state.attitude().1],
+            |error| matches!(error, StepError::BeyondSolvable { .. }),
+        );
+        println!("{longest:.4} s");
+    }
+}
+
+#[test]
+fn steps_of_a_chain_up_to_the_longest() {
+    let random = &mut Random::new(17);
+    for speed in [1.0, 5.0] {
+        let chain = irregular::<5>(random);
+        let attitudes = [(); 5].map(|()| SO3::exp(random.sample::<Vector3<f64>>()));
+        let velocities = Bodies([(); 5].map(|()| random.sample::<Vector3<f64>>() * speed));
+        let started = |h: f64| {
+            let stepper = ChainStepper::new(chain, h).unwrap();
+            let state = stepper.start(attitudes, velocities).unwrap();
+            (stepper, state)
+        };
+        let longest = scanned(
+            started,
+            |state| state.attitude().to_vec(),
+            |error| matches!(error, StepError::UnsolvedBody { .. } | StepError::NotConverged { .. }),
+        );
+        println!("{longest:.4} s");
+    }
+}
+
+/// Two bodies that pass each other a hundredth of their distance apart: by steps short enough for that they come out with
+/// the energy and the momenta that they had. Where they are at one place there is no step, and that is said.
+#[test]
+fn bodies_that_nearly_touch() {
+    let (size, G) = (1e-3, 1.0);
+    let K =
+        |m: f64| NonstandardInertia::from_principal_moments(Vector3::new(1.0, 0.8, 0.5) * (m * size * size)).unwrap();
+    let [K_1, K_2] = [1.0, 0.4].map(K);
+    let scene = TwoBodies { m_1: 1.0, m_2: 0.4, K_1, K_2, J_1: K_1.to_inertia(), J_2: K_2.to_inertia(), G };
+    // About their centre of mass.
+    let at = |apart: f64| {
+        let [first, second] = [-0.4, 1.0].map(|share| R3::from(Vector3::x() * (share / 1.4 * apart)));
+        (SO3::identity(), first, SO3::identity(), second)
+    };
+    // Across the line between them, so slowly that as points they fall to `(1 − e)/(1 + e)` of their distance, 1/101.
+    let speed = (G * 1.4 * 2.0 / 101.0).sqrt();
+    let mut velocity = SVector::<f64, 12>::zeros();
+    (velocity[4], velocity[10]) = (-speed * 0.4 / 1.4, speed / 1.4);
+    // Kepler's period, of the semi-major axis 51/101.
+    let period = 2.0 * PI * ((51.0_f64 / 101.0).powi(3) / (G * 1.4)).sqrt();
+    let errors = [2e-5, 1e-5].map(|h| {
+        let stepper = Stepper::new(scene.clone(), h).unwrap();
+        let mut state = stepper.start(at(1.0), velocity).unwrap();
+        let (energy, momenta) = (stepper.energy(&state), whole(&state));
+        let (mut nearest, mut most, mut time, mut moved) = (f64::INFINITY, 0.0_f64, 0.0, [0.0_f64; 2]);
+        while time < period {
+            stepper.step(&mut state).unwrap();
+            time += h;
+            let (_, x, _, y) = state.attitude();
+            nearest = nearest.min((y.translation() - x.translation()).norm());
+            most = most.max((stepper.energy(&state) - energy).abs());
+            let now = whole(&state);
+            moved = [moved[0].max((now.0 - momenta.0).norm()), moved[1].max((now.1 - momenta.1).norm())];
+        }
+        let off = (stepper.energy(&state) - energy).abs();
+        println!(
+            "{h:e}: as near as {nearest:.5}, energy {energy:.3} off by {most:.2e}, in the end {off:.1e}, {moved:.1?}"
+        );
+        // At that distance their shapes add 0.7 (size/nearest)² to the potential of points, and take about as much of the
+        // angular momentum.
+        assert!((nearest * 101.0 - 1.0).abs() < 2.0 * (size * 101.0).powi(2), "{nearest}");
+        // A rounding of each step, of the potential where they are nearest, and of the momenta of one body at the start.
+        let rounding = f64::EPSILON * period / h;
+        assert!(off < rounding * G * 0.4 / nearest, "{off:e}");
+        let [linear, angular] = [0.4 * velocity[10], momenta.1.norm()];
+        assert!(moved[0] < rounding * linear && moved[1] < rounding * angular, "{moved:?}");
+        most
+    });
+    // Of second order; what is of fourth is by `(h v/r)²` smaller, 1e-3 of it where they are nearest.
+    let order = (errors[0] / errors[1]).log2();
+    assert!((order - 2.0).abs() < 0.05, "{order}");
+
+    let stepper = Stepper::new(scene, 1e-3).unwrap();
+    let mut state = stepper.start(at(0.0), velocity).unwrap();
+    let before = state;
+    let error = stepper.step(&mut state).unwrap_err();
+    println!("{error}");
+    assert_eq!(error, StepError::NonFinite { what: "momentum equation" });
+    assert_same(&state, &before);
+}
