@@ -342,7 +342,10 @@ mod tests {
         assert_same_digits(&Stepper::collocated::<4>(top, h).unwrap());
         assert_same_digits(&Stepper::collocated::<8>(top, h).unwrap());
         let flow = ExactBody::new(&Inertia::from_principal_moments(moments).unwrap());
-        assert_same_digits(&Stepper::split(top, h, flow, SplittingScheme::NYSTROM_14).unwrap());
-        assert_same_digits(&Stepper::processed(top, h, flow, ProcessedScheme::SIX_A).unwrap());
+        // Of the second the drifts are longer than polynomials reach.
+        for h in [h, 0.8] {
+            assert_same_digits(&Stepper::split(top, h, flow, SplittingScheme::NYSTROM_14).unwrap());
+            assert_same_digits(&Stepper::processed(top, h, flow, ProcessedScheme::SIX_A).unwrap());
+        }
     }
 }

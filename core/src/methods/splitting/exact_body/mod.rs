@@ -38,6 +38,7 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use self::frame::Frame;
 use self::series::{Functions, Invariants, LONG, SHORT, long, short};
+use super::OF_A_BODY;
 use super::axes::Axes;
 use super::kinetic_flow::{KineticFlow, Turn};
 use super::quaternion::{Quaternion, product_across, scaled_increment};
@@ -45,7 +46,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::rotation_coefficients;
 use crate::groups::{LieGroup as _, SO3};
 use crate::mechanics::{Inertia, Operations, SceneVisitor};
-use crate::numbers::{Number, Numbers, Real, is_finite, lanes_of_fields, reported};
+use crate::numbers::{Kernel, Number, Numbers, Real, Vectors, dispatch, is_finite, lanes_of_fields, reported};
 
 /// The free motion of a body with any three moments, exactly: to rounding, over any time.
 ///
@@ -332,27 +333,45 @@ impl<T: Number> Form<T> {
         Half { n, mu, about: [w, f * u[0], f * u[1], f * u[2]] }
     }
 
-    /// Where a lane is beyond the polynomials, or some need the longer ones and some don't.
     #[inline(never)]
     fn beyond(&self, u: [T; 3], invariants: &Invariants<T>) -> Turned<T> {
+        dispatch(Beyond { form: self, u, invariants })
+    }
+}
+
+/// A drift where a lane is beyond the polynomials, or some need the longer ones and some don't: it is called, and so has
+/// to ask for the machine's instructions itself.
+struct Beyond<'a, T> {
+    form: &'a Form<T>,
+    u: [T; 3],
+    invariants: &'a Invariants<T>,
+}
+
+impl<T: Number> Kernel for Beyond<'_, T> {
+    type Output = Turned<T>;
+    const VECTORS: Vectors = OF_A_BODY;
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run(self) -> Turned<T> {
+        let Self { form, u, invariants } = self;
         let size = invariants.size();
         let [is_short, is_long, is_far, is_farther] =
             [SHORT, LONG, FAR, FARTHER].map(|limit| size.simd_le(T::number(limit)));
         let mut half = Half { n: T::one(), mu: T::one(), about: [T::one(); 4] };
         if (is_farther & !is_far).any() {
-            half = self.farther::<2>(u, invariants);
+            half = form.farther::<2>(u, invariants);
         }
         if (is_far & !is_long).any() {
-            half = self.farther::<1>(u, invariants).select(is_far, &half);
+            half = form.farther::<1>(u, invariants).select(is_far, &half);
         }
         if (is_long & !is_short).any() {
-            half = self.near(u, &long(invariants)).select(is_long, &half);
+            half = form.near(u, &long(invariants)).select(is_long, &half);
         }
         if is_short.any() {
-            half = self.near(u, &short(invariants)).select(is_short, &half);
+            half = form.near(u, &short(invariants)).select(is_short, &half);
         }
-        let turned = self.whole(u, invariants, &half);
-        if is_farther.all() { turned } else { turned.select(is_farther, &self.doubled(u, invariants)) }
+        let turned = form.whole(u, invariants, &half);
+        if is_farther.all() { turned } else { turned.select(is_farther, &form.doubled(u, invariants)) }
     }
 }
 
