@@ -7,10 +7,10 @@ use syn::spanned::Spanned as _;
 use syn::{BinOp, Expr, ExprBinary, ExprField, ExprIndex, Member};
 
 use super::Checker;
-use super::advice::called;
+use super::advice::{called, spelled};
 use super::frames::How;
 use super::methods::{METHODS, integer};
-use crate::declared::{Kind, Name, Shape, Tree};
+use crate::declared::{Kind, Name, Scalar, Shape, Tree};
 
 impl Checker<'_> {
     pub(super) fn binary(&mut self, binary: &ExprBinary) -> Option<Rc<Tree>> {
@@ -66,6 +66,17 @@ impl Checker<'_> {
                 Some(Tree::new(span, shape, kind))
             }
             BinOp::Mul(_) => {
+                if let (Shape::Scalar, Shape::Matrix(..), Scalar::Parameter(scalar)) =
+                    (left.shape, right.shape, &self.declaration.scalar)
+                {
+                    let [a, b] = [&binary.left, &binary.right].map(|operand| spelled(operand));
+                    let message = format!(
+                        "over any scalar `{scalar}` a vector or a matrix has a product with a number behind it alone: write \
+                         `{b} * {a}`"
+                    );
+                    self.errors.push(operator, message);
+                    return None;
+                }
                 let shape = match (left.shape, right.shape) {
                     (Shape::Scalar, shape) | (shape, Shape::Scalar) => shape,
                     (Shape::Matrix(rows, inner), Shape::Matrix(same, columns)) if inner == same => {
@@ -138,6 +149,7 @@ impl Checker<'_> {
                 self.errors.push_over(token, "a power is written `x.powi(2)`");
                 None
             }
+            BinOp::Eq(token) if self.is_constraint() => self.has_to_be_zero(token),
             other => self.unknown(other),
         }
     }
