@@ -71,8 +71,8 @@ impl Checker<'_> {
                 {
                     let [a, b] = [&binary.left, &binary.right].map(|operand| spelled(operand));
                     let message = format!(
-                        "over any scalar `{scalar}` a vector or a matrix has a product with a number behind it alone: write \
-                         `{b} * {a}`"
+                        "where the scalar is `{scalar}`, a number stands behind the vector or the matrix that it multiplies: \
+                         write `{b} * {a}`"
                     );
                     self.errors.push(operator, message);
                     return None;
