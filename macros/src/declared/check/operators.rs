@@ -19,7 +19,7 @@ impl Checker<'_> {
         }
         let (left, right) = (self.expression(&binary.left), self.expression(&binary.right));
         let (left, right) = (left?, right?);
-        if self.is_with_identity(binary, &left, &right) {
+        if self.is_with_identity(binary, &left, &right) || self.is_number_in_front(binary, &left, &right) {
             return None;
         }
         let (whole, ends) = (Expr::Binary(binary.clone()), (&*binary.left, &*binary.right));
@@ -66,17 +66,6 @@ impl Checker<'_> {
                 Some(Tree::new(span, shape, kind))
             }
             BinOp::Mul(_) => {
-                if let (Shape::Scalar, Shape::Matrix(..), Scalar::Parameter(scalar)) =
-                    (left.shape, right.shape, &self.declaration.scalar)
-                {
-                    let [a, b] = [&binary.left, &binary.right].map(|operand| spelled(operand));
-                    let message = format!(
-                        "where the scalar is `{scalar}`, a number stands behind the vector or the matrix that it multiplies: \
-                         write `{b} * {a}`"
-                    );
-                    self.errors.push(operator, message);
-                    return None;
-                }
                 let shape = match (left.shape, right.shape) {
                     (Shape::Scalar, shape) | (shape, Shape::Scalar) => shape,
                     (Shape::Matrix(rows, inner), Shape::Matrix(same, columns)) if inner == same => {
@@ -121,6 +110,22 @@ impl Checker<'_> {
             }
             _ => self.unknown_operator(binary.op),
         }
+    }
+
+    /// A product that the compiler has for `f64` and `f32` alone.
+    fn is_number_in_front(&mut self, binary: &ExprBinary, left: &Tree, right: &Tree) -> bool {
+        let (BinOp::Mul(star), Shape::Scalar, Shape::Matrix(..), Scalar::Parameter(scalar)) =
+            (binary.op, left.shape, right.shape, &self.declaration.scalar)
+        else {
+            return false;
+        };
+        let [number, matrix] = [&binary.left, &binary.right].map(|operand| spelled(operand));
+        let message = format!(
+            "where the scalar is `{scalar}`, a number stands behind the vector or the matrix that it multiplies: write \
+             `{matrix} * {number}`"
+        );
+        self.errors.push_over(star, message);
+        true
     }
 
     /// A translation isn't a matrix, so that its identity isn't one either.

@@ -95,33 +95,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
     };
     match key.to_string().as_str() {
-        "group" => {
-            if !arguments.factors.is_empty() && input.peek(syn::token::Paren) {
-                let message = "`group` is given twice: all factors stand in one, `group(F_1 = SO3, F_2 = SO3)`";
-                errors.push(key.span(), message);
-            } else {
-                once(arguments.group.is_some() || !arguments.factors.is_empty());
-            }
-            if input.peek(syn::token::Paren) {
-                let content;
-                parenthesized!(content in input);
-                let factors = factors(&content, errors);
-                content.parse::<TokenStream>()?;
-                arguments.factors.extend(factors?);
-                return comma(input);
-            }
-            if !input.peek(Token![=]) {
-                return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
-            }
-            equals(&key, input)?;
-            without_quotes(&key, input)?;
-            let named = group::named(input, errors)?;
-            // What begins with a name is the next argument, and a comma is missing.
-            if !input.is_empty() && !input.peek(Token![,]) && !input.peek(Ident::peek_any) {
-                return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
-            }
-            arguments.group = Some(named);
-        }
+        "group" => group_argument(&key, input, arguments, errors)?,
         "crate" => {
             once(arguments.root.is_some());
             equals(&key, input)?;
@@ -190,6 +164,37 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
     }
     comma(input)
+}
+
+/// `group = SO3`, `group(F_1 = SO3, F_2 = SO3)`.
+fn group_argument(key: &Ident, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
+    let (is_again, are_several) = (!arguments.factors.is_empty(), input.peek(syn::token::Paren));
+    if is_again && are_several {
+        let message = "`group` is given twice: all factors stand in one, `group(F_1 = SO3, F_2 = SO3)`";
+        errors.push(key.span(), message);
+    } else if is_again || arguments.group.is_some() {
+        errors.push(key.span(), format!("`{key}` is given twice: remove one"));
+    }
+    if are_several {
+        let content;
+        parenthesized!(content in input);
+        let factors = factors(&content, errors);
+        content.parse::<TokenStream>()?;
+        arguments.factors.extend(factors?);
+        return Ok(());
+    }
+    if !input.peek(Token![=]) {
+        return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
+    }
+    equals(key, input)?;
+    without_quotes(key, input)?;
+    let named = group::named(input, errors)?;
+    // What begins with a name is the next argument, and a comma is missing.
+    if !input.is_empty() && !input.peek(Token![,]) && !input.peek(Ident::peek_any) {
+        return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
+    }
+    arguments.group = Some(named);
+    Ok(())
 }
 
 fn comma(input: ParseStream) -> syn::Result<()> {
