@@ -14,6 +14,7 @@ use core::array::from_fn;
 use std::error::Error;
 use std::time::Instant;
 
+use declarations::{FloatingBody, RodElement};
 use liestep::groups::R3;
 use liestep::mechanics::{Along, Coupled, Each, Placed, Regular};
 use liestep::numbers::Bodies;
@@ -23,37 +24,7 @@ use nalgebra::{Vector3, Vector6};
 type Failure = Box<dyn Error>;
 type Body = (SO3, R3);
 
-/// A piece of the rod.
-#[lagrangian(
-    group(F = SO3, d = R3),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece {
-    J_d: NonstandardInertia, // about the centre of mass, kg m²
-    m: f64,                  // kg
-}
-
-/// Holds the end `a` of one piece at the end `b` of the next and bends them against each other, by the means of the
-/// strains at both ends of a step.
-#[lagrangian(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
-    l_d = {
-        let shift = 0.5 * (R.transpose() * r + Q * b + F_1.transpose() * (R.transpose() * (r + d_2 - d_1) + Q * F_2 * b)) - a;
-        let bend = 0.5 * (vee(Q) + vee(F_1.transpose() * Q * F_2));
-        -0.5 * h * (k * shift.norm_squared() + c * bend.norm_squared())
-    },
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Middle {
-    k: f64,          // N/m
-    c: f64,          // N m
-    a: Vector3<f64>, // of the one, from its centre of mass, in its frame, m
-    b: Vector3<f64>, // of the next, likewise
-}
-
-/// The same, but for what is of higher order in the bending, by the means of the potentials at both ends of a step.
+/// What a [`RodElement`] is, but for what is of higher order in the bending, by the means of the potentials at both ends of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(
@@ -85,14 +56,14 @@ fn bound() -> f64 {
     2.0 / (12.0 * STIFF.0).sqrt()
 }
 
-fn pieces<const N: usize>() -> Result<Placed<Each<N>, Piece, 1>, Failure> {
+fn pieces<const N: usize>() -> Result<Placed<Each<N>, FloatingBody, 1>, Failure> {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3))?;
-    Ok(Each::<N>::of([Piece { J_d, m: 1.0 }]))
+    Ok(Each::<N>::of([FloatingBody { m: 1.0, J_d }]))
 }
 
 fn middle<const N: usize>() -> Result<impl Rod<N>, Failure> {
     let (k, c) = STIFF;
-    Ok(pieces::<N>()? + Coupled::<N>::of([Middle { k, c, a: HALF, b: -HALF }]))
+    Ok(pieces::<N>()? + Coupled::<N>::of([RodElement { k, c, a: HALF, b: -HALF }]))
 }
 
 fn ends<const N: usize>() -> Result<impl Rod<N>, Failure> {

@@ -15,34 +15,20 @@ use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::time::Instant;
 
+use declarations::FallingBody;
 use liestep::groups::R3;
 use liestep::mechanics::{Each, Placed};
 use liestep::methods::{BallJoint, Chain, ChainStepper, Joined, Jointed, Joints, Link};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{Vector3, Vector6};
 
 type Failure = Box<dyn Error>;
 
-/// A rod that is pulled down.
-#[lagrangian(
-    group(F = SO3, d = R3),
-    advected(x = d.seen_from(space)),
-    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
-        - 0.5 * h * m * g * (x + x + d).dot(&up),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Rod {
-    J_d: NonstandardInertia, // about the centre of mass, kg m²
-    m: f64,                  // kg
-    g: f64,                  // m/s²
-    up: Vector3<f64>,
-}
-
-/// Of one metre and one kilogram, along its x axis.
-fn rod() -> Result<Rod, Failure> {
+/// A rod of one metre and one kilogram, along its x axis.
+fn rod() -> Result<FallingBody, Failure> {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 0.005, 0.005))?;
-    Ok(Rod { J_d, m: 1.0, g: 9.81, up: Vector3::z() })
+    Ok(FallingBody { m: 1.0, J_d, g: 9.81, up: Vector3::z() })
 }
 
 /// Between the ends of two rods, and at the beginning of the first, which hangs at the origin.
@@ -82,7 +68,7 @@ fn ring() -> Result<(), Failure> {
 }
 
 type Joined3<const N: usize> =
-    Stepper<Placed<Each<N>, Rod, 1>, Jointed<Placed<Each<N>, Rod, 1>, BallJoint, 3, N, N, 0>>;
+    Stepper<Placed<Each<N>, FallingBody, 1>, Jointed<Placed<Each<N>, FallingBody, 1>, BallJoint, 3, N, N, 0>>;
 
 /// A chain of rods that zigzags downwards, by joints and in its minimal form.
 fn chain<const N: usize>(h: f64) -> Result<(Joined3<N>, ChainStepper<N>, [SO3; N]), Failure> {

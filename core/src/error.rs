@@ -69,11 +69,20 @@ pub enum SetupError {
     SingularKinetic {
         /// The determinant of the inertia of the continuous limit.
         determinant: f64,
+        /// The body, or the factor of a product, from zero: the first whose momentum doesn't determine its velocity, once
+        /// those before it are determined.
+        body: usize,
+        /// The component of its velocity, from zero, of which that is said.
+        component: usize,
     },
     /// The kinetic energy is negative along a direction.
     NegativeKinetic {
         /// The smallest pivot of the inertia of the continuous limit, relative to its entry of the diagonal.
         pivot: f64,
+        /// The body, or the factor of a product, from zero: the first along which that is so.
+        body: usize,
+        /// The component of its velocity, from zero.
+        component: usize,
     },
     /// A constant of the scene isn't finite, whatever the step.
     NonFiniteConstant,
@@ -172,13 +181,13 @@ impl fmt::Display for SetupError {
                     "the step {step:e} s can't be used; choose a finite one of the order of the motion's time scale"
                 )
             }
-            Self::SingularKinetic { determinant } => write!(
+            Self::SingularKinetic { determinant, body, component } => write!(
                 f,
-                "the kinetic part is singular at rest (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia"
+                "the kinetic part is singular at rest (determinant {determinant:e}): a momentum doesn't determine the component {component} of the velocity of the body or factor {body} (both from zero); give every direction an inertia"
             ),
-            Self::NegativeKinetic { pivot } => write!(
+            Self::NegativeKinetic { pivot, body, component } => write!(
                 f,
-                "the kinetic part is negative along a direction (pivot {pivot:e}, relative to the inertia there); check its sign, the `.transpose()` in it, and the signs of its parameters"
+                "the kinetic part is negative along a direction, the component {component} of the velocity of the body or factor {body} (both from zero; pivot {pivot:e}, relative to the inertia there); check its sign, the `.transpose()` in it, and the signs of its parameters"
             ),
             Self::NonFiniteConstant => f.write_str(
                 "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values",

@@ -10,6 +10,8 @@ import json
 import math
 import pathlib
 
+from elimination import solve
+
 DATA = json.loads(pathlib.Path(__file__).with_name("several_bodies.json").read_text())["chain3"]
 LINKS, G = DATA["parameters"]["bodies"], DATA["parameters"]["g"]
 N = range(3)
@@ -78,22 +80,6 @@ def ends(r, after, h):
         [x + sign * (0.5 * h * link["m"] * G if k == 2 else 0) for k, x in enumerate(f)] for link, f in zip(LINKS, moved)
     ]
     return torques(r, rates, kicked(1)), torques(after, rates, kicked(-1))
-
-
-def solve(a, b):
-    n = len(b)
-    a = [row[:] + [right] for row, right in zip(a, b)]
-    for k in range(n):
-        pivot = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[pivot] = a[pivot], a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / a[k][k]
-            for j in range(k, n + 1):
-                a[i][j] -= factor * a[k][j]
-    x = [0] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x
 
 
 def turned(r, u):

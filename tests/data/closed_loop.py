@@ -9,6 +9,7 @@ opened at the end is an error estimate. Extrapolated midpoint steps of two sizes
 
 import json
 
+from elimination import solve
 from mpmath import mp, mpf, nstr
 
 mp.dps = 40
@@ -57,23 +58,6 @@ def out(r, a):
 
 def into(r, a):
     return [sum(r[k][i] * a[k] for k in range(3)) for i in range(3)]
-
-
-def solve(a, b):
-    n = len(b)
-    a = [row[:] + [right] for row, right in zip(a, b)]
-    for k in range(n):
-        pivot = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[pivot] = a[pivot], a[k]
-        for i in range(k + 1, n):
-            factor = a[i][k] / a[k][k]
-            if factor:
-                for j in range(k, n + 1):
-                    a[i][j] -= factor * a[k][j]
-    x = [mpf(0)] * n
-    for k in reversed(range(n)):
-        x[k] = (a[k][n] - sum(a[k][j] * x[j] for j in range(k + 1, n))) / a[k][k]
-    return x
 
 
 # The ends that meet: (body, point, sign); a pivot has one.

@@ -98,8 +98,14 @@ impl Failure {
             "setup.opening" => SetupError::OffVelocity { joint: whole(number()?), by: number()? }.into(),
             "setup.redundant" => SetupError::RedundantJoint { joint: whole(number()?), pivot: number()? }.into(),
             "setup.step" => SetupError::InvalidStep { step: number()? }.into(),
-            "setup.singular" => SetupError::SingularKinetic { determinant: number()? }.into(),
-            "setup.negative" => SetupError::NegativeKinetic { pivot: number()? }.into(),
+            "setup.singular" => {
+                let (determinant, body, component) = (number()?, whole(number()?), whole(number()?));
+                SetupError::SingularKinetic { determinant, body, component }.into()
+            }
+            "setup.negative" => {
+                let (pivot, body, component) = (number()?, whole(number()?), whole(number()?));
+                SetupError::NegativeKinetic { pivot, body, component }.into()
+            }
             "setup.constant" => SetupError::NonFiniteConstant.into(),
             "setup.finite" => SetupError::NonFinite { what: text()? }.into(),
             "setup.group" => SetupError::NotInGroup { defect: number()? }.into(),
@@ -164,8 +170,12 @@ fn of_setup(error: &SetupError) -> Parts<'_> {
         SetupError::OffVelocity { joint, by } => ("setup.opening", vec![count(*joint), *by], vec![]),
         SetupError::RedundantJoint { joint, pivot } => ("setup.redundant", vec![count(*joint), *pivot], vec![]),
         SetupError::InvalidStep { step } => ("setup.step", vec![*step], vec![]),
-        SetupError::SingularKinetic { determinant } => ("setup.singular", vec![*determinant], vec![]),
-        SetupError::NegativeKinetic { pivot } => ("setup.negative", vec![*pivot], vec![]),
+        SetupError::SingularKinetic { determinant, body, component } => {
+            ("setup.singular", vec![*determinant, count(*body), count(*component)], vec![])
+        }
+        SetupError::NegativeKinetic { pivot, body, component } => {
+            ("setup.negative", vec![*pivot, count(*body), count(*component)], vec![])
+        }
         SetupError::NonFiniteConstant => ("setup.constant", vec![], vec![]),
         SetupError::NonFinite { what } => ("setup.finite", vec![], vec![what]),
         SetupError::NotInGroup { defect } => ("setup.group", vec![*defect], vec![]),
@@ -243,8 +253,8 @@ mod tests {
             SetupError::OffVelocity { joint: 0, by: 0.1 }.into(),
             SetupError::RedundantJoint { joint: 3, pivot: 1e-17 }.into(),
             SetupError::InvalidStep { step: f64::INFINITY }.into(),
-            SetupError::SingularKinetic { determinant: 1e-300 }.into(),
-            SetupError::NegativeKinetic { pivot: -0.1 }.into(),
+            SetupError::SingularKinetic { determinant: 1e-300, body: 3, component: 0 }.into(),
+            SetupError::NegativeKinetic { pivot: -0.1, body: 0, component: 5 }.into(),
             SetupError::NonFiniteConstant.into(),
             SetupError::NonFinite { what: "velocity" }.into(),
             SetupError::NotInGroup { defect: 0.1 }.into(),

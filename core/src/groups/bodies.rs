@@ -249,6 +249,12 @@ impl<G: LieGroup, W: Advected<G>, const N: usize> Advected<[G; N]> for [W; N] {
 
 /// The product of two equal groups as a declaration on two bodies has it: `(G, G)`, or `(A, B, A, B)` where each body is
 /// the product `(A, B)`.
+#[diagnostic::on_unimplemented(
+    message = "a term on `{Self}` isn't one on two bodies",
+    label = "not declared on two bodies",
+    note = "put at two bodies is what is declared on two: `group(F_1 = SO3, F_2 = SO3)`, or `group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3)` where each is translated, too",
+    note = "a term on one body is put at bodies by `Each::<N>::of` or `On::<K, N>::of`"
+)]
 pub trait Pair: LieGroup {
     /// The group of one body.
     type Body: LieGroup<Scalar = Self::Scalar>;

@@ -5,14 +5,14 @@ use alloc::string::String;
 use core::fmt::Debug;
 
 use crate::error::SetupError;
-use crate::groups::{LieGroup, Retraction};
+use crate::groups::{LieGroup, Retraction, SquareOf};
 use crate::mechanics::continuous::Newton;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
 use crate::numbers::{Blocks, Coordinates, Pattern, Real, real, reported};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField};
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Term>::Scalar;
@@ -149,7 +149,8 @@ pub struct Limit<E: Effect + ?Sized> {
     message = "`{Self}` isn't an effect, so it can't be in a scene",
     label = "not an effect",
     note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
-    note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps"
+    note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps",
+    note = "joints hold the bodies of a scene together: `Stepper::jointed(scene, Joints::tree([…]), h)`"
 )]
 pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
@@ -457,15 +458,22 @@ pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, Setup
 }
 
 /// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.
-pub(crate) fn check_inertia<T: Real, V: Coordinates<T>>(inertia: &V::Square) -> Result<(), SetupError> {
-    let (unit, determinant) = V::solve(inertia, &V::zero());
-    let pivot = V::least_pivot(inertia);
+pub(crate) fn check_inertia<G: LieGroup>(inertia: &SquareOf<G>) -> Result<(), SetupError> {
+    let (unit, determinant) = G::Vector::solve(inertia, &G::Vector::zero());
+    let pivot = G::Vector::least_pivot(inertia);
+    let (mut body, mut component) = G::Vector::without_pivot(inertia).unwrap_or_default();
+    if G::BODIES == 1 {
+        // What is declared as one product has all components in a row.
+        let first = (1..=component).rev().find(|&k| G::FACTORS.end_at(k)).unwrap_or(0);
+        body = (1..=component).filter(|&k| G::FACTORS.end_at(k)).count();
+        component -= first;
+    }
     // Less than this is what rounding leaves of a zero.
-    if pivot.simd_lt(-T::simd_default_epsilon() * real(1e6)).any() {
-        return Err(SetupError::NegativeKinetic { pivot: reported(pivot) });
+    if pivot.simd_lt(-<G::Scalar as SimdRealField>::simd_default_epsilon() * real(1e6)).any() {
+        return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body, component });
     }
     if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & pivot.simd_gt(real(0.0))).all() {
-        return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
+        return Err(SetupError::SingularKinetic { determinant: reported(determinant), body, component });
     }
     Ok(())
 }

@@ -315,6 +315,11 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_pivot(body)))
     }
 
+    fn without_pivot(matrix: &Self::Square) -> Option<(usize, usize)> {
+        let of_body = |(body, matrix)| V::without_pivot(matrix).map(|(_, component)| (body, component));
+        matrix.0.iter().enumerate().find_map(of_body)
+    }
+
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn raised(residual: &Self, jacobian: &Self::Square, power: u32, half: &Self) -> (Self, Self::Square) {
         let mut raised = (*residual, *jacobian);

@@ -148,6 +148,10 @@ pub trait Coordinates<T: Real>:
     /// the first that isn't positive: above zero where the matrix is positive definite, below where it is negative along
     /// some direction, and there of the order of rounding where it is singular.
     fn least_pivot(matrix: &Self::Square) -> T;
+
+    /// The first whose pivot isn't positive, in the order of the basis and in any of the lanes: the body, of several, and
+    /// its component, from zero. None where the matrix is positive definite.
+    fn without_pivot(matrix: &Self::Square) -> Option<(usize, usize)>;
 }
 
 impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
@@ -301,6 +305,11 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
             // Behind a pivot that isn't positive the others tell nothing.
             pivot.select(least.simd_gt(T::zero()) & pivot.simd_lt(least), least)
         })
+    }
+
+    fn without_pivot(matrix: &SMatrix<T, D, D>) -> Option<(usize, usize)> {
+        let (factors, _) = eliminate(*matrix);
+        (0..D).find(|&k| !factors[(k, k)].simd_gt(T::zero()).all()).map(|component| (0, component))
     }
 }
 

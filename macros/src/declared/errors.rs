@@ -55,11 +55,14 @@ impl Errors {
 /// `; did you mean …?` for the known name that an unknown one is a slip of the pen for, if there is one.
 ///
 /// A slip changes one letter of three, and no digit: `rho1` isn't `rho2`. Of one letter it changes the case alone, as
-/// `PI` isn't `I`.
+/// `PI` isn't `I`; and so of one with a number, as `R_1` isn't `F_1`.
 pub(crate) fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let length = unknown.chars().count();
     let digits = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
-    let alike = known.into_iter().filter(|name| digits(name) == digits(unknown));
+    let stem = |name: &str| name.trim_end_matches(|last: char| last == '_' || last.is_ascii_digit()).to_lowercase();
+    let are_letters = |name: &str| [name, unknown].iter().all(|name| stem(name).chars().count() == 1);
+    let is_other_letter = |name: &str| are_letters(name) && stem(name) != stem(unknown);
+    let alike = known.into_iter().filter(|name| digits(name) == digits(unknown) && !is_other_letter(name));
     let nearest = alike.map(|name| (distance(unknown, name), name)).min();
     match nearest {
         Some((0, name)) => format!("; did you mean `{name}`?"),
@@ -108,6 +111,8 @@ mod tests {
         assert_eq!(suggestion("velocity", ["m", "rho"]), "");
         assert_eq!(suggestion("PI", ["F", "I", "h"]), "");
         assert_eq!(suggestion("rho1", ["rho2", "rho"]), "");
+        assert_eq!(suggestion("R_1", ["F_1", "F_2"]), "");
+        assert_eq!(suggestion("F1", ["F_1", "F_2"]), "; did you mean `F_1`?");
         assert_eq!(suggestion("advect", ["group", "advected"]), "; did you mean `advected`?");
         assert_eq!(suggestion("log", ["ln", "cos"]), "");
     }

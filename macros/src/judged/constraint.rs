@@ -27,6 +27,16 @@ impl Held {
     pub(crate) fn rows(&self) -> usize {
         self.functions.iter().map(|tree| tree.shape.rows()).sum()
     }
+
+    /// The scalar or vector that the function of a row is in.
+    fn part(&self, row: usize) -> &Tree {
+        let mut end = 0;
+        let part = self.functions.iter().find(|part| {
+            end += part.shape.rows();
+            row < end
+        });
+        part.unwrap_or(&self.functions[0])
+    }
 }
 
 /// `None` where something is wrong with it, which has been reported.
@@ -59,9 +69,10 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
         })
     });
     let held = Held { functions, lowered, slopes, graph, entries };
-    if let Err(unconfirmed) = verify::constraint(declaration, &held) {
-        explain::unconfirmed(unconfirmed, declaration, &held.functions[0], errors);
-        return None;
+    match verify::constraint(declaration, &held) {
+        Ok(None) => return Some(held),
+        Ok(Some(row)) => explain::follows(held.part(row), errors),
+        Err(unconfirmed) => explain::unconfirmed(unconfirmed, declaration, &held.functions[0], errors),
     }
-    Some(held)
+    None
 }

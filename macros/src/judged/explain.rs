@@ -254,6 +254,18 @@ pub(super) fn constant(function: &Tree, errors: &mut Errors) {
     );
 }
 
+/// Reports a part of a constraint of which a function follows from those before it.
+pub(super) fn follows(part: &Tree, errors: &mut Errors) {
+    let message = match part.shape.rows() {
+        1 => "this follows from the functions before it, wherever the bodies are: leave it out".to_owned(),
+        rows => format!(
+            "of these {rows} functions one follows from those before it, wherever the bodies are: take components that \
+             don't, as in `(v.dot(&n_1), v.dot(&n_2))`"
+        ),
+    };
+    errors.push_between([part.span, part.end], message);
+}
+
 /// Reports what the self-check doesn't confirm.
 pub(super) fn unconfirmed(unconfirmed: Unconfirmed, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) {
     let message = match unconfirmed {

@@ -3,6 +3,7 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+use declarations::FloatingBody;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::effects::{CayleyBody, Gravity, PrincipalBody, Spring};
 use liestep::groups::{Advected as _, CayleyRetraction, Retraction};
@@ -13,7 +14,7 @@ use liestep::mechanics::{
 };
 use liestep::methods::CompositionScheme;
 use liestep::numbers::Bodies;
-use liestep::{SO3, SetupError, State, Stepper};
+use liestep::{NonstandardInertia, SO3, SetupError, State, Stepper};
 use nalgebra::Vector3;
 
 use super::{End, all, apart, attitudes_of, tenths};
@@ -248,6 +249,15 @@ fn errors() {
     assert!(of_second(Each::<2>::of([weight(1.0), weight(f64::NAN)]).validate()));
     assert!(of_second(On::<1, 2>::of([weight(f64::NAN)]).validate()));
     assert!(matches!(Each::<2>::of([weight(f64::NAN)]).validate(), Err(SetupError::Parameter { .. })));
+    // Where a velocity isn't determined the body is named.
+    let alone = On::<0, 2>::of([principal([2.0, 3.0, 4.0])]) + Along::<2>::of([Alike { kappa: 1.0 }]);
+    let error = Stepper::new(alone, 0.01).map(|_| ()).unwrap_err();
+    assert!(matches!(error, SetupError::SingularKinetic { body: 1, component: 0, .. }), "{error}");
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.5, 2.0)).unwrap();
+    let of_masses = |masses: [f64; 3]| Each::<3>::of(masses.map(|m| FloatingBody { m, J_d }));
+    let error = |masses: [f64; 3]| Stepper::new(of_masses(masses), 0.01).map(|_| ()).unwrap_err();
+    assert!(matches!(error([1.0, 0.0, 0.0]), SetupError::SingularKinetic { body: 1, component: 3, .. }));
+    assert!(matches!(error([1.0, 2.0, -1.0]), SetupError::NegativeKinetic { body: 2, component: 3, .. }));
     let stepper = Stepper::new(scene, 0.1).unwrap();
     let fast = Bodies([Vector3::zeros(), Vector3::new(0.0, 0.0, 100.0)]);
     let mut state = stepper.start([SO3::identity(); 2], fast).unwrap();

@@ -5,6 +5,7 @@
 
 use core::array::from_fn;
 
+use declarations::{FloatingBody, PointSpring, RodElement};
 use liestep::groups::{Advected as _, LieGroup as _, R3, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Along, Coupled, DiscreteLagrangian, Each, Placed, Sum, Term as _};
@@ -13,31 +14,9 @@ use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
 
 use super::check_derived;
-use super::translated::{Free, Tied};
-
-/// An element of a rod: the end `a` of one body is held at the end `b` of the next, and bent against it. Strains are the
-/// means of those at both ends of a step.
-#[lagrangian(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
-    l_d = {
-        let shift = 0.5 * (R.transpose() * r + Q * b + F_1.transpose() * (R.transpose() * (r + d_2 - d_1) + Q * F_2 * b)) - a;
-        let bend = 0.5 * (vee(Q) + vee(F_1.transpose() * Q * F_2));
-        -0.5 * h * (k * shift.norm_squared() + c * bend.norm_squared())
-    },
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Element {
-    /// N/m.
-    k: f64,
-    /// N m.
-    c: f64,
-    a: Vector3<f64>,
-    b: Vector3<f64>,
-}
 
 const N: usize = 6;
-type Rod = Sum<Placed<Each<N>, Free, 1>, Placed<Coupled<N>, Element, 1>>;
+type Rod = Sum<Placed<Each<N>, FloatingBody, 1>, Placed<Coupled<N>, RodElement, 1>>;
 type Body = (SO3, R3);
 type Start = ([Body; N], Bodies<Vector6<f64>, N>);
 
@@ -45,13 +24,13 @@ type Start = ([Body; N], Bodies<Vector6<f64>, N>);
 const HALF: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
 
 /// Of uniform bodies of one metre and one kilogram.
-fn bodies() -> Placed<Each<N>, Free, 1> {
-    let K = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3)).unwrap();
-    Each::<N>::of([Free { m: 1.0, K }])
+fn bodies() -> Placed<Each<N>, FloatingBody, 1> {
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3)).unwrap();
+    Each::<N>::of([FloatingBody { m: 1.0, J_d }])
 }
 
 fn rod(k: f64, c: f64) -> Rod {
-    bodies() + Coupled::<N>::of([Element { k, c, a: HALF, b: -HALF }])
+    bodies() + Coupled::<N>::of([RodElement { k, c, a: HALF, b: -HALF }])
 }
 
 /// An arc, each body turned against the one before, that turns about itself and about an axis across.
@@ -80,7 +59,7 @@ fn whole(bodies: &[Body; N], momenta: &Bodies<Vector6<f64>, N>) -> [Vector3<f64>
 
 #[test]
 fn what_is_derived_of_an_element() {
-    let element = Element { k: 3.0, c: 2.0, a: Vector3::new(0.4, 0.1, -0.2), b: Vector3::new(-0.3, 0.2, 0.5) };
+    let element = RodElement { k: 3.0, c: 2.0, a: Vector3::new(0.4, 0.1, -0.2), b: Vector3::new(-0.3, 0.2, 0.5) };
     check_derived::<_, 12>(&element, &mut Random::new(12));
 }
 
@@ -160,7 +139,7 @@ fn a_stiff_rod_is_stepped_over_its_fast_oscillations() {
     assert!(apart < 0.005 * energy, "{means:?}");
     assert!(moved[0] < 1e-12 && moved[1] < 1e-10, "{moved:?}");
 
-    let explicit = Stepper::new(bodies() + Along::<N>::of([Tied { k, a: HALF, b: -HALF }]), h).unwrap();
+    let explicit = Stepper::new(bodies() + Along::<N>::of([PointSpring { k, a: HALF, b: -HALF }]), h).unwrap();
     let mut state = explicit.start(bodies_at, velocities).unwrap();
     let stays = (0..200).all(|_| explicit.step(&mut state).is_ok() && explicit.energy(&state) < 100.0 * energy);
     assert!(!stays, "the step isn't too long for potentials of the ends");
@@ -238,8 +217,8 @@ struct Held {
 /// though its determinant is positive there.
 #[test]
 fn steps_of_a_row_beyond_a_right_angle_are_refused() {
-    let K = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 1.0)).unwrap();
-    let l = Each::<2>::of([Free { m: 1.0, K }]) + Coupled::<2>::of([Held { c: 1.0 }]);
+    let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 1.0)).unwrap();
+    let l = Each::<2>::of([FloatingBody { m: 1.0, J_d }]) + Coupled::<2>::of([Held { c: 1.0 }]);
     let stepper = Stepper::new(l, 1.0).unwrap();
     let turned = |angles: [f64; 2]| angles.map(|angle| (SO3::exp(Vector3::z() * angle), R3::identity()));
     let stepped = |angles: [f64; 2]| {

@@ -29,4 +29,9 @@ struct Shift {
 #[force(group(F_1 = SO3, F_2 = SO3), displacement(eta_1, eta_2), work = h * vee(F_1).dot(&eta_2_next))]
 struct Across {}
 
+#[force(group(F_1 = SO3, F_2 = SO3), displacement(eta, eta), work = h * tau.dot(&eta))]
+struct Both {
+    tau: Vector3<f64>,
+}
+
 fn main() {}

@@ -8,7 +8,6 @@ use super::{Folded, Placed, term_at};
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
-use crate::mechanics::kinetic_part::KineticPart as _;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::numbers::{Blocks, Coordinates as _, real};
@@ -61,23 +60,7 @@ where
     type Constants = Folded<E, M>;
     type StepTerms = P::Of<E::StepTerms>;
 
-    const PARTS: Parts = {
-        assert!(
-            P::AT_ONE_BODY || !E::PARTS.unknown || !E::Kinetic::IS_THERE,
-            "between the bodies of a system only potentials are possible: this term couples their velocities; declare all of \
-             these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::ChainStepper`"
-        );
-        assert!(
-            P::AT_ONE_BODY || P::LINKS_NEIGHBOURS || !E::PARTS.unknown,
-            "this term depends on where two bodies are within the step: put it at neighbours in a row, by \
-             `Coupled::<N>::of`, or take the means of what it has at the ends of the step"
-        );
-        assert!(
-            !P::LINKS_NEIGHBOURS || (E::IS_QUADRATIC && E::DENOMINATORS == 0),
-            "a term with cleared denominators, or one that isn't quadratic in the velocity, can't join neighbours"
-        );
-        E::PARTS
-    };
+    const PARTS: Parts = E::PARTS;
     const DENOMINATORS: u32 = E::DENOMINATORS;
     const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
     const IS_QUADRATIC: bool = E::IS_QUADRATIC;

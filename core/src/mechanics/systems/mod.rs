@@ -30,6 +30,7 @@ pub use seen::{Neighbours, SeenBetween, WhereAllAre};
 use crate::error::SetupError;
 use crate::groups::Retraction;
 use crate::mechanics::effect::Effect;
+use crate::mechanics::kinetic_part::KineticPart as _;
 use crate::mechanics::sum::{SharedBy, Sum};
 use crate::mechanics::term::Term;
 use crate::numbers::{InLanes, Lanes, lanes_of_fields};
@@ -89,7 +90,6 @@ use crate::numbers::{InLanes, Lanes, lanes_of_fields};
 ///     s: Vector3<f64>,
 /// }
 /// let joint = Along::<3>::of([Linked { rho: Vector3::z(), s: Vector3::z() }]);
-/// let _ = liestep::mechanics::Effect::validate(&joint);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed<P, E, const M: usize> {
@@ -106,16 +106,39 @@ macro_rules! of {
             where
                 Self: Places<E>,
             {
-                const {
-                    assert!(
-                        M == 1 || M == <Self as Places<E>>::PLACES,
-                        "there are as many terms as places, or there is one for all"
-                    );
-                }
+                const { check::<Self, E, M>() };
                 Placed { places: Self, terms }
             }
         }
     };
+}
+
+/// Fails to be built where such terms can't be at these places.
+const fn check<P: Places<E>, E: Effect, const M: usize>() {
+    if let Some(cause) = P::WRONG {
+        panic!("{}", cause);
+    }
+    assert!(
+        M == 1 || M == P::PLACES,
+        "as many terms are put there as there are places, or one that is the same at all of them"
+    );
+    if P::AT_ONE_BODY {
+        return;
+    }
+    assert!(
+        !E::PARTS.unknown || !E::Kinetic::IS_THERE,
+        "between the bodies of a system only potentials are possible: this term couples their velocities; declare all of \
+         these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::ChainStepper`"
+    );
+    assert!(
+        P::LINKS_NEIGHBOURS || !E::PARTS.unknown,
+        "this term depends on where two bodies are within the step: put it at neighbours in a row, by \
+         `Coupled::<N>::of`, or take the means of what it has at the ends of the step"
+    );
+    assert!(
+        !P::LINKS_NEIGHBOURS || (E::IS_QUADRATIC && E::DENOMINATORS == 0),
+        "a term with cleared denominators, or one that isn't quadratic in the velocity, can't join neighbours"
+    );
 }
 
 of!([const N: usize] Each<N>);
@@ -168,8 +191,6 @@ where
 
     /// A wrong parameter of a term of several is that of its body, or of the first of its two.
     fn validate(&self) -> Result<(), SetupError> {
-        // A term that isn't possible here is refused when the crate is built.
-        let _ = <Self as Effect>::PARTS;
         let mut checked = Ok(());
         P::visit(|at| {
             if checked.is_ok() && (at.place < M) {

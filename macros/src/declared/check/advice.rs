@@ -2,6 +2,7 @@
 //!
 //! Letters alone would lead astray: a tangent isn't `ln`, and a constant `PI` isn't `I`.
 
+use quote::ToTokens as _;
 use syn::Expr;
 use syn::ext::IdentExt as _;
 
@@ -21,13 +22,22 @@ impl Checker<'_> {
         }
         let noun = self.declaration.role.noun();
         let mut constants = self.declaration.item.generics.const_params();
-        match name {
-            "w" => "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned(),
+        let (is_product, increment) = (self.declaration.group.is_product(), self.increment_of(name));
+        // Of several bodies names have numbers.
+        let is_numeral = |letter: char| is_product && (letter == '_' || letter.is_ascii_digit());
+        match name.trim_end_matches(is_numeral) {
+            "F" if self.declaration.continuous.is_none() && !self.is_constraint() => {
+                let names: Vec<String> = self.increments().iter().map(|name| format!("`{name}`")).collect();
+                let (the, are) = if is_product { ("increments", "are") } else { ("increment", "is") };
+                format!("; the {the} {are} called {}", names.join(", "))
+            }
+            "w" if !is_product => {
+                "; declare it with `advected(w = field)`, where the field holds its spatial value".to_owned()
+            }
             "t" | "time" => format!(
                 "; {noun} has no time: declare what changes with it by `given(u = field)`, and go on by `step_with`"
             ),
             "omega" | "Omega" | "xi" | "velocity" if self.declaration.continuous.is_some() => {
-                let is_product = self.declaration.group.is_product();
                 match self.declaration.velocities() {
                     [] if is_product => {
                         format!("; name the velocities by `{}`", named_velocities(&self.declaration.factors))
@@ -43,18 +53,23 @@ impl Checker<'_> {
             "omega" | "Omega" | "xi" | "velocity" if self.is_constraint() => {
                 "; a holonomic constraint is a function of positions, and sees no velocity".to_owned()
             }
-            "R" | "rotation" | "attitude" | "orientation" if self.is_constraint() => {
-                let body = self.declaration.factors.first().map_or("F_1", |factor| &factor.name);
-                format!("; declare it with `advected({name} = {body}.seen_from(space))`")
+            "R" | "rotation" | "attitude" | "orientation" if is_product => {
+                format!("; declare it with `advected({name} = {increment}.seen_from(space))`")
             }
             "omega" | "Omega" | "xi" | "velocity" => {
-                let velocity = if self.declaration.group.is_so3 { "`log(F) / h`" } else { "`(F - I) / h`" };
-                let continuous = if self.is_force() {
-                    String::new()
+                let velocity = if is_product {
+                    format!("`vee({increment}) / h`")
+                } else if self.declaration.group.is_so3 {
+                    format!("`log({increment}) / h`")
                 } else {
-                    format!(", or declare `l = …` with `velocity = {name}`")
+                    format!("`({increment} - I) / h`")
                 };
-                format!("; the velocity of a step is in `F`: write {velocity}{continuous}")
+                let continuous = match (self.is_force(), is_product) {
+                    (true, _) => String::new(),
+                    (_, true) => format!(", or declare `l = …` with `{}`", named_velocities(&self.declaration.factors)),
+                    _ => format!(", or declare `l = …` with `velocity = {name}`"),
+                };
+                format!("; the velocity of a step is in `{increment}`: write {velocity}{continuous}")
             }
             "R" | "rotation" | "attitude" | "orientation" => format!(
                 "; {noun} is reduced, and sees no `{name}`: what is fixed in space is declared with `advected(w = field)`"
@@ -74,6 +89,19 @@ impl Checker<'_> {
         }
     }
 
+    /// The names of the increments.
+    fn increments(&self) -> Vec<String> {
+        self.declaration.factors.iter().map(|factor| factor.name.clone()).collect()
+    }
+
+    /// The increment of the body that a name is of by its number, `F_2` for `Omega_2`; else the first.
+    fn increment_of(&self, name: &str) -> String {
+        let number = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
+        let increments = self.increments();
+        let same = increments.iter().find(|increment| number(increment) == number(name));
+        same.or(increments.first()).cloned().unwrap_or_default()
+    }
+
     /// What has a value.
     fn known_names(&self) -> Vec<String> {
         let fields = self.declaration.fields.iter().map(Field::plain_name);
@@ -81,9 +109,10 @@ impl Checker<'_> {
         let bound = self.scopes.iter().flat_map(|scope| scope.keys().map(|bound| bound.letters.clone()));
         let factors = 0..self.declaration.factors.len();
         let displacements = factors.filter_map(|factor| self.declaration.displacement(factor)).flatten();
-        let of_step: &[&str] =
-            if self.declaration.continuous.is_some() || self.is_constraint() { &["I"] } else { &["F", "I", "h"] };
-        let builtin = of_step.iter().map(|name| (*name).to_owned()).chain(displacements);
+        let has_steps = self.declaration.continuous.is_none() && !self.is_constraint();
+        let (increments, step) = if has_steps { (self.increments(), Some("h")) } else { (Vec::new(), None) };
+        let constants = ["I"].into_iter().chain(step).map(ToOwned::to_owned);
+        let builtin = increments.into_iter().chain(constants).chain(displacements);
         let velocity = self.declaration.velocities().iter().map(|velocity| velocity.unraw().to_string());
         builtin.chain(velocity).chain(advected).chain(fields).chain(bound).collect()
     }
@@ -152,9 +181,10 @@ pub(super) fn called(method: &str) -> String {
     format!(".{method}({arguments})")
 }
 
-/// A plain name as it is written; else dots.
-fn spelled(expression: &Expr) -> String {
+/// A plain name or a number as it is written; else dots.
+pub(super) fn spelled(expression: &Expr) -> String {
     match expression {
+        Expr::Lit(literal) => literal.to_token_stream().to_string(),
         Expr::Path(path) => path.path.get_ident().map_or_else(|| "…".to_owned(), ToString::to_string),
         Expr::Paren(inner) => spelled(&inner.expr),
         Expr::Group(inner) => spelled(&inner.expr),

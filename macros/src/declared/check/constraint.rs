@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use quote::ToTokens;
 use syn::{Expr, ExprTuple};
 
 use super::Checker;
@@ -44,15 +45,19 @@ impl Checker<'_> {
         self.declaration.role == Role::Constraint
     }
 
+    /// A constraint that is written as an equation.
+    pub(super) fn has_to_be_zero(&mut self, token: impl ToTokens) -> Option<Rc<Tree>> {
+        self.errors.push_over(token, "write what has to be zero: `a - b` in the place of an equation");
+        None
+    }
+
     /// `(a, b)`: scalars and vectors one below the other; the last of them.
     pub(super) fn stacked(&mut self, tuple: &ExprTuple) -> Option<Rc<Tree>> {
         let parts: Vec<Option<Rc<Tree>>> = tuple.elems.iter().map(|part| self.expression(part)).collect();
         if parts.is_empty() {
             self.errors.push_over(tuple, "these are no functions: write what has to be zero");
         }
-        let mut parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
-        let last = parts.pop();
-        self.above = parts;
-        last
+        self.parts = parts.into_iter().collect::<Option<Vec<_>>>()?;
+        self.parts.last().cloned()
     }
 }

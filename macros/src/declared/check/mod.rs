@@ -50,12 +50,12 @@ pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Optio
         calls: 0,
         derived: BTreeSet::new(),
         result: value(expression),
-        above: Vec::new(),
+        parts: Vec::new(),
     };
     let tree = checker.expression(expression);
-    let (used, mut functions) = (checker.used, checker.above);
+    let (used, parts) = (checker.used, checker.parts);
     let tree = tree?;
-    functions.push(tree.clone());
+    let functions = if parts.is_empty() { vec![tree.clone()] } else { parts };
     if declaration.role == Role::Constraint {
         constraint::few(&functions, value(expression), errors)?;
     } else if tree.shape != Shape::Scalar {
@@ -79,6 +79,7 @@ pub(crate) fn functions(declaration: &Declaration, errors: &mut Errors) -> Optio
 pub(crate) fn value(expression: &Expr) -> &Expr {
     match expression {
         Expr::Group(inner) => value(&inner.expr),
+        Expr::Paren(inner) => value(&inner.expr),
         Expr::Block(block) => match block.block.stmts.last() {
             Some(Stmt::Expr(last, None)) => value(last),
             _ => expression,
@@ -142,8 +143,8 @@ struct Checker<'a> {
     derived: BTreeSet<String>,
     /// What the whole expression comes to.
     result: &'a Expr,
-    /// Of a constraint what stands above the last of several.
-    above: Vec<Rc<Tree>>,
+    /// Of a constraint of several parts each of them.
+    parts: Vec<Rc<Tree>>,
 }
 
 impl Checker<'_> {
@@ -203,7 +204,14 @@ impl Checker<'_> {
             Expr::Index(index) => self.index(index),
             Expr::Field(field) => self.component(field),
             Expr::Tuple(tuple) if self.is_constraint() && std::ptr::eq(expression, self.result) => self.stacked(tuple),
-            Expr::Cast(cast) => self.unknown(cast.as_token),
+            Expr::Array(array) if self.is_constraint() && std::ptr::eq(expression, self.result) => {
+                self.errors.push_over(array, "several functions stand in parentheses: write `(a, b)`");
+                None
+            }
+            Expr::Cast(cast) => {
+                self.errors.push_over(cast.as_token, "leave the cast away: all numbers are real, of one type");
+                None
+            }
             Expr::Try(question) => self.unknown(question.question_token),
             Expr::Closure(closure) => {
                 let message =
@@ -213,6 +221,7 @@ impl Checker<'_> {
             }
             Expr::Await(wait) => self.unknown(wait.await_token),
             Expr::Range(range) => self.unknown(range.limits),
+            Expr::Assign(assignment) if self.is_constraint() => self.has_to_be_zero(assignment.eq_token),
             Expr::Assign(assignment) => self.unknown(assignment.eq_token),
             Expr::Reference(reference) => self.unknown(reference.mutability),
             _ => self.unknown(FirstToken(expression)),

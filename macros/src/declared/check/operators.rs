@@ -7,10 +7,10 @@ use syn::spanned::Spanned as _;
 use syn::{BinOp, Expr, ExprBinary, ExprField, ExprIndex, Member};
 
 use super::Checker;
-use super::advice::called;
+use super::advice::{called, spelled};
 use super::frames::How;
 use super::methods::{METHODS, integer};
-use crate::declared::{Kind, Name, Shape, Tree};
+use crate::declared::{Kind, Name, Scalar, Shape, Tree};
 
 impl Checker<'_> {
     pub(super) fn binary(&mut self, binary: &ExprBinary) -> Option<Rc<Tree>> {
@@ -19,7 +19,7 @@ impl Checker<'_> {
         }
         let (left, right) = (self.expression(&binary.left), self.expression(&binary.right));
         let (left, right) = (left?, right?);
-        if self.is_with_identity(binary, &left, &right) {
+        if self.is_with_identity(binary, &left, &right) || self.is_number_in_front(binary, &left, &right) {
             return None;
         }
         let (whole, ends) = (Expr::Binary(binary.clone()), (&*binary.left, &*binary.right));
@@ -112,6 +112,22 @@ impl Checker<'_> {
         }
     }
 
+    /// A product that the compiler has for `f64` and `f32` alone.
+    fn is_number_in_front(&mut self, binary: &ExprBinary, left: &Tree, right: &Tree) -> bool {
+        let (BinOp::Mul(star), Shape::Scalar, Shape::Matrix(..), Scalar::Parameter(scalar)) =
+            (binary.op, left.shape, right.shape, &self.declaration.scalar)
+        else {
+            return false;
+        };
+        let [number, matrix] = [&binary.left, &binary.right].map(|operand| spelled(operand));
+        let message = format!(
+            "where the scalar is `{scalar}`, a number stands behind the vector or the matrix that it multiplies: write \
+             `{matrix} * {number}`"
+        );
+        self.errors.push_over(star, message);
+        true
+    }
+
     /// A translation isn't a matrix, so that its identity isn't one either.
     fn is_with_identity(&mut self, binary: &ExprBinary, left: &Tree, right: &Tree) -> bool {
         let added = |tree: &Tree| match tree.kind {
@@ -138,6 +154,7 @@ impl Checker<'_> {
                 self.errors.push_over(token, "a power is written `x.powi(2)`");
                 None
             }
+            BinOp::Eq(token) if self.is_constraint() => self.has_to_be_zero(token),
             other => self.unknown(other),
         }
     }

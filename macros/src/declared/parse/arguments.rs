@@ -9,6 +9,7 @@ use syn::{Expr, ExprArray, Ident, Path, Token, parenthesized};
 use super::group;
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{Coordinates, Discretisation, Quadrature, Role};
+use crate::mathematics::group::built_in;
 
 /// The arguments as written.
 #[derive(Default)]
@@ -94,20 +95,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
     };
     match key.to_string().as_str() {
-        "group" => {
-            once(arguments.group.is_some() || !arguments.factors.is_empty());
-            if input.peek(syn::token::Paren) {
-                let content;
-                parenthesized!(content in input);
-                let factors = factors(&content, errors);
-                content.parse::<TokenStream>()?;
-                arguments.factors = factors?;
-                return comma(input);
-            }
-            equals(&key, input)?;
-            without_quotes(&key, input)?;
-            arguments.group = Some(group::named(input, errors)?);
-        }
+        "group" => group_argument(&key, input, arguments, errors)?,
         "crate" => {
             once(arguments.root.is_some());
             equals(&key, input)?;
@@ -161,6 +149,10 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             let pairs = advected_pairs(&key, is_given, input)?;
             arguments.advected.extend(pairs.into_iter().map(|(name, source)| (name, source, is_given)));
         }
+        "velocity" if role == Role::Constraint => {
+            let message = "a holonomic constraint is a function of positions, and sees no velocity: remove this";
+            return Err(syn::Error::new(key.span(), message));
+        }
         other => {
             let near = suggestion(other, known.iter().copied());
             let list = if near.is_empty() { format!("\nknown: {}", known.join(", ")) } else { String::new() };
@@ -172,6 +164,37 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
     }
     comma(input)
+}
+
+/// `group = SO3`, `group(F_1 = SO3, F_2 = SO3)`.
+fn group_argument(key: &Ident, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
+    let (is_again, are_several) = (!arguments.factors.is_empty(), input.peek(syn::token::Paren));
+    if is_again && are_several {
+        let message = "`group` is given twice: all factors stand in one, `group(F_1 = SO3, F_2 = SO3)`";
+        errors.push(key.span(), message);
+    } else if is_again || arguments.group.is_some() {
+        errors.push(key.span(), format!("`{key}` is given twice: remove one"));
+    }
+    if are_several {
+        let content;
+        parenthesized!(content in input);
+        let factors = factors(&content, errors);
+        content.parse::<TokenStream>()?;
+        arguments.factors.extend(factors?);
+        return Ok(());
+    }
+    if !input.peek(Token![=]) {
+        return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
+    }
+    equals(key, input)?;
+    without_quotes(key, input)?;
+    let named = group::named(input, errors)?;
+    // What begins with a name is the next argument, and a comma is missing.
+    if !input.is_empty() && !input.peek(Token![,]) && !input.peek(Ident::peek_any) {
+        return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
+    }
+    arguments.group = Some(named);
+    Ok(())
 }
 
 fn comma(input: ParseStream) -> syn::Result<()> {
@@ -202,7 +225,12 @@ fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group:
         return Err(syn::Error::new(name.span(), message));
     }
     input.parse::<Token![=]>()?;
-    Ok((name, group::named(input, errors)?))
+    let named = group::named(input, errors)?;
+    if named.built_in().is_none() && built_in(&name.to_string()).is_some() {
+        let message = format!("the increment stands first, and then its group: write `F_1 = {name}`");
+        return Err(syn::Error::new(name.span(), message));
+    }
+    Ok((name, named))
 }
 
 /// `= Omega`, `(Omega_1, Omega_2)`.
@@ -319,12 +347,19 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
     }
     let name: Ident = input.parse()?;
     if !input.peek(Token![=]) {
-        let message = format!("write `{name} = field`, the field that holds its value");
+        let message = if input.peek(Token![.]) {
+            format!("write `w = {name}.seen_from(…)`: a name for the expression comes first")
+        } else {
+            format!("write `{name} = field`, the field that holds its value")
+        };
         return Err(syn::Error::new(name.span(), message));
     }
     input.parse::<Token![=]>()?;
     without_quotes(&name, input)?;
     let span = input.span();
+    if input.peek(Token![self]) {
+        return Err(syn::Error::new(span, "leave the `self.` away: the fields are known by their names alone"));
+    }
     let message = format!("write `{name} = field` with the name of a field and nothing else");
     let field: Ident = input.parse().map_err(|_| syn::Error::new(span, &message))?;
     if input.peek(Token![.]) {
@@ -346,10 +381,12 @@ fn seen(what: Ident, input: ParseStream) -> syn::Result<Source> {
     }
     let content;
     parenthesized!(content in input);
-    let from: Ident = content.parse().map_err(|_| syn::Error::new(method.span(), &message))?;
+    let (first, from) = (content.span(), content.parse::<Ident>());
+    let place = if from.is_ok() { content.span() } else { first };
+    // What is left after a mistake would be reported as unexpected.
     let rest: TokenStream = content.parse()?;
-    if !rest.is_empty() || !input.is_empty() && !input.peek(Token![,]) {
-        return Err(syn::Error::new(method.span(), message));
+    match from {
+        Ok(from) if rest.is_empty() => Ok(Source::Seen { what, from }),
+        _ => Err(syn::Error::new(place, message)),
     }
-    Ok(Source::Seen { what, from })
 }

@@ -24,7 +24,7 @@ impl Named {
     }
 
     /// The group of liestep that it names, if it names one.
-    fn built_in(&self) -> Option<Group> {
+    pub(super) fn built_in(&self) -> Option<Group> {
         if self.is_own { None } else { built_in(&self.name()) }
     }
 
@@ -35,11 +35,14 @@ impl Named {
     }
 }
 
+/// How a group is given.
+pub(super) const ONE_OR_SEVERAL: &str =
+    "write the name of a group, `group = SO3`, or those of several bodies, `group(F_1 = SO3, F_2 = SO3)`";
+
 /// `SO3`, `own::Affine!`.
 pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Named> {
     let span = input.span();
-    let mut path: Path =
-        input.parse().map_err(|_| syn::Error::new(span, "write the name of a group: `group = SO3`"))?;
+    let mut path: Path = input.parse().map_err(|_| syn::Error::new(span, ONE_OR_SEVERAL))?;
     let is_own = input.parse::<Option<Token![!]>>()?.is_some();
     for segment in &mut path.segments {
         // The scalar is given again where the type is written.

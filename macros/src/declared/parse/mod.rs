@@ -158,10 +158,11 @@ pub(crate) fn as_far_as_readable(
         Role::Force if errors.is_empty() => displacements(arguments.displacement.take(), &factors, errors),
         _ => Vec::new(),
     };
-    let both = displacements
-        .iter()
-        .flat_map(|name| [name.clone(), Ident::new(&format!("{}_next", name.unraw()), name.span())]);
-    check_names((role, group.is_product()), &both.collect::<Vec<_>>(), "a displacement", (&fields, &advected), errors);
+    let is_first = |&(at, name): &(usize, &Ident)| !displacements[..at].contains(name);
+    let next = |(_, name): (usize, &Ident)| Ident::new(&format!("{}_next", name.unraw()), name.span());
+    let ends = displacements.iter().enumerate().filter(is_first).map(next);
+    let both: Vec<Ident> = displacements.iter().cloned().chain(ends).collect();
+    check_names((role, group.is_product()), &both, "a displacement", (&fields, &advected), errors);
     let (expression, continuous) = kind(role, &mut arguments, (&fields, &advected, &factors), errors);
     let has_names = matches!(item.fields, Fields::Named(_));
     let has_meaning = is_readable && has_names && group_path.is_some() && !errors.hides_the_rest();
@@ -274,8 +275,12 @@ fn advected(
         let wanted = field.unraw().to_string();
         let index = field_names.iter().position(|known| *known == wanted);
         if index.is_none() && !unreadable.contains(&wanted) {
-            let near = suggestion(&wanted, field_names.iter().map(String::as_str));
-            errors.push(field.span(), format!("the struct has no field `{wanted}`{near}"));
+            let message = no_field(&wanted, source, &field_names, group);
+            match source {
+                Source::Field(_) => errors.push(field.span(), message),
+                // It may have been a body, and no vector.
+                Source::Seen { .. } => errors.push_decisive(field.span(), message),
+            }
         }
         if let Some(found) = index.and_then(|index| fields.get(index)).filter(|_| is_given) {
             if !found.kind.can_be_given() {
@@ -308,6 +313,32 @@ fn advected(
     parameters
 }
 
+/// What is wrong with the name of what is advected, which is no field.
+fn no_field(wanted: &str, source: &Source, fields: &[String], group: Option<(&Group, &[Factor])>) -> String {
+    let bodies: Vec<&str> = match (source, group) {
+        (Source::Seen { .. }, Some((group, factors))) if group.is_product() => {
+            factors.iter().map(|factor| factor.name.as_str()).collect()
+        }
+        _ => Vec::new(),
+    };
+    let near = suggestion(wanted, fields.iter().map(String::as_str).chain(bodies.iter().copied()));
+    match (source, bodies.as_slice()) {
+        (Source::Seen { from, .. }, _) if wanted == "space" => format!(
+            "`space` is no body, and is seen the other way round: `R = {from}.seen_from(space)`, and `R.transpose()` for \
+             its inverse"
+        ),
+        (_, []) => format!("the struct has no field `{wanted}`{near}"),
+        (_, bodies) if near.is_empty() => {
+            let names: Vec<String> = bodies.iter().map(|name| format!("`{name}`")).collect();
+            format!(
+                "`{wanted}` is neither a field of the struct nor the increment of a body: those are {}",
+                names.join(", ")
+            )
+        }
+        _ => format!("`{wanted}` is neither a field of the struct nor the increment of a body{near}"),
+    }
+}
+
 /// What an advected parameter is, and which bodies move it.
 enum Moved<'a> {
     Field(&'a Ident, Seen),
@@ -322,7 +353,7 @@ fn seen<'a>(
     errors: &mut Errors,
 ) -> Option<Moved<'a>> {
     let factors = group.map_or(&[][..], |(_, factors)| factors);
-    let place = |name: &Ident| factors.iter().position(|factor| *name == factor.name);
+    let place = |name: &Ident| factors.iter().position(|factor| name.unraw() == factor.name);
     match source {
         Source::Field(field) if factors.len() > 1 && !is_given => {
             let turns = |at: &usize| group.is_none_or(|(group, _)| !group.factor(*at).is_added);
@@ -339,6 +370,8 @@ fn seen<'a>(
             errors.push_decisive(what.span(), format!("what is given is seen as it is: write `{what}`"));
             None
         }
+        // Whose increments couldn't be read.
+        Source::Seen { .. } if group.is_none() => None,
         Source::Seen { what, from } => {
             let seer = if *from == "space" { None } else { Some(place(from)) };
             if seer == Some(None) {

@@ -15,14 +15,22 @@ const ROUNDING: f64 = 1e-9;
 /// Attitude and position of a body.
 type Place<T> = [Value<T>; 2];
 
-/// Checks the slopes of both bodies.
-pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<(), Unconfirmed> {
+/// What is left of a direction in which there is nothing new, relative to it.
+const NOTHING_NEW: f64 = 1e-9;
+
+/// Checks the slopes of both bodies, and finds a function that follows from those before it wherever the bodies are and
+/// whatever the parameters: its number.
+///
+/// The points aren't on the constraint, so what follows there alone isn't found.
+pub(crate) fn constraint(declaration: &Declaration, held: &Held) -> Result<Option<usize>, Unconfirmed> {
     let draws = (1..=DRAWS).map(|seed| Point::new(declaration, seed));
     let finite = draws.filter(|point| {
         let value = point.value(held, &point.places.each_ref().map(lifted));
         value.iter().all(|entry| entry.value.is_finite())
     });
-    confirmed(finite, |point| point.check(held)).map(|_| ())
+    let points = confirmed(finite, |point| point.check(held))?;
+    let following: Option<Vec<usize>> = points.iter().map(|point| point.following(held)).collect();
+    Ok(following.and_then(|rows| rows.into_iter().max()))
 }
 
 /// Where two bodies are, and the values of the fields.
@@ -30,6 +38,10 @@ struct Point<'a> {
     declaration: &'a Declaration,
     places: [Place<f64>; 2],
     fields: BTreeMap<Name, Value>,
+}
+
+fn length(entries: &[f64]) -> f64 {
+    entries.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }
 
 fn lifted(place: &Place<f64>) -> Place<Dual<f64>> {
@@ -82,6 +94,29 @@ impl<'a> Point<'a> {
             inputs.extend(held.lowered.names.get(name).map(|&symbol| (symbol, value.clone())));
         }
         inputs
+    }
+
+    /// The first function whose slopes are combined of those before it.
+    fn following(&self, held: &Held) -> Option<usize> {
+        let inputs = self.inputs(held);
+        let all: Vec<Vec<f64>> =
+            held.entries.iter().flatten().map(|entries| evaluated(&held.graph, entries, &inputs)).collect();
+        let mut before: Vec<Vec<f64>> = Vec::new();
+        for row in 0..held.rows() {
+            let mut rest: Vec<f64> = all.iter().flat_map(|entries| &entries[3 * row..3 * row + 3]).copied().collect();
+            let whole = length(&rest);
+            // The second time for what roundings of the first leave.
+            for unit in before.iter().chain(&before) {
+                let along: f64 = unit.iter().zip(&rest).map(|(a, b)| a * b).sum();
+                rest.iter_mut().zip(unit).for_each(|(entry, unit)| *entry -= along * unit);
+            }
+            let left = length(&rest);
+            if left <= NOTHING_NEW * whole {
+                return Some(row);
+            }
+            before.push(rest.iter().map(|entry| entry / left).collect());
+        }
+        None
     }
 
     fn check(&self, held: &Held) -> Result<(), Fault> {

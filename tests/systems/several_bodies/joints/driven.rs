@@ -2,8 +2,8 @@
 
 use core::array::from_fn;
 
-use declarations::SuspendedLoad;
 use declarations::motions::{number, read};
+use declarations::{FallingBody, SuspendedLoad};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Along, Each, Term as _};
@@ -14,7 +14,7 @@ use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
 
 use super::super::{all, apart};
 use super::loops::{closed_loop, state_of};
-use super::{EPSILON, Free, Heavy, assert_no_work, plain, row, scene, six};
+use super::{EPSILON, Free, assert_no_work, plain, row, scene, six};
 
 /// A force that is given to each step anew: with the weight of the bodies it is their step under gravity, and
 /// velocities keep to the joints.
@@ -110,7 +110,7 @@ fn bodies_that_joints_and_springs_hold() {
         _ => Joined::between(BallJoint { above: right, below: left }, k - 1, k),
     });
     let of = |stiffness: f64, h: f64| {
-        let bodies = Each::<N>::of([Heavy { m: 1.0, K, g: 9.81, up: Vector3::z() }; N]);
+        let bodies = Each::<N>::of([FallingBody { m: 1.0, J_d: K, g: 9.81, up: Vector3::z() }; N]);
         let cord = Cord { stiffness, at_1: Vector3::new(0.1, 0.2, 0.0), at_2: Vector3::new(-0.1, 0.2, 0.1) };
         Stepper::jointed(bodies + Along::<N>::of([cord]), Joints::tree(joints), h).unwrap()
     };

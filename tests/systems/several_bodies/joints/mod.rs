@@ -12,6 +12,7 @@ mod loops;
 
 use core::array::from_fn;
 
+use declarations::FallingBody;
 use declarations::motions::number;
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::derivative;
@@ -19,28 +20,13 @@ use liestep::mechanics::{DiscreteLagrangian, Each, Placed};
 use liestep::methods::{Constraint, Joined, Jointed, Place};
 use liestep::motion::Motion;
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, Stepper};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use serde_json::Value;
 
-/// A body that is pulled down.
-#[lagrangian(
-    group(F = SO3, d = R3),
-    advected(x = d.seen_from(space)),
-    l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
-        - 0.5 * h * m * g * (x + x + d).dot(&up),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Heavy {
-    m: f64,
-    K: NonstandardInertia,
-    g: f64,
-    up: Vector3<f64>,
-}
-
 type Body = (SO3, R3);
 
-type Scene<const N: usize> = Placed<Each<N>, Heavy, N>;
+type Scene<const N: usize> = Placed<Each<N>, FallingBody, N>;
 
 type Held<C, const K: usize, const N: usize, const T: usize, const L: usize> =
     Stepper<Scene<N>, Jointed<Scene<N>, C, K, N, T, L>>;
@@ -56,7 +42,7 @@ struct Free {
 }
 
 fn scene<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> Scene<N> {
-    Each::<N>::of(bodies.map(|Free { m, K }| Heavy { m, K, g, up }))
+    Each::<N>::of(bodies.map(|Free { m, K }| FallingBody { m, J_d: K, g, up }))
 }
 
 fn six(turning: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector6<f64> {

@@ -33,6 +33,8 @@ pub trait Places<E: Effect> {
 
     /// How many places there are.
     const PLACES: usize;
+    /// Why there can't be such places, if there can't.
+    const WRONG: Option<&'static str>;
     /// Whether each place is at one body: what couples velocities there stays within its block of the Newton matrix.
     const AT_ONE_BODY: bool;
     /// Whether what is between two bodies there depends on where both are within the step. They are neighbours then.

@@ -39,6 +39,8 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
     type Of<T: Copy> = [T; N];
 
     const PLACES: usize = N;
+    const WRONG: Option<&'static str> =
+        if N > 0 { None } else { Some("a system has one body at least: write how many, `Each::<N>`") };
     const NAME: (&'static str, [usize; 2]) = ("at each body", [N, N]);
 
     at_one_body!();
@@ -52,7 +54,6 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn gather<T: Copy>(mut make: impl FnMut(At) -> T) -> [T; N] {
-        const { assert!(N > 0, "there is a body at least") };
         let mut all = [make(At { place: 0, bodies: [0; 2] }); N];
         for (place, of) in all.iter_mut().enumerate().skip(1) {
             *of = make(At { place, bodies: [place; 2] });
@@ -115,13 +116,17 @@ impl<E: Effect, const K: usize, const N: usize> Places<E> for On<K, N> {
     type Of<T: Copy> = [T; 1];
 
     const PLACES: usize = 1;
+    const WRONG: Option<&'static str> = if K < N {
+        None
+    } else {
+        Some("there is no body with this number: in `On::<K, N>` the `N` bodies are counted from zero")
+    };
     const NAME: (&'static str, [usize; 2]) = ("on a body", [K, N]);
 
     at_one_body!();
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(mut each: impl FnMut(At)) {
-        const { assert!(K < N, "there is no body with this number: they are counted from zero") };
         each(At { place: 0, bodies: [K; 2] });
     }
 

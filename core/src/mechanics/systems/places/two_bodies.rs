@@ -77,14 +77,15 @@ macro_rules! neighbours {
     ($name:literal) => {
         type Advected = Neighbours<Group<E>, E::Advected, N>;
 
-        const PLACES: usize = N - 1;
+        const PLACES: usize = N.saturating_sub(1);
+        const WRONG: Option<&'static str> =
+            if N > 1 { None } else { Some("neighbours are two bodies at least: write how many there are") };
         const NAME: (&'static str, [usize; 2]) = ($name, [0, N]);
 
         #[cfg_attr(not(debug_assertions), inline(always))]
         fn visit(mut each: impl FnMut(At)) {
-            const { assert!(N > 1, "neighbours are two bodies at least") };
-            for place in 0..N - 1 {
-                each(At { place, bodies: [place, place + 1] });
+            for place in 1..N {
+                each(At { place: place - 1, bodies: [place - 1, place] });
             }
         }
 
@@ -124,6 +125,11 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
     type Advected = SeenBetween<Group<E>, E::Advected, A, B>;
 
     const PLACES: usize = 1;
+    const WRONG: Option<&'static str> = if A < N && B < N && A != B {
+        None
+    } else {
+        Some("there are no two bodies with these numbers: in `Between::<A, B, N>` the `N` bodies are counted from zero")
+    };
     const NAME: (&'static str, [usize; 2]) = ("between two bodies", [A, B]);
 
     at_two_bodies!();
@@ -131,7 +137,6 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn visit(mut each: impl FnMut(At)) {
-        const { assert!(A < N && B < N && A != B, "there are no two bodies with these numbers, counted from zero") };
         each(At { place: 0, bodies: [A, B] });
     }
 
@@ -148,7 +153,9 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
 impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
     type Advected = WhereAllAre<Body<E>, N>;
 
-    const PLACES: usize = N * (N - 1) / 2;
+    const PLACES: usize = N * N.saturating_sub(1) / 2;
+    const WRONG: Option<&'static str> =
+        if N > 1 { None } else { Some("a pair is two bodies at least: write how many there are") };
     const NAME: (&'static str, [usize; 2]) = ("at all pairs", [N, N]);
 
     at_two_bodies!();

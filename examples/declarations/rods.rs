@@ -1,0 +1,77 @@
+//! Bodies that turn and are translated, and what holds neighbours in an elastic rod.
+
+use liestep::groups::R3;
+use liestep::{NonstandardInertia, SO3, lagrangian};
+use nalgebra::Vector3;
+
+/// A body that nothing moves.
+#[lagrangian(
+    group(F = SO3, d = R3),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FloatingBody<T = f64> {
+    /// Mass, kg.
+    pub m: T,
+    /// Nonstandard inertia about the centre of mass, kg m².
+    pub J_d: NonstandardInertia<T>,
+}
+
+/// One that is pulled down.
+#[lagrangian(
+    group(F = SO3, d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+        - 0.5 * h * m * g * (x + x + d).dot(&up),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FallingBody<T = f64> {
+    /// Mass, kg.
+    pub m: T,
+    /// Nonstandard inertia about the centre of mass, kg m².
+    pub J_d: NonstandardInertia<T>,
+    /// Gravitational acceleration, m/s².
+    pub g: T,
+    /// The vertical, in space.
+    pub up: Vector3<T>,
+}
+
+/// A spring between points of two bodies, without a length of its own, by what it is at both ends of a step.
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+    l_d = -0.25 * h * k * ((r + R_2 * b - R_1 * a).norm_squared()
+        + (r + d_2 - d_1 + R_2 * F_2 * b - R_1 * F_1 * a).norm_squared()),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointSpring<T = f64> {
+    /// Stiffness, N/m.
+    pub k: T,
+    /// The point of the first body, from its centre of mass, body frame, m.
+    pub a: Vector3<T>,
+    /// That of the second.
+    pub b: Vector3<T>,
+}
+
+/// An element of an elastic rod: the end `a` of one body is held at the end `b` of the next, and bent against it. Strains
+/// are the means of those at both ends of a step.
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R = F_1.seen_from(space), Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1)),
+    l_d = {
+        let shift = (R.transpose() * r + Q * b + F_1.transpose() * (R.transpose() * (r + d_2 - d_1) + Q * F_2 * b)) * 0.5 - a;
+        let bend = (vee(Q) + vee(F_1.transpose() * Q * F_2)) * 0.5;
+        -0.5 * h * (k * shift.norm_squared() + c * bend.norm_squared())
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RodElement<T = f64> {
+    /// Stiffness against shifts, N/m.
+    pub k: T,
+    /// That against turns, N m.
+    pub c: T,
+    /// The end of the one, from its centre of mass, body frame, m.
+    pub a: Vector3<T>,
+    /// That of the next.
+    pub b: Vector3<T>,
+}
