@@ -56,7 +56,9 @@ fn reference() -> Started {
 #[test]
 fn momentum_of_badly_solved_steps() {
     let unsolved = |work: &mut [Work]| {
-        work.iter_mut().for_each(|work| work.half *= 0.999);
+        for work in &mut *work {
+            work.half *= 0.999;
+        }
         outwards(work);
     };
     let once = |work: &mut [Work]| {
