@@ -101,8 +101,8 @@ pub(crate) fn update_by<E: Effect + ?Sized>(
         return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
     }
     let mut links = Vector::<E>::no_links();
-    let (residual, jacobian) = E::newton_linked(constants, terms, half, &mut links);
-    let (update, det) = Vector::<E>::solve_linked(&jacobian, &links, pattern::<E>(), &residual);
+    let (mut update, mut jacobian) = E::newton_linked(constants, terms, half, &mut links);
+    let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(), &mut update);
     NewtonUpdate { update, factors: None, det }
 }
 

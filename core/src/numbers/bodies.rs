@@ -187,6 +187,13 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         BlockDiagonal(from_fn(|body| V::square(|k| column(body * dimension + k).0[body])))
     }
 
+    fn column(matrix: &Self::Square, k: usize) -> Self {
+        let dimension = dimension::<T, V>();
+        let mut column = Self::zero();
+        column.0[k / dimension] = V::column(&matrix.0[k / dimension], k % dimension);
+        column
+    }
+
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn zero() -> Self {
         Self([V::zero(); N])
@@ -274,27 +281,34 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
     /// By elimination from the first body to the last, `A_{k+1} ← A_{k+1} − L_k A_k⁻¹ U_k`.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn solve_linked(matrix: &Self::Square, links: &Self::Links, pattern: Pattern, right_side: &Self) -> (Self, T) {
+    fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T {
         let pattern = Pattern { apart: Blocks::WHOLE, ..pattern };
-        let (mut solution, mut smallest) = (*right_side, most());
-        // `A_k⁻¹ U_k` of those behind which there is one.
-        let mut eliminated = matrix.0;
-        let mut of_body = matrix.0.first().copied();
+        let (BlockDiagonal(own), Bodies(solution), mut smallest) = (matrix, right_side, most());
         for k in 0..N {
-            let Some(own) = of_body else { break };
-            let (factors, det) = V::factorise_apart(&own, pattern);
+            let (factors, det) = V::factorise_apart(&own[k], pattern);
             smallest = least(smallest, det);
-            solution.0[k] = V::solve_apart(&factors, pattern, &solution.0[k]);
-            let (Some(next), [upper, lower]) = (matrix.0.get(k + 1), &links[k]) else { break };
-            eliminated[k] = V::square(|column| V::solve_apart(&factors, pattern, &(*upper * V::axis(column))));
-            let taken = V::square(|column| *lower * (eliminated[k] * V::axis(column)));
-            of_body = Some(*next + taken * real::<T>(-1.0));
-            solution.0[k + 1] = solution.0[k + 1] - *lower * solution.0[k];
+            solution[k] = V::solve_apart(&factors, pattern, &solution[k]);
+            if k + 1 == N {
+                break;
+            }
+            let [upper, lower] = &links[k];
+            // `A_k⁻¹ U_k` is all of it that is asked for later.
+            let eliminated = V::square(
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |column| V::solve_apart(&factors, pattern, &V::column(upper, column)),
+            );
+            let taken = V::square(
+                #[cfg_attr(not(debug_assertions), inline(always))]
+                |column| *lower * V::column(&eliminated, column),
+            );
+            own[k] = eliminated;
+            own[k + 1] = own[k + 1] + taken * real::<T>(-1.0);
+            solution[k + 1] = solution[k + 1] - *lower * solution[k];
         }
         for k in (1..N).rev() {
-            solution.0[k - 1] = solution.0[k - 1] - eliminated[k - 1] * solution.0[k];
+            solution[k - 1] = solution[k - 1] - own[k - 1] * solution[k];
         }
-        (solution, smallest)
+        smallest
     }
 
     fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T {
@@ -356,8 +370,8 @@ mod tests {
             dense.fixed_view_mut::<6, 6>(6 * k + 6, 6 * k).copy_from(lower);
         }
         let right_side = SVector::<f64, 18>::from_fn(|k, _| [1.0, -2.0, 0.5, 3.0][k % 4]);
-        let bodies = Bodies([0, 6, 12].map(|start| right_side.fixed_rows::<6>(start).into_owned()));
-        let (solution, det) = Bodies::solve_linked(&BlockDiagonal(matrix), &links, PATTERN, &bodies);
+        let mut solution = Bodies([0, 6, 12].map(|start| right_side.fixed_rows::<6>(start).into_owned()));
+        let det = Bodies::solve_linked(&mut BlockDiagonal(matrix), &links, PATTERN, &mut solution);
         let expected = dense.lu().solve(&right_side).unwrap();
         for (k, own) in solution.0.iter().enumerate() {
             let off = (own - expected.fixed_rows::<6>(6 * k)).amax();
@@ -370,10 +384,11 @@ mod tests {
     #[test]
     fn two_negative_factors_of_a_body_show() {
         let negative = Matrix6::from_diagonal(&Vector6::new(1.0, 2.0, -1.0, 1.0, -3.0, 1.0));
-        let matrix = BlockDiagonal([Matrix6::identity(), negative]);
+        let mut matrix = BlockDiagonal([Matrix6::identity(), negative]);
         let links = Bodies::<Vector6<f64>, 2>::no_links();
         let right_side = Bodies([Vector6::repeat(1.0), Vector6::repeat(6.0)]);
-        let (solution, det) = Bodies::solve_linked(&matrix, &links, PATTERN, &right_side);
+        let mut solution = right_side;
+        let det = Bodies::solve_linked(&mut matrix, &links, PATTERN, &mut solution);
         assert!((det + 1.0).abs() < 1e-15, "{det}");
         assert!((negative * solution.0[1] - right_side.0[1]).amax() < 1e-14);
     }

@@ -45,6 +45,14 @@ pub trait Coordinates<T: Real>:
     /// The matrix with these columns, numbered from zero; of several bodies its blocks.
     fn square(column: impl Fn(usize) -> Self) -> Self::Square;
 
+    /// A column of a matrix, numbered from zero; of several bodies that of its block.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no column `k`.
+    #[must_use]
+    fn column(matrix: &Self::Square, k: usize) -> Self;
+
     /// All components zero.
     fn zero() -> Self;
 
@@ -114,10 +122,10 @@ pub trait Coordinates<T: Real>:
     /// Nothing that joins neighbours.
     fn no_links() -> Self::Links;
 
-    /// The solution `z` of `A z = b` for a matrix with these blocks beside its diagonal, and the determinant of its
-    /// elimination as of [`factorise_with`](Self::factorise_with), of whose pattern the factors count. What is apart
+    /// Puts the solution `z` of `A z = b` in the place of `b`, for a matrix with these blocks beside its diagonal, of
+    /// which nothing is left. Returns the determinant of its elimination as of [`factorise_with`](Self::factorise_with), of whose pattern the factors count. What is apart
     /// otherwise isn't with these.
-    fn solve_linked(matrix: &Self::Square, links: &Self::Links, pattern: Pattern, right_side: &Self) -> (Self, T);
+    fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T;
 
     /// The least of the traces of the blocks.
     fn least_trace(matrix: &Self::Square, blocks: Blocks) -> T;
@@ -184,6 +192,11 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
             }
         }
         square
+    }
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn column(matrix: &SMatrix<T, D, D>, k: usize) -> Self {
+        matrix.column(k).into()
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -278,9 +291,10 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
     fn no_links() {}
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn solve_linked(matrix: &SMatrix<T, D, D>, (): &(), pattern: Pattern, right_side: &Self) -> (Self, T) {
+    fn solve_linked(matrix: &mut SMatrix<T, D, D>, (): &(), pattern: Pattern, right_side: &mut Self) -> T {
         let (factors, det) = Self::factorise_with(matrix, pattern);
-        (Self::solve_again_with(&factors, det, pattern, right_side), det)
+        *right_side = Self::solve_again_with(&factors, det, pattern, right_side);
+        det
     }
 
     fn least_trace(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {

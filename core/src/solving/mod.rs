@@ -21,6 +21,6 @@ pub use guess::{Guess, Warm};
 pub(crate) use iteration::{Kick, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SETTLED};
 pub(crate) use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Problem, newton_system, step_terms};
-pub(crate) use reused_jacobian::{has_sufficed, may_suffice, safe};
+pub(crate) use reused_jacobian::{Curvature, has_sufficed, may_suffice, safe};
 pub use solvability::Solvability;
 pub(crate) use solvability::{TurningLimits, turning_limits};

@@ -20,7 +20,7 @@
 
 use core::any::TypeId;
 
-use super::iteration::{Iteration, Lanes, System};
+use super::iteration::{Iteration, Lanes, SETTLED, System};
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
@@ -28,6 +28,8 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
 /// How much of `y` may be missing at the end, in its roundings. It is less than the rounding of the residual that the
 /// last update was made of.
 const REST: f64 = 1.0 / 16.0;
+/// Of squares of `f64`.
+const REST_OF_SIZE: f64 = (REST * f64::EPSILON) * (REST * f64::EPSILON);
 /// Of the determinant at rest.
 const SAFE: f64 = 1.0 / 16.0;
 /// The `C` that a first update is judged by: that of the heavy tops of the thesis at common steps. A top with a larger
@@ -103,9 +105,48 @@ pub(crate) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }
 
+/// The square of `C`, once two updates of Newton's iteration have told it along the first, and at least one.
+#[derive(Clone, Copy)]
+pub(crate) struct Curvature(Option<f64>);
+
+// All lengths are squares.
+impl Curvature {
+    /// By an update of Newton's iteration and the one before, if that was another.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn told(before: Option<f64>, update: f64) -> Self {
+        Self(before.map(|before| (update / (before * before)).max(1.0)))
+    }
+
+    /// Whether an update of Newton's iteration was enough: [`SETTLED`], or `C|u|² ≤ REST ε|y|`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn has_settled(self, update: f64, size: f64) -> bool {
+        let by_curvature = |square| square * update * update <= size * REST_OF_SIZE;
+        update <= size * (f64::EPSILON * SETTLED) || self.0.is_some_and(by_curvature)
+    }
+
+    /// Whether another with the same Jacobian will be: `2C²|u₁|³ ≤ REST ε|y|`, or [`may_suffice`].
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn may_suffice(self, first: f64, size: f64) -> bool {
+        match self.0 {
+            Some(square) => 4.0 * square * square * (first * first * first) <= size * REST_OF_SIZE,
+            None => may_suffice(first, size),
+        }
+    }
+
+    /// Whether it was: `2C|u₁||u₂| ≤ REST ε|y|`, or [`has_sufficed`]. Where `u₂` is all rounding, as of many links,
+    /// it tells nothing of `C`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(crate) fn has_sufficed(self, first: f64, second: f64, size: f64) -> bool {
+        match self.0 {
+            Some(square) => 4.0 * square * (first * second) <= size * REST_OF_SIZE,
+            None => has_sufficed(first, second, size),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{has_sufficed, may_suffice};
+    use super::{Curvature, has_sufficed, may_suffice};
 
     const EPSILON: f64 = f64::EPSILON;
 
@@ -136,5 +177,35 @@ mod tests {
             assert!(enough(curvature, limit(curvature) * 1.001) && !enough(curvature, limit(curvature) * 0.999));
         }
         assert!(!enough(1.0, f64::NAN) && !has_sufficed(0.0, f64::NAN, size));
+    }
+
+    /// Of `y' = C y²`, whose solution is zero, the iterates are what is missing, and the next is below a sixteenth of a
+    /// rounding of `y = 0.06` where, and only where, the curvature that two of them tell says so.
+    #[test]
+    fn a_curvature_of_two_updates_tells_what_is_missing() {
+        let (size, rest) = (0.06_f64, EPSILON * 0.06 / 16.0);
+        for curvature in [1.5_f64, 8.0, 100.0] {
+            let (mut settled, mut missed) = (0, 0);
+            for exponent in 30..80 {
+                let before = 1.2_f64.powi(-exponent) * 0.1;
+                let update = curvature * before * before;
+                // What SETTLED allows is asked for elsewhere.
+                if update < 4e-9 * size {
+                    break;
+                }
+                let told = Curvature::told(Some(before * before), update * update);
+                let is_settled = told.has_settled(update * update, size * size);
+                assert_eq!(is_settled, curvature * update * update <= rest, "{curvature}: {update:e}");
+                settled += u32::from(is_settled);
+                missed += u32::from(!is_settled);
+                let expected = 2.0 * curvature * curvature * update * update * update <= rest;
+                assert_eq!(told.may_suffice(update * update, size * size), expected, "{curvature}: {update:e}");
+            }
+            assert!(missed > 0 && (settled > 0 || curvature > 4.0), "{curvature}: {settled} {missed}");
+        }
+        let none = Curvature::told(None, 1e-6);
+        assert!(
+            !none.has_settled(1e-16 * size * size, size * size) && none.has_settled(1e-18 * size * size, size * size)
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! What a step of a chain solves, link by link: outwards where the joints go, inwards what hangs on each link and its
 //! elimination, outwards the update.
 //!
-//! All is in the axes of each link. With `D = F − I`, what is carried outwards is the way `u` of the upper joint, and
-//! inwards the momentum `P` beyond the lower one, times `h`:
+//! All is in the axes of each link: what pulls along one then doesn't round what turns it. With `D = F − I`, what is carried outwards is the
+//! way `u` of the upper joint, and inwards the momentum `P` beyond the lower one, times `h`:
 //!
 //! ```text
 //! u' = Qᵀ(u + D ρ)        P' = Q (P + m (u + D c))        Q = R_aᵀ R_{a+1}
@@ -28,226 +28,226 @@ use nalgebra::{Matrix3, Vector3};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-use super::{Link, inertia};
+use super::Link;
 
 /// What is known of a link while a step is solved.
 #[derive(Clone, Copy)]
 pub(super) struct Work {
-    /// `Q`, from the axes of the next link to these.
+    /// `Q`, from the axes of the next link to these; zero where there is none.
     pub(super) next: Matrix3<f64>,
+    /// `J`, `m`, `m c` and `ρ` of the [`Link`].
+    nonstandard: Matrix3<f64>,
+    pub(super) m: f64,
+    mc: Vector3<f64>,
+    rho: Vector3<f64>,
     /// `h a`.
     pub(super) target: Vector3<f64>,
     /// Half the Cayley coordinates of `F`.
     pub(super) half: Vector3<f64>,
-    /// `D`.
+    /// `D`, and `D ρ`, `D m c`.
     pub(super) increment: Matrix3<f64>,
-    /// `D ρ`, `D c`.
     pub(super) of_rho: Vector3<f64>,
-    pub(super) of_c: Vector3<f64>,
+    pub(super) of_mc: Vector3<f64>,
     /// `u`, m.
     pub(super) u: Vector3<f64>,
-    /// `P`, kg m.
-    pub(super) beyond: Vector3<f64>,
-    /// `t`.
+    /// `B⁻¹ t`.
     t: Vector3<f64>,
-    /// `B⁻¹`, `G`, `H B⁻¹` and `F ρ` where they were last computed.
+    /// `B⁻¹`, `B⁻¹ G` and `H` where they were last computed.
     inverse: Matrix3<f64>,
     g: Matrix3<f64>,
-    k: Matrix3<f64>,
-    turned_rho: Vector3<f64>,
+    h: Matrix3<f64>,
     /// `det B`.
     pub(super) determinant: f64,
-    /// `z`.
+    /// What the last update has taken from `half`.
     pub(super) z: Vector3<f64>,
 }
 
 impl Work {
-    pub(super) fn new() -> Self {
-        let (vector, matrix) = (Vector3::zeros(), Matrix3::zeros());
+    /// To be [placed](Self::place).
+    pub(super) const NONE: Self = {
+        let (vector, matrix) = (Vector3::new(0.0, 0.0, 0.0), Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0));
         Self {
-            next: Matrix3::identity(),
+            next: matrix,
+            nonstandard: matrix,
+            m: 0.0,
+            mc: vector,
+            rho: vector,
             target: vector,
             half: vector,
             increment: matrix,
             of_rho: vector,
-            of_c: vector,
+            of_mc: vector,
             u: vector,
-            beyond: vector,
             t: vector,
             inverse: matrix,
             g: matrix,
-            k: matrix,
-            turned_rho: vector,
-            determinant: 1.0,
+            h: matrix,
+            determinant: 0.0,
             z: vector,
         }
+    };
+
+    /// This link.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(super) fn place(&mut self, link: &Link) {
+        self.nonstandard = *link.J_d.as_matrix();
+        self.m = link.m;
+        self.mc = link.c * link.m;
+        self.rho = link.rho;
     }
 
     /// Whether the link turns by less than 90° and its determinant has the sign that it has at rest.
     pub(super) fn is_wanted(&self) -> bool {
         self.determinant > 0.0 && self.half.norm_squared() < 1.0
     }
+
+    /// `m (u + D c)`.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(super) fn momentum(&self) -> Vector3<f64> {
+        self.u * self.m + self.of_mc
+    }
+
+    /// Turns it, where the way of its upper joint is `u`; returns that of the lower one, as the next link sees it.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn turn(&mut self, u: Vector3<f64>) -> Vector3<f64> {
+        self.increment = increment(&self.half);
+        self.of_rho = self.increment * self.rho;
+        self.of_mc = self.increment * self.mc;
+        self.u = u;
+        self.next.tr_mul(&(u + self.of_rho))
+    }
+
+    /// `(D J − J Dᵀ)^∨ + m c × u + ρ × P − h a` with `D J`, and `P` beyond.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn residual(&self, dj: &Matrix3<f64>, beyond: &Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(dj.m32 - dj.m23, dj.m13 - dj.m31, dj.m21 - dj.m12)
+            + self.mc.cross(&self.u)
+            + self.rho.cross(beyond)
+            - self.target
+    }
 }
 
-/// The squares of the lengths of an update and of the unknowns after it, and the largest update of a link.
+/// The squares of the lengths of an update and of the unknowns after it, and whether it wasn't shortened.
 #[derive(Clone, Copy)]
 pub(super) struct Updated {
     pub(super) update: f64,
     pub(super) size: f64,
-    pub(super) largest: f64,
+    pub(super) is_whole: bool,
 }
 
-/// Where the joints go: `D` of each link, and `u`.
-pub(super) fn outwards(links: &[Link], work: &mut [Work]) {
-    let mut u = Vector3::zeros();
-    for (link, work) in links.iter().zip(work) {
-        let y = work.half;
-        let scale = 2.0 / (1.0 + y.norm_squared());
-        work.increment = quadratic(&y) * scale;
-        work.of_rho = work.increment * link.rho;
-        work.of_c = work.increment * link.c;
-        work.u = u;
-        u = work.next.tr_mul(&(u + work.of_rho));
-    }
-}
-
-/// `ŷ + ŷ²`.
+/// `D = 2 (ŷ + ŷ²)/(1 + |y|²)`.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn quadratic(y: &Vector3<f64>) -> Matrix3<f64> {
+fn increment(y: &Vector3<f64>) -> Matrix3<f64> {
     let (xx, yy, zz) = (y.x * y.x, y.y * y.y, y.z * y.z);
     let (xy, xz, yz) = (y.x * y.y, y.x * y.z, y.y * y.z);
     Matrix3::new(-(yy + zz), xy - y.z, xz + y.y, xy + y.z, -(xx + zz), yz - y.x, xz - y.y, yz + y.x, -(xx + yy))
+        * (2.0 / (1.0 + (xx + yy + zz)))
 }
 
-/// The momentum beyond each joint.
-pub(super) fn momenta(links: &[Link], work: &mut [Work]) {
-    let mut beyond = Vector3::zeros();
-    for (link, work) in links.iter().zip(work).rev() {
-        work.beyond = work.next * beyond;
-        beyond = work.beyond + (work.u + work.of_c) * link.m;
+/// Where the joints go.
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(super) fn outwards(work: &mut [Work]) {
+    let mut u = Vector3::zeros();
+    for work in work {
+        u = work.turn(u);
     }
 }
 
-/// Eliminates from the end to the pivot, with the residual `h r` of each link.
+/// One of Newton's iterations, from where the joints go to where they go by it; where a link's update is longer than
+/// `longest`, all are shortened.
 #[cfg_attr(not(debug_assertions), inline(always))]
-fn eliminate(links: &[Link], work: &mut [Work], residual: impl Fn(&Link, &Work) -> (Vector3<f64>, Matrix3<f64>)) {
+pub(super) fn newton(work: &mut [Work], longest: f64) -> Updated {
     let (mut beyond, mut mass, mut q) = (Vector3::zeros(), Matrix3::zeros(), Vector3::zeros());
-    for (link, work) in links.iter().zip(work).rev() {
+    for work in work.iter_mut().rev() {
         // From the axes of the next link; at the end all are zero.
         let turn = work.next;
-        work.beyond = turn * beyond;
+        beyond = turn * beyond;
         q = turn * q;
         mass = turn * mass * turn.transpose();
 
-        let (r, own) = residual(link, work);
-        let (rho, c, m) = (link.rho, link.c, link.m);
-        let (turned_rho, turned_c) = (rho + work.of_rho, c + work.of_c);
-        let g = cross_columns(&rho, &mass);
+        let dj = work.increment * work.nonstandard;
+        let own = inertia(&(dj + work.nonstandard));
+        let (turned_rho, turned_mc) = (work.rho + work.of_rho, work.mc + work.of_mc);
+        let g = cross_columns(&work.rho, &mass);
         let b = own - cross_rows(&g, &turned_rho);
-        let g = add_hat(&g, &(c * m));
-        let h = add_hat(&cross_rows(&mass, &turned_rho), &(turned_c * m));
+        let g = add_hat(&g, &work.mc);
+        let h = add_hat(&cross_rows(&mass, &turned_rho), &turned_mc);
         let (inverse, determinant) = inverted(&b);
-        let k = h * inverse;
-        let t = rho.cross(&q) + r;
-        mass += k * g;
-        mass.m11 += m;
-        mass.m22 += m;
-        mass.m33 += m;
-        q += k * t;
-        beyond = work.beyond + (work.u + work.of_c) * m;
-        (work.inverse, work.g, work.k, work.t) = (inverse, g, k, t);
-        (work.turned_rho, work.determinant) = (turned_rho, determinant);
+        let g = inverse * g;
+        let t = inverse * (work.rho.cross(&q) + work.residual(&dj, &beyond));
+        mass += h * g;
+        mass.m11 += work.m;
+        mass.m22 += work.m;
+        mass.m33 += work.m;
+        q += h * t;
+        beyond += work.momentum();
+        (work.inverse, work.g, work.h, work.t, work.determinant) = (inverse, g, h, t, determinant);
     }
-}
-
-/// `(D J − J Dᵀ)^∨ + m c × u + ρ × P − h a`, and `tr(F J) I − F J`.
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn momentum_equation(link: &Link, work: &Work) -> (Vector3<f64>, Matrix3<f64>) {
-    let nonstandard = link.J_d.as_matrix();
-    let dj = work.increment * nonstandard;
-    (residual(link, work, &dj), inertia(&(dj + nonstandard)))
-}
-
-#[cfg_attr(not(debug_assertions), inline(always))]
-fn residual(link: &Link, work: &Work, dj: &Matrix3<f64>) -> Vector3<f64> {
-    Vector3::new(dj.m32 - dj.m23, dj.m13 - dj.m31, dj.m21 - dj.m12)
-        + link.c.cross(&work.u) * link.m
-        + link.rho.cross(&work.beyond)
-        - work.target
-}
-
-/// One of Newton's iterations.
-pub(super) fn newton(links: &[Link], work: &mut [Work], longest: f64) -> Updated {
-    outwards(links, work);
-    eliminate(links, work, momentum_equation);
     solved(work, longest)
 }
 
 /// Another with the matrix of the last.
-pub(super) fn simplified(links: &[Link], work: &mut [Work]) -> Updated {
-    outwards(links, work);
+#[cfg_attr(not(debug_assertions), inline(always))]
+pub(super) fn simplified(work: &mut [Work]) -> Updated {
     let (mut beyond, mut q) = (Vector3::zeros(), Vector3::zeros());
-    for (link, work) in links.iter().zip(work.iter_mut()).rev() {
-        work.beyond = work.next * beyond;
+    for work in work.iter_mut().rev() {
+        beyond = work.next * beyond;
         q = work.next * q;
-        let dj = work.increment * link.J_d.as_matrix();
-        work.t = link.rho.cross(&q) + residual(link, work, &dj);
-        q += work.k * work.t;
-        beyond = work.beyond + (work.u + work.of_c) * link.m;
+        let dj = work.increment * work.nonstandard;
+        work.t = work.inverse * (work.rho.cross(&q) + work.residual(&dj, &beyond));
+        q += work.h * work.t;
+        beyond += work.momentum();
     }
     solved(work, f64::INFINITY)
 }
 
-/// Outwards the update; where one is longer than `longest`, all are shortened.
+/// Outwards the update, and where the joints go by it.
+#[cfg_attr(not(debug_assertions), inline(always))]
 fn solved(work: &mut [Work], longest: f64) -> Updated {
-    let mut v = Vector3::zeros();
-    let mut largest = 0.0_f64;
-    let mut update = 0.0;
+    let (mut u, mut v) = (Vector3::zeros(), Vector3::zeros());
     for work in work.iter_mut() {
-        let (y, z) = (work.half, -(work.inverse * (work.g * v + work.t)));
-        v = work.next.tr_mul(&(v + z.cross(&work.turned_rho)));
+        let (y, z) = (work.half, work.g * v + work.t);
+        v = work.next.tr_mul(&(v - z.cross(&(work.rho + work.of_rho))));
         // dF F⁻¹ = (2 (I + ŷ) dy/(1 + |y|²))^, solved for `dy`.
         work.z = (z - y.cross(&z) + y * y.dot(&z)) * 0.5;
-        let square = work.z.norm_squared();
-        update += square;
-        // What isn't a number makes the size none either.
-        largest = largest.max(square);
+        work.half -= work.z;
+        u = work.turn(u);
     }
-    let part = if largest > longest * longest { longest / largest.sqrt() } else { 1.0 };
-    let mut size = 0.0;
-    for work in work.iter_mut() {
-        work.half += work.z * part;
+    let largest = work.iter().map(|work| work.z.norm_squared()).fold(0.0, f64::max);
+    if largest > longest * longest {
+        let too_much = 1.0 - longest / largest.sqrt();
+        for work in work.iter_mut() {
+            work.half += work.z * too_much;
+        }
+        outwards(work);
+    }
+    // What isn't a number makes the size none either.
+    let (mut update, mut size) = (0.0, 0.0);
+    for work in work {
+        update += work.z.norm_squared();
         size += work.half.norm_squared();
     }
-    Updated { update, size, largest }
+    Updated { update, size, is_whole: largest <= longest * longest }
 }
 
-/// The velocities `z` of the momenta `target` at rest, `F = I`.
-pub(super) fn velocities(links: &[Link], work: &mut [Work]) {
+/// The momenta `target` of the velocities `half`.
+pub(super) fn momenta_of_velocities(work: &mut [Work]) {
+    let (mut u, mut beyond) = (Vector3::zeros(), Vector3::zeros());
     for work in work.iter_mut() {
-        (work.half, work.increment) = (Vector3::zeros(), Matrix3::zeros());
-        (work.of_rho, work.of_c, work.u) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
-    }
-    eliminate(links, work, |link, work| (-work.target, inertia(link.J_d.as_matrix())));
-    let mut v = Vector3::zeros();
-    for work in work {
-        work.z = -(work.inverse * (work.g * v + work.t));
-        v = work.next.tr_mul(&(v + work.z.cross(&work.turned_rho)));
-    }
-}
-
-/// The momenta `target` of the velocities `z`.
-pub(super) fn momenta_of_velocities(links: &[Link], work: &mut [Work]) {
-    let mut u = Vector3::zeros();
-    for (link, work) in links.iter().zip(work.iter_mut()) {
-        (work.of_rho, work.of_c, work.u) = (work.z.cross(&link.rho), work.z.cross(&link.c), u);
+        (work.of_rho, work.of_mc, work.u) = (work.half.cross(&work.rho), work.half.cross(&work.mc), u);
         u = work.next.tr_mul(&(u + work.of_rho));
     }
-    momenta(links, work);
-    for (link, work) in links.iter().zip(work) {
-        work.target =
-            inertia(link.J_d.as_matrix()) * work.z + link.c.cross(&work.u) * link.m + link.rho.cross(&work.beyond);
+    for work in work.iter_mut().rev() {
+        beyond = work.next * beyond;
+        work.target = inertia(&work.nonstandard) * work.half + work.mc.cross(&work.u) + work.rho.cross(&beyond);
+        beyond += work.momentum();
     }
+}
+
+/// The ordinary inertia about a joint, `tr(J) I − J`.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn inertia(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::from_diagonal_element(nonstandard.trace()) - nonstandard
 }
 
 /// `â M`.

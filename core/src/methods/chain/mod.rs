@@ -16,7 +16,7 @@ mod stepper;
 #[cfg(test)]
 mod tests;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 pub use stepper::{ChainMemory, ChainStepper};
 
@@ -100,9 +100,4 @@ impl<const N: usize> Chain<N> {
         }
         weights
     }
-}
-
-/// The ordinary inertia of a link about its joint.
-fn inertia(nonstandard: &Matrix3<f64>) -> Matrix3<f64> {
-    Matrix3::from_diagonal_element(nonstandard.trace()) - nonstandard
 }

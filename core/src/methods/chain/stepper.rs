@@ -8,13 +8,13 @@ use nalgebra::{Matrix3, Vector3};
 #[cfg(not(feature = "std"))]
 use nalgebra::ComplexField as _;
 
-use super::elimination::{Updated, Work, momenta, momenta_of_velocities, newton, outwards, simplified, velocities};
+use super::elimination::{Updated, Work, momenta_of_velocities, newton, outwards, simplified};
 use super::{Chain, Link, ROUNDED};
 use crate::error::{SetupError, StepError};
 use crate::groups::{LieGroup, SO3};
 use crate::motion::{Integrator, Motion, State, StepReport, is_due};
-use crate::numbers::Bodies;
-use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, has_sufficed, may_suffice};
+use crate::numbers::{Bodies, Kernel, Vectors, dispatch};
+use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS};
 
 /// The square of half the Cayley coordinates up to which a guess is continued from three steps, 67°: they grow without
 /// bound towards 180°, and a wanted solution is below 90°, where the square is one.
@@ -23,11 +23,11 @@ const CONTINUED: f64 = 4.0 / 9.0;
 /// The state of a chain: attitudes, body momenta, and the last increments.
 type ChainState<const N: usize> = State<[SO3; N], (), ChainMemory<N>>;
 
-/// What a [`ChainStepper`] keeps from step to step: half the coordinates of the last increments, by which the next are
-/// guessed.
+/// What a [`ChainStepper`] keeps from step to step: of each link half the coordinates of the last increments, by which
+/// the next are guessed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainMemory<const N: usize> {
-    last: [[Vector3<f64>; N]; 3],
+    last: [[Vector3<f64>; 3]; N],
     /// How many there are.
     known: usize,
 }
@@ -111,12 +111,12 @@ impl<const N: usize> ChainStepper<N> {
         if !velocities.0.iter().flatten().copied().all(f64::is_finite) {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
-        let mut work = Self::work(&attitudes);
+        let mut work = self.placed(&attitudes);
         for (work, velocity) in work.iter_mut().zip(&velocities.0) {
-            work.z = *velocity;
+            work.half = *velocity;
         }
-        momenta_of_velocities(&self.chain.links, &mut work);
-        self.start_with_momentum(attitudes, Bodies(work.map(|work| work.target)))
+        momenta_of_velocities(&mut work);
+        self.start_with_momentum(attitudes, Bodies(from_fn(|k| work[k].target)))
     }
 
     /// A motion from the links' attitudes and the conjugate momenta `μ_a`, kg m²/s in their axes: what each link has to do
@@ -147,58 +147,33 @@ impl<const N: usize> ChainStepper<N> {
     ///
     /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out.
     pub fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
-        let mut work = self.prepared(state);
-        let iterations = if self.h == 0.0 { 0 } else { self.solve(&mut work, &state.kept)? };
-        self.proceed(state, &mut work)?;
-        Ok(StepReport::of(iterations))
+        let mut work = [Work::NONE; N];
+        match dispatch(self.moving(state, &mut work)) {
+            Ok(iterations) => Ok(StepReport::of(iterations)),
+            Err(Unmade::Unsolved(iterations)) => {
+                let mut slow = work;
+                at_rest(&mut slow);
+                first_of_newton(&mut slow);
+                Err(reason(&work, &slow, iterations))
+            }
+            Err(Unmade::NotFinite) => Err(StepError::NonFinite { what: "momentum after the step" }),
+        }
     }
 
-    /// What the increments are to satisfy.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(super) fn prepared(&self, state: &ChainState<N>) -> [Work; N] {
-        let mut work = Self::work(&state.motion.attitude);
-        let h = self.h;
-        for (((work, attitude), momentum), weight) in
-            work.iter_mut().zip(&state.motion.attitude).zip(&state.motion.momentum.0).zip(&self.weights)
-        {
-            let w = attitude.as_matrix().tr_mul(&self.chain.up);
-            // (h/2) w × g s: the kick before the step.
-            work.target = (momentum + w.cross(weight) * (0.5 * h)) * h;
+    /// The chain and a state of it, of whatever length.
+    pub(super) fn moving<'a>(&'a self, state: &'a mut ChainState<N>, work: &'a mut [Work; N]) -> Moving<'a> {
+        Moving {
+            links: &self.chain.links,
+            weights: &self.weights,
+            up: self.chain.up,
+            h: self.h,
+            attitudes: &mut state.motion.attitude,
+            momenta: &mut state.motion.momentum.0,
+            steps: &mut state.motion.steps,
+            last: &mut state.kept.last,
+            known: &mut state.kept.known,
+            work,
         }
-        work
-    }
-
-    /// The end of a step with these increments.
-    #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(super) fn proceed(&self, state: &mut ChainState<N>, work: &mut [Work; N]) -> Result<(), StepError> {
-        let (links, h) = (&self.chain.links[..], self.h);
-        outwards(links, work);
-        momenta(links, work);
-        let mut next = *state;
-        let (mut sum, inverse_step) = (0.0, if h == 0.0 { 0.0 } else { 1.0 / h });
-        for (k, (work, link)) in work.iter().zip(links).enumerate() {
-            let d = &work.increment;
-            let w = state.motion.attitude[k].as_matrix().tr_mul(&self.chain.up);
-            let (weight, momentum) = (self.weights[k], state.motion.momentum.0[k]);
-            // The diamond: what moves the links and what weighs on them, turned.
-            let kick = (work.of_c.cross(&work.u) * link.m + work.of_rho.cross(&work.beyond)) * inverse_step
-                + w.cross(&(weight + weight + d * weight)) * (0.5 * h);
-            // μ⁺ = Fᵀ(μ + κ), (2.9).
-            let change = kick + d.tr_mul(&(momentum + kick));
-            next.motion.momentum.0[k] = momentum + change;
-            next.motion.attitude[k] = state.motion.attitude[k].advance(d);
-            sum += next.motion.momentum.0[k].sum();
-        }
-        if !sum.is_finite() {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
-        }
-        next.kept.follow(work);
-        next.motion.steps += 1;
-        if is_due(next.motion.steps) {
-            next.motion.attitude = next.motion.attitude.map(|attitude| orthogonal(&attitude));
-        }
-        *state = next;
-        Ok(())
     }
 
     /// So many steps; returns all their iterations. On an error the state is unchanged.
@@ -218,18 +193,19 @@ impl<const N: usize> ChainStepper<N> {
     /// The same motion, of which nothing is kept.
     #[must_use]
     pub fn adopt(&self, motion: &Motion<[SO3; N], ()>) -> ChainState<N> {
-        State { motion: *motion, kept: ChainMemory { last: [[Vector3::zeros(); N]; 3], known: 0 } }
+        State { motion: *motion, kept: ChainMemory { last: [[Vector3::zeros(); 3]; N], known: 0 } }
     }
 
     /// The links' body velocities, rad/s.
     #[must_use]
     pub fn velocity(&self, motion: &Motion<[SO3; N], ()>) -> Bodies<Vector3<f64>, N> {
-        let mut work = Self::work(&motion.attitude);
-        for (work, momentum) in work.iter_mut().zip(&motion.momentum.0) {
-            work.target = *momentum;
+        let mut work = self.placed(&motion.attitude);
+        for (k, work) in work.iter_mut().enumerate() {
+            work.target = motion.momentum.0[k];
         }
-        velocities(&self.chain.links, &mut work);
-        Bodies(work.map(|work| work.z))
+        // The first iteration from rest knows nothing of the curvature.
+        first_of_newton(&mut work);
+        Bodies(from_fn(|k| work[k].half * 2.0))
     }
 
     /// The energy, J; the potential is zero at the height of the pivot.
@@ -257,64 +233,183 @@ impl<const N: usize> ChainStepper<N> {
         })
     }
 
-    fn work(attitudes: &[SO3; N]) -> [Work; N] {
-        let mut work = [Work::new(); N];
-        for (k, pair) in attitudes.windows(2).enumerate() {
-            work[k].next = pair[0].as_matrix().tr_mul(pair[1].as_matrix());
-        }
+    /// The links at rest.
+    fn placed(&self, attitudes: &[SO3; N]) -> [Work; N] {
+        let mut work = [Work::NONE; N];
+        place(&self.chain.links, attitudes, &mut work);
         work
-    }
-
-    /// From the guess; where that fails from the velocity, and then from rest with shortened updates.
-    fn solve(&self, work: &mut [Work; N], kept: &ChainMemory<N>) -> Result<u32, StepError> {
-        let links = &self.chain.links[..];
-        // The iterations of abandoned attempts count.
-        let mut spent = 0;
-        let mut attempt = |work: &mut [Work], most, longest| {
-            let (iterations, is_solved) = attempt(links, work, most, longest);
-            spent += iterations;
-            if is_solved { Ok(spent) } else { Err(spent) }
-        };
-        if kept.known > 0 {
-            kept.guess(work);
-            if let Ok(iterations) = attempt(work, MAX_ITERATIONS, f64::INFINITY) {
-                return Ok(iterations);
-            }
-        }
-        let mut slow = *work;
-        velocities(links, &mut slow);
-        for (work, slow) in work.iter_mut().zip(&slow) {
-            // `target` is h times the momentum.
-            work.half = slow.z * 0.5;
-        }
-        if let Ok(iterations) = attempt(work, MAX_ITERATIONS, f64::INFINITY) {
-            return Ok(iterations);
-        }
-        for work in work.iter_mut() {
-            work.half = Vector3::zeros();
-        }
-        attempt(work, MAX_DAMPED_ITERATIONS, LONGEST_DAMPED).map_err(|iterations| reason(work, &slow, iterations))
     }
 }
 
-/// Newton's iteration: how many were made, and whether it has settled near the identity with all determinants positive.
-fn attempt(links: &[Link], work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
-    let mut made = 0;
-    for _ in 0..most {
-        made += 1;
-        let Updated { update, size, largest } = newton(links, work, longest);
-        if !size.is_finite() {
-            return (made, false);
+/// The links, with the attitude of each relative to that before.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn place(links: &[Link], attitudes: &[SO3], work: &mut [Work]) {
+    for (link, work) in links.iter().zip(&mut *work) {
+        work.place(link);
+    }
+    for (pair, work) in attitudes.windows(2).zip(work) {
+        work.next = pair[0].as_matrix().tr_mul(pair[1].as_matrix());
+    }
+}
+
+/// A chain, a state of it, and what is known of its next step. Nothing of it is generic, so a step is compiled once.
+pub(super) struct Moving<'a> {
+    links: &'a [Link],
+    weights: &'a [Vector3<f64>],
+    up: Vector3<f64>,
+    h: f64,
+    attitudes: &'a mut [SO3],
+    momenta: &'a mut [Vector3<f64>],
+    steps: &'a mut u64,
+    last: &'a mut [[Vector3<f64>; 3]],
+    known: &'a mut usize,
+    pub(super) work: &'a mut [Work],
+}
+
+/// Why there is no step.
+pub(super) enum Unmade {
+    /// After so many iterations.
+    Unsolved(u32),
+    /// The momentum after it.
+    NotFinite,
+}
+
+impl Kernel for Moving<'_> {
+    type Output = Result<u32, Unmade>;
+
+    const VECTORS: Vectors = Vectors::Four;
+
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn run(mut self) -> Result<u32, Unmade> {
+        self.prepare();
+        let iterations = if self.h == 0.0 { 0 } else { self.solve()? };
+        self.proceed()?;
+        Ok(iterations)
+    }
+}
+
+impl Moving<'_> {
+    /// What the increments are to satisfy.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(super) fn prepare(&mut self) {
+        place(self.links, self.attitudes, self.work);
+        let links = self.weights.iter().zip(&*self.attitudes).zip(&*self.momenta);
+        for (((weight, attitude), momentum), work) in links.zip(&mut *self.work) {
+            let w = attitude.as_matrix().tr_mul(&self.up);
+            // (h/2) w × g s: the kick before the step.
+            work.target = (momentum + w.cross(weight) * (0.5 * self.h)) * self.h;
         }
-        if update <= size * (f64::EPSILON * SETTLED) {
+    }
+
+    /// From the guess; where that fails from rest, and then with shortened updates. Returns the iterations, those of
+    /// abandoned attempts included.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn solve(&mut self) -> Result<u32, Unmade> {
+        let attempts =
+            [(MAX_ITERATIONS, f64::INFINITY), (MAX_ITERATIONS, f64::INFINITY), (MAX_DAMPED_ITERATIONS, LONGEST_DAMPED)];
+        let mut spent = 0;
+        for (k, (most, longest)) in attempts.into_iter().enumerate().skip(usize::from(*self.known == 0)) {
+            if k == 0 {
+                self.guess();
+            } else {
+                at_rest(self.work);
+            }
+            let (iterations, is_solved) = iterate(self.work, most, longest);
+            spent += iterations;
+            if is_solved {
+                return Ok(spent);
+            }
+        }
+        Err(Unmade::Unsolved(spent))
+    }
+
+    /// The parabola through the last three increments, or as many as there are.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    fn guess(&mut self) {
+        for (work, &[a, b, c]) in self.work.iter_mut().zip(&*self.last) {
+            let guess = match self.known {
+                1 => a,
+                2 => a + (a - b),
+                _ => a + (a - b) + ((a - b) - (b - c)),
+            };
+            // Far from the identity coordinates change too fast to be continued.
+            work.half = if guess.norm_squared() < CONTINUED { guess } else { a };
+        }
+    }
+
+    /// The end of a step with these increments.
+    #[cfg_attr(not(debug_assertions), inline(always))]
+    pub(super) fn proceed(&mut self) -> Result<(), Unmade> {
+        let (h, inverse_step) = (self.h, if self.h == 0.0 { 0.0 } else { 1.0 / self.h });
+        let (mut beyond, mut sum) = (Vector3::zeros(), 0.0);
+        let links = self.weights.iter().zip(&*self.attitudes).zip(&*self.momenta);
+        for (((weight, attitude), momentum), work) in links.zip(&mut *self.work).rev() {
+            beyond = work.next * beyond;
+            let w = attitude.as_matrix().tr_mul(&self.up);
+            // The diamond: what moves the links and what weighs on them, turned.
+            let kick = (work.of_mc.cross(&work.u) + work.of_rho.cross(&beyond)) * inverse_step
+                + w.cross(&(weight + weight + work.increment * weight)) * (0.5 * h);
+            beyond += work.momentum();
+            // μ⁺ = Fᵀ(μ + κ), (2.9).
+            work.z = kick + work.increment.tr_mul(&(momentum + kick));
+            sum += (momentum + work.z).sum();
+        }
+        if !sum.is_finite() {
+            return Err(Unmade::NotFinite);
+        }
+        *self.steps += 1;
+        *self.known = (*self.known + 1).min(3);
+        let links = self.attitudes.iter_mut().zip(&mut *self.momenta).zip(&mut *self.last);
+        for (((attitude, momentum), last), work) in links.zip(&*self.work) {
+            *momentum += work.z;
+            *attitude = attitude.advance(&work.increment);
+            if is_due(*self.steps) {
+                *attitude = orthogonal(attitude);
+            }
+            *last = [work.half, last[0], last[1]];
+        }
+        Ok(())
+    }
+}
+
+fn at_rest(work: &mut [Work]) {
+    for work in work {
+        work.half = Vector3::zeros();
+    }
+}
+
+/// The first of Newton's iterations from rest, for links without a `half`: it finds half the velocities of which `target`
+/// are the momenta.
+#[inline(never)]
+fn first_of_newton(work: &mut [Work]) {
+    outwards(work);
+    newton(work, f64::INFINITY);
+}
+
+/// Newton's iteration: how many were made, and whether it has settled near the identity with all determinants positive.
+#[cfg_attr(not(debug_assertions), inline(always))]
+fn iterate(work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
+    outwards(work);
+    // The last update, where Newton's next is to continue it.
+    let (mut made, mut before) = (0, None);
+    while made < most {
+        made += 1;
+        let Updated { update, size, is_whole } = newton(work, longest);
+        if !size.is_finite() {
+            break;
+        }
+        let curvature = Curvature::told(before, update);
+        if curvature.has_settled(update, size) {
             return (made, work.iter().all(Work::is_wanted));
         }
-        if largest <= longest * longest && may_suffice(update, size) {
-            let second = simplified(links, work);
+        before = is_whole.then_some(update);
+        if is_whole && curvature.may_suffice(update, size) {
+            let second = simplified(work);
             made += 1;
-            if has_sufficed(update, second.update, second.size) {
+            if curvature.has_sufficed(update, second.update, second.size) {
                 return (made, work.iter().all(Work::is_wanted));
             }
+            before = None;
         }
     }
     (made, false)
@@ -323,10 +418,14 @@ fn attempt(links: &[Link], work: &mut [Work], most: u32, longest: f64) -> (u32, 
 /// Which link is to blame, by where the iteration has ended, and by how far each would turn at its velocity; where it has
 /// no values, the one that turns farthest.
 fn reason(work: &[Work], slow: &[Work], iterations: u32) -> StepError {
-    let blamed =
-        |body: usize| StepError::UnsolvedBody { body, turn: slow[body].z.norm(), determinant: work[body].determinant };
+    let blamed = |body: usize| StepError::UnsolvedBody {
+        body,
+        turn: 2.0 * slow[body].half.norm(),
+        determinant: work[body].determinant,
+    };
     if !work.iter().all(|work| work.half.norm_squared().is_finite()) {
-        let farthest = (0..slow.len()).max_by(|&a, &b| slow[a].z.norm_squared().total_cmp(&slow[b].z.norm_squared()));
+        let farthest =
+            (0..slow.len()).max_by(|&a, &b| slow[a].half.norm_squared().total_cmp(&slow[b].half.norm_squared()));
         return blamed(farthest.unwrap_or(0));
     }
     if let Some(body) = work.iter().position(|work| !work.is_wanted()) {
@@ -342,32 +441,6 @@ fn reason(work: &[Work], slow: &[Work], iterations: u32) -> StepError {
 fn orthogonal(attitude: &SO3) -> SO3 {
     let r = attitude.as_matrix();
     SO3::from_matrix_unchecked(r + r * (Matrix3::identity() - r.tr_mul(r)) * 0.5)
-}
-
-impl<const N: usize> ChainMemory<N> {
-    /// The parabola through the last three increments, or as many as there are.
-    fn guess(&self, work: &mut [Work; N]) {
-        for (k, work) in work.iter_mut().enumerate() {
-            let [a, b, c] = [self.last[0][k], self.last[1][k], self.last[2][k]];
-            let guess = match self.known {
-                0 | 1 => a,
-                2 => a + (a - b),
-                _ => a + (a - b) + ((a - b) - (b - c)),
-            };
-            // Far from the identity coordinates change too fast to be continued.
-            work.half = if guess.norm_squared() < CONTINUED { guess } else { a };
-        }
-    }
-
-    /// Takes notice of an increment.
-    fn follow(&mut self, work: &[Work; N]) {
-        self.last[2] = self.last[1];
-        self.last[1] = self.last[0];
-        for (last, work) in self.last[0].iter_mut().zip(work) {
-            *last = work.half;
-        }
-        self.known = (self.known + 1).min(3);
-    }
 }
 
 impl<const N: usize> Integrator for ChainStepper<N> {
