@@ -135,12 +135,10 @@ fn one_by_one(half: &[f64], moments: [f64; 3], h: f64, p: &Vector3<f64>) -> (Mat
     (f.into_inner(), p)
 }
 
-/// From angles that are nothing beside one to those of several turns.
-#[test]
-fn they_are_the_rotations_one_after_another() {
+/// The shares of seven and of nine rotations, to the middle.
+pub(crate) fn halves() -> ([f64; 4], [f64; 5]) {
     let root = 2.0_f64.cbrt();
     let (outer, inner) = (0.5 / (2.0 - root), 0.5 * (1.0 - root) / (2.0 - root));
-    let seven = [outer, 2.0 * outer, inner, 1.0 - 4.0 * outer];
     let nine = [
         0.095_364_558_526_318,
         0.627_486_550_465_929,
@@ -148,6 +146,13 @@ fn they_are_the_rotations_one_after_another() {
         -0.127_486_550_465_929,
         -1.384_259_400_682_613,
     ];
+    ([outer, 2.0 * outer, inner, 1.0 - 4.0 * outer], nine)
+}
+
+/// From angles that are nothing beside one to those of several turns.
+#[test]
+fn they_are_the_rotations_one_after_another() {
+    let (seven, nine) = halves();
     let mut random = Random::new(51);
     for moments in MOMENTS {
         for size in [1e-7, 0.01, 1.0, 4.0, 10.0, 30.0, 100.0] {
