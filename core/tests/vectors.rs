@@ -1,4 +1,5 @@
-//! Several bodies in lanes move as each alone, to the bit, by the vector instructions that the machine is found to have.
+//! Several bodies in lanes move as each alone, and one as by the instructions of the target, to the bit, by the vector
+//! instructions that the machine is found to have.
 //!
 //! Only builds without debug assertions ask for these: `cargo test --release -p liestep --lib --test vectors`.
 
@@ -7,10 +8,10 @@
 #![allow(non_snake_case)]
 
 use liestep::effects::{Gravity, PrincipalBody};
-use liestep::mechanics::Sum;
-use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme};
-use liestep::motion::Plan;
-use liestep::numbers::{Lanes, Real};
+use liestep::mechanics::{SceneVisitor, Sum, Term};
+use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
+use liestep::motion::{Cost, Motion, Plan, StepReport, Summation};
+use liestep::numbers::{Lanes, Real, Vectors};
 use liestep::prelude::*;
 use nalgebra::{Vector3, convert};
 use simba::simd::{AutoF64x8, WideF64x4};
@@ -78,4 +79,64 @@ fn four_lanes_move_as_alone() {
 #[test]
 fn eight_lanes_move_as_alone() {
     assert_all_methods::<AutoF64x8>();
+}
+
+/// A plan with the instructions of the target.
+#[derive(Clone)]
+struct AsCompiled<P>(P);
+
+impl<P: Plan<Top<f64>>> Plan<Top<f64>> for AsCompiled<P> {
+    type Kept = P::Kept;
+
+    const VECTORS: Vectors = Vectors::AsCompiled;
+
+    fn step_size(&self) -> f64 {
+        self.0.step_size()
+    }
+
+    fn refolded(&self, scene: &Top<f64>, h: f64) -> Result<Self, SetupError> {
+        self.0.refolded(scene, h).map(Self)
+    }
+
+    fn keep(&self, scene: &Top<f64>, motion: &Motion<SO3, <Top<f64> as Term>::Advected>) -> Self::Kept {
+        self.0.keep(scene, motion)
+    }
+
+    fn step<M: Summation<SO3, <Top<f64> as Term>::Advected>>(
+        &self,
+        scene: &Top<f64>,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
+        self.0.step(scene, motion, kept)
+    }
+
+    fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        self.0.describe(visitor);
+    }
+
+    fn cost(&self) -> Cost {
+        self.0.cost()
+    }
+}
+
+fn assert_as_compiled<P: Plan<Top<f64>> + Clone>(stepper: &Stepper<Top<f64>, P>) {
+    assert_ne!(P::VECTORS, Vectors::AsCompiled);
+    let other = Stepper::with_plan(top(), AsCompiled(stepper.plan().clone())).unwrap();
+    let (attitude, velocity) = start(3);
+    let (mut state, mut expected) =
+        (stepper.start(attitude, velocity).unwrap(), other.start(attitude, velocity).unwrap());
+    for _ in 0..500 {
+        stepper.step(&mut state).unwrap();
+        other.step(&mut expected).unwrap();
+    }
+    assert_eq!((state.attitude(), state.momentum()), (expected.attitude(), expected.momentum()));
+}
+
+#[test]
+fn one_body_moves_as_by_the_instructions_of_the_target() {
+    let body = ExactBody::new(&Inertia::from_principal_moments(Vector3::new(1.6, 2.6, 3.0)).unwrap());
+    assert_as_compiled(&Stepper::split(top(), 0.01, body, SplittingScheme::FORCE_GRADIENT_5).unwrap());
+    assert_as_compiled(&Stepper::processed(top(), 0.01, body, ProcessedScheme::SIX_A).unwrap());
+    assert_as_compiled(&Stepper::collocated::<4>(top(), 0.1).unwrap());
 }

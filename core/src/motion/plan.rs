@@ -25,8 +25,8 @@ pub trait Plan<S: Effect> {
     /// What one step leaves for the next: guesses, stages. `()` where there is nothing.
     type Kept: Kept<Scalar<S>>;
 
-    /// Which vector instructions a step takes where the machine is found to have them. A body alone gains nothing by
-    /// them, several in [lanes](crate::numbers::Real#lanes) or in an array do.
+    /// Which vector instructions a step takes where the machine is found to have them. A short step of a body alone gains
+    /// nothing by them, several in [lanes](crate::numbers::Real#lanes) or in an array do.
     const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 || <Group<S> as LieGroup>::BODIES > 1 {
         Vectors::Four
     } else {

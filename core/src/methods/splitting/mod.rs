@@ -34,8 +34,10 @@ use crate::mechanics::{
 use crate::motion::{
     Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
 };
-use crate::numbers::{Coordinates, Real, largest_lane, real, reported};
-use nalgebra::{Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
+use crate::numbers::{Coordinates, Real, Vectors, largest_lane, real, reported};
+use nalgebra::{
+    Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue, Vector3,
+};
 
 /// The plan of [`Stepper::split`](crate::Stepper::split), for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
@@ -401,6 +403,9 @@ fn share_of<T: Real, K: KineticFlow<T>>(
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     type Kept = ();
+
+    /// A body alone gains by more registers, and by products that needn't be copied first; lanes don't by wider ones.
+    const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 { Vectors::Four } else { Vectors::Eight };
 
     fn step_size(&self) -> Scalar<S> {
         self.h

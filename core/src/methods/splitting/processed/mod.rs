@@ -17,7 +17,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
 use crate::motion::{Cost, Declared, Motion, Plan, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Coordinates, InLanes, Lanes, Real, lanes_of_fields, real};
+use crate::numbers::{Coordinates, InLanes, Lanes, Real, Vectors, lanes_of_fields, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
 /// The plan of [`Stepper::processed`](crate::Stepper::processed): a kinetic-potential splitting whose steps are made inside of a processor, so that three drifts give order 6.
@@ -206,6 +206,8 @@ impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Processed<S, K> {}
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     type Kept = Inside<Scalar<S>, S::Advected>;
+
+    const VECTORS: Vectors = <Split<S, K> as Plan<S>>::VECTORS;
 
     fn step_size(&self) -> Scalar<S> {
         self.kernel.h
