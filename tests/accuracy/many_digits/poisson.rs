@@ -102,7 +102,7 @@ fn assert_poisson<P, E>(
 type Part = (Flow, f64, f64);
 
 /// Parts of a step one by one, with the drift given.
-fn make(parts: impl IntoIterator<Item = Part>, top: &mut Top<'_>, drift: impl Fn(&mut Top<'_>, DoubleDouble)) {
+fn make<'a>(parts: impl IntoIterator<Item = Part>, top: &mut Top<'a>, drift: impl Fn(&mut Top<'a>, DoubleDouble)) {
     for (flow, share, gradient) in parts {
         match flow {
             Flow::Drift => drift(top, long(H) * long(share)),
@@ -143,7 +143,7 @@ fn p1_collocation_is_a_poisson_map_to_twenty_digits() {
 #[test]
 fn p1_splittings_are_poisson_maps_to_twenty_digits() {
     for scheme in SplittingScheme::ALL {
-        let act = |top: &mut Top<'_>| make(parts(scheme), top, |top, h| top.drift_by_series(h));
+        let act = |top: &mut Top<'_>| make(parts(scheme), top, Top::drift_by_series);
         assert_poisson(scheme.name(), act, |top| {
             let body = ExactBody::new(&top.ordinary_inertia());
             Stepper::split(top, H, body, scheme)
@@ -272,7 +272,7 @@ fn p1_processed_splittings_are_poisson_maps_to_twenty_digits() {
         let out: Vec<Part> = scheme.processor().collect();
         let back = out.iter().rev().map(|&(flow, share, gradient)| (flow, -share, -gradient));
         let all: Vec<Part> = back.chain(parts(scheme.kernel())).chain(out.iter().copied()).collect();
-        let act = |top: &mut Top<'_>| make(all.iter().copied(), top, |top, h| top.drift_by_series(h));
+        let act = |top: &mut Top<'_>| make(all.iter().copied(), top, Top::drift_by_series);
         assert_poisson(scheme.name(), act, |top| {
             let body = ExactBody::new(&top.ordinary_inertia());
             Stepper::processed(top, H, body, scheme)
