@@ -1,14 +1,15 @@
-//! What derivatives of the steps of a heavy top cost, in plain steps.
+//! What derivatives of the steps of a heavy top cost, in plain steps of the same method.
 //!
 //! ```text
-//! cargo bench --bench gradients                        times, side by side
-//! cargo bench --bench gradients -- instructions        counts instructions, by valgrind
-//! cargo bench --bench gradients -- count NAME 1000     runs 1000 steps with one and nothing else
+//! cargo bench --bench gradients                               times, side by side
+//! cargo bench --bench gradients -- instructions               counts instructions, by valgrind
+//! cargo bench --bench gradients -- count METHOD NAME 1000     runs 1000 steps with one and nothing else
 //! ```
 //!
-//! The numbers are the three of the attitude and of the momentum at the start, three moments, `m g` and three of the
-//! centre of mass, and with them what the declaration has besides: `up`, in the sum also mass and `g` apart. All take
-//! turns within one run, and the fastest batch of each counts.
+//! The methods are (3.13), a splitting with force gradients and a processed one, which is read after each step. The numbers
+//! are the three of the attitude and of the momentum at the start, three moments, `m g` and three of the centre of mass,
+//! and with them what else there is: `up`, and of the exact flow the turns of its axes. All take turns within one run, and
+//! the fastest batch of each counts.
 
 // The letters of the field.
 #![allow(non_snake_case)]
@@ -18,9 +19,10 @@ mod counting;
 use core::hint::black_box;
 use std::time::Instant;
 
-use liestep::mechanics::DiagonalNonstandardInertia;
-use liestep::motion::linearised::{Cotangent, Tape};
-use liestep::{SO3, State, Stepper, lagrangian};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia};
+use liestep::methods::{ExactBody, ProcessedScheme, SplittingScheme};
+use liestep::motion::linearised::{Cotangent, Linearisable, Tape};
+use liestep::{SO3, Stepper, lagrangian};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use counting::{Uncounted, instructions};
@@ -41,25 +43,35 @@ struct Top {
     up: Vector3<f64>,
 }
 
-type Start = State<SO3, Vector3<f64>>;
-
+const METHODS: [&str; 3] = ["(3.13)", "gradient", "processed"];
 const NAMES: [&str; 6] = ["step", "transition", "columns", "adjoint", "checkpoints", "backwards"];
 const BATCH: u64 = 1_000;
-const ROUNDS: usize = 200;
+const ROUNDS: usize = 100;
 
-fn top() -> (Stepper<Top>, Start) {
-    let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).expect("a body");
+/// So many steps by a method, and the derivatives that the name stands for.
+fn run(method: &str, name: &str, steps: u64) {
+    let moments = Vector3::new(2.0, 3.0, 4.5);
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(moments).expect("a body");
     let top = Top { J_d, weight: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() };
-    let stepper = Stepper::new(top, 0.01).expect("a usable step");
-    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-    let state = stepper.start(attitude, Vector3::new(0.5, 2.0, 6.0)).expect("a usable start");
-    (stepper, state)
+    let flow = ExactBody::new(&Inertia::from_principal_moments(moments).expect("a body"));
+    let h = black_box(0.01);
+    match method {
+        "(3.13)" => differentiate(name, &Stepper::new(top, h).expect("a usable step"), steps),
+        "gradient" => {
+            let scheme = SplittingScheme::FORCE_GRADIENT_5;
+            differentiate(name, &Stepper::split(top, h, flow, scheme).expect("a usable step"), steps);
+        }
+        _ => {
+            let scheme = ProcessedScheme::SIX_A;
+            differentiate(name, &Stepper::processed(top, h, flow, scheme).expect("a usable step"), steps);
+        }
+    }
 }
 
-/// So many steps, and the derivatives that the name stands for.
-fn run(name: &str, stepper: &Stepper<Top>, start: &Start, steps: u64) {
+fn differentiate<P: Linearisable<Top>>(name: &str, stepper: &Stepper<Top, P>, steps: u64) {
     let linear = stepper.linearised().expect("derivatives");
-    let mut state = *start;
+    let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
+    let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 6.0)).expect("a usable start");
     let cost = |n: u64, _: &_| {
         if n == steps { Cotangent { attitude: Vector3::x(), momentum: Vector3::z() } } else { Cotangent::zero() }
     };
@@ -70,9 +82,10 @@ fn run(name: &str, stepper: &Stepper<Top>, start: &Start, steps: u64) {
             }
         }
         "transition" | "columns" => {
-            // The moments on the diagonal, the weight, the centre of mass.
-            let numbers: &[usize] = if name == "columns" { &[0, 4, 8, 9, 10, 11, 12] } else { &[] };
-            let mut tangent = linear.tangent(numbers);
+            // Those of the flow, where there is one, or else on the diagonal; and weight and centre of mass.
+            let moments = linear.numbers(1, "moment").map_or(vec![0, 4, 8], Iterator::collect);
+            let all: Vec<_> = moments.into_iter().chain(9..13).collect();
+            let mut tangent = linear.tangent(if name == "columns" { &all } else { &[] });
             for _ in 0..steps {
                 linear.step(&mut state, &mut tangent).expect("a step");
             }
@@ -90,37 +103,42 @@ fn run(name: &str, stepper: &Stepper<Top>, start: &Start, steps: u64) {
     black_box(state);
 }
 
-fn times() {
-    let (stepper, start) = top();
-    let mut best = [f64::INFINITY; NAMES.len()];
-    for _ in 0..ROUNDS {
-        for (name, best) in NAMES.iter().zip(&mut best) {
-            let begin = Instant::now();
-            run(name, black_box(&stepper), black_box(&start), BATCH);
-            #[allow(clippy::cast_precision_loss)] // a thousand
-            let time = begin.elapsed().as_secs_f64() * 1e9 / BATCH as f64;
-            *best = best.min(time);
+/// A line for each method and name, by a number for a step.
+fn table(unit: &str, of: impl Fn(usize, usize) -> f64) {
+    for (i, method) in METHODS.iter().enumerate() {
+        for (j, name) in NAMES.iter().enumerate() {
+            println!("{method:<12}{name:<12}{:>10.1} {unit} a step{:>8.2} steps", of(i, j), of(i, j) / of(i, 0));
         }
     }
-    for (name, time) in NAMES.iter().zip(best) {
-        println!("{name:<12}{time:>10.1} ns a step{:>8.2} steps", time / best[0]);
+}
+
+fn times() {
+    let mut best = [[f64::INFINITY; NAMES.len()]; METHODS.len()];
+    for _ in 0..ROUNDS {
+        for (method, best) in METHODS.iter().zip(&mut best) {
+            for (name, best) in NAMES.iter().zip(best) {
+                let begin = Instant::now();
+                run(method, name, BATCH);
+                #[allow(clippy::cast_precision_loss)] // a thousand
+                let time = begin.elapsed().as_secs_f64() * 1e9 / BATCH as f64;
+                *best = best.min(time);
+            }
+        }
     }
+    table("ns", |i, j| best[i][j]);
 }
 
 fn main() -> Result<(), Uncounted> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
-        ["count", name, steps] => {
-            let (stepper, start) = top();
-            run(name, &stepper, &start, steps.parse()?);
-        }
+        ["count", method, name, steps] => run(method, name, steps.parse()?),
         ["instructions"] => {
-            let counted = |name: &str| instructions(&std::env::current_exe()?, &["count", name], 2_000);
-            let step = counted("step")?;
-            for name in NAMES {
-                let found = counted(name)?;
-                println!("{name:<12}{found:>10.1} instructions a step{:>8.2} steps", found / step);
-            }
+            let program = std::env::current_exe()?;
+            let counted = |method: &str| -> Result<Vec<f64>, Uncounted> {
+                NAMES.iter().map(|name| instructions(&program, &["count", method, name], 2_000)).collect()
+            };
+            let all = METHODS.into_iter().map(counted).collect::<Result<Vec<_>, _>>()?;
+            table("instructions", |i, j| all[i][j]);
         }
         _ => times(),
     }

@@ -11,8 +11,9 @@
 //! dispatched: either shows here as a ratio near one. Kernels take turns within one run, and the fastest batch of each
 //! counts.
 //!
-//! Eight tops in lanes are those of `lanes.rs`, for a step of (3.13), a splitting, a composition, and splittings with
-//! the exact motion of their asymmetric bodies. Eight alone are eight steps of one.
+//! One top is the fourth of `lanes.rs`, moved by splittings with the exact motion of its asymmetric body. Eight tops in
+//! lanes are all of them, for a step of (3.13), a splitting, a composition, and such splittings. Eight alone are eight
+//! steps of one.
 
 mod eight_tops;
 
@@ -130,6 +131,19 @@ fn collocation<const PAIRS: usize>(least: [f64; 2]) -> Row {
     Row { name: format!("Gauss, {} stages", 2 * PAIRS), batches: levels(&stepper, attitude, velocity), least }
 }
 
+/// One top by splittings: more registers are never worse, and gain some.
+fn one() -> Vec<Row> {
+    let (scene, attitude, velocity) = top::<f64>(3);
+    let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
+    let split = Stepper::split(scene.clone(), 0.05, body, SplittingScheme::FORCE_GRADIENT_2).expect("a usable step");
+    let processed = Stepper::processed(scene, 0.05, body, ProcessedScheme::SIX_A).expect("a usable step");
+    let row = |way: &str, batches| Row { name: format!("one top: {way}"), batches, least: [1.0, 0.9] };
+    vec![
+        row("force gradient 2-4", levels(&split, attitude, velocity)),
+        row("processed 3-6 a", levels(&processed, attitude, velocity)),
+    ]
+}
+
 /// Eight tops in lanes of this type, stepped in these ways.
 fn in_lanes<T>(name: &str, gain: f64) -> Vec<Row>
 where
@@ -169,6 +183,7 @@ fn fastest<const N: usize>(batches: &mut [Batch; N]) -> [f64; N] {
 
 fn rows() -> Vec<Row> {
     let mut rows = vec![collocation::<2>([1.3, 0.0]), collocation::<4>([1.5, 1.15])];
+    rows.extend(one());
     rows.extend(in_lanes::<AutoF64x8>("8 lanes, AutoF64x8", 1.25));
     rows.extend(in_lanes::<WideF64x4>("4 lanes, WideF64x4", 0.0));
     rows.extend(in_lanes::<AutoF64x4>("4 lanes, AutoF64x4", 0.0));

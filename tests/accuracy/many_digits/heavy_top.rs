@@ -27,12 +27,17 @@ impl<'a> Top<'a> {
         self.motion.velocity_of(&self.momentum)
     }
 
-    /// A step of (3.13): half a kick, the turn that satisfies (3.17), half a kick.
+    /// A step of (3.13): half a kick, its own drift, half a kick.
     pub(crate) fn step(&mut self, h: DoubleDouble) {
         self.kick(h * long(0.5));
+        self.drift_of_the_step(h);
+        self.kick(h * long(0.5));
+    }
+
+    /// The turn that satisfies (3.17).
+    pub(crate) fn drift_of_the_step(&mut self, h: DoubleDouble) {
         let turn = self.turn(&(self.momentum * h));
         self.move_by(&turn);
-        self.kick(h * long(0.5));
     }
 
     /// The potential's flow.
@@ -61,6 +66,42 @@ impl<'a> Top<'a> {
         let about_axis = self.momentum.z * (DoubleDouble::one() / j3 - DoubleDouble::one() / j1);
         let turn = rotation(&(self.momentum * (time / j1))) * rotation(&(Vector::z() * (about_axis * time)));
         self.move_by(&turn);
+    }
+
+    /// As a sphere with the second moment, and then about other axes by turns: an axis and its share of the time each.
+    pub(crate) fn drift_by_rotations(&mut self, time: DoubleDouble, shares: &[(usize, f64)]) {
+        let inverse_moments = self.motion.moments.map(|moment| DoubleDouble::one() / moment);
+        self.move_by(&rotation(&(self.momentum * (inverse_moments.y * time))));
+        for &(axis, share) in shares {
+            let rate = (inverse_moments[axis] - inverse_moments.y) * self.momentum[axis];
+            let mut angle = Vector::zeros();
+            angle[axis] = rate * time * long(share);
+            self.move_by(&rotation(&angle));
+        }
+    }
+
+    /// The turn `exp ξ̂` of a discrete kinetic energy `κ(ξ)/h`, a polynomial of degree six or less: its momentum `p` at
+    /// the beginning satisfies `∇κ(ξ) = h (I − a ξ̂ + b ξ̂²) p` with `a = (1 − cos θ)/θ²`, `b = (θ − sin θ)/θ³`, `θ = |ξ|`.
+    pub(crate) fn drift_of_polynomial(&mut self, h: DoubleDouble, kinetic: impl Fn(&Vector, &Vector) -> DoubleDouble) {
+        let moments = &self.motion.moments;
+        let mut xi = self.velocity() * h;
+        for _ in 0..100 {
+            // Of six points it is the gradient itself, however far apart these are.
+            let apart = 0.125;
+            let gradient = Vector3::from_fn(|k, _| {
+                let at = |x: f64| kinetic(moments, &(xi + Vector::ith(k, long(x * apart))));
+                let odd = |x: f64| at(x) - at(-x);
+                (odd(1.0) * long(45.0) - odd(2.0) * long(9.0) + odd(3.0)) / long(60.0 * apart)
+            });
+            let (hat, [_, a, b]) = (hat(&xi), coefficients(xi.dot(&xi)));
+            let pulled = self.momentum - hat * self.momentum * a + hat * hat * self.momentum * b;
+            let update = self.motion.velocity_of(&(pulled * h - gradient));
+            xi += update;
+            if update.map(DoubleDouble::rounded).norm() < 1e-29 {
+                return self.move_by(&rotation(&xi));
+            }
+        }
+        panic!("no solution for {}", self.momentum);
     }
 
     fn move_by(&mut self, turn: &Matrix) {
@@ -104,18 +145,23 @@ pub(crate) fn of_quaternion(real: DoubleDouble, imaginary: &Vector) -> Matrix {
     Matrix::identity() + (hat * real + hat * hat) * long(2.0)
 }
 
-/// `exp(v̂)` by its series, `Σ (−q)ᵏ (v̂/(2k + 1)! + v̂²/(2k + 2)!)` with `q = |v|²`.
+/// `exp(v̂)`
 fn rotation(v: &Vector) -> Matrix {
-    let (hat, q) = (hat(v), v.dot(v));
-    let (mut odd, mut even) = (DoubleDouble::zero(), DoubleDouble::zero());
+    let (hat, [odd, even, _]) = (hat(v), coefficients(v.dot(v)));
+    Matrix::identity() + hat * odd + hat * hat * even
+}
+
+/// `sin θ/θ`, `(1 − cos θ)/θ²` and `(θ − sin θ)/θ³` for `θ²`, by their series `Σ (−θ²)ᵏ/(2k + n)!`.
+fn coefficients(squared: DoubleDouble) -> [DoubleDouble; 3] {
+    let mut sums = [DoubleDouble::zero(); 3];
     let mut term = DoubleDouble::one();
     let mut next = 2.0;
     while term.rounded().abs() > 1e-40 {
-        odd += term;
-        term = term / long(next);
-        even += term;
-        term = -term * q / long(next + 1.0);
+        let second = term / long(next);
+        let third = second / long(next + 1.0);
+        sums = [sums[0] + term, sums[1] + second, sums[2] + third];
+        term = -third * squared;
         next += 2.0;
     }
-    Matrix::identity() + hat * odd + hat * hat * even
+    sums
 }

@@ -1,15 +1,21 @@
 //! P1 with more digits than a double has: the maps are Poisson maps not to the order of some method or tolerance, but
-//! beyond all doubt of rounding. The maps are those of this folder; that the library's are the same is seen where their
-//! orders are measured.
+//! beyond all doubt of rounding. The maps are those of this folder; a step of the library is compared with each, one of
+//! collocation where its order is measured.
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::collocation::{self, Tableau};
 use super::heavy_top::Top;
 use super::motion::Motion;
-use super::{DoubleDouble, Matrix, Vector, coefficients, hat, long};
+use super::{DoubleDouble, Matrix, Vector, hat, long};
 use crate::convergence::TOPS;
-use liestep::methods::{CompositionScheme, ExactBody, Flow, ProcessedScheme};
+use crate::split_body;
+use declarations::{FourthOrderBody, FreeBody, HeavyTop, SixthOrderBody};
+use liestep::effects::PrincipalBody;
+use liestep::methods::{
+    CompositionScheme, ExactBody, Flow, KineticFlow, PreprocessedOrder, ProcessedScheme, SplitBody, SplittingScheme,
+};
+use liestep::motion::Plan;
 use liestep::{SO3, Stepper};
 
 /// Momentum and vertical.
@@ -58,21 +64,63 @@ fn start() -> Phase {
     phase(&Vector3::new(2.0, -1.0, 1.5).map(long), &Vector3::new(0.6, 0.1, 0.8).map(long))
 }
 
+/// Of all steps here, s.
+const H: f64 = 0.1;
+
+/// What is done to a top, as a map of its momentum and vertical.
+fn moved(z: &Phase, act: impl Fn(&mut Top<'_>)) -> Phase {
+    let motion = top_at(z);
+    let mut top = Top::at_start_of(&motion);
+    act(&mut top);
+    phase(&top.momentum, &top.w)
+}
+
+/// What is done to a top is a Poisson map, and a step of the library does just that.
+fn assert_poisson<P, E>(
+    name: &str,
+    act: impl Fn(&mut Top<'_>),
+    library: impl Fn(HeavyTop) -> Result<Stepper<HeavyTop, P>, E>,
+) where
+    P: Plan<HeavyTop>,
+    E: core::fmt::Debug,
+{
+    let map = |z: &Phase| moved(z, &act);
+    let defect = defect(map, &start());
+    let [end, start] = [map(&start()), start()].map(|z| z.map(DoubleDouble::rounded));
+    let [momentum, up] = [0, 3].map(|first| start.fixed_rows::<3>(first).into_owned());
+    let stepper = library(HeavyTop { up, ..declarations::Motion::read(TOPS[3]).top }).unwrap();
+    let mut state = stepper.start_with_momentum(SO3::identity(), momentum).unwrap();
+    stepper.step(&mut state).unwrap();
+    let found = Vector6::from_iterator(state.momentum().iter().chain(state.advected().iter()).copied());
+    let apart = (found - end).norm();
+    println!("{name}: {defect:.1e}, the library {apart:.1e} apart");
+    assert!(defect < 1e-20, "{name}: {defect:e}");
+    assert!(apart < 2e-14, "{name}: {apart:e}");
+}
+
+/// Drift or kick, and the shares of the step and of the force gradient.
+type Part = (Flow, f64, f64);
+
+/// Parts of a step one by one, with the drift given.
+fn make<'a>(parts: impl IntoIterator<Item = Part>, top: &mut Top<'a>, drift: impl Fn(&mut Top<'a>, DoubleDouble)) {
+    for (flow, share, gradient) in parts {
+        match flow {
+            Flow::Drift => drift(top, long(H) * long(share)),
+            Flow::Kick => top.kick_with_gradient(long(H) * long(share), long(H) * long(H) * long(H) * long(gradient)),
+        }
+    }
+}
+
+fn parts(scheme: SplittingScheme) -> impl Iterator<Item = Part> {
+    scheme.shares().zip(scheme.gradients()).map(|((flow, share), gradient)| (flow, share, gradient))
+}
+
 #[test]
-fn p1_the_step_is_a_poisson_map_to_twenty_digits() {
-    let gammas = coefficients::refined(&CompositionScheme::KAHAN_LI_8);
-    for (name, shares) in [("(3.13)", vec![long(1.0)]), ("Kahan-Li 8", gammas)] {
-        let map = |z: &Phase| {
-            let motion = top_at(z);
-            let mut top = Top::at_start_of(&motion);
-            for share in &shares {
-                top.step(*share * long(0.1));
-            }
-            phase(&top.momentum, &top.w)
-        };
-        let defect = defect(map, &start());
-        println!("{name}: {defect:.1e}");
-        assert!(defect < 1e-20, "{name}: {defect:e}");
+fn p1_the_step_and_its_compositions_are_poisson_maps_to_twenty_digits() {
+    assert_poisson("(3.13)", |top| top.step(long(H)), |top| Stepper::new(top, H));
+    for scheme in CompositionScheme::ALL {
+        let act = |top: &mut Top<'_>| scheme.stages().for_each(|share| top.step(long(H) * long(share)));
+        assert_poisson(scheme.name(), act, |top| Stepper::composed(top, H, scheme));
     }
 }
 
@@ -82,7 +130,7 @@ fn p1_collocation_is_a_poisson_map_to_twenty_digits() {
         let tableau = Tableau::new(stages);
         let map = |z: &Phase| {
             let motion = top_at(z);
-            let (attitude, velocity) = collocation::end(&tableau, &motion, long(0.1), 1);
+            let (attitude, velocity) = collocation::end(&tableau, &motion, long(H), 1);
             phase(&motion.moments.component_mul(&velocity), &(attitude.transpose() * motion.up))
         };
         let defect = defect(map, &start());
@@ -91,42 +139,143 @@ fn p1_collocation_is_a_poisson_map_to_twenty_digits() {
     }
 }
 
-/// Out of the processor, a step of the kernel and back: its shares one by one.
-fn process(scheme: &ProcessedScheme, h: DoubleDouble, top: &mut Top) {
-    let mut make = |(flow, share, gradient): (Flow, f64, f64)| match flow {
-        Flow::Drift => top.drift_by_series(h * long(share)),
-        Flow::Kick => top.kick_with_gradient(h * long(share), h * h * h * long(gradient)),
-    };
-    let out: Vec<_> = scheme.processor().collect();
-    out.iter().rev().for_each(|&(flow, share, gradient)| make((flow, -share, -gradient)));
-    let kernel = scheme.kernel();
-    kernel.shares().zip(kernel.gradients()).for_each(|((flow, share), gradient)| make((flow, share, gradient)));
-    out.into_iter().for_each(make);
+/// With the exact motion of an asymmetric body, all of them.
+#[test]
+fn p1_splittings_are_poisson_maps_to_twenty_digits() {
+    for scheme in SplittingScheme::ALL {
+        let act = |top: &mut Top<'_>| make(parts(scheme), top, Top::drift_by_series);
+        assert_poisson(scheme.name(), act, |top| {
+            let body = ExactBody::new(&top.ordinary_inertia());
+            Stepper::split(top, H, body, scheme)
+        });
+    }
 }
 
-/// With the exact drift of an asymmetric body; and the library's step is that map.
+/// A splitting with a motion of the free body that isn't exact.
+fn assert_poisson_with<K: KineticFlow<f64>>(
+    name: &str,
+    drift: impl Fn(&mut Top<'_>, DoubleDouble),
+    flow: impl Fn(&HeavyTop) -> K,
+) {
+    let scheme = SplittingScheme::FORCE_GRADIENT_4;
+    let act = |top: &mut Top<'_>| make(parts(scheme), top, &drift);
+    assert_poisson(name, act, |top| {
+        let flow = flow(&top);
+        Stepper::split(top, H, flow, scheme)
+    });
+}
+
+#[test]
+fn p1_splittings_with_declared_flows_are_poisson_maps_to_twenty_digits() {
+    let own = |top: &mut Top<'_>, h| top.drift_of_the_step(h);
+    assert_poisson_with("(3.13)", own, |top| FreeBody { J_d: top.J_d.into() });
+    let fourth = |top: &mut Top<'_>, h| top.drift_of_polynomial(h, |j, xi| polynomial(j, xi, 4));
+    assert_poisson_with("K4", fourth, |top| FourthOrderBody { J: top.ordinary_inertia() });
+    let sixth = |top: &mut Top<'_>, h| top.drift_of_polynomial(h, |j, xi| polynomial(j, xi, 6));
+    assert_poisson_with("K6", sixth, |top| SixthOrderBody { J: top.ordinary_inertia() });
+}
+
+/// `κ(ξ)` of the kinetic energies of orders 4 and 6.
+fn polynomial(moments: &Vector, xi: &Vector, order: u32) -> DoubleDouble {
+    let momentum = moments.component_mul(xi);
+    let divided = |v: &Vector| v.zip_map(moments, |component, moment| component / moment);
+    let a = divided(&momentum.cross(xi));
+    let of = |v: &Vector| v.dot(&moments.component_mul(v));
+    let fourth = of(xi) / long(2.0) - of(&a) / long(24.0);
+    if order == 4 {
+        return fourth;
+    }
+    let c = a.cross(xi);
+    let b = moments.component_mul(&a).cross(xi) + momentum.cross(&a) + moments.component_mul(&c);
+    fourth + (of(&c) + momentum.dot(&a.cross(&c))) / long(240.0) - of(&divided(&b)) / long(1440.0)
+}
+
+/// The second moment of the top is the middle one; seven rotations begin about the first axis, nine about the third.
+#[test]
+fn p1_splittings_with_rotations_are_poisson_maps_to_twenty_digits() {
+    let (seven, nine) = split_body::halves();
+    let all = |half: &[f64], first: [usize; 2]| -> Vec<(usize, f64)> {
+        let shares = half.iter().chain(half.iter().rev().skip(1));
+        first.into_iter().cycle().zip(shares.copied()).collect()
+    };
+    let (seven, nine) = (all(&seven, [0, 2]), all(&nine, [2, 0]));
+    let drift = |top: &mut Top<'_>, h| top.drift_by_rotations(h, &seven);
+    assert_poisson_with("7 rotations", drift, |top| SplitBody::<7>::new(&top.ordinary_inertia()).unwrap());
+    let drift = |top: &mut Top<'_>, h| top.drift_by_rotations(h, &nine);
+    assert_poisson_with("9 rotations", drift, |top| SplitBody::<9>::new(&top.ordinary_inertia()).unwrap());
+}
+
+/// The terms of `s − 1` and `d` in `C` and `H`, from \[HV06\], up to the second degree, for the energy `H` and `C = ½ |p|²`
+/// of a step of one second. Whatever the terms of higher degrees, the map is Poisson: some stand for those.
+fn modifications(moments: &Vector, [c, h]: [DoubleDouble; 2], degree: u32) -> [DoubleDouble; 2] {
+    let [x, y, z] = [moments.x, moments.y, moments.z];
+    let delta = x * y * z;
+    let (sum, inverse) = (x + y + z, (x * y + y * z + z * x) / delta);
+    let squares = x * x + y * y + z * z;
+    let inverse_squares = inverse * inverse - long(2.0) * sum / delta;
+    let ratios = sum * inverse - long(3.0);
+    let s = c * sum / (delta * long(6.0)) - h * inverse / long(3.0);
+    let d = h * sum / (delta * long(6.0)) - c / (delta * long(3.0));
+    if degree == 1 {
+        return [s, d];
+    }
+    let s = s
+        + c * c * (squares - delta * inverse) / (delta * delta * long(30.0))
+        + c * h * (long(1.0) - ratios) / (delta * long(30.0))
+        + h * h * (sum * long(3.0) + delta * inverse_squares * long(2.0)) / (delta * long(60.0));
+    let d = d - c * c * sum / (delta * delta * long(60.0))
+        + c * h * (delta * inverse * long(6.0) - squares) / (delta * delta * long(60.0))
+        - h * h * (long(9.0) + ratios) / (delta * long(60.0));
+    if degree == 2 {
+        return [s, d];
+    }
+    [s + c * h * (c - h) * long(0.3), d - c * c * (c + h * h) * long(0.2)]
+}
+
+/// Free bodies: nothing is carried along.
+#[test]
+fn p1_preprocessed_bodies_are_poisson_maps_to_twenty_digits() {
+    let of = |momentum: &Vector| phase(momentum, &Vector::zeros());
+    let start = Vector3::new(2.0, -1.0, 1.5);
+    for (degree, order) in [(1, Some(PreprocessedOrder::Four)), (2, Some(PreprocessedOrder::Six)), (4, None)] {
+        let map = |z: &Phase| {
+            let mut motion = top_at(z);
+            let momentum = motion.momentum();
+            let constants = [momentum, motion.velocity].map(|v| momentum.dot(&v) * long(0.5 * H) * long(H));
+            let [s, d] = modifications(&motion.moments, constants, degree);
+            let moments = motion.moments.map(|moment| long(1.0) / ((s + long(1.0)) / moment + d));
+            (motion.nonstandard, motion.moments) = (moments.map(|moment| moments.sum() * long(0.5) - moment), moments);
+            let mut top = Top::at_start_of(&motion);
+            top.momentum = momentum;
+            top.drift_of_the_step(long(H));
+            phase(&top.momentum, &top.w)
+        };
+        let defect = defect(map, &of(&start.map(long)));
+        println!("degree {degree}: {defect:.1e}");
+        assert!(defect < 1e-20, "degree {degree}: {defect:e}");
+        if let Some(order) = order {
+            let body = PrincipalBody { J_d: declarations::Motion::read(TOPS[3]).top.J_d };
+            let stepper = Stepper::preprocessed(body, H, order).unwrap();
+            let mut state = stepper.start_with_momentum(SO3::identity(), start).unwrap();
+            stepper.step(&mut state).unwrap();
+            let end = map(&of(&start.map(long))).map(DoubleDouble::rounded);
+            let apart = (state.momentum() - end.fixed_rows::<3>(0)).norm();
+            assert!(apart < 1e-14, "degree {degree}: {apart:e}");
+        }
+    }
+}
+
+/// Out of the processor, a step of the kernel and back.
 #[test]
 fn p1_processed_splittings_are_poisson_maps_to_twenty_digits() {
     for scheme in ProcessedScheme::ALL {
-        let map = |z: &Phase| {
-            let motion = top_at(z);
-            let mut top = Top::at_start_of(&motion);
-            process(&scheme, long(0.1), &mut top);
-            phase(&top.momentum, &top.w)
-        };
-        let defect = defect(map, &start());
-        println!("{}: {defect:.1e}", scheme.name());
-        assert!(defect < 1e-20, "{}: {defect:e}", scheme.name());
-
-        let end = map(&start()).map(DoubleDouble::rounded);
-        let start = start().map(DoubleDouble::rounded);
-        let top = declarations::Motion::read(TOPS[3]).top;
-        let top = declarations::HeavyTop { up: start.fixed_rows::<3>(3).into_owned(), ..top };
-        let flow = ExactBody::new(&top.ordinary_inertia());
-        let stepper = Stepper::processed(top, 0.1, flow, scheme).unwrap();
-        let mut state = stepper.start_with_momentum(SO3::identity(), start.fixed_rows::<3>(0).into_owned()).unwrap();
-        stepper.step(&mut state).unwrap();
-        let found = Vector6::from_iterator(state.momentum().iter().chain(state.advected().iter()).copied());
-        assert!((found - end).norm() < 1e-14, "{}: {:e}", scheme.name(), (found - end).norm());
+        let out: Vec<Part> = scheme.processor().collect();
+        let back = out.iter().rev().map(|&(flow, share, gradient)| (flow, -share, -gradient));
+        let all: Vec<Part> = back.chain(parts(scheme.kernel())).chain(out.iter().copied()).collect();
+        let act = |top: &mut Top<'_>| make(all.iter().copied(), top, Top::drift_by_series);
+        assert_poisson(scheme.name(), act, |top| {
+            let body = ExactBody::new(&top.ordinary_inertia());
+            Stepper::processed(top, H, body, scheme)
+        });
     }
 }
