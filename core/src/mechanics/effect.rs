@@ -5,14 +5,14 @@ use alloc::string::String;
 use core::fmt::Debug;
 
 use crate::error::SetupError;
-use crate::groups::{LieGroup, Retraction};
+use crate::groups::{LieGroup, Retraction, SquareOf, body_of};
 use crate::mechanics::continuous::Newton;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
 use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
 use crate::numbers::{Blocks, Coordinates, Pattern, Real, real, reported};
-use nalgebra::{SimdBool as _, SimdPartialOrd as _};
+use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField};
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Term>::Scalar;
@@ -457,15 +457,18 @@ pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, Setup
 }
 
 /// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.
-pub(crate) fn check_inertia<T: Real, V: Coordinates<T>>(inertia: &V::Square) -> Result<(), SetupError> {
-    let (unit, determinant) = V::solve(inertia, &V::zero());
-    let pivot = V::least_pivot(inertia);
+pub(crate) fn check_inertia<G: LieGroup>(inertia: &SquareOf<G>) -> Result<(), SetupError> {
+    let (unit, determinant) = G::Vector::solve(inertia, &G::Vector::zero());
+    let (pivot, component) = G::Vector::least_pivot(inertia);
     // Less than this is what rounding leaves of a zero.
-    if pivot.simd_lt(-T::simd_default_epsilon() * real(1e6)).any() {
-        return Err(SetupError::NegativeKinetic { pivot: reported(pivot) });
+    if pivot.simd_lt(real::<G::Scalar>(-1e6) * <G::Scalar as SimdRealField>::simd_default_epsilon()).any() {
+        return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body: body_of::<G>(component) });
     }
-    if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & pivot.simd_gt(real(0.0))).all() {
-        return Err(SetupError::SingularKinetic { determinant: reported(determinant) });
+    let is_positive = pivot.simd_gt(real(0.0));
+    if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & is_positive).all() {
+        // Where each pivot is positive, and their product is out of range, it is nobody's.
+        let body = if is_positive.all() { None } else { body_of::<G>(component) };
+        return Err(SetupError::SingularKinetic { determinant: reported(determinant), body });
     }
     Ok(())
 }

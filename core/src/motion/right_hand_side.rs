@@ -79,7 +79,7 @@ impl<L: ContinuousLagrangian> RightHandSide<L> {
             return Err(SetupError::NonFinite { what: "advected parameter" });
         }
         let inertia = lagrangian.velocity_hessian(&Velocity::<L>::zero(), &spatial);
-        check_inertia::<L::Scalar, Velocity<L>>(&inertia)?;
+        check_inertia::<L::Group>(&inertia)?;
         let inertia = (L::LEGENDRE == Legendre::Constant).then(|| Velocity::<L>::factorise(&inertia));
         Ok(Self { lagrangian, spatial, inertia })
     }

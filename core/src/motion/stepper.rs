@@ -139,7 +139,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         if !S::INERTIA_IS_CONSTANT {
             let w = self.scene.advected().seen_from(&attitude);
-            check_inertia::<Scalar<S>, Vector<S>>(&self.scene.inertia(&w))?;
+            check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
         }
         if !S::IS_QUADRATIC {
             let w = self.scene.advected().seen_from(&attitude);

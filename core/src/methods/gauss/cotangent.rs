@@ -155,7 +155,7 @@ impl<L: ContinuousLagrangian<Scalar = f64>, const PAIRS: usize, const N: usize> 
         if !h.is_finite() {
             return Err(SetupError::InvalidStep { step: h });
         }
-        check_inertia::<f64, Vector<L>>(&lagrangian.velocity_hessian(&Vector::<L>::zero(), &spatial))?;
+        check_inertia::<L::Group>(&lagrangian.velocity_hessian(&Vector::<L>::zero(), &spatial))?;
         Ok(Self { lagrangian, spatial, h, coefficients: Coefficients::new() })
     }
 }

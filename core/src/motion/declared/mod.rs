@@ -70,7 +70,7 @@ impl<S: Effect> Declared<S> {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
         if S::INERTIA_IS_CONSTANT {
-            check_inertia::<Scalar<S>, Vector<S>>(&scene.inertia(&scene.advected()))?;
+            check_inertia::<Group<S>>(&scene.inertia(&scene.advected()))?;
         }
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
