@@ -9,7 +9,7 @@ use liestep::groups::{
 };
 use liestep::laws::samples::{MatrixLieGroup, Random, derivative};
 use liestep::mechanics::{Along, Between, Pairs, Places};
-use liestep::numbers::{Blocks, Entries, Mask};
+use liestep::numbers::{Blocks, Bodies, Entries, Mask};
 use liestep::prelude::*;
 use nalgebra::{DVector, Matrix3, Matrix6, SMatrix, SVector, Vector3, Vector6};
 
@@ -198,6 +198,17 @@ fn a_product_is_near_where_all_its_factors_are() {
         <CayleyRetraction as Retraction<(SO3, SO3)>>::is_near_identity(&xi)
     };
     assert!(near(1.9, 1.9) && !near(2.1, 0.0) && !near(0.0, 2.1));
+    let of_many = |x: f64, y: f64| {
+        let xi = Bodies([Vector3::x() * x, Vector3::zeros(), Vector3::y() * y]);
+        let half = Bodies(xi.0.map(|xi| xi * 0.5));
+        let [whole, half] = [
+            <CayleyRetraction as Retraction<[SO3; 3]>>::is_near_identity(&xi),
+            <CayleyRetraction as Retraction<[SO3; 3]>>::is_half_near_identity(&half),
+        ];
+        assert_eq!(whole, half);
+        whole
+    };
+    assert!(of_many(1.9, 1.9) && !of_many(2.1, 0.0) && !of_many(0.0, 2.1));
 }
 
 /// Where roundings have taken one of them from the group, the other stays as it is.

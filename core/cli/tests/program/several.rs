@@ -351,6 +351,8 @@ fn columns_have_names_of_their_own() {
     let columns = system(&text).columns();
     assert!(columns.iter().any(|column| column.name == "momentum_x" && column.unit == "m"));
     assert!(columns.iter().any(|column| column.name == "gap" && column.unit == "m, 1"));
+    let ball = text.replace("kind = \"pin\"", "kind = \"ball\"").replace("axes = [[1, 0, 0], [2, 0, 0]]", "");
+    assert!(system(&ball).columns().iter().any(|column| column.name == "gap" && column.unit == "m"));
     let text = text.replace("\"energy\"", "\"momentum\"");
     let Err(mistake) = Scene::parse("held.toml", &text) else { panic!("two columns of one name") };
     let message = "held.toml:17:8: two columns of the table would be called `momentum_x`: give the body another name";
