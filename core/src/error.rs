@@ -69,20 +69,16 @@ pub enum SetupError {
     SingularKinetic {
         /// The determinant of the inertia of the continuous limit.
         determinant: f64,
-        /// The body, or the factor of a product, from zero: the first whose momentum doesn't determine its velocity, once
-        /// those before it are determined.
-        body: usize,
-        /// The component of its velocity, from zero, of which that is said.
-        component: usize,
+        /// The body of a system, or the factor of a product, from zero, along which it is once those before are eliminated.
+        /// None where there is but one, or where no pivot is zero and their product is out of range.
+        body: Option<usize>,
     },
     /// The kinetic energy is negative along a direction.
     NegativeKinetic {
         /// The smallest pivot of the inertia of the continuous limit, relative to its entry of the diagonal.
         pivot: f64,
-        /// The body, or the factor of a product, from zero: the first along which that is so.
-        body: usize,
-        /// The component of its velocity, from zero.
-        component: usize,
+        /// The body of a system, or the factor of a product, from zero, that it is of. None where there is but one.
+        body: Option<usize>,
     },
     /// A constant of the scene isn't finite, whatever the step.
     NonFiniteConstant,
@@ -175,19 +171,19 @@ impl fmt::Display for SetupError {
                 f,
                 "the others, or its own functions, do a part of what the joint {joint} (from zero) is to do (pivot {pivot:e}), at least where the motion starts; take one with fewer functions, or start elsewhere"
             ),
-            Self::InvalidStep { step } => {
-                write!(
-                    f,
-                    "the step {step:e} s can't be used; choose a finite one of the order of the motion's time scale"
-                )
-            }
-            Self::SingularKinetic { determinant, body, component } => write!(
+            Self::InvalidStep { step } => write!(
                 f,
-                "the kinetic part is singular at rest (determinant {determinant:e}): a momentum doesn't determine the component {component} of the velocity of the body or factor {body} (both from zero); give every direction an inertia"
+                "the step {step:e} s can't be used; choose a finite one of the order of the motion's time scale"
             ),
-            Self::NegativeKinetic { pivot, body, component } => write!(
+            Self::SingularKinetic { determinant, body } => write!(
                 f,
-                "the kinetic part is negative along a direction, the component {component} of the velocity of the body or factor {body} (both from zero; pivot {pivot:e}, relative to the inertia there); check its sign, the `.transpose()` in it, and the signs of its parameters"
+                "the kinetic part{} is singular at rest (determinant {determinant:e}): a momentum doesn't determine a velocity; give every direction an inertia",
+                OfBody(*body)
+            ),
+            Self::NegativeKinetic { pivot, body } => write!(
+                f,
+                "the kinetic part{} is negative along a direction (pivot {pivot:e}, relative to the inertia there); check its sign, the `.transpose()` in it, and the signs of its parameters",
+                OfBody(*body)
             ),
             Self::NonFiniteConstant => f.write_str(
                 "a constant of the scene is not finite: a divisor is zero, a root or a logarithm has no value, or a product is out of range; give the parameters other values",
@@ -241,12 +237,9 @@ impl fmt::Display for SetupError {
             Self::NoSecondDerivatives => f.write_str(
                 "the derivatives of a term of the scene were written without `kick_gradient`, so those of its force gradient aren't known; choose a scheme without them, or write it",
             ),
-            Self::PotentialMismatch => {
-                write!(
-                    f,
-                    "one of the methods to choose from has another potential than the first; build all of them from one scene"
-                )
-            }
+            Self::PotentialMismatch => f.write_str(
+                "one of the methods to choose from has another potential than the first; build all of them from one scene",
+            ),
             Self::Unlike { lane } => write!(
                 f,
                 "the body of lane {lane} can't be stepped beside those before it: they have another method, or have made another number of steps; build a batch of like ones"
@@ -256,6 +249,16 @@ impl fmt::Display for SetupError {
 }
 
 impl core::error::Error for SetupError {}
+
+/// Whose a kinetic part is, if there are several.
+struct OfBody(Option<usize>);
+
+impl fmt::Display for OfBody {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(Some(body)) = self else { return Ok(()) };
+        write!(f, " of the body or factor {body} (from zero)")
+    }
+}
 
 /// Why a step couldn't be made. The state is then what it was before.
 ///

@@ -3,10 +3,10 @@
 
 use checks::random::Random;
 use liestep::groups::{Configuration, LieGroup as _, Relative, SeenFrom};
-use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Matrix, Term, Vector};
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, lagrangian};
-use nalgebra::{Matrix3, RealField, Vector3, convert};
+use nalgebra::{Matrix3, RealField, Vector3, Vector6, convert};
 use num_dual::{Dual64, HyperDual64};
 
 #[lagrangian(
@@ -86,6 +86,32 @@ fn acted<T: Real + RealField + Copy>(e: &Matrices<T>, w: &Values) -> <Pair<T> as
     )
 }
 
+/// `μ⁺` of a step by `F`, from `a = μ + kick_before(w)`, `Ad*_F`, and what is written in the new `w⁺ = F⁻¹·w`.
+pub(crate) fn transported<L: Effect<Scalar = f64>>(
+    (l, h): (&L, f64),
+    (momentum, w): (&Vector<L>, &L::Advected),
+    (increment, next): (&Matrix<L>, &L::Advected),
+    coadjoint: impl Fn(&Vector<L>) -> Vector<L>,
+) -> Vector<L> {
+    let constants = l.constants(h);
+    coadjoint(&(*momentum + L::kick_before(&constants, w))) + L::kick_after(&constants, increment, next)
+}
+
+fn inverse(f: &Matrices<f64>) -> Matrices<f64> {
+    (f.0.transpose(), f.1.transpose())
+}
+
+/// `F − I`.
+fn increment(f: &Matrices<f64>) -> Matrices<f64> {
+    (f.0 - Matrix3::identity(), f.1 - Matrix3::identity())
+}
+
+/// Each body's by its own.
+fn coadjoint(f: &Matrices<f64>, a: &Vector6<f64>) -> Vector6<f64> {
+    let [first, second] = [(f.0, 0), (f.1, 3)].map(|(f, start)| f.transpose() * a.fixed_rows::<3>(start));
+    Vector6::from_fn(|k, _| if k < 3 { first[k] } else { second[k - 3] })
+}
+
 /// What a declaration on a product derives, against dual numbers of its `l_d` along the turns of each component.
 macro_rules! assert_derived {
     ($dimension:literal of $system:expr, $first:expr, $second:expr; $f:expr, $values:expr, $w:expr, $h:expr) => {
@@ -97,12 +123,15 @@ macro_rules! assert_derived {
         let close = |what: &str, found: f64, expected: f64| {
             assert!((found - expected).abs() <= 1e-13 * scale, "{what}: {found} instead of {expected}, scale {scale}");
         };
+        let next = (&increment(&f), &acted(&inverse(&f), &values));
+        let after = transported((system, h), (&momentum, &w), next, |a| coadjoint(&f, a));
         let still = turned(0, Dual64::from(0.0));
         let at = |f: &Matrices<Dual64>, e: &Matrices<Dual64>| first.l_d(f, &acted(e, &values), Dual64::from(h)).eps;
         for k in 0..$dimension {
             let (turn, f_k) = (turned(k, Dual64::new(0.0, 1.0)), lifted(&f));
             close("right momentum", right[k], at(&product(&turn, &f_k), &still));
             close("left momentum", left[k], at(&product(&f_k, &turn), &still));
+            close("transport", after[k], at(&product(&f_k, &turn), &still));
             close("diamond", diamond[k], -at(&f_k, &turn));
             close("momentum", momentum[k], at(&product(&turn, &f_k), &turn));
             for j in 0..$dimension {

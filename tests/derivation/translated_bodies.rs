@@ -6,10 +6,10 @@ use liestep::groups::{Configuration, R1, R3, Relative, SeenFrom};
 use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, lagrangian};
-use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, Vector3, Vector4, convert};
+use nalgebra::{Matrix2, Matrix3, Matrix4, RealField, SVector, Vector3, Vector4, convert};
 use num_dual::{Dual64, HyperDual64};
 
-use crate::several_bodies::assert_derived;
+use crate::several_bodies::{assert_derived, transported};
 
 // With functions: what both ends of a step have, one of them calling another.
 #[lagrangian(
@@ -102,6 +102,22 @@ fn acted<T: Real + RealField + Copy>(e: &Matrices<T>, w: &Values) -> <Carried<T>
         Configuration(shift(&(x - first))),
         Configuration(s),
     )
+}
+
+fn inverse(f: &Matrices<f64>) -> Matrices<f64> {
+    let back = |matrix: &Matrix4<f64>| Matrix4::identity() * 2.0 - matrix;
+    (f.0.transpose(), back(&f.1), Matrix2::identity() * 2.0 - f.2, back(&f.3))
+}
+
+/// `F − I`.
+fn increment(f: &Matrices<f64>) -> Matrices<f64> {
+    (f.0 - Matrix3::identity(), f.1 - Matrix4::identity(), f.2 - Matrix2::identity(), f.3 - Matrix4::identity())
+}
+
+/// What is translated keeps its own.
+fn coadjoint(f: &Matrices<f64>, a: &SVector<f64, 10>) -> SVector<f64, 10> {
+    let turned = f.0.transpose() * a.fixed_rows::<3>(0);
+    SVector::from_fn(|k, _| if k < 3 { turned[k] } else { a[k] })
 }
 
 #[test]

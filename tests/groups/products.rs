@@ -1,10 +1,17 @@
 //! The laws of a product of groups, of its retraction and of what several bodies see, on the same group as matrices: a
 //! product is the group of block-diagonal ones.
 
-use liestep::groups::{CayleyRetraction, Configuration, Factor, LieGroup, Relative, Retraction, SE2, SeenFrom};
-use liestep::numbers::{Blocks, Mask};
+use core::array::from_fn;
+
+use liestep::groups::{
+    Advected, CayleyRetraction, Configuration, ContravariantVector, Factor, Heisenberg, LieGroup, Relative, Retraction,
+    SE2, SE3, SL2, SeenFrom,
+};
+use liestep::laws::samples::{MatrixLieGroup, Random, derivative};
+use liestep::mechanics::{Along, Between, Pairs, Places};
+use liestep::numbers::{Blocks, Bodies, Entries, Mask};
 use liestep::prelude::*;
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector3, Vector6};
+use nalgebra::{DVector, Matrix3, Matrix6, SMatrix, SVector, Vector3, Vector6};
 
 type Product = (SO3, SE2);
 
@@ -191,6 +198,17 @@ fn a_product_is_near_where_all_its_factors_are() {
         <CayleyRetraction as Retraction<(SO3, SO3)>>::is_near_identity(&xi)
     };
     assert!(near(1.9, 1.9) && !near(2.1, 0.0) && !near(0.0, 2.1));
+    let of_many = |x: f64, y: f64| {
+        let xi = Bodies([Vector3::x() * x, Vector3::zeros(), Vector3::y() * y]);
+        let half = Bodies(xi.0.map(|xi| xi * 0.5));
+        let [whole, half] = [
+            <CayleyRetraction as Retraction<[SO3; 3]>>::is_near_identity(&xi),
+            <CayleyRetraction as Retraction<[SO3; 3]>>::is_half_near_identity(&half),
+        ];
+        assert_eq!(whole, half);
+        whole
+    };
+    assert!(of_many(1.9, 1.9) && !of_many(2.1, 0.0) && !of_many(0.0, 2.1));
 }
 
 /// Where roundings have taken one of them from the group, the other stays as it is.
@@ -242,4 +260,167 @@ fn numbers_of_a_product_are_those_of_its_factors() {
     assert_eq!((SO3::identity(), second).write_numbers(&mut numbers).len(), 1);
     let expected: [f64; 14] = [-1.0, 0.0, 0.0, 0.0, 0.6, -0.8, 3.0, 0.8, 0.6, 4.0, 0.0, 0.0, 1.0, 0.0];
     assert!(numbers.iter().zip(expected).all(|(number, expected)| (number - expected).abs() < 1e-15), "{numbers:?}");
+}
+
+fn entries(of: &impl Entries<f64>) -> Vec<f64> {
+    let mut entries = Vec::new();
+    of.each(&mut |entry| entries.push(entry));
+    entries
+}
+
+/// All that a parameter can do, against `typed`: its value in space as it is seen through these matrices and these inverses.
+fn assert_seen<G, A, const K: usize>(
+    together: fn([Matrix3<f64>; K]) -> G::Matrix,
+    element: fn(&mut Random) -> [Matrix3<f64>; K],
+    typed: &dyn Fn(&[f64], &[Matrix3<f64>; K], &[Matrix3<f64>; K]) -> Vec<f64>,
+) where
+    G: LieGroup<Scalar = f64>,
+    A: Advected<G>,
+{
+    let random = &mut Random::new(51);
+    for _ in 0..5 {
+        let close = |what: &str, found: &A, expected: &[f64], allowed: f64| {
+            let off = entries(found).iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(entries(found).len() == expected.len() && off < allowed, "{what}: off by {off:e}");
+        };
+        let spatial: A = random.sample();
+        let numbers = entries(&spatial);
+        let at = |m: &[Matrix3<f64>; K]| typed(&numbers, m, &m.map(|m| m.try_inverse().unwrap()));
+        let (g, f) = (element(random), element(random));
+        let attitude = G::from_matrix_unchecked(together(g));
+        let seen = spatial.seen_from(&attitude);
+        close("seen", &seen, &at(&g), 1e-12);
+
+        let both = from_fn(|k| g[k] * f[k]);
+        let increment = together(f.map(|f| f - Matrix3::identity()));
+        let change: Vec<f64> = at(&both).iter().zip(at(&g)).map(|(after, before)| after - before).collect();
+        close("advected", &seen.advect(&increment), &at(&both), 1e-12);
+        close("change", &seen.change(&increment), &change, 1e-12);
+
+        // Of any matrices, of which no transpose is an inverse, and none the inverse of another.
+        let mut any = || [(); K].map(|()| random.sample::<Matrix3<f64>>());
+        let [m, n, x] = [any(), any(), any()];
+        close("through", &spatial.seen_through(&together(m), &together(n)), &typed(&numbers, &m, &n), 1e-12);
+        let along = |t: f64| DVector::from_vec(at(&from_fn(|k| g[k] * (Matrix3::identity() + x[k] * t))));
+        close("rate", &seen.rate(&together(x)), derivative(along).as_slice(), 1e-10);
+
+        let by: A = random.sample();
+        let inverses = g.map(|g| g.try_inverse().unwrap());
+        let of_unit = |number: usize| {
+            let unit: Vec<f64> = (0..numbers.len()).map(|k| f64::from(u8::from(k == number))).collect();
+            typed(&unit, &g, &inverses).iter().zip(entries(&by)).map(|(seen, by)| seen * by).sum()
+        };
+        let pulled: Vec<f64> = (0..numbers.len()).map(of_unit).collect();
+        close("pulled back", &by.pulled_back(&attitude), &pulled, 1e-12);
+    }
+}
+
+fn rotation(random: &mut Random) -> Matrix3<f64> {
+    random.element::<SO3, 3, 3>().matrix()
+}
+
+fn read(numbers: &[f64], place: usize) -> Matrix3<f64> {
+    Matrix3::from_row_slice(&numbers[9 * place..9 * place + 9])
+}
+
+fn written(matrices: impl IntoIterator<Item = Matrix3<f64>>) -> Vec<f64> {
+    matrices.into_iter().flat_map(|matrix| matrix.transpose().as_slice().to_vec()).collect()
+}
+
+/// Of four bodies, of which two are moved by matrices that aren't orthogonal, in either order.
+#[test]
+fn what_bodies_of_a_product_see() {
+    fn of_four<A: Advected<Four>>(typed: &dyn Fn(&[f64], &[Matrix3<f64>; 4], &[Matrix3<f64>; 4]) -> Vec<f64>) {
+        let element = |random: &mut Random| {
+            let mut motion = || random.element::<SE2, 3, 3>().matrix();
+            let (second, fourth) = (motion(), motion());
+            [rotation(random), second, rotation(random), fourth]
+        };
+        assert_seen::<Four, A, 4>(|[a, b, c, d]| (a, b, c, d), element, typed);
+    }
+    type Square = Matrix3<f64>;
+    let vector = Vector3::from_column_slice;
+    of_four::<SeenFrom<0, Vector3<f64>>>(&|w, m, _| (m[0].transpose() * vector(w)).as_slice().to_vec());
+    of_four::<SeenFrom<3, Vector3<f64>>>(&|w, m, _| (m[3].transpose() * vector(w)).as_slice().to_vec());
+    of_four::<SeenFrom<1, ContravariantVector<f64, 3>>>(&|w, _, n| (n[1] * vector(w)).as_slice().to_vec());
+    of_four::<Relative<1, 3, Square>>(&|w, m, n| written([n[1] * read(w, 0) * m[3]]));
+    of_four::<Relative<3, 1, Square>>(&|w, m, n| written([n[3] * read(w, 0) * m[1]]));
+    of_four::<Relative<2, 0, Square>>(&|w, m, n| written([n[2] * read(w, 0) * m[0]]));
+    of_four::<Configuration<1, Square>>(&|w, m, _| written([read(w, 0) * m[1]]));
+    of_four::<Configuration<2, Square>>(&|w, m, _| written([read(w, 0) * m[2]]));
+    of_four::<(Configuration<3, Square>, Relative<0, 2, Square>)>(&|w, m, n| {
+        written([read(w, 0) * m[3], n[0] * read(w, 1) * m[2]])
+    });
+}
+
+/// Two bodies would like to stand alike.
+#[liestep::lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    l_d = 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Alike {
+    kappa: f64,
+}
+
+/// Of three equal bodies: each, one, and at the places of two.
+#[test]
+fn what_bodies_of_an_array_see() {
+    type At<P> = <P as Places<Alike>>::Advected;
+    fn of_three<A: Advected<[SO3; 3]>>(typed: &dyn Fn(&[f64], &[Matrix3<f64>; 3], &[Matrix3<f64>; 3]) -> Vec<f64>) {
+        let element = |random: &mut Random| [(); 3].map(|()| rotation(random));
+        assert_seen::<[SO3; 3], A, 3>(|all| all, element, typed);
+    }
+    of_three::<At<Along<3>>>(&|w, m, n| {
+        // Behind the two neighbours is one that stays.
+        written([n[0] * read(w, 0) * m[1], n[1] * read(w, 1) * m[2], read(w, 2)])
+    });
+    of_three::<At<Between<2, 0, 3>>>(&|w, m, n| written([n[2] * read(w, 0) * m[0]]));
+    of_three::<At<Between<1, 2, 3>>>(&|w, m, n| written([n[1] * read(w, 0) * m[2]]));
+    of_three::<At<Pairs<3>>>(&|w, m, _| written([0, 1, 2].map(|k| read(w, k) * m[k])));
+    of_three::<SeenFrom<2, Vector3<f64>>>(&|w, m, _| {
+        (m[2].transpose() * Vector3::from_column_slice(w)).as_slice().to_vec()
+    });
+
+    let element = |random: &mut Random| [(); 3].map(|()| random.element::<SE2, 3, 3>().matrix());
+    let each = |w: &[f64], by: &[Matrix3<f64>; 3]| {
+        (0..3).flat_map(|k| (by[k] * Vector3::from_column_slice(&w[3 * k..3 * k + 3])).as_slice().to_vec()).collect()
+    };
+    let covectors = |w: &[f64], m: &[Matrix3<f64>; 3], _: &_| each(w, &m.map(|m| m.transpose()));
+    assert_seen::<[SE2; 3], [Vector3<f64>; 3], 3>(|all| all, element, &covectors);
+    let vectors = |w: &[f64], _: &_, n: &[Matrix3<f64>; 3]| each(w, n);
+    assert_seen::<[SE2; 3], [ContravariantVector<f64, 3>; 3], 3>(|all| all, element, &vectors);
+}
+
+type NotOrthogonal = (SE2, SE3, SL2, Heisenberg);
+
+/// P3: of each factor the pairing with a vector is kept by `Fᵀ w`, and not by `F⁻¹ w`.
+#[test]
+fn p3_covectors_of_each_factor() {
+    fn p3<const K: usize, const N: usize, const D: usize>()
+    where
+        NotOrthogonal: Factor<K, Of: MatrixLieGroup<N, D>>,
+    {
+        let random = &mut Random::new(31);
+        let (mut right, mut naive) = (0.0_f64, 0.0_f64);
+        for _ in 0..20 {
+            let f = (random.element::<SE2, _, _>(), random.element(), random.element(), random.element());
+            let (w, v): (SVector<f64, N>, SVector<f64, N>) = (random.sample(), random.sample());
+            let d = LieGroup::increment(&f);
+            let seen = Advected::<NotOrthogonal>::advect(&SeenFrom::<K, _>(w), &d).0;
+            let moved = Advected::<NotOrthogonal>::advect(&SeenFrom::<K, _>(ContravariantVector(v)), &d).0.0;
+            let matrix = <NotOrthogonal as Factor<K>>::factor(&f).matrix();
+            let inverse = matrix.try_inverse().unwrap();
+            right = right.max((seen - matrix.transpose() * w).amax()).max((moved - inverse * v).amax());
+            right = right.max((seen.dot(&moved) - w.dot(&v)).abs());
+            naive = naive.max(((inverse * w).dot(&moved) - w.dot(&v)).abs());
+        }
+        println!("factor {K}: {right:.1e}, by F⁻¹ w {naive:.1e}");
+        assert!(right < 1e-13 && naive > 0.1, "factor {K}: {right:e} {naive:e}");
+    }
+    p3::<0, 3, 3>();
+    p3::<1, 4, 6>();
+    p3::<2, 2, 3>();
+    p3::<3, 3, 3>();
 }

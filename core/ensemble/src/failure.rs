@@ -99,13 +99,9 @@ impl Failure {
             "setup.redundant" => SetupError::RedundantJoint { joint: whole(number()?), pivot: number()? }.into(),
             "setup.step" => SetupError::InvalidStep { step: number()? }.into(),
             "setup.singular" => {
-                let (determinant, body, component) = (number()?, whole(number()?), whole(number()?));
-                SetupError::SingularKinetic { determinant, body, component }.into()
+                SetupError::SingularKinetic { determinant: number()?, body: number().map(whole) }.into()
             }
-            "setup.negative" => {
-                let (pivot, body, component) = (number()?, whole(number()?), whole(number()?));
-                SetupError::NegativeKinetic { pivot, body, component }.into()
-            }
+            "setup.negative" => SetupError::NegativeKinetic { pivot: number()?, body: number().map(whole) }.into(),
             "setup.constant" => SetupError::NonFiniteConstant.into(),
             "setup.finite" => SetupError::NonFinite { what: text()? }.into(),
             "setup.group" => SetupError::NotInGroup { defect: number()? }.into(),
@@ -156,6 +152,11 @@ fn whole(number: f64) -> usize {
     number as usize
 }
 
+/// Numbers, and that of a body if there is one.
+fn and_body(numbers: &[f64], body: Option<usize>) -> Vec<f64> {
+    numbers.iter().copied().chain(body.map(count)).collect()
+}
+
 type Parts<'a> = (&'a str, Vec<f64>, Vec<&'a str>);
 
 fn of_setup(error: &SetupError) -> Parts<'_> {
@@ -170,12 +171,10 @@ fn of_setup(error: &SetupError) -> Parts<'_> {
         SetupError::OffVelocity { joint, by } => ("setup.opening", vec![count(*joint), *by], vec![]),
         SetupError::RedundantJoint { joint, pivot } => ("setup.redundant", vec![count(*joint), *pivot], vec![]),
         SetupError::InvalidStep { step } => ("setup.step", vec![*step], vec![]),
-        SetupError::SingularKinetic { determinant, body, component } => {
-            ("setup.singular", vec![*determinant, count(*body), count(*component)], vec![])
+        SetupError::SingularKinetic { determinant, body } => {
+            ("setup.singular", and_body(&[*determinant], *body), vec![])
         }
-        SetupError::NegativeKinetic { pivot, body, component } => {
-            ("setup.negative", vec![*pivot, count(*body), count(*component)], vec![])
-        }
+        SetupError::NegativeKinetic { pivot, body } => ("setup.negative", and_body(&[*pivot], *body), vec![]),
         SetupError::NonFiniteConstant => ("setup.constant", vec![], vec![]),
         SetupError::NonFinite { what } => ("setup.finite", vec![], vec![what]),
         SetupError::NotInGroup { defect } => ("setup.group", vec![*defect], vec![]),
@@ -206,8 +205,7 @@ fn of_step(error: &StepError) -> Parts<'_> {
     match error {
         StepError::NonFinite { what } => ("step.finite", vec![], vec![what]),
         StepError::BeyondSolvable { step, largest, turn, body } => {
-            let numbers = [*step, *largest, *turn].into_iter().chain(body.map(count)).collect();
-            ("step.solvable", numbers, vec![])
+            ("step.solvable", and_body(&[*step, *largest, *turn], *body), vec![])
         }
         StepError::AngleWithoutDigits { turn } => ("step.angle", vec![*turn], vec![]),
         StepError::NotConverged { iterations, residual } => {
@@ -244,7 +242,7 @@ mod tests {
 
     #[test]
     fn a_failure_is_read_as_it_was_written() {
-        let failures: [Failure; 37] = [
+        let failures: [Failure; 39] = [
             SetupError::Parameter { field: "rho", cause: "is not finite" }.into(),
             SetupError::BodyParameter { body: 99, field: "m", cause: "is not a mass" }.into(),
             SetupError::Joint { joint: 2, cause: "closes a loop" }.into(),
@@ -253,8 +251,10 @@ mod tests {
             SetupError::OffVelocity { joint: 0, by: 0.1 }.into(),
             SetupError::RedundantJoint { joint: 3, pivot: 1e-17 }.into(),
             SetupError::InvalidStep { step: f64::INFINITY }.into(),
-            SetupError::SingularKinetic { determinant: 1e-300, body: 3, component: 0 }.into(),
-            SetupError::NegativeKinetic { pivot: -0.1, body: 0, component: 5 }.into(),
+            SetupError::SingularKinetic { determinant: 1e-300, body: None }.into(),
+            SetupError::SingularKinetic { determinant: 1e-300, body: Some(3) }.into(),
+            SetupError::NegativeKinetic { pivot: -0.1, body: None }.into(),
+            SetupError::NegativeKinetic { pivot: -0.1, body: Some(3) }.into(),
             SetupError::NonFiniteConstant.into(),
             SetupError::NonFinite { what: "velocity" }.into(),
             SetupError::NotInGroup { defect: 0.1 }.into(),

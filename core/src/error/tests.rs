@@ -36,8 +36,10 @@ fn setup_errors() {
         SetupError::OffVelocity { joint: 7, by: 0.5 },
         SetupError::RedundantJoint { joint: 7, pivot: 0.0 },
         SetupError::InvalidStep { step: 1e-300 },
-        SetupError::SingularKinetic { determinant: 1e-30, body: 7, component: 2 },
-        SetupError::NegativeKinetic { pivot: -0.5, body: 7, component: 2 },
+        SetupError::SingularKinetic { determinant: 1e-30, body: None },
+        SetupError::SingularKinetic { determinant: 1e-30, body: Some(7) },
+        SetupError::NegativeKinetic { pivot: -0.5, body: None },
+        SetupError::NegativeKinetic { pivot: -0.5, body: Some(7) },
         SetupError::NonFiniteConstant,
         SetupError::NonFinite { what: "velocity" },
         SetupError::NoVelocity,
@@ -68,10 +70,14 @@ fn setup_errors() {
             SetupError::OffVelocity { .. } => &["the joint 7", "by 5e-1 (", "m/s", "`start_nearest`"],
             SetupError::RedundantJoint { .. } => &["the joint 7", "0e0"],
             SetupError::InvalidStep { .. } => &["the step", "1e-300 s"],
-            SetupError::SingularKinetic { .. } => &["kinetic part", "singular", "1e-30", "factor 7", "component 2"],
-            SetupError::NegativeKinetic { .. } => {
-                &["kinetic part", "negative", "-5e-1", "`.transpose()`", "factor 7", "component 2"]
+            SetupError::SingularKinetic { body: None, .. } => &["the kinetic part is singular", "1e-30"],
+            SetupError::SingularKinetic { .. } => {
+                &["the kinetic part of the body or factor 7 (from zero) is singular", "1e-30"]
             }
+            SetupError::NegativeKinetic { body: None, .. } => {
+                &["the kinetic part is negative", "-5e-1", "`.transpose()`"]
+            }
+            SetupError::NegativeKinetic { .. } => &["part of the body or factor 7 (from zero) is negative", "-5e-1"],
             SetupError::NonFiniteConstant => &["constant", "not finite", "divisor"],
             SetupError::NonFinite { .. } => &["velocity", "not finite"],
             SetupError::NoVelocity => &["no velocity", "initial momentum"],

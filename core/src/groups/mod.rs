@@ -80,6 +80,14 @@ use crate::numbers::{Blocks, Coordinates, Entries, Mask, Real, sum};
 /// Linear maps of a group's components.
 pub(crate) type SquareOf<G> = <<G as LieGroup>::Vector as Coordinates<<G as LieGroup>::Scalar>>::Square;
 
+/// Of an array the body that a component belongs to, of a product the factor, from zero; none where there is but one.
+pub(crate) fn body_of<G: LieGroup>(component: usize) -> Option<usize> {
+    if G::BODIES > 1 {
+        return Some(component / (G::DIMENSION / G::BODIES));
+    }
+    (!G::FACTORS.is_whole()).then(|| (1..=component).filter(|&k| G::FACTORS.end_at(k)).count())
+}
+
 /// A matrix Lie group with a declared basis `E_k` of its Lie algebra.
 ///
 /// Covectors are given by their components `μ_k = ⟨μ, E_k⟩`, so that no factor ½ appears anywhere.

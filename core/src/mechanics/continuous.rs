@@ -267,7 +267,7 @@ impl<T: Real, V: Coordinates<T>> Newton<T, V> {
             }
         }
         let residual = defect.dot(&defect);
-        let sign = |velocity: &V| V::least_pivot(&hessian_of(velocity));
+        let sign = |velocity: &V| V::least_pivot(&hessian_of(velocity)).0;
         let is_lost = sign(&rest).simd_gt(real(0.0)) & sign(&velocity).simd_le(real(0.0));
         Self {
             velocity,

@@ -5,7 +5,7 @@ use alloc::string::String;
 use core::fmt::Debug;
 
 use crate::error::SetupError;
-use crate::groups::{LieGroup, Retraction, SquareOf};
+use crate::groups::{LieGroup, Retraction, SquareOf, body_of};
 use crate::mechanics::continuous::Newton;
 use crate::mechanics::description::SceneVisitor;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
@@ -460,20 +460,16 @@ pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, Setup
 /// Whether a momentum determines a velocity, and the kinetic energy is positive along every direction.
 pub(crate) fn check_inertia<G: LieGroup>(inertia: &SquareOf<G>) -> Result<(), SetupError> {
     let (unit, determinant) = G::Vector::solve(inertia, &G::Vector::zero());
-    let pivot = G::Vector::least_pivot(inertia);
-    let (mut body, mut component) = G::Vector::without_pivot(inertia).unwrap_or_default();
-    if G::BODIES == 1 {
-        // What is declared as one product has all components in a row.
-        let first = (1..=component).rev().find(|&k| G::FACTORS.end_at(k)).unwrap_or(0);
-        body = (1..=component).filter(|&k| G::FACTORS.end_at(k)).count();
-        component -= first;
-    }
+    let (pivot, component) = G::Vector::least_pivot(inertia);
     // Less than this is what rounding leaves of a zero.
-    if pivot.simd_lt(-<G::Scalar as SimdRealField>::simd_default_epsilon() * real(1e6)).any() {
-        return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body, component });
+    if pivot.simd_lt(real::<G::Scalar>(-1e6) * <G::Scalar as SimdRealField>::simd_default_epsilon()).any() {
+        return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body: body_of::<G>(component) });
     }
-    if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & pivot.simd_gt(real(0.0))).all() {
-        return Err(SetupError::SingularKinetic { determinant: reported(determinant), body, component });
+    let is_positive = pivot.simd_gt(real(0.0));
+    if !unit.is_finite() || !(determinant.simd_gt(real(0.0)) & is_positive).all() {
+        // Where each pivot is positive, and their product is out of range, it is nobody's.
+        let body = if is_positive.all() { None } else { body_of::<G>(component) };
+        return Err(SetupError::SingularKinetic { determinant: reported(determinant), body });
     }
     Ok(())
 }

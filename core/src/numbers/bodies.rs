@@ -4,7 +4,7 @@ use core::array::from_fn;
 use core::ops::{Add, Mul, Neg, Sub};
 
 use super::blocks::{Blocks, Pattern};
-use super::coordinates::Coordinates;
+use super::coordinates::{Coordinates, lesser_pivot};
 use super::entries::Entries;
 use super::lanes::{Lanes, lanes_of_fields};
 use super::scalar::{Mask, Real, real};
@@ -325,13 +325,13 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         BlockDiagonal(filled!(matrix.0, |k| V::transpose(&matrix.0[k])))
     }
 
-    fn least_pivot(matrix: &Self::Square) -> T {
-        matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_pivot(body)))
-    }
-
-    fn without_pivot(matrix: &Self::Square) -> Option<(usize, usize)> {
-        let of_body = |(body, matrix)| V::without_pivot(matrix).map(|(_, component)| (body, component));
-        matrix.0.iter().enumerate().find_map(of_body)
+    fn least_pivot(matrix: &Self::Square) -> (T, usize) {
+        let dimension = dimension::<T, V>();
+        let of_bodies = matrix.0.iter().enumerate().map(|(body, square)| {
+            let (pivot, component) = V::least_pivot(square);
+            (pivot, body * dimension + component)
+        });
+        of_bodies.fold((most(), 0), lesser_pivot)
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]

@@ -154,12 +154,9 @@ pub trait Coordinates<T: Real>:
 
     /// The smallest pivot of a symmetric matrix in the order of the basis, relative to its entry of the diagonal, up to
     /// the first that isn't positive: above zero where the matrix is positive definite, below where it is negative along
-    /// some direction, and there of the order of rounding where it is singular.
-    fn least_pivot(matrix: &Self::Square) -> T;
-
-    /// The first whose pivot isn't positive, in the order of the basis and in any of the lanes: the body, of several, and
-    /// its component, from zero. None where the matrix is positive definite.
-    fn without_pivot(matrix: &Self::Square) -> Option<(usize, usize)>;
+    /// some direction, and there of the order of rounding, or NaN, where it is singular. Beside it the component that it is
+    /// of, from zero; of several lanes in one of them.
+    fn least_pivot(matrix: &Self::Square) -> (T, usize);
 }
 
 impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
@@ -311,20 +308,18 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
         matrix.transpose()
     }
 
-    fn least_pivot(matrix: &SMatrix<T, D, D>) -> T {
+    fn least_pivot(matrix: &SMatrix<T, D, D>) -> (T, usize) {
         let (factors, _) = eliminate(*matrix);
-        let relative = |k: usize| factors[(k, k)] / matrix[(k, k)].simd_abs();
-        (1..D).fold(relative(0), |least, k| {
-            let pivot = relative(k);
-            // Behind a pivot that isn't positive the others tell nothing.
-            pivot.select(least.simd_gt(T::zero()) & pivot.simd_lt(least), least)
-        })
+        let relative = |k: usize| (factors[(k, k)] / matrix[(k, k)].simd_abs(), k);
+        (1..D).fold(relative(0), |least, k| lesser_pivot(least, relative(k)))
     }
+}
 
-    fn without_pivot(matrix: &SMatrix<T, D, D>) -> Option<(usize, usize)> {
-        let (factors, _) = eliminate(*matrix);
-        (0..D).find(|&k| !factors[(k, k)].simd_gt(T::zero()).all()).map(|component| (0, component))
-    }
+/// The lesser of two pivots, each with its component: NaN, which a zero divided by itself is, is less than any. Behind one
+/// that isn't positive the others tell nothing.
+pub(super) fn lesser_pivot<T: Real>((pivot, place): (T, usize), (next, behind): (T, usize)) -> (T, usize) {
+    let is_less = pivot.simd_gt(T::zero()) & !next.simd_ge(pivot);
+    (next.select(is_less, pivot), if is_less.any() { behind } else { place })
 }
 
 // The compiler doesn't always inline `fold` and `from_fn` for lanes, and what isn't inlined has no vector instructions

@@ -35,7 +35,7 @@ use nalgebra::{RealField, SimdBool as _, SimdRealField, SimdValue};
 ///
 /// With `-C target-cpu=native` on a machine with AVX-512 lanes that are arrays are two to three times slower,
 /// probably as the compiler then makes registers of eight `f64` of parts of different arrays. `-C
-/// target-feature=-avx512f` beside it takes that back; collocation and splittings of one body find AVX-512 all the same.
+/// target-feature=-avx512f` beside it takes that back; collocation finds AVX-512 by itself all the same.
 pub trait Real: SimdRealField<Element: RealField + Copy> + Copy {}
 
 impl<T: SimdRealField<Element: RealField + Copy> + Copy> Real for T {}

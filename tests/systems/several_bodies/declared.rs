@@ -205,12 +205,13 @@ fn a_record_has_the_columns_of_each_body() {
         + 0.5 * h * kappa * (R.trace() + (F_2.transpose() * R * F_3).trace())
         + 0.5 * h * kappa * (S.trace() + (F_3.transpose() * S * F_4).trace()),
 )]
-struct CoupledAttitudes {
-    J_1: DiagonalNonstandardInertia,
-    J_2: DiagonalNonstandardInertia,
-    J_3: DiagonalNonstandardInertia,
-    J_4: DiagonalNonstandardInertia,
-    kappa: f64,
+#[derive(Clone)]
+pub(super) struct CoupledAttitudes {
+    pub(super) J_1: DiagonalNonstandardInertia,
+    pub(super) J_2: DiagonalNonstandardInertia,
+    pub(super) J_3: DiagonalNonstandardInertia,
+    pub(super) J_4: DiagonalNonstandardInertia,
+    pub(super) kappa: f64,
 }
 
 /// To rounding, against a step of 30 digits; each body is solved for itself.

@@ -6,12 +6,12 @@
 use core::fmt::Debug;
 
 use declarations::{DoublePendulum, FloatingBody, PointSpring, TwoBodies};
-use liestep::groups::{ExponentialRetraction, R1, R2, R3, Retraction as _, SE3};
+use liestep::groups::{ExponentialRetraction, LieGroup, R1, R2, R3, Retraction as _, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Along, Between, Coupled, Each, On, Pairs};
+use liestep::mechanics::{Along, Between, Coupled, Each, On, Pairs, Placed, Sum};
 use liestep::methods::CompositionScheme;
 use liestep::motion::{Batch, Batchable, Integrator};
-use liestep::numbers::Bodies;
+use liestep::numbers::{Bodies, InLanes, Lanes as _};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix3, RealField, SVector, Vector3, Vector6};
 use simba::simd::AutoF64x4;
@@ -67,11 +67,29 @@ fn start(random: &mut Random, speed: f64) -> (Group, Vector6<f64>) {
     ((turned[0], turned[1]), velocity * speed)
 }
 
+/// Four in the lanes of one stepper: where a batch would go on with one after another, this is an error.
+fn together<M: Batchable<AutoF64x4>>(bodies: &[(M, M::State)]) -> (M::Together, InLanesOf<M>) {
+    let mut all = (M::Together::splat(&bodies[0].0), InLanesOf::<M>::splat(&bodies[0].1));
+    for (lane, (stepper, state)) in bodies.iter().enumerate() {
+        assert!(all.0.set_lane(lane, stepper) && all.1.set_lane(lane, state));
+    }
+    all
+}
+
+type InLanesOf<M> = <<M as InLanes<AutoF64x4>>::Together as Integrator>::State;
+
 /// Four together, against each alone.
 fn assert_each_is_alone<M>(bodies: &[(M, M::State)], steps: u64)
 where
     M: Batchable<AutoF64x4> + Integrator<State: PartialEq + Debug>,
 {
+    let (stepper, mut state) = together(bodies);
+    stepper.run(&mut state, steps).unwrap();
+    for (lane, (stepper, alone)) in bodies.iter().enumerate() {
+        let mut alone = alone.clone();
+        stepper.run(&mut alone, steps).unwrap();
+        assert_same(&state.lane(lane), &alone);
+    }
     let mut batch = Batch::<AutoF64x4, M>::new(bodies).unwrap();
     for run in 0..4 {
         batch.run(steps / 4);
@@ -83,7 +101,8 @@ where
     }
 }
 
-/// One body whose first step has no solution stops there, with the error that it has alone, and the others go on as alone.
+/// One body that comes to a step without solution stops there, with the error that it has alone, and the others go on as
+/// alone.
 fn stopped<M>(bodies: &[(M, M::State)], stopped: usize, steps: u64) -> StepError
 where
     M: Batchable<AutoF64x4> + Integrator<State: PartialEq + Debug>,
@@ -93,9 +112,10 @@ where
     assert!(batch.running().eq((0..bodies.len()).filter(|&lane| lane != stopped)));
     for (lane, (stepper, state)) in bodies.iter().enumerate() {
         let mut alone = state.clone();
-        let error = stepper.run(&mut alone, steps).err();
+        // Step by step, so that it is where it stops.
+        let error = (0..steps).find_map(|_| stepper.step(&mut alone).err());
         assert_eq!(batch.error(lane), error.as_ref(), "{lane}");
-        assert_same(&batch.state(lane), if lane == stopped { state } else { &alone });
+        assert_same(&batch.state(lane), &alone);
     }
     batch.error(stopped).unwrap().clone()
 }
@@ -119,6 +139,18 @@ fn each_lane_of_a_double_pendulum_is_one() {
     bodies[2].1 = fast;
     let error = stopped(&bodies, 2, 50);
     assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error:?}");
+    // At a speed of which a first step has a solution, and one of those behind it none.
+    let (attitude, velocity) = start(random, 1.0);
+    let turning = |speed: f64| bodies[2].0.start(attitude, velocity * speed).unwrap();
+    let made = |speed: f64| {
+        let mut state = turning(speed);
+        (0..50).take_while(|_| bodies[2].0.step(&mut state).is_ok()).count()
+    };
+    let speed = (1..).map(|k| 1.001_f64.powi(k)).find(|&speed| made(speed) < 50).unwrap();
+    assert!(made(speed) > 1);
+    let turning = turning(speed);
+    bodies[2].1 = turning;
+    stopped(&bodies, 2, 50);
 }
 
 #[test]
@@ -235,7 +267,7 @@ fn each_lane_of_a_group_that_is_inverted_is_one() {
     assert!((largest * 1.001 / 0.01 - 1.0).abs() < 1e-5, "{largest}");
     // One without mass has a singular Jacobian everywhere, and isn't one of the lanes.
     let K = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(0.3, 0.4, 0.5, 0.0));
-    assert!(matches!(Stepper::new(Floating { K }, 0.01), Err(SetupError::SingularKinetic { body: 0, .. })));
+    assert!(matches!(Stepper::new(Floating { K }, 0.01), Err(SetupError::SingularKinetic { body: None, .. })));
 }
 
 /// A body that turns.
@@ -337,4 +369,161 @@ fn each_lane_of_bodies_on_springs_is_one() {
         (stepper, state)
     });
     assert_each_is_alone(&stiff, 200);
+}
+
+type Row = Sum<Placed<Each<4>, Turning<f64>, 4>, Placed<Along<4>, Tied<f64>, 1>>;
+
+/// Four that would like to stand alike.
+fn row(random: &mut Random) -> Row {
+    Each::<4>::of([0, 1, 2, 3].map(|_| Turning { J_d: inertia::<f64>(random) }))
+        + Along::<4>::of([Tied { kappa: 2.0 + vector(random).x }])
+}
+
+/// One step of each lane, from a thousandth to nearly all of the longest that it has: one after the other settles, the last
+/// after more than so many iterations, and what has come to its end before stays as it is.
+fn part_in_a_solve<M>(started: impl Fn(usize, f64) -> (M, M::State), longest: fn(&(M, M::State)) -> f64, most: u32)
+where
+    M: Batchable<AutoF64x4> + Integrator<State: PartialEq + Debug>,
+{
+    let bodies = [(0, 1e-3), (1, 0.3), (2, 0.999_99), (3, 0.9)].map(|(lane, fraction)| {
+        let longest = longest(&started(lane, 1.0));
+        assert!(longest < 1.0);
+        started(lane, fraction * longest)
+    });
+    let alone = bodies.each_ref().map(|(stepper, state)| {
+        let mut state = state.clone();
+        let report = stepper.step(&mut state).unwrap();
+        (report.iterations, state)
+    });
+    let iterations = [0, 1, 3, 2].map(|lane| alone[lane].0);
+    println!("{iterations:?}");
+    assert!(iterations.is_sorted_by(|a, b| a < b) && iterations[3] > most, "{iterations:?}");
+    let (stepper, mut state) = together(&bodies);
+    assert!(stepper.step(&mut state).unwrap().iterations >= iterations[3]);
+    for (lane, (_, alone)) in alone.iter().enumerate() {
+        assert_same(&state.lane(lane), alone);
+    }
+}
+
+#[test]
+fn lanes_that_part_in_a_solve() {
+    let pendulum = |lane: usize, h: f64| {
+        let random = &mut Random::new([40, 41, 85, 42][lane]);
+        let stepper = Stepper::new(links(random), h).unwrap();
+        let (attitude, velocity) = start(random, 1.0);
+        let state = stepper.start(attitude, velocity).unwrap();
+        (stepper, state)
+    };
+    // The third needs another start than the velocity, which is tried for twenty.
+    part_in_a_solve(pendulum, |(stepper, state)| stepper.max_step(state), 20);
+    let in_a_row = |lane: usize, h: f64| {
+        let random = &mut Random::new([50, 51, 52, 53][lane]);
+        let stepper = Stepper::new(row(random), h).unwrap();
+        let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
+        let state = stepper.start(attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random) * 5.0))).unwrap();
+        (stepper, state)
+    };
+    part_in_a_solve(in_a_row, |(stepper, state)| stepper.max_step(state), 10);
+}
+
+/// After an increment far from the identity the next guess is that, in its lane alone: the other lanes go on by the line
+/// through their last two.
+#[test]
+fn lanes_that_are_far_guess_by_themselves() {
+    let random = &mut Random::new(37);
+    let bodies = [0, 1, 2, 3].map(|lane| {
+        let stepper = Stepper::new(row(random), 0.02).unwrap();
+        let mut velocities = [0, 1, 2, 3].map(|_| vector(random) * 3.0);
+        if lane == 2 {
+            // By 75° a step, about an axis of inertia.
+            velocities[1] = Vector3::z() * (75.0_f64.to_radians().sin() / 0.02);
+        }
+        let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
+        let state = stepper.start(attitudes, Bodies(velocities)).unwrap();
+        (stepper, state)
+    });
+    assert_each_is_alone(&bodies, 20);
+    let (stepper, mut state) = bodies[2].clone();
+    stepper.step(&mut state).unwrap();
+    assert!(bodies[2].1.attitude()[1].inverse().compose(&state.attitude()[1]).log().norm() > 1.2);
+}
+
+/// As far from the group as a start may be, and farther than a motion is left.
+fn off(attitude: SO3) -> SO3 {
+    SO3::from_matrix_unchecked(attitude.matrix() * (1.0 + 4e-13))
+}
+
+/// Of each lane the body that is off the group is brought back to it, and what is seen there with it; all others stay as they
+/// are.
+#[test]
+fn what_is_off_the_group_is_restored_lane_by_lane() {
+    let random = &mut Random::new(38);
+    let bodies = [0, 1, 2, 3].map(|lane| {
+        let stepper = Stepper::new(row(random), 0.02).unwrap();
+        let mut attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
+        for (of, body) in [(1, 2), (3, 0)] {
+            if lane == of {
+                attitudes[body] = off(attitudes[body]);
+            }
+        }
+        let state = stepper.start(attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random)))).unwrap();
+        (stepper, state)
+    });
+    let defect = |(stepper, state): &(Stepper<Row>, <Stepper<Row> as Integrator>::State), steps: u64| {
+        let mut state = state.clone();
+        stepper.run(&mut state, steps).unwrap();
+        state.attitude().defect()
+    };
+    assert!(defect(&bodies[1], 0) > 1e-12 && defect(&bodies[1], 1100) < 1e-13);
+    assert_each_is_alone(&bodies, 1100);
+    let compensated = bodies.map(|(stepper, state)| {
+        let stepper = stepper.compensated();
+        let state = stepper.adopt(&state);
+        (stepper, state)
+    });
+    assert_each_is_alone(&compensated, 1100);
+
+    let pendulums = [0, 1, 2, 3].map(|lane| {
+        let stepper = Stepper::new(links(random), 0.005).unwrap();
+        let ((first, second), velocity) = start(random, 1.0);
+        let attitudes = match lane {
+            0 => (first, off(second)),
+            2 => (off(first), second),
+            _ => (first, second),
+        };
+        let state = stepper.start(attitudes, velocity).unwrap();
+        (stepper, state)
+    });
+    assert_each_is_alone(&pendulums, 1100);
+}
+
+/// Of lanes whose step has no solution the error is said of the one that would turn farthest, and of the body there that
+/// would.
+#[test]
+fn the_farthest_body_of_all_lanes_is_named() {
+    let h = 0.02;
+    for bodies_of in [[3, 1], [1, 3], [2, 2]] {
+        let random = &mut Random::new(39);
+        let bodies = [0, 1, 2, 3].map(|lane| {
+            let stepper = Stepper::new(row(random), h).unwrap();
+            let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
+            let mut velocities = [0, 1, 2, 3].map(|_| vector(random));
+            match lane {
+                0 => velocities[bodies_of[0]] = Vector3::z() * 500.0,
+                2 => velocities[bodies_of[1]] = Vector3::x() * 700.0,
+                _ => {}
+            }
+            let state = stepper.start(attitudes, Bodies(velocities)).unwrap();
+            (stepper, state)
+        });
+        let (stepper, mut state) = together(&bodies);
+        let error = stepper.step(&mut state).unwrap_err();
+        let StepError::BeyondSolvable { turn, body, .. } = error else { panic!("{error:?}") };
+        assert_eq!(body, Some(bodies_of[1]), "{error:?}");
+        // But for the kick.
+        assert!((turn / (700.0 * h) - 1.0).abs() < 1e-2, "{turn}");
+        for (lane, (_, start)) in bodies.iter().enumerate() {
+            assert_same(&state.lane(lane), start);
+        }
+    }
 }

@@ -252,12 +252,12 @@ fn errors() {
     // Where a velocity isn't determined the body is named.
     let alone = On::<0, 2>::of([principal([2.0, 3.0, 4.0])]) + Along::<2>::of([Alike { kappa: 1.0 }]);
     let error = Stepper::new(alone, 0.01).map(|_| ()).unwrap_err();
-    assert!(matches!(error, SetupError::SingularKinetic { body: 1, component: 0, .. }), "{error}");
+    assert!(matches!(error, SetupError::SingularKinetic { body: Some(1), .. }), "{error}");
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 1.5, 2.0)).unwrap();
     let of_masses = |masses: [f64; 3]| Each::<3>::of(masses.map(|m| FloatingBody { m, J_d }));
     let error = |masses: [f64; 3]| Stepper::new(of_masses(masses), 0.01).map(|_| ()).unwrap_err();
-    assert!(matches!(error([1.0, 0.0, 0.0]), SetupError::SingularKinetic { body: 1, component: 3, .. }));
-    assert!(matches!(error([1.0, 2.0, -1.0]), SetupError::NegativeKinetic { body: 2, component: 3, .. }));
+    assert!(matches!(error([1.0, 0.0, 0.0]), SetupError::SingularKinetic { body: Some(1), .. }));
+    assert!(matches!(error([1.0, 2.0, -1.0]), SetupError::NegativeKinetic { body: Some(2), .. }));
     let stepper = Stepper::new(scene, 0.1).unwrap();
     let fast = Bodies([Vector3::zeros(), Vector3::new(0.0, 0.0, 100.0)]);
     let mut state = stepper.start([SO3::identity(); 2], fast).unwrap();

@@ -3,6 +3,7 @@
 //! systems of many, chains of many links, and bodies held together by joints.
 
 mod attitudes;
+mod casimirs;
 mod chain;
 mod declared;
 mod edges;

@@ -9,7 +9,7 @@ use liestep::mechanics::Each;
 use liestep::methods::{BallJoint, Joined, Joint, Joints, PinJoint};
 use liestep::numbers::Bodies;
 use liestep::prelude::*;
-use liestep_scene::{BodySample, Scene, System};
+use liestep_scene::{BodySample, Scene, System, SystemSample};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::called::{PROGRAM, TOP, folder, printed, simulate};
@@ -110,6 +110,9 @@ fn a_file_is_what_a_program_makes() {
         let (bodies, velocities) = (state.attitude(), stepper.velocity(&state).0);
         for body in 0..2 {
             assert_eq!(row[1 + 3 * body..][..3], *bodies[body].1.translation().as_slice(), "{step}");
+            let [w, x, y, z] = [0, 1, 2, 3].map(|part| row[7 + 4 * body + part]);
+            let turned = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z)).to_rotation_matrix();
+            assert!((turned.matrix() - bodies[body].0.as_matrix()).amax() < 1e-14, "{step}");
             assert_eq!(row[15 + 3 * body..][..3], velocities[body].as_slice()[..3], "{step}");
             assert_eq!(row[21 + 3 * body..][..3], velocities[body].as_slice()[3..], "{step}");
         }
@@ -195,6 +198,12 @@ fn bodies_that_rest_change_nothing() {
             assert_eq!(run.samples().len(), 201);
             for (sample, expected) in run.samples().iter().zip(runs[0].samples()) {
                 let all = sample.bodies.len();
+                // What is behind the bodies of the file has no energy and no momentum either.
+                let of_all = |sample: &SystemSample| {
+                    let momenta = [sample.momentum, sample.angular_momentum];
+                    (sample.energy.to_bits(), sample.gap.to_bits(), momenta)
+                };
+                assert_eq!(of_all(sample), of_all(expected), "{all} bodies");
                 for (body, expected) in sample.bodies.iter().zip(&expected.bodies) {
                     assert_eq!(bits(body), bits(expected), "{all} bodies");
                 }
@@ -342,6 +351,8 @@ fn columns_have_names_of_their_own() {
     let columns = system(&text).columns();
     assert!(columns.iter().any(|column| column.name == "momentum_x" && column.unit == "m"));
     assert!(columns.iter().any(|column| column.name == "gap" && column.unit == "m, 1"));
+    let ball = text.replace("kind = \"pin\"", "kind = \"ball\"").replace("axes = [[1, 0, 0], [2, 0, 0]]", "");
+    assert!(system(&ball).columns().iter().any(|column| column.name == "gap" && column.unit == "m"));
     let text = text.replace("\"energy\"", "\"momentum\"");
     let Err(mistake) = Scene::parse("held.toml", &text) else { panic!("two columns of one name") };
     let message = "held.toml:17:8: two columns of the table would be called `momentum_x`: give the body another name";
