@@ -268,11 +268,14 @@ fn entries(of: &impl Entries<f64>) -> Vec<f64> {
     entries
 }
 
+/// The value that matrices of this number and their inverses make of that in space.
+type Typed<'a, const K: usize> = dyn Fn(&[f64], &[Matrix3<f64>; K], &[Matrix3<f64>; K]) -> Vec<f64> + 'a;
+
 /// All that a parameter can do, against `typed`: its value in space as it is seen through these matrices and these inverses.
 fn assert_seen<G, A, const K: usize>(
     together: fn([Matrix3<f64>; K]) -> G::Matrix,
     element: fn(&mut Random) -> [Matrix3<f64>; K],
-    typed: &dyn Fn(&[f64], &[Matrix3<f64>; K], &[Matrix3<f64>; K]) -> Vec<f64>,
+    typed: &Typed<'_, K>,
 ) where
     G: LieGroup<Scalar = f64>,
     A: Advected<G>,
@@ -330,7 +333,7 @@ fn written(matrices: impl IntoIterator<Item = Matrix3<f64>>) -> Vec<f64> {
 /// Of four bodies, of which two are moved by matrices that aren't orthogonal, in either order.
 #[test]
 fn what_bodies_of_a_product_see() {
-    fn of_four<A: Advected<Four>>(typed: &dyn Fn(&[f64], &[Matrix3<f64>; 4], &[Matrix3<f64>; 4]) -> Vec<f64>) {
+    fn of_four<A: Advected<Four>>(typed: &Typed<'_, 4>) {
         let element = |random: &mut Random| {
             let mut motion = || random.element::<SE2, 3, 3>().matrix();
             let (second, fourth) = (motion(), motion());
@@ -368,7 +371,7 @@ struct Alike {
 #[test]
 fn what_bodies_of_an_array_see() {
     type At<P> = <P as Places<Alike>>::Advected;
-    fn of_three<A: Advected<[SO3; 3]>>(typed: &dyn Fn(&[f64], &[Matrix3<f64>; 3], &[Matrix3<f64>; 3]) -> Vec<f64>) {
+    fn of_three<A: Advected<[SO3; 3]>>(typed: &Typed<'_, 3>) {
         let element = |random: &mut Random| [(); 3].map(|()| rotation(random));
         assert_seen::<[SO3; 3], A, 3>(|all| all, element, typed);
     }

@@ -22,6 +22,9 @@ use super::translated::missed;
 
 const STEPS: u32 = 20_000;
 
+/// Functions of momentum and numbers.
+type OfState<'a, const D: usize> = dyn Fn(&SVector<f64, D>, &[f64]) -> Vec<f64> + 'a;
+
 /// What of a state is said to be kept, with numbers and actions typed by hand.
 struct Orbit<'a, W, const D: usize> {
     /// Where the components of bodies that turn begin.
@@ -30,8 +33,8 @@ struct Orbit<'a, W, const D: usize> {
     numbers: &'a dyn Fn(&W) -> Vec<f64>,
     /// `E_k·w`, in these numbers.
     moved: &'a dyn Fn(usize, &[f64]) -> Vec<f64>,
-    /// Functions of momentum and numbers.
-    kept: &'a dyn Fn(&SVector<f64, D>, &[f64]) -> Vec<f64>,
+    /// The functions that are kept.
+    kept: &'a OfState<'a, D>,
 }
 
 fn matrix(numbers: &[f64]) -> Matrix3<f64> {
@@ -91,7 +94,7 @@ impl<W, const D: usize> Orbit<'_, W, D> {
     }
 
     /// By how much they are off at most in many steps, and by how much (2.7) is missed at least.
-    fn run<S>(&self, scene: S, h: f64, attitude: S::Group, velocity: &SVector<f64, D>) -> (f64, f64)
+    fn run<S>(&self, scene: &S, h: f64, attitude: S::Group, velocity: &SVector<f64, D>) -> (f64, f64)
     where
         S: DiscreteLagrangian<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>, Advected = W>
             + Regular
@@ -105,9 +108,9 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         self.assert_complete(&first);
         let (mut off, mut least) = (0.0_f64, f64::INFINITY);
         for _ in 0..STEPS {
-            let last = state.clone();
+            let last = state;
             stepper.step(&mut state).unwrap();
-            least = least.min(missed(&scene, &last, &state, h));
+            least = least.min(missed(scene, &last, &state, h));
             off = off.max((self.kept(&now(state.momentum(), state.advected())) - self.kept(&first)).amax());
         }
         let last = now(state.momentum(), state.advected());
@@ -125,8 +128,8 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         Badly<L>: DiscreteLagrangian<Scalar = f64, Group = L::Group, Advected = W> + Regular,
         W: Advected<L::Group>,
     {
-        let (off, _) = self.run(l.clone(), h, attitude, velocity);
-        let (badly, least) = self.run(Badly(l.clone()), h, attitude, velocity);
+        let (off, _) = self.run(l, h, attitude, velocity);
+        let (badly, least) = self.run(&Badly(l.clone()), h, attitude, velocity);
         println!("off by {off:.1e}; where (2.7) is missed by {least:.1e} at least, by {badly:.1e}");
         // Roundings of so many steps, at random.
         assert!(off < 3e-13 && badly < 3e-13 && least > 1e-6, "{off:e} {badly:e} {least:e}");

@@ -12,7 +12,7 @@ use liestep::mechanics::{DiscreteLagrangian, Each, Effect, Inertia, Pairs};
 use liestep::methods::CompositionScheme;
 use liestep::motion::Integrator;
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, SetupError, State, Stepper, lagrangian};
+use liestep::{NonstandardInertia, SO3, SetupError, State, Stepper};
 use nalgebra::{Matrix3, SVector, Vector1, Vector2, Vector3};
 use serde_json::Value;
 
@@ -288,8 +288,8 @@ fn a_body_without_inertia_is_named() {
             other => panic!("{other:?}"),
         }
     }
-    let K = NonstandardInertia::from_principal_moments(Vector3::new(0.5, 0.4, 1.0 / 3.0)).unwrap();
-    let free = |m: f64| Free { m, K };
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.5, 0.4, 1.0 / 3.0)).unwrap();
+    let free = |m: f64| FloatingBody { m, J_d };
     assert_eq!(whose(free(0.0)), Some(1));
     let negative = |body| Err(SetupError::NegativeKinetic { pivot: -1.0, body });
     assert_eq!(Stepper::new(free(-2.0), 0.01).map(|_| ()), negative(Some(1)));

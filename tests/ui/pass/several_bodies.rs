@@ -131,7 +131,7 @@ where
 pub struct Adorned {
     /// How stiff it is.
     pub(crate) k: f64, // J
-    #[cfg(all())]
+    #[cfg(not(any()))]
     #[doc(hidden)]
     pub J_2: NonstandardInertia,
     #[allow(unused)]
