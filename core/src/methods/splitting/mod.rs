@@ -35,7 +35,9 @@ use crate::motion::{
     Cost, Declared, Motion, Plan, STEPS_BETWEEN_CHECKS, Steerable, StepReport, Stepper, Summation, count, is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, largest_lane, real, reported};
-use nalgebra::{Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, Vector3};
+use nalgebra::{
+    Matrix3, SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue, Vector3,
+};
 
 /// The plan of [`Stepper::split`](crate::Stepper::split), for a body on SO(3) under a potential: `l_d = K(F) − (h/2) (V(w) + V(F⁻¹·w))` with its step in shares.
 ///
@@ -402,7 +404,9 @@ fn share_of<T: Real, K: KineticFlow<T>>(
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     type Kept = ();
 
-    const VECTORS: Vectors = OF_A_BODY;
+    /// A body alone has no use for wide registers, but for more of them, and for instructions that name where the result
+    /// goes: a fifth of the others copy what two of them need. Lanes that are arrays are slower with the widest.
+    const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 { Vectors::Four } else { Vectors::Eight };
 
     fn step_size(&self) -> Scalar<S> {
         self.h
@@ -472,10 +476,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
         Cost { step: drifts.step + kicks * kick + gradients + turn, ..drifts }
     }
 }
-
-/// A body alone has no use for wider registers, but for instructions that name where the result goes: a fifth of the
-/// others copy what two of them need.
-const OF_A_BODY: Vectors = Vectors::Four;
 
 /// What a force gradient takes besides another kick: products with `J⁻¹`, and that the torque is waited for.
 const OF_A_FORCE_GRADIENT: f64 = 120.0;

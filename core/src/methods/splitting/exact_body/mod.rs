@@ -38,7 +38,6 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 
 use self::frame::Frame;
 use self::series::{Functions, Invariants, LONG, SHORT, long, short};
-use super::OF_A_BODY;
 use super::axes::Axes;
 use super::kinetic_flow::{KineticFlow, Turn};
 use super::quaternion::{Quaternion, product_across, scaled_increment};
@@ -349,7 +348,7 @@ struct Beyond<'a, T> {
 
 impl<T: Number> Kernel for Beyond<'_, T> {
     type Output = Turned<T>;
-    const VECTORS: Vectors = OF_A_BODY;
+    const VECTORS: Vectors = Vectors::Four;
 
     #[cfg_attr(not(debug_assertions), inline(always))]
     fn run(self) -> Turned<T> {

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 use inside::Stepped;
 
 use super::scheme::Flow;
-use super::{KineticFlow, Length, OF_A_BODY, Split, Stages, has_force_gradient, share_of};
+use super::{KineticFlow, Length, Split, Stages, has_force_gradient, share_of};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
@@ -207,7 +207,7 @@ impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Processed<S, K> {}
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Processed<S, K> {
     type Kept = Inside<Scalar<S>, S::Advected>;
 
-    const VECTORS: Vectors = OF_A_BODY;
+    const VECTORS: Vectors = <Split<S, K> as Plan<S>>::VECTORS;
 
     fn step_size(&self) -> Scalar<S> {
         self.kernel.h
