@@ -69,7 +69,7 @@
 //!
 //! | feature | |
 //! |---|---|
-//! | `dispatch` (default) | lanes, collocation and splittings take the vector instructions that the machine is found to have; no digit depends on it |
+//! | `dispatch` (default) | lanes, systems, chains, splittings and collocation take the vector instructions that the machine is found to have; no digit depends on it |
 //! | `std` (default) | tables as files and in threads of their own: [`with::Csv`], [`with::Background`] |
 //! | `libm` | in the place of `std` on targets without a standard library, which need an allocator: roots and sines are those of the crate `libm`, and so may differ in their last bit |
 //! | `glam033`, `mint` | nalgebra's vectors, matrices and rotations are converted from and to those of glam 0.33 and of mint; attitudes by way of `UnitQuaternion` |

@@ -18,6 +18,8 @@ mod gauss;
 mod joints;
 mod preprocessed;
 mod splitting;
+#[cfg(test)]
+mod tests;
 
 pub use chain::{Chain, ChainMemory, ChainStepper, Link};
 pub use composition::{Composed, CompositionScheme};

@@ -316,10 +316,12 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 }
 
 /// The lesser of two pivots, each with its component: NaN, which a zero divided by itself is, is less than any. Behind one
-/// that isn't positive the others tell nothing.
+/// that isn't positive the others tell nothing; the component of one that is positive is of no use, and left behind, so
+/// that of several lanes it is that of a fault.
 pub(super) fn lesser_pivot<T: Real>((pivot, place): (T, usize), (next, behind): (T, usize)) -> (T, usize) {
     let is_less = pivot.simd_gt(T::zero()) & !next.simd_ge(pivot);
-    (next.select(is_less, pivot), if is_less.any() { behind } else { place })
+    let is_fault = is_less & !next.simd_gt(T::zero());
+    (next.select(is_less, pivot), if is_fault.any() { behind } else { place })
 }
 
 // The compiler doesn't always inline `fold` and `from_fn` for lanes, and what isn't inlined has no vector instructions

@@ -205,6 +205,7 @@ struct Half<T> {
 }
 
 impl<T: Number> Half<T> {
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let about = core::array::from_fn(|k| self.about[k].select(mask, other.about[k]));
         Self { n: self.n.select(mask, other.n), mu: self.mu.select(mask, other.mu), about }
@@ -338,8 +339,8 @@ impl<T: Number> Form<T> {
     }
 }
 
-/// A drift where a lane is beyond the polynomials, or some need the longer ones and some don't: it is called, and so has
-/// to ask for the machine's instructions itself.
+/// A drift where a lane is beyond the polynomials, or some need the longer ones and some don't. It is called, and so has
+/// to ask for the machine's instructions itself; the longest drifts do without, as all that they take is a loop.
 struct Beyond<'a, T> {
     form: &'a Form<T>,
     u: [T; 3],
@@ -430,6 +431,7 @@ impl<T: Number> Turned<T> {
         Self { quaternion: product_across(about, across), inverse_square: T::one() / (square * length) }
     }
 
+    #[cfg_attr(not(debug_assertions), inline(always))]
     fn select(&self, mask: T::Mask, other: &Self) -> Self {
         let quaternion = core::array::from_fn(|k| self.quaternion[k].select(mask, other.quaternion[k]));
         Self { quaternion, inverse_square: self.inverse_square.select(mask, other.inverse_square) }
