@@ -346,13 +346,27 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
+    use nalgebra::{Matrix2, Matrix6, SMatrix, SVector, SimdValue as _, Vector2, Vector6};
+    use simba::simd::WideF64x4;
 
     use super::{BlockDiagonal, Blocks, Bodies, Coordinates as _, Pattern};
     use crate::laws::samples::Random;
 
     /// A body that turns and is translated.
     const PATTERN: Pattern = Pattern { factors: Blocks::WHOLE.then(3, Blocks::WHOLE), apart: Blocks::WHOLE };
+
+    /// The first body has no inertia in the first lane, and in the second the second one's is small, and right.
+    #[test]
+    fn the_least_pivot_is_that_of_a_fault() {
+        let lanes = |first: f64, second: f64| WideF64x4::from([first, second, 1.0, 1.0]);
+        let body = |none: WideF64x4, beside: WideF64x4| {
+            let one = lanes(1.0, 1.0);
+            Matrix2::new(none, beside, beside, one)
+        };
+        let bodies = BlockDiagonal([body(lanes(0.0, 1.0), lanes(0.0, 0.0)), body(lanes(1.0, 1.0), lanes(0.0, 0.9))]);
+        let (pivot, component) = Bodies::<Vector2<WideF64x4>, 2>::least_pivot(&bodies);
+        assert!(component == 0 && !(pivot.extract(0) > 0.0) && pivot.extract(1) > 0.0, "{component}");
+    }
 
     #[test]
     fn a_row_is_solved_as_the_whole_matrix() {
