@@ -358,7 +358,7 @@ mod tests {
     /// The first body has no inertia in the first lane, and in the second the second one's is small, and right.
     #[test]
     fn the_least_pivot_is_that_of_a_fault() {
-        let lanes = |first: f64, second: f64| WideF64x4::from([first, second, 1.0, 1.0]);
+        let lanes = |first: f64, second: f64| WideF64x4::from([first, second, second, second]);
         let body = |none: WideF64x4, beside: WideF64x4| {
             let one = lanes(1.0, 1.0);
             Matrix2::new(none, beside, beside, one)
