@@ -21,7 +21,7 @@ use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{Vector3, Vector6};
 use rods::{FloatingBody, RodElement};
 
-// Not by the package of all declarations, for which heavy-top would have to wait, too.
+// The package of all declarations would be built for every example then, also for the first that README runs.
 #[allow(dead_code, unreachable_pub)] // others take the rest
 #[path = "declarations/rods.rs"]
 mod rods;

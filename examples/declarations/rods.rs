@@ -4,7 +4,7 @@ use liestep::groups::R3;
 use liestep::{NonstandardInertia, SO3, lagrangian};
 use nalgebra::Vector3;
 
-/// A body that nothing moves.
+/// A body on which nothing acts.
 #[lagrangian(
     group(F = SO3, d = R3),
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h),
@@ -17,7 +17,7 @@ pub struct FloatingBody<T = f64> {
     pub J_d: NonstandardInertia<T>,
 }
 
-/// One that is pulled down.
+/// A body under uniform gravity.
 #[lagrangian(
     group(F = SO3, d = R3),
     advected(x = d.seen_from(space)),
@@ -36,7 +36,7 @@ pub struct FallingBody<T = f64> {
     pub up: Vector3<T>,
 }
 
-/// A spring between points of two bodies, without a length of its own, by what it is at both ends of a step.
+/// A spring between points of two bodies, without a length of its own, by the mean of its potentials at both ends of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),

@@ -122,9 +122,9 @@ pub trait Coordinates<T: Real>:
     /// Nothing that joins neighbours.
     fn no_links() -> Self::Links;
 
-    /// Puts the solution `z` of `A z = b` in the place of `b`, for a matrix with these blocks beside its diagonal, of
-    /// which nothing is left. Returns the determinant of its elimination as of [`factorise_with`](Self::factorise_with), of whose pattern the factors count. What is apart
-    /// otherwise isn't with these.
+    /// Solves `A z = b` in place, for a matrix with the blocks `links` beside its diagonal: `right_side` becomes `z`, and
+    /// the matrix is used up. Returns the determinant, as [`factorise_with`](Self::factorise_with) does. Of the pattern only
+    /// the factors count: the links join what is apart without them.
     fn solve_linked(matrix: &mut Self::Square, links: &Self::Links, pattern: Pattern, right_side: &mut Self) -> T;
 
     /// The least of the traces of the blocks.

@@ -113,7 +113,7 @@ macro_rules! of {
     };
 }
 
-/// Fails to be built where such terms can't be at these places.
+/// Refuses, when the program is built, terms that can't be at these places.
 const fn check<P: Places<E>, E: Effect, const M: usize>() {
     if let Some(cause) = P::WRONG {
         panic!("{}", cause);
