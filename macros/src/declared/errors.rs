@@ -61,9 +61,9 @@ pub(crate) fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a 
     let digits = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
     let letters = unknown.replace('0', "O");
     let is_misread = |name: &str| letters != unknown && name.eq_ignore_ascii_case(&letters);
-    let alike = known.into_iter().filter(|name| {
-        is_misread(name) || (digits(name) == digits(unknown) && !is_other_letter(unknown, name))
-    });
+    let alike = known
+        .into_iter()
+        .filter(|name| is_misread(name) || (digits(name) == digits(unknown) && !is_other_letter(unknown, name)));
     let nearest = alike.map(|name| (distance(unknown, name), name)).min();
     match nearest {
         Some((distance, name)) if distance == 0 || (distance < length && distance <= (length / 3).max(1)) => {

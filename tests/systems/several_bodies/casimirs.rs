@@ -272,12 +272,7 @@ type OfBoth = Bodies<Vector3<f64>, 2>;
 
 /// Each body sees what is in space by its own place, and what is kept is kept. By how much (2.7) is missed at least and at
 /// most.
-fn assert_p3<S>(
-    scene: S,
-    start: [SE2; 2],
-    velocity: OfBoth,
-    kept: impl Fn(&Seen, &OfBoth) -> [f64; 4],
-) -> [f64; 2]
+fn assert_p3<S>(scene: S, start: [SE2; 2], velocity: OfBoth, kept: impl Fn(&Seen, &OfBoth) -> [f64; 4]) -> [f64; 2]
 where
     S: DiscreteLagrangian<Scalar = f64, Group = [SE2; 2], Advected = Seen> + Regular,
 {

@@ -370,8 +370,11 @@ fn row(random: &mut Random) -> Row {
 
 /// One step of each lane, from a thousandth to nearly all of the longest that it has. One after the other settles, the last
 /// after more than so many iterations, and what has come to its end before stays as it is.
-fn part_in_a_solve<M>(started: impl Fn(&mut Random, f64) -> (M, M::State), longest: fn(&(M, M::State)) -> f64, most: u32)
-where
+fn part_in_a_solve<M>(
+    started: impl Fn(&mut Random, f64) -> (M, M::State),
+    longest: fn(&(M, M::State)) -> f64,
+    most: u32,
+) where
     M: Batchable<AutoF64x4> + Integrator<State: PartialEq + Debug>,
 {
     let parted = |first: u64| {

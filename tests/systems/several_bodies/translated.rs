@@ -134,12 +134,12 @@ pub(super) fn missed<L: DiscreteLagrangian<Scalar = f64>>(
     h: f64,
 ) -> f64 {
     let f = before.attitude().inverse().compose(&after.attitude()).matrix();
-    let size = |momentum: &dyn Entries<f64>| {
-        let mut sum = 0.0;
+    let size = |momentum: liestep::mechanics::Vector<L>| {
+        let mut sum = 0.0_f64;
         momentum.each(&mut |component| sum += component * component);
         sum.sqrt()
     };
-    size(&(system.legendre_minus(&f, &before.advected(), h) - before.momentum())) / size(&before.momentum())
+    size(system.legendre_minus(&f, &before.advected(), h) - before.momentum()) / size(before.momentum())
 }
 
 /// How far the energy is off at most in so many steps, and how far apart its means over both halves are.

@@ -112,8 +112,7 @@ impl Point<'_, Residue> {
     /// Nor is what follows on the constraint alone, where the point isn't: of `R_1 a − R_2 b` with vectors of one length two of
     /// the three functions say all.
     fn rows(&self, held: &Held) -> Option<Vec<Row>> {
-        let ways: Vec<Vec<Residue>> =
-            (0..12).map(|way| self.slopes(held, way / 6, way / 3 % 2, way % 3)).collect();
+        let ways: Vec<Vec<Residue>> = (0..12).map(|way| self.slopes(held, way / 6, way / 3 % 2, way % 3)).collect();
         // Each with the place of its first entry that isn't zero, which is one.
         let mut before: Vec<(usize, Vec<Residue>)> = Vec::new();
         let mut rows = Vec::new();

@@ -186,10 +186,8 @@ fn functions_that_repeat_others() {
             ("r.", "r = d_2.seen_from(d_1)"),
         ];
         let seen: Vec<&str> = seen.iter().filter(|(name, _)| zero.contains(name)).map(|(_, seen)| *seen).collect();
-        let arguments = format!(
-            "group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected({}), zero = {zero}",
-            seen.join(", ")
-        );
+        let arguments =
+            format!("group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected({}), zero = {zero}", seen.join(", "));
         let fields = ["a: Vector3<f64>", "b: Vector3<f64>", "k: f64"];
         let (declaration, trees) = checked_as(Role::Constraint, &arguments, &used(&fields, zero));
         let mut errors = Errors::default();
