@@ -301,7 +301,10 @@ where
         let now = kept(&w, &state.momentum());
         off = now.iter().zip(first).map(|(now, first)| (now / first - 1.0).abs()).fold(off, f64::max);
     }
-    println!("w is off by {parted:.1e}, by {naive:.1e} of F⁻¹ w; Casimirs {off:.1e}; (2.7) by {misses:.1e?}");
+    println!(
+        "w is off by {parted:.1e}, by {naive:.1e} of F⁻¹ w; Casimirs {off:.1e}; (2.7) by {:.1e} to {:.1e}",
+        misses[0], misses[1]
+    );
     // Roundings of a thousand steps: of a product of matrices in each, and of the size of a force that all of them turn.
     assert!(parted < 1e-13 && off < 1e-12 && naive > 0.1, "{parted:e} {off:e} {naive:e}");
     misses
