@@ -134,7 +134,7 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         let (badly, least) = self.run(&Badly(l.clone()), h, attitude, velocity);
         println!("off by {off:.1e}; where (2.7) is missed by {least:.1e} at least, by {badly:.1e}");
         // Roundings of so many steps, at random: √STEPS ε is 3e-14, and a step has some. `Badly` is off by some thousandths.
-        assert!(off < 3e-13 && badly < 3e-13 && least > 1e-6, "{off:e} {badly:e} {least:e}");
+        assert!(off < 3e-13 && badly < 3e-13 && least > 1e-4, "{off:e} {badly:e} {least:e}");
     }
 }
 
@@ -330,5 +330,6 @@ fn p3_plates_in_a_field() {
     };
     let [_, most] = assert_p3(scene, start, velocity, kept);
     let [least, _] = assert_p3(Badly(scene), start, velocity, kept);
-    assert!(most < 1e-13 && least > 1e-6, "{most:e} {least:e}");
+    // A solve ends at roundings, and `Badly` is off by some thousandths.
+    assert!(most < 1e-12 && least > 1e-4, "{most:e} {least:e}");
 }
