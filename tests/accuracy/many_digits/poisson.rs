@@ -95,7 +95,8 @@ fn assert_poisson<P, E>(
     let apart = (found - end).norm();
     println!("{name}: {defect:.1e}, the library {apart:.1e} apart");
     assert!(defect < 1e-20, "{name}: {defect:e}");
-    assert!(apart < 2e-14, "{name}: {apart:e}");
+    // Roundings of a step of numbers near one: five times what the longest of these has.
+    assert!(apart < 1e-14, "{name}: {apart:e}");
 }
 
 /// Drift or kick, and the shares of the step and of the force gradient.
