@@ -444,7 +444,7 @@ fn lanes_that_are_far_guess_by_themselves() {
     assert!(bodies[2].1.attitude()[1].inverse().compose(&state.attitude()[1]).log().norm() > 1.2);
 }
 
-/// As far from the group as a start may be, and farther than a motion is left.
+/// As far from the group as a start may be, and farther than a motion is left: `RᵀR − I` is `2√3` times this, 1.4e-12.
 fn off(attitude: SO3) -> SO3 {
     SO3::from_matrix_unchecked(attitude.matrix() * (1.0 + 4e-13))
 }
