@@ -152,15 +152,17 @@ struct Named {
     r#in: f64,
 }
 
+// Each run of rustfmt would indent this further.
+#[rustfmt::skip]
 macro_rules! two {
     ($name:ident: $a:ident, $b:ident, $half:expr, $scalar:ty) => {
         #[lagrangian(
-                                            group($a = SO3, $b = SO3),
-                                            advected(Q = $b.seen_from($a)),
-                                            l_d = (($a - I) * J_1 * ($a - I).transpose()).trace() / (2.0 * h)
-                                                + (($b - I) * J_2 * ($b - I).transpose()).trace() / (2.0 * h)
-                                                + h * $half * (Q.trace() + ($a.transpose() * Q * $b).trace()),
-                                        )]
+            group($a = SO3, $b = SO3),
+            advected(Q = $b.seen_from($a)),
+            l_d = (($a - I) * J_1 * ($a - I).transpose()).trace() / (2.0 * h)
+                + (($b - I) * J_2 * ($b - I).transpose()).trace() / (2.0 * h)
+                + h * $half * (Q.trace() + ($a.transpose() * Q * $b).trace()),
+        )]
         struct $name {
             J_1: NonstandardInertia<$scalar>,
             J_2: NonstandardInertia<$scalar>,
