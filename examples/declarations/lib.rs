@@ -6,6 +6,7 @@
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 
+mod alike;
 mod cayley_top;
 mod continuous_top;
 mod double_pendulum;
@@ -35,6 +36,7 @@ mod torquer;
 mod two_bodies;
 mod underwater_body;
 
+pub use alike::Alike;
 pub use cayley_top::CayleyTop;
 pub use continuous_top::ContinuousTop;
 pub use double_pendulum::DoublePendulum;

@@ -48,59 +48,60 @@ const NAMES: [&str; 6] = ["step", "transition", "columns", "adjoint", "checkpoin
 const BATCH: u64 = 1_000;
 const ROUNDS: usize = 100;
 
-/// So many steps by a method, and the derivatives that the name stands for.
-fn run(method: &str, name: &str, steps: u64) {
+/// Runs so many steps, and the derivatives that a name stands for.
+type Run = Box<dyn Fn(&str, u64) -> Result<(), Uncounted>>;
+
+/// A method with its start, ready to be run.
+fn method(name: &str) -> Result<Run, Uncounted> {
     let moments = Vector3::new(2.0, 3.0, 4.5);
-    let J_d = DiagonalNonstandardInertia::from_principal_moments(moments).expect("a body");
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(moments)?;
     let top = Top { J_d, weight: 9.81, rho: Vector3::new(0.3, 0.2, 0.4), up: Vector3::z() };
-    let flow = ExactBody::new(&Inertia::from_principal_moments(moments).expect("a body"));
+    let flow = ExactBody::new(&Inertia::from_principal_moments(moments)?);
     let h = black_box(0.01);
-    match method {
-        "(3.13)" => differentiate(name, &Stepper::new(top, h).expect("a usable step"), steps),
-        "gradient" => {
-            let scheme = SplittingScheme::FORCE_GRADIENT_5;
-            differentiate(name, &Stepper::split(top, h, flow, scheme).expect("a usable step"), steps);
-        }
-        _ => {
-            let scheme = ProcessedScheme::SIX_A;
-            differentiate(name, &Stepper::processed(top, h, flow, scheme).expect("a usable step"), steps);
-        }
+    match name {
+        "(3.13)" => ready(Stepper::new(top, h)?),
+        "gradient" => ready(Stepper::split(top, h, flow, SplittingScheme::FORCE_GRADIENT_5)?),
+        "processed" => ready(Stepper::processed(top, h, flow, ProcessedScheme::SIX_A)?),
+        other => Err(format!("there is no method `{other}`, but {METHODS:?}").into()),
     }
 }
 
-fn differentiate<P: Linearisable<Top>>(name: &str, stepper: &Stepper<Top, P>, steps: u64) {
-    let linear = stepper.linearised().expect("derivatives");
+fn ready<P: Linearisable<Top> + 'static>(stepper: Stepper<Top, P>) -> Result<Run, Uncounted> {
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
-    let mut state = stepper.start(attitude, Vector3::new(0.5, 2.0, 6.0)).expect("a usable start");
-    let cost = |n: u64, _: &_| {
-        if n == steps { Cotangent { attitude: Vector3::x(), momentum: Vector3::z() } } else { Cotangent::zero() }
-    };
-    match name {
-        "step" => {
-            for _ in 0..steps {
-                stepper.step(&mut state).expect("a step");
+    let start = stepper.start(attitude, Vector3::new(0.5, 2.0, 6.0))?;
+    Ok(Box::new(move |name, steps| {
+        let (linear, mut state) = (stepper.linearised()?, black_box(start));
+        let cost = |n: u64, _: &_| {
+            if n == steps { Cotangent { attitude: Vector3::x(), momentum: Vector3::z() } } else { Cotangent::zero() }
+        };
+        match name {
+            "step" => {
+                for _ in 0..steps {
+                    stepper.step(&mut state)?;
+                }
             }
-        }
-        "transition" | "columns" => {
-            // Those of the flow, where there is one, or else on the diagonal; and weight and centre of mass.
-            let moments = linear.numbers(1, "moment").map_or(vec![0, 4, 8], Iterator::collect);
-            let all: Vec<_> = moments.into_iter().chain(9..13).collect();
-            let mut tangent = linear.tangent(if name == "columns" { &all } else { &[] });
-            for _ in 0..steps {
-                linear.step(&mut state, &mut tangent).expect("a step");
+            "transition" | "columns" => {
+                // Those of the flow, where there is one, or else on the diagonal; and weight and centre of mass.
+                let moments = linear.numbers(1, "moment").map_or(vec![0, 4, 8], Iterator::collect);
+                let all: Vec<_> = moments.into_iter().chain(9..13).collect();
+                let mut tangent = linear.tangent(if name == "columns" { &all } else { &[] });
+                for _ in 0..steps {
+                    linear.step(&mut state, &mut tangent)?;
+                }
+                black_box(tangent);
             }
-            black_box(tangent);
+            "adjoint" | "checkpoints" => {
+                let tape = if name == "adjoint" { Tape::All } else { Tape::SquareRoot };
+                black_box(linear.adjoint(&mut state, steps, tape, cost)?);
+            }
+            "backwards" => {
+                black_box(linear.backwards()?.adjoint(&mut state, steps, cost)?);
+            }
+            other => return Err(format!("there is no `{other}`, but {NAMES:?}").into()),
         }
-        "adjoint" | "checkpoints" => {
-            let tape = if name == "adjoint" { Tape::All } else { Tape::SquareRoot };
-            black_box(linear.adjoint(&mut state, steps, tape, cost).expect("a gradient"));
-        }
-        _ => {
-            let backwards = linear.backwards().expect("steps back");
-            black_box(backwards.adjoint(&mut state, steps, cost).expect("a gradient"));
-        }
-    }
-    black_box(state);
+        black_box(state);
+        Ok(())
+    }))
 }
 
 /// A line for each method and name, by a number for a step.
@@ -112,13 +113,14 @@ fn table(unit: &str, of: impl Fn(usize, usize) -> f64) {
     }
 }
 
-fn times() {
+fn times() -> Result<(), Uncounted> {
+    let methods = METHODS.into_iter().map(method).collect::<Result<Vec<_>, _>>()?;
     let mut best = [[f64::INFINITY; NAMES.len()]; METHODS.len()];
     for _ in 0..ROUNDS {
-        for (method, best) in METHODS.iter().zip(&mut best) {
+        for (run, best) in methods.iter().zip(&mut best) {
             for (name, best) in NAMES.iter().zip(best) {
                 let begin = Instant::now();
-                run(method, name, BATCH);
+                run(name, BATCH)?;
                 #[allow(clippy::cast_precision_loss)] // a thousand
                 let time = begin.elapsed().as_secs_f64() * 1e9 / BATCH as f64;
                 *best = best.min(time);
@@ -126,12 +128,13 @@ fn times() {
         }
     }
     table("ns", |i, j| best[i][j]);
+    Ok(())
 }
 
 fn main() -> Result<(), Uncounted> {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
-        ["count", method, name, steps] => run(method, name, steps.parse()?),
+        ["count", by, name, steps] => method(by)?(name, steps.parse()?),
         ["instructions"] => {
             let program = std::env::current_exe()?;
             let counted = |method: &str| -> Result<Vec<f64>, Uncounted> {
@@ -139,8 +142,8 @@ fn main() -> Result<(), Uncounted> {
             };
             let all = METHODS.into_iter().map(counted).collect::<Result<Vec<_>, _>>()?;
             table("instructions", |i, j| all[i][j]);
+            Ok(())
         }
         _ => times(),
     }
-    Ok(())
 }

@@ -3,6 +3,7 @@
 
 use core::array::from_fn;
 
+use declarations::Alike;
 use liestep::groups::{
     Advected, CayleyRetraction, Configuration, ContravariantVector, Factor, Heisenberg, LieGroup, Relative, Retraction,
     SE2, SE3, SL2, SeenFrom,
@@ -282,6 +283,8 @@ fn assert_seen<G, A, const K: usize>(
 {
     let random = &mut Random::new(51);
     for _ in 0..5 {
+        // Of numbers of the size of ten, and of inverses of random matrices, some thousand roundings; slopes by differences lose
+        // two digits more.
         let close = |what: &str, found: &A, expected: &[f64], allowed: f64| {
             let off = entries(found).iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(entries(found).len() == expected.len() && off < allowed, "{what}: off by {off:e}");
@@ -356,17 +359,6 @@ fn what_bodies_of_a_product_see() {
     });
 }
 
-/// Two bodies would like to stand alike.
-#[liestep::lagrangian(
-    group(F_1 = SO3, F_2 = SO3),
-    advected(Q = F_2.seen_from(F_1)),
-    l_d = 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Alike {
-    kappa: f64,
-}
-
 /// Of three equal bodies: each, one, and at the places of two.
 #[test]
 fn what_bodies_of_an_array_see() {
@@ -419,6 +411,7 @@ fn p3_covectors_of_each_factor() {
             right = right.max((seen.dot(&moved) - w.dot(&v)).abs());
             naive = naive.max(((inverse * w).dot(&moved) - w.dot(&v)).abs());
         }
+        // Some products of matrices with entries below ten.
         println!("factor {K}: {right:.1e}, by F⁻¹ w {naive:.1e}");
         assert!(right < 1e-13 && naive > 0.1, "factor {K}: {right:e} {naive:e}");
     }

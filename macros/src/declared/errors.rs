@@ -54,23 +54,30 @@ impl Errors {
 
 /// `; did you mean …?` for the known name that an unknown one is a slip of the pen for, if there is one.
 ///
-/// A slip changes one letter of three, and no digit: `rho1` isn't `rho2`. Of one letter it changes the case alone, as
-/// `PI` isn't `I`; and so of one with a number, as `R_1` isn't `F_1`.
+/// A slip changes one letter of three, and no digit, as `rho1` isn't `rho2`; but a zero is taken for the letter, as `S03` is
+/// `SO3`.
 pub(crate) fn suggestion<'a>(unknown: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let length = unknown.chars().count();
     let digits = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
-    let stem = |name: &str| name.trim_end_matches(|last: char| last == '_' || last.is_ascii_digit()).to_lowercase();
-    let are_letters = |name: &str| [name, unknown].iter().all(|name| stem(name).chars().count() == 1);
-    let is_other_letter = |name: &str| are_letters(name) && stem(name) != stem(unknown);
-    let alike = known.into_iter().filter(|name| digits(name) == digits(unknown) && !is_other_letter(name));
+    let letters = unknown.replace('0', "O");
+    let is_misread = |name: &str| letters != unknown && name.eq_ignore_ascii_case(&letters);
+    let alike = known
+        .into_iter()
+        .filter(|name| is_misread(name) || (digits(name) == digits(unknown) && !is_other_letter(unknown, name)));
     let nearest = alike.map(|name| (distance(unknown, name), name)).min();
     match nearest {
-        Some((0, name)) => format!("; did you mean `{name}`?"),
-        Some((distance, name)) if name.len() > 1 && distance < length && distance <= (length / 3).max(1) => {
+        Some((distance, name)) if distance == 0 || (distance < length && distance <= (length / 3).max(1)) => {
             format!("; did you mean `{name}`?")
         }
         _ => String::new(),
     }
+}
+
+/// Whether the known name is one letter, with a number or without, and the unknown one isn't that letter in either case: `PI`
+/// isn't `I`, and `R_1` isn't `F_1`.
+fn is_other_letter(unknown: &str, known: &str) -> bool {
+    let stem = |name: &str| name.trim_end_matches(|last: char| last == '_' || last.is_ascii_digit()).to_lowercase();
+    stem(known).chars().count() == 1 && stem(known) != stem(unknown)
 }
 
 /// Levenshtein's distance with swaps of neighbours, and a change of case for free.
@@ -113,6 +120,8 @@ mod tests {
         assert_eq!(suggestion("rho1", ["rho2", "rho"]), "");
         assert_eq!(suggestion("R_1", ["F_1", "F_2"]), "");
         assert_eq!(suggestion("F1", ["F_1", "F_2"]), "; did you mean `F_1`?");
+        assert_eq!(suggestion("S03", ["SO2", "SO3"]), "; did you mean `SO3`?");
+        assert_eq!(suggestion("rho0", ["rho", "rho1"]), "");
         assert_eq!(suggestion("advect", ["group", "advected"]), "; did you mean `advected`?");
         assert_eq!(suggestion("log", ["ln", "cos"]), "");
     }

@@ -2,7 +2,8 @@
 
 use std::rc::Rc;
 
-use super::{explain, verify};
+use super::explain;
+use super::verify::{self, Row};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{self, LoweredConstraint};
 use crate::declared::{Declaration, Tree};
@@ -28,14 +29,17 @@ impl Held {
         self.functions.iter().map(|tree| tree.shape.rows()).sum()
     }
 
-    /// The scalar or vector that the function of a row is in.
-    fn part(&self, row: usize) -> &Tree {
-        let mut end = 0;
-        let part = self.functions.iter().find(|part| {
-            end += part.shape.rows();
-            row < end
-        });
-        part.unwrap_or(&self.functions[0])
+    /// Reports the scalars and vectors in which something adds nothing.
+    fn report(&self, mut rows: &[Row], errors: &mut Errors) {
+        for part in &self.functions {
+            let (own, behind) = rows.split_at(part.shape.rows().min(rows.len()));
+            if own.iter().all(|row| *row == Row::Constant) {
+                explain::constant(part, errors);
+            } else if own.iter().any(|row| *row != Row::New) {
+                explain::follows(part, own, errors);
+            }
+            rows = behind;
+        }
     }
 }
 
@@ -55,12 +59,6 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
             return None;
         }
     }
-    for (part, function) in functions.iter().enumerate() {
-        if slopes.iter().flatten().all(|slopes| slopes[part].is_zero()) {
-            explain::constant(function, errors);
-            return None;
-        }
-    }
     let (mut graph, bodies, symbols) = (Graph::default(), &lowered.declared.bodies, &lowered.declared.symbols);
     let entries = std::array::from_fn(|body| {
         std::array::from_fn(|by| {
@@ -70,8 +68,8 @@ pub(crate) fn held(declaration: &Declaration, functions: Vec<Rc<Tree>>, errors: 
     });
     let held = Held { functions, lowered, slopes, graph, entries };
     match verify::constraint(declaration, &held) {
-        Ok(None) => return Some(held),
-        Ok(Some(row)) => explain::follows(held.part(row), errors),
+        Ok(rows) if rows.iter().all(|row| *row == Row::New) => return Some(held),
+        Ok(rows) => held.report(&rows, errors),
         Err(unconfirmed) => explain::unconfirmed(unconfirmed, declaration, &held.functions[0], errors),
     }
     None

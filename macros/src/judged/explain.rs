@@ -6,7 +6,7 @@ use std::rc::Rc;
 use proc_macro2::Span;
 
 use super::discretise::Misfit;
-use super::verify::{self, KineticPart, TermMistake, Unconfirmed};
+use super::verify::{self, KineticPart, Row, TermMistake, Unconfirmed};
 use crate::declared::check;
 use crate::declared::errors::Errors;
 use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Tree};
@@ -254,14 +254,24 @@ pub(super) fn constant(function: &Tree, errors: &mut Errors) {
     );
 }
 
-/// Reports a part of a constraint of which a function follows from those before it.
-pub(super) fn follows(part: &Tree, errors: &mut Errors) {
-    let message = match part.shape.rows() {
-        1 => "this follows from the functions before it, wherever the bodies are: leave it out".to_owned(),
-        rows => format!(
-            "of these {rows} functions one follows from those before it, wherever the bodies are: take components that \
-             don't, as in `(v.dot(&n_1), v.dot(&n_2))`"
-        ),
+/// Reports a part of a constraint of which functions follow from those before them.
+pub(super) fn follows(part: &Tree, rows: &[Row], errors: &mut Errors) {
+    let names = ["first", "second", "third", "fourth", "fifth", "sixth"];
+    let following = names.iter().zip(rows).filter(|(_, row)| **row != Row::New);
+    let following: Vec<&str> = following.map(|(name, _)| *name).collect();
+    let where_and_what = "wherever the bodies are: take components that don't, as in `(v.dot(&n_1), v.dot(&n_2))`";
+    let message = match (rows.len(), following.as_slice()) {
+        (1, _) => "this follows from the functions before it, wherever the bodies are: leave it out".to_owned(),
+        (all, which) if which.len() == all => {
+            format!("these {all} functions follow from those before them, wherever the bodies are: leave them out")
+        }
+        (all, [one]) => {
+            format!("of these {all} functions the {one} follows from those before it, {where_and_what}")
+        }
+        (all, several) => {
+            let several = several.join(" and the ");
+            format!("of these {all} functions the {several} follow from those before them, {where_and_what}")
+        }
     };
     errors.push_between([part.span, part.end], message);
 }

@@ -145,7 +145,7 @@ pub(crate) fn of_quaternion(real: DoubleDouble, imaginary: &Vector) -> Matrix {
     Matrix::identity() + (hat * real + hat * hat) * long(2.0)
 }
 
-/// `exp(v̂)`
+/// The rotation `exp(v̂)`.
 fn rotation(v: &Vector) -> Matrix {
     let (hat, [odd, even, _]) = (hat(v), coefficients(v.dot(v)));
     Matrix::identity() + hat * odd + hat * hat * even

@@ -88,7 +88,9 @@ impl<W, const D: usize> Orbit<'_, W, D> {
             gradients.set_column(k, &derivative(along));
         }
         let commuted = (&gradients * &tensor).amax();
+        // Gradients are differences, right to some 1e-11, and a product sums up to 33 of their entries.
         assert!(commuted < 1e-10 * gradients.amax() * tensor.amax(), "{commuted:e}");
+        // What isn't zero but for these differences is far above them.
         let ranks = [gradients.rank(1e-8), tensor.rank(1e-8)];
         assert_eq!(ranks, [gradients.nrows(), z.len() - gradients.nrows()]);
     }
@@ -131,8 +133,8 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         let (off, _) = self.run(l, h, attitude, velocity);
         let (badly, least) = self.run(&Badly(l.clone()), h, attitude, velocity);
         println!("off by {off:.1e}; where (2.7) is missed by {least:.1e} at least, by {badly:.1e}");
-        // Roundings of so many steps, at random.
-        assert!(off < 3e-13 && badly < 3e-13 && least > 1e-6, "{off:e} {badly:e} {least:e}");
+        // Roundings of so many steps, at random: √STEPS ε is 3e-14, and a step has some. `Badly` is off by some thousandths.
+        assert!(off < 3e-13 && badly < 3e-13 && least > 1e-4, "{off:e} {badly:e} {least:e}");
     }
 }
 
@@ -265,24 +267,26 @@ struct Tether {
 }
 
 type Seen = ([Vector3<f64>; 2], liestep::groups::SeenFrom<1, Point2<f64>>);
-type Momenta = Bodies<Vector3<f64>, 2>;
+/// Velocities or momenta.
+type OfBoth = Bodies<Vector3<f64>, 2>;
 
-/// Each body sees what is in space by its own place, and what is kept is kept.
-fn assert_p3<S>(
-    scene: S,
-    start: [SE2; 2],
-    velocity: Bodies<Vector3<f64>, 2>,
-    kept: impl Fn(&Seen, &Momenta) -> [f64; 4],
-) where
-    S: Regular<Scalar = f64, Group = [SE2; 2], Advected = Seen>,
+/// Each body sees what is in space by its own place, and what is kept is kept. By how much (2.7) is missed at least and at
+/// most.
+fn assert_p3<S>(scene: S, start: [SE2; 2], velocity: OfBoth, kept: impl Fn(&Seen, &OfBoth) -> [f64; 4]) -> [f64; 2]
+where
+    S: DiscreteLagrangian<Scalar = f64, Group = [SE2; 2], Advected = Seen> + Regular,
 {
     let spatial = scene.advected();
     let stepper = Stepper::new(scene, 0.01).unwrap();
     let mut state = stepper.start(start, velocity).unwrap();
     let first = kept(&state.advected(), &state.momentum());
     let (mut off, mut parted, mut naive) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let mut misses = [f64::INFINITY, 0.0];
     for _ in 0..1000 {
+        let last = state;
         stepper.step(&mut state).unwrap();
+        let miss = missed(stepper.scene(), &last, &state, 0.01);
+        misses = [misses[0].min(miss), misses[1].max(miss)];
         let w = state.advected();
         for (body, place) in state.attitude().iter().enumerate() {
             let (g, inverse) = (place.matrix(), place.matrix().try_inverse().unwrap());
@@ -297,8 +301,13 @@ fn assert_p3<S>(
         let now = kept(&w, &state.momentum());
         off = now.iter().zip(first).map(|(now, first)| (now / first - 1.0).abs()).fold(off, f64::max);
     }
-    println!("w is off by {parted:.1e}, by {naive:.1e} of F⁻¹ w; Casimirs {off:.1e}");
+    println!(
+        "w is off by {parted:.1e}, by {naive:.1e} of F⁻¹ w; Casimirs {off:.1e}; (2.7) by {:.1e} to {:.1e}",
+        misses[0], misses[1]
+    );
+    // Roundings of a thousand steps: of a product of matrices in each, and of the size of a force that all of them turn.
     assert!(parted < 1e-13 && off < 1e-12 && naive > 0.1, "{parted:e} {off:e} {naive:e}");
+    misses
 }
 
 /// P3 on SE(2) × SE(2), of which each factor moves what its body sees: `w⁺ = Fᵀ w`, and not `F⁻¹ w`. For each body the
@@ -315,10 +324,12 @@ fn p3_plates_in_a_field() {
     let place = |angle: f64, x: f64| SE2::from_rotation_and_translation(UnitComplex::new(angle), Vector2::new(x, -0.2));
     let (start, velocity) =
         ([place(0.8, 0.5), place(-0.3, 1.4)], Bodies([Vector3::new(1.2, 0.4, -0.3), Vector3::new(-0.7, 0.2, 0.5)]));
-    let kept = |w: &Seen, Bodies(mu): &Momenta| {
+    let kept = |w: &Seen, Bodies(mu): &OfBoth| {
         let potential = w.0[1].dot(&w.1.0.to_homogeneous());
         [w.0[0].xy().norm(), w.0[1].xy().norm(), mu[0].yz().perp(&w.0[0].xy()), potential]
     };
-    assert_p3(scene, start, velocity, kept);
-    assert_p3(Badly(scene), start, velocity, kept);
+    let [_, most] = assert_p3(scene, start, velocity, kept);
+    let [least, _] = assert_p3(Badly(scene), start, velocity, kept);
+    // A solve ends at roundings, and `Badly` is off by some thousandths.
+    assert!(most < 1e-12 && least > 1e-4, "{most:e} {least:e}");
 }

@@ -20,12 +20,22 @@ use super::links::irregular;
 use super::translated::whole;
 use liestep::laws::samples::Random;
 
+/// What ends the steps that have a solution.
+#[derive(Debug, PartialEq)]
+enum End {
+    /// Two solutions meet.
+    Fold,
+    /// Behind it a link's part of the Jacobian has another sign, where a solution isn't known to be the wanted one.
+    Turned,
+}
+
 /// Steps of every length up to the longest are solved, with increments that go on from one length to the next and turn no
 /// body by much more than a right angle; a longer one is an error, and leaves the state.
 fn scanned<I>(
     started: impl Fn(f64) -> (I, I::State),
     bodies: impl Fn(&I::State) -> Vec<SO3>,
     refused: fn(&StepError) -> bool,
+    expected: &End,
 ) where
     I: Integrator<State: Clone + PartialEq + Debug>,
 {
@@ -71,12 +81,14 @@ fn scanned<I>(
     let [coarse, fine] = [200, 400].map(changes);
     let [largest, then] = [&coarse, &fine].map(|changes| changes.iter().copied().fold(0.0, f64::max));
     assert!(then < 0.6 * largest, "{then} after {largest}");
-    // The longest is at the fold: elsewhere the first change would be a small part of those behind it. Or a link's part of
-    // the Jacobian has another sign behind it, where a solution isn't known to be the wanted one.
     let behind = turns(longest * (1.0 + 1e-5)).unwrap_err();
     println!("{longest:.4} s, where changes are {:.1e} and then {:.1e}; {behind}", fine[0], fine[20]);
     let is_turned = matches!(behind, StepError::UnsolvedBody { determinant, .. } if determinant < 0.0);
-    assert!(fine[0] > 0.5 * fine[20] || is_turned, "{:?}", &fine[..20]);
+    let end = if is_turned { End::Turned } else { End::Fold };
+    assert_eq!(end, *expected, "{behind}");
+    // At a fold the first change is as large as that twenty behind it. Without one it would be 1/41 of that, as lengths change
+    // by `2k + 1` parts there.
+    assert!(end == End::Turned || fine[0] > 0.5 * fine[20], "{:?}", &fine[..20]);
     // No other solution is taken for the one that has ended there.
     for k in 0..300 {
         let more = 1.0001 * 1.02_f64.powi(k);
@@ -97,6 +109,7 @@ fn steps_of_a_double_pendulum_up_to_the_longest() {
             started,
             |state| vec![state.attitude().0, state.attitude().1],
             |error| matches!(error, StepError::BeyondSolvable { .. }),
+            &End::Fold,
         );
     }
 }
@@ -104,7 +117,7 @@ fn steps_of_a_double_pendulum_up_to_the_longest() {
 #[test]
 fn steps_of_a_chain_up_to_the_longest() {
     let random = &mut Random::new(17);
-    for speed in [1.0, 5.0] {
+    for (speed, end) in [(1.0, End::Fold), (5.0, End::Turned)] {
         let chain = irregular::<5>(random);
         let attitudes = [(); 5].map(|()| SO3::exp(random.sample::<Vector3<f64>>()));
         let velocities = Bodies([(); 5].map(|()| random.sample::<Vector3<f64>>() * speed));
@@ -117,6 +130,7 @@ fn steps_of_a_chain_up_to_the_longest() {
             started,
             |state| state.attitude().to_vec(),
             |error| matches!(error, StepError::UnsolvedBody { .. } | StepError::NotConverged { .. }),
+            &end,
         );
     }
 }

@@ -5,7 +5,7 @@
 
 use core::fmt::Debug;
 
-use declarations::{DoublePendulum, FloatingBody, PointSpring, TwoBodies};
+use declarations::{Alike, DoublePendulum, FloatingBody, PointSpring, TwoBodies};
 use liestep::groups::{ExponentialRetraction, LieGroup, R1, R2, R3, Retraction as _, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Along, Between, Coupled, Each, On, Pairs, Placed, Sum};
@@ -28,7 +28,7 @@ use super::assert_same;
         + 0.5 * h * kappa * (R.trace() + (R * F_1).trace()),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Alike<T> {
+struct AlikeInSpace<T> {
     J_1: NonstandardInertia<T>,
     J_2: NonstandardInertia<T>,
     kappa: T,
@@ -156,7 +156,7 @@ fn each_lane_of_a_double_pendulum_is_one() {
 #[test]
 fn each_lane_of_bodies_that_are_solved_apart_is_one() {
     let random = &mut Random::new(32);
-    let mut scene = || Alike { J_1: inertia::<f64>(random), J_2: inertia(random), kappa: 2.0 };
+    let mut scene = || AlikeInSpace { J_1: inertia::<f64>(random), J_2: inertia(random), kappa: 2.0 };
     let scenes = [scene(), scene(), scene(), scene()];
     let starts = [0, 1, 2, 3].map(|_| start(random, 2.0));
     let composed = |k: usize| {
@@ -286,17 +286,6 @@ struct Heavy<T> {
     up: Vector3<T>,
 }
 
-/// Two bodies that would like to stand alike.
-#[lagrangian(
-    group(F_1 = SO3, F_2 = SO3),
-    advected(Q = F_2.seen_from(F_1)),
-    l_d = 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Tied<T> {
-    kappa: T,
-}
-
 /// Terms at all kinds of places whose potentials are of the ends of a step.
 #[test]
 fn each_lane_of_a_row_of_bodies_is_one() {
@@ -304,12 +293,12 @@ fn each_lane_of_a_row_of_bodies_is_one() {
     let random = &mut Random::new(36);
     let bodies = [0, 1, 2, 3].map(|_| {
         let turning = Each::<N>::of([0, 1, 2, 3].map(|_| Turning { J_d: inertia::<f64>(random) }));
-        let tied = [0, 1, 2].map(|_| Tied { kappa: 2.0 + vector(random).x });
+        let tied = [0, 1, 2].map(|_| Alike { kappa: 2.0 + vector(random).x });
         let weight = Heavy { weight: 2.0 + vector(random).x, rho: vector(random) * 0.3, up: Vector3::z() };
         let scene = turning
             + Along::<N>::of(tied)
             + Between::<3, 0, N>::of([tied[0]])
-            + Pairs::<N>::of([Tied { kappa: 0.1 + 0.1 * vector(random).y }])
+            + Pairs::<N>::of([Alike { kappa: 0.1 + 0.1 * vector(random).y }])
             + On::<1, N>::of([weight]);
         let stepper = Stepper::new(scene, 0.02).unwrap();
         let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
@@ -371,33 +360,41 @@ fn each_lane_of_bodies_on_springs_is_one() {
     assert_each_is_alone(&stiff, 200);
 }
 
-type Row = Sum<Placed<Each<4>, Turning<f64>, 4>, Placed<Along<4>, Tied<f64>, 1>>;
+type Row = Sum<Placed<Each<4>, Turning<f64>, 4>, Placed<Along<4>, Alike<f64>, 1>>;
 
 /// Four that would like to stand alike.
 fn row(random: &mut Random) -> Row {
     Each::<4>::of([0, 1, 2, 3].map(|_| Turning { J_d: inertia::<f64>(random) }))
-        + Along::<4>::of([Tied { kappa: 2.0 + vector(random).x }])
+        + Along::<4>::of([Alike { kappa: 2.0 + vector(random).x }])
 }
 
-/// One step of each lane, from a thousandth to nearly all of the longest that it has: one after the other settles, the last
+/// One step of each lane, from a thousandth to nearly all of the longest that it has. One after the other settles, the last
 /// after more than so many iterations, and what has come to its end before stays as it is.
-fn part_in_a_solve<M>(started: impl Fn(usize, f64) -> (M, M::State), longest: fn(&(M, M::State)) -> f64, most: u32)
-where
+fn part_in_a_solve<M>(
+    started: impl Fn(&mut Random, f64) -> (M, M::State),
+    longest: fn(&(M, M::State)) -> f64,
+    most: u32,
+) where
     M: Batchable<AutoF64x4> + Integrator<State: PartialEq + Debug>,
 {
-    let bodies = [(0, 1e-3), (1, 0.3), (2, 0.999_99), (3, 0.9)].map(|(lane, fraction)| {
-        let longest = longest(&started(lane, 1.0));
-        assert!(longest < 1.0);
-        started(lane, fraction * longest)
-    });
-    let alone = bodies.each_ref().map(|(stepper, state)| {
-        let mut state = state.clone();
-        let report = stepper.step(&mut state).unwrap();
-        (report.iterations, state)
-    });
-    let iterations = [0, 1, 3, 2].map(|lane| alone[lane].0);
+    let parted = |first: u64| {
+        let bodies = [(0, 1e-3), (1, 0.3), (2, 0.999_99), (3, 0.9)].map(|(lane, fraction)| {
+            let started = |h: f64| started(&mut Random::new(first + lane), h);
+            started(fraction * longest(&started(1.0)))
+        });
+        let alone = bodies.iter().map(|(stepper, state)| {
+            let mut state = state.clone();
+            let report = stepper.step(&mut state).ok()?;
+            Some((report.iterations, state))
+        });
+        let alone: Vec<_> = alone.collect::<Option<_>>()?;
+        let mut iterations: Vec<u32> = alone.iter().map(|alone| alone.0).collect();
+        iterations.sort_unstable();
+        let do_part = iterations.is_sorted_by(|a, b| a < b) && iterations[3] > most;
+        do_part.then_some((bodies, alone, iterations))
+    };
+    let (bodies, alone, iterations) = (0..100).find_map(|seed| parted(4 * seed)).unwrap();
     println!("{iterations:?}");
-    assert!(iterations.is_sorted_by(|a, b| a < b) && iterations[3] > most, "{iterations:?}");
     let (stepper, mut state) = together(&bodies);
     assert!(stepper.step(&mut state).unwrap().iterations >= iterations[3]);
     for (lane, (_, alone)) in alone.iter().enumerate() {
@@ -407,22 +404,21 @@ where
 
 #[test]
 fn lanes_that_part_in_a_solve() {
-    let pendulum = |lane: usize, h: f64| {
-        let random = &mut Random::new([40, 41, 85, 42][lane]);
+    let pendulum = |random: &mut Random, h: f64| {
         let stepper = Stepper::new(links(random), h).unwrap();
         let (attitude, velocity) = start(random, 1.0);
         let state = stepper.start(attitude, velocity).unwrap();
         (stepper, state)
     };
-    // The third needs another start than the velocity, which is tried for twenty.
+    // One needs another start than the velocity: from one start there are at most twenty.
     part_in_a_solve(pendulum, |(stepper, state)| stepper.max_step(state), 20);
-    let in_a_row = |lane: usize, h: f64| {
-        let random = &mut Random::new([50, 51, 52, 53][lane]);
+    let in_a_row = |random: &mut Random, h: f64| {
         let stepper = Stepper::new(row(random), h).unwrap();
         let attitudes = [0, 1, 2, 3].map(|_| SO3::exp(vector(random)));
         let state = stepper.start(attitudes, Bodies([0, 1, 2, 3].map(|_| vector(random) * 5.0))).unwrap();
         (stepper, state)
     };
+    // Bodies of a row have one start, and one is near its end.
     part_in_a_solve(in_a_row, |(stepper, state)| stepper.max_step(state), 10);
 }
 
@@ -448,7 +444,7 @@ fn lanes_that_are_far_guess_by_themselves() {
     assert!(bodies[2].1.attitude()[1].inverse().compose(&state.attitude()[1]).log().norm() > 1.2);
 }
 
-/// As far from the group as a start may be, and farther than a motion is left.
+/// As far from the group as a start may be, and farther than a motion is left: `RᵀR − I` is `2√3` times this, 1.4e-12.
 fn off(attitude: SO3) -> SO3 {
     SO3::from_matrix_unchecked(attitude.matrix() * (1.0 + 4e-13))
 }
@@ -520,7 +516,7 @@ fn the_farthest_body_of_all_lanes_is_named() {
         let error = stepper.step(&mut state).unwrap_err();
         let StepError::BeyondSolvable { turn, body, .. } = error else { panic!("{error:?}") };
         assert_eq!(body, Some(bodies_of[1]), "{error:?}");
-        // But for the kick.
+        // But for the kick, which changes the velocity by `h κ/J`, a ten-thousandth.
         assert!((turn / (700.0 * h) - 1.0).abs() < 1e-2, "{turn}");
         for (lane, (_, start)) in bodies.iter().enumerate() {
             assert_same(&state.lane(lane), start);

@@ -3,6 +3,7 @@
 // The letters of the field.
 #![allow(non_snake_case)]
 
+use declarations::Alike;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::effects::{CayleyBody, Gravity, PrincipalBody, Spring};
 use liestep::groups::{Advected as _, CayleyRetraction, Retraction};
@@ -17,17 +18,6 @@ use liestep::{SO3, SetupError, State, Stepper};
 use nalgebra::Vector3;
 
 use super::{End, all, apart, attitudes_of, tenths};
-
-/// Two bodies would like to stand alike.
-#[liestep::lagrangian(
-    group(F_1 = SO3, F_2 = SO3),
-    advected(Q = F_2.seen_from(F_1)),
-    l_d = 0.5 * h * kappa * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Alike {
-    kappa: f64,
-}
 
 fn principal(J: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(J.into()).unwrap() }
@@ -145,6 +135,24 @@ fn pairs_are_what_is_between_each_two() {
     let mut free = alone.start(attitudes, velocities).unwrap();
     alone.run(&mut free, 500).unwrap();
     assert!(apart(&first.attitude(), &free.attitude()) > 1e-2, "the bodies don't feel each other");
+}
+
+/// What is written for any number of bodies is right for one, too: there is no pair.
+#[test]
+fn one_body_has_no_pair() {
+    let body = Each::<1>::of([principal([2.0, 3.0, 4.0])]);
+    let alone = Stepper::new(body, 0.05).unwrap();
+    let paired = Stepper::new(body + Pairs::<1>::of([Alike { kappa: 3.0 }]), 0.05).unwrap();
+    let start = ([SO3::from_euler_angles(0.1, 0.7, -0.2)], Bodies([Vector3::new(1.0, 2.0, 3.0)]));
+    let (mut one, mut other) = (alone.start(start.0, start.1).unwrap(), paired.start(start.0, start.1).unwrap());
+    alone.run(&mut one, 100).unwrap();
+    paired.run(&mut other, 100).unwrap();
+    assert!(one.attitude() != start.0);
+    let [one, other] = [
+        (one.attitude(), one.momentum(), alone.energy(&one)),
+        (other.attitude(), other.momentum(), paired.energy(&other)),
+    ];
+    assert_eq!(one, other);
 }
 
 /// Terms whose momentum equations are multiplied by different powers of `1 + |y|²` are brought to one power body by body,

@@ -109,4 +109,25 @@ struct TheOtherWayRound {
     up: Vector3<f64>,
 }
 
+#[lagrangian(
+    group(R1 = S03, F = SO3),
+    advected(w = up.seen_from(F)),
+    l_d = ((R1 - I) * J * (R1 - I).transpose()).trace() / (2.0 * h)
+        + ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)
+        - h * w.z,
+)]
+struct Misspelled {
+    J: NonstandardInertia,
+    up: Vector3<f64>,
+}
+
+#[lagrangian(
+    group(SO3 = turn, R3 = shift),
+    l_d = ((turn - I) * J * (turn - I).transpose()).trace() / (2.0 * h) + shift.dot(&up) / h,
+)]
+struct OwnNames {
+    J: NonstandardInertia,
+    up: Vector3<f64>,
+}
+
 fn main() {}

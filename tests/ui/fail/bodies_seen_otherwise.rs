@@ -39,10 +39,10 @@ struct ByNone {
 
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
-    advected(R = space.seen_from(F_1)),
+    advected(Q = space.seen_from(F_2)),
     l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
         + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
-        - h * R.trace(),
+        - h * Q.trace(),
 )]
 struct Space {
     J: NonstandardInertia,
@@ -129,6 +129,18 @@ struct Unnamed {
         - h * Q.trace() * w.z,
 )]
 struct WithoutAComma {
+    J: NonstandardInertia,
+    up: Vector3<f64>,
+}
+
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(w = up.seen_from(F_1).normalize()),
+    l_d = ((F_1 - I) * J * (F_1 - I).transpose()).trace() / (2.0 * h)
+        + ((F_2 - I) * J * (F_2 - I).transpose()).trace() / (2.0 * h)
+        - h * w.z,
+)]
+struct WithMore {
     J: NonstandardInertia,
     up: Vector3<f64>,
 }

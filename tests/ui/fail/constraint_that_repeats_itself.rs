@@ -43,4 +43,33 @@ struct Nothing {
     length: f64,
 }
 
+#[constraint(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(r = d_2.seen_from(d_1)),
+    zero = (r, r + r.dot(&n) * n),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Twice {
+    n: Vector3<f64>,
+}
+
+#[constraint(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(r = d_2.seen_from(d_1)),
+    zero = (r.x, r),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Whole {}
+
+// Zero but for rounding.
+#[constraint(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R = F_1.seen_from(space), r = d_2.seen_from(d_1)),
+    zero = (r.norm() - 1.0, (R * n).norm_squared() - 1.0),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Length {
+    n: Vector3<f64>,
+}
+
 fn main() {}

@@ -11,6 +11,7 @@ use super::functions::FUNCTIONS;
 use super::methods::METHODS;
 use crate::declared::errors::suggestion;
 use crate::declared::{AdvectedParameter, Field, Shape, named_velocities};
+use crate::mathematics::group::Group;
 
 impl Checker<'_> {
     /// Behind `… isn't known here`, for a name.
@@ -22,10 +23,22 @@ impl Checker<'_> {
         }
         let noun = self.declaration.role.noun();
         let mut constants = self.declaration.item.generics.const_params();
-        let (is_product, increment) = (self.declaration.group.is_product(), self.increment_of(name));
+        let is_product = self.declaration.group.is_product();
         // Of several bodies names have numbers.
         let is_numeral = |letter: char| is_product && (letter == '_' || letter.is_ascii_digit());
-        match name.trim_end_matches(is_numeral) {
+        let stem = name.trim_end_matches(is_numeral);
+        match (stem, self.turning(name)) {
+            ("w", Some(body)) => {
+                return format!(
+                    "; declare it with `advected({name} = field.seen_from({body}))`, where the field holds its spatial value"
+                );
+            }
+            ("R" | "rotation" | "attitude" | "orientation", Some(body)) => {
+                return format!("; declare it with `advected({name} = {body}.seen_from(space))`");
+            }
+            _ => {}
+        }
+        match stem {
             "F" if self.declaration.continuous.is_none() && !self.is_constraint() => {
                 let names: Vec<String> = self.increments().iter().map(|name| format!("`{name}`")).collect();
                 let (the, are) = if is_product { ("increments", "are") } else { ("increment", "is") };
@@ -53,13 +66,11 @@ impl Checker<'_> {
             "omega" | "Omega" | "xi" | "velocity" if self.is_constraint() => {
                 "; a holonomic constraint is a function of positions, and sees no velocity".to_owned()
             }
-            "R" | "rotation" | "attitude" | "orientation" if is_product => {
-                format!("; declare it with `advected({name} = {increment}.seen_from(space))`")
-            }
             "omega" | "Omega" | "xi" | "velocity" => {
-                let velocity = if is_product {
-                    format!("`vee({increment}) / h`")
-                } else if self.declaration.group.is_so3 {
+                let (increment, group) = self.body(name);
+                let velocity = if group.is_added {
+                    format!("`{increment} / h`")
+                } else if group.is_so3 {
                     format!("`log({increment}) / h`")
                 } else {
                     format!("`({increment} - I) / h`")
@@ -71,7 +82,7 @@ impl Checker<'_> {
                 };
                 format!("; the velocity of a step is in `{increment}`: write {velocity}{continuous}")
             }
-            "R" | "rotation" | "attitude" | "orientation" => format!(
+            "R" | "rotation" | "attitude" | "orientation" if !is_product => format!(
                 "; {noun} is reduced, and sees no `{name}`: what is fixed in space is declared with `advected(w = field)`"
             ),
             "Id" | "id" | "identity" | "Identity" | "eye" => "; the identity is `I`".to_owned(),
@@ -94,12 +105,26 @@ impl Checker<'_> {
         self.declaration.factors.iter().map(|factor| factor.name.clone()).collect()
     }
 
-    /// The increment of the body that a name is of by its number, `F_2` for `Omega_2`; else the first.
-    fn increment_of(&self, name: &str) -> String {
+    /// The increments with their groups, those first that have the number of this name, as `F_2` has that of `Omega_2`, and of
+    /// these those that turn.
+    fn bodies(&self, name: &str) -> Vec<(&str, &Group)> {
         let number = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
-        let increments = self.increments();
-        let same = increments.iter().find(|increment| number(increment) == number(name));
-        same.or(increments.first()).cloned().unwrap_or_default()
+        let factors = self.declaration.factors.iter().enumerate();
+        let bodies = factors.map(|(at, factor)| (factor.name.as_str(), self.declaration.group.factor(at)));
+        let mut bodies: Vec<_> = bodies.collect();
+        bodies.sort_by_key(|(increment, group)| (number(increment) != number(name), group.is_added));
+        bodies
+    }
+
+    /// The first of these.
+    fn body(&self, name: &str) -> (&str, &Group) {
+        self.bodies(name).first().copied().unwrap_or(("F", &self.declaration.group))
+    }
+
+    /// The first of several bodies that turns: a translation moves no vector, and has no attitude.
+    fn turning(&self, name: &str) -> Option<&str> {
+        let turns = self.bodies(name).into_iter().find(|(_, group)| !group.is_added);
+        turns.map(|(increment, _)| increment).filter(|_| self.declaration.group.is_product())
     }
 
     /// What has a value.

@@ -134,7 +134,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
         "gradients" if role != Role::Constraint => {
             once(arguments.gradients.is_some());
-            if !input.is_empty() && !input.peek(Token![,]) {
+            if !is_at_end(input) {
                 return Err(syn::Error::new(input.span(), "`gradients` stands alone: remove what follows it"));
             }
             arguments.gradients = Some(key);
@@ -190,11 +190,16 @@ fn group_argument(key: &Ident, input: ParseStream, arguments: &mut Arguments, er
     without_quotes(key, input)?;
     let named = group::named(input, errors)?;
     // What begins with a name is the next argument, and a comma is missing.
-    if !input.is_empty() && !input.peek(Token![,]) && !input.peek(Ident::peek_any) {
+    if !is_at_end(input) && !input.peek(Ident::peek_any) {
         return Err(syn::Error::new(input.span(), group::ONE_OR_SEVERAL));
     }
     arguments.group = Some(named);
     Ok(())
+}
+
+/// Whether an argument ends here.
+fn is_at_end(input: ParseStream) -> bool {
+    input.is_empty() || input.peek(Token![,])
 }
 
 fn comma(input: ParseStream) -> syn::Result<()> {
@@ -226,8 +231,8 @@ fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group:
     }
     input.parse::<Token![=]>()?;
     let named = group::named(input, errors)?;
-    if named.built_in().is_none() && built_in(&name.to_string()).is_some() {
-        let message = format!("the increment stands first, and then its group: write `F_1 = {name}`");
+    if built_in(&name.to_string()).is_some() && named.may_be_an_increment() {
+        let message = format!("the increment stands first, and then its group: write `{} = {name}`", named.name());
         return Err(syn::Error::new(name.span(), message));
     }
     Ok((name, named))
@@ -363,9 +368,17 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
     let message = format!("write `{name} = field` with the name of a field and nothing else");
     let field: Ident = input.parse().map_err(|_| syn::Error::new(span, &message))?;
     if input.peek(Token![.]) {
-        return Ok((name, seen(field, input)?));
+        let seen = seen(field, input)?;
+        // What begins with a name is the next one, and a comma is missing.
+        if let (Source::Seen { what, from }, false) = (&seen, is_at_end(input) || input.peek(Ident::peek_any)) {
+            let message = format!(
+                "write `{name} = {what}.seen_from({from})` and nothing else: what is made of it stands in the expression"
+            );
+            return Err(input.error(message));
+        }
+        return Ok((name, seen));
     }
-    if !input.is_empty() && !input.peek(Token![,]) {
+    if !is_at_end(input) {
         return Err(input.error(message));
     }
     Ok((name, Source::Field(field)))
@@ -374,7 +387,7 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
 /// `.seen_from(F_1)`.
 fn seen(what: Ident, input: ParseStream) -> syn::Result<Source> {
     input.parse::<Token![.]>()?;
-    let message = format!("write `{what}.seen_from(F_1)`, with the increment of the body that sees it");
+    let message = format!("write `{what}.seen_from(…)`, with the increment of the body that sees it");
     let method: Ident = input.parse().map_err(|_| input.error(&message))?;
     if method != "seen_from" || !input.peek(syn::token::Paren) {
         return Err(syn::Error::new(method.span(), message));

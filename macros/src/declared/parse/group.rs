@@ -19,13 +19,19 @@ pub(super) struct Named {
 }
 
 impl Named {
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         self.path.segments.last().map(|segment| segment.ident.to_string()).unwrap_or_default()
     }
 
     /// The group of liestep that it names, if it names one.
     pub(super) fn built_in(&self) -> Option<Group> {
         if self.is_own { None } else { built_in(&self.name()) }
+    }
+
+    /// Whether it may be an increment that stands in the place of its group.
+    pub(super) fn may_be_an_increment(&self) -> bool {
+        let is_misspelled = !suggestion(&self.name(), NAMES).is_empty();
+        self.path.get_ident().is_some() && !self.is_own && self.built_in().is_none() && !is_misspelled
     }
 
     /// Whether the path can't lead to a group of the user's.
@@ -125,12 +131,21 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
         }
         let known = match named.built_in() {
             Some(group) if group.is_so3 => Some(group),
-            Some(group) if ["R1", "R2", "R3"].contains(&named.name().as_str()) => Some(group.added()),
+            Some(group) if IN_PRODUCTS.contains(&named.name().as_str()) => Some(group.added()),
             _ => None,
         };
         if known.is_none() {
-            let message = "what is declared together turns by `SO3` or is translated by `R1`, `R2` or `R3`: of other \
-                           products write the `DiscreteLagrangian` by hand";
+            let near = match named.built_in() {
+                None if !named.is_own => suggestion(&named.name(), IN_PRODUCTS),
+                _ => String::new(),
+            };
+            let message = if near.is_empty() {
+                "what is declared together turns by `SO3` or is translated by `R1`, `R2` or `R3`: of other products write \
+                 the `DiscreteLagrangian` by hand"
+                    .to_owned()
+            } else {
+                format!("the group `{}` isn't known{near}", named.name())
+            };
             errors.push_over(&named.path, message);
         }
         let path = known.is_some().then_some(named.path);
@@ -140,6 +155,9 @@ pub(super) fn product(named: Vec<(Ident, Named)>, errors: &mut Errors) -> (Vec<F
     }
     (factors, Group::product(groups))
 }
+
+/// The groups of what is declared together.
+const IN_PRODUCTS: [&str; 4] = ["SO3", "R1", "R2", "R3"];
 
 /// More would make the derived code grow without bound.
 const MOST_FACTORS: usize = 4;

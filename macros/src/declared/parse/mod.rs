@@ -158,6 +158,7 @@ pub(crate) fn as_far_as_readable(
         Role::Force if errors.is_empty() => displacements(arguments.displacement.take(), &factors, errors),
         _ => Vec::new(),
     };
+    // Of a name that is given twice the end isn't said to be given twice, too.
     let is_first = |&(at, name): &(usize, &Ident)| !displacements[..at].contains(name);
     let next = |(_, name): (usize, &Ident)| Ident::new(&format!("{}_next", name.unraw()), name.span());
     let ends = displacements.iter().enumerate().filter(is_first).map(next);
@@ -275,7 +276,7 @@ fn advected(
         let wanted = field.unraw().to_string();
         let index = field_names.iter().position(|known| *known == wanted);
         if index.is_none() && !unreadable.contains(&wanted) {
-            let message = no_field(&wanted, source, &field_names, group);
+            let message = no_field(name, source, &field_names, group);
             match source {
                 Source::Field(_) => errors.push(field.span(), message),
                 // It may have been a body, and no vector.
@@ -313,19 +314,21 @@ fn advected(
     parameters
 }
 
-/// What is wrong with the name of what is advected, which is no field.
-fn no_field(wanted: &str, source: &Source, fields: &[String], group: Option<(&Group, &[Factor])>) -> String {
+/// What is wrong with the source of what is advected by this name, which is no field.
+fn no_field(name: &Ident, source: &Source, fields: &[String], group: Option<(&Group, &[Factor])>) -> String {
+    let (Source::Field(wanted) | Source::Seen { what: wanted, .. }) = source;
+    let wanted = wanted.unraw().to_string();
     let bodies: Vec<&str> = match (source, group) {
         (Source::Seen { .. }, Some((group, factors))) if group.is_product() => {
             factors.iter().map(|factor| factor.name.as_str()).collect()
         }
         _ => Vec::new(),
     };
-    let near = suggestion(wanted, fields.iter().map(String::as_str).chain(bodies.iter().copied()));
+    let near = suggestion(&wanted, fields.iter().map(String::as_str).chain(bodies.iter().copied()));
     match (source, bodies.as_slice()) {
         (Source::Seen { from, .. }, _) if wanted == "space" => format!(
-            "`space` is no body, and is seen the other way round: `R = {from}.seen_from(space)`, and `R.transpose()` for \
-             its inverse"
+            "`space` is no body, and is seen the other way round: `{name} = {from}.seen_from(space)`, and \
+             `{name}.transpose()` for its inverse"
         ),
         (_, []) => format!("the struct has no field `{wanted}`{near}"),
         (_, bodies) if near.is_empty() => {

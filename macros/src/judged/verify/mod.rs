@@ -35,7 +35,7 @@ use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
 use crate::program::{Graph, Input, Kernel, NodeId};
 
 pub(super) use cayley::{is_cayley_coordinates, nilpotency};
-pub(super) use constraint::constraint;
+pub(super) use constraint::{Row, constraint};
 #[cfg(test)]
 pub(crate) use continuous::energy_is_kept;
 pub(crate) use continuous::{

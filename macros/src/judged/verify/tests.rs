@@ -4,7 +4,7 @@ mod products;
 
 use std::rc::Rc;
 
-use super::{KineticPart, Unconfirmed, constraint, degree, kinetic_part, verify};
+use super::{KineticPart, Row, Unconfirmed, constraint, degree, kinetic_part, verify};
 use crate::declared::errors::Errors;
 use crate::declared::lower::{Lowered, readings};
 use crate::declared::{Declaration, Role, Tree, check, parse};
@@ -167,12 +167,57 @@ fn a_wrong_slope_is_named() {
     let (declaration, trees) =
         checked_as(Role::Constraint, arguments, "struct Joint { below: Vector3<f64>, axis: Vector3<f64> }");
     let held = || held(&declaration, trees.clone(), &mut Errors::default()).expect("a constraint");
-    assert!(constraint(&declaration, &held()).is_ok());
+    assert_eq!(constraint(&declaration, &held()), Ok(vec![Row::New; 4]));
     for (body, by) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let mut held = held();
         let of = held.entries[body][by].iter().position(|&entry| !held.graph.is_zero(entry)).expect("a slope");
         held.entries[body][by][of] = held.graph.negate(held.entries[body][by][of]);
         assert_eq!(constraint(&declaration, &held), Err(Unconfirmed::Disagrees("slope")), "{body} {by}");
+    }
+}
+
+/// Whatever the sizes of what is new beside what isn't.
+#[test]
+fn functions_that_repeat_others() {
+    let said = |zero: &str| -> Vec<String> {
+        let seen = [
+            ("R_1", "R_1 = F_1.seen_from(space)"),
+            ("R_2", "R_2 = F_2.seen_from(space)"),
+            ("r.", "r = d_2.seen_from(d_1)"),
+        ];
+        let seen: Vec<&str> = seen.iter().filter(|(name, _)| zero.contains(name)).map(|(_, seen)| *seen).collect();
+        let arguments =
+            format!("group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3), advected({}), zero = {zero}", seen.join(", "));
+        let fields = ["a: Vector3<f64>", "b: Vector3<f64>", "k: f64"];
+        let (declaration, trees) = checked_as(Role::Constraint, &arguments, &used(&fields, zero));
+        let mut errors = Errors::default();
+        let held = held(&declaration, trees, &mut errors);
+        assert_eq!(held.is_some(), errors.is_empty(), "{zero}");
+        errors.iter().map(ToString::to_string).collect()
+    };
+    for new in [
+        "(r.x, 1e12 * r.x + r.y)",
+        "(r.x, 1e-12 * r.y)",
+        "(r.norm() - k, k * r.norm() + 1e-12 * r.x)",
+        "R_1 * a - R_2 * b",
+        "(r.norm() - k, (R_1 * a).dot(&(R_2 * b)), r.dot(&(R_1 * a)))",
+    ] {
+        assert_eq!(said(new), Vec::<String>::new(), "{new}");
+    }
+    let follow = [
+        ("(r.x, 1e12 * r.x)", "this follows"),
+        ("(r.norm() - k, r.norm_squared())", "this follows"),
+        ("(r.x, r.dot(&a) * a)", "of these 3 functions the second and the third follow from those before them"),
+        ("(r.x, r.x * a + r.y * b)", "of these 3 functions the second and the third follow from those before them"),
+        ("(r.x, r.component_mul(&a))", "of these 3 functions the first follows from those before it"),
+        ("(r.cross(&a))", "of these 3 functions the third follows from those before it"),
+        ("(r, r.component_mul(&a))", "these 3 functions follow from those before them"),
+    ];
+    // What is zero but for rounding.
+    let constant = ("(r.x, (R_1 * a).norm_squared() - (R_2 * b).norm_squared())", "this doesn't depend on where");
+    for (zero, message) in follow.into_iter().chain([constant]) {
+        let said = said(zero);
+        assert!(said.len() == 1 && said[0].starts_with(message), "{zero}: {said:?}");
     }
 }
 

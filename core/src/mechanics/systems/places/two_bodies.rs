@@ -16,7 +16,7 @@ pub struct Along<const N: usize>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Between<const A: usize, const B: usize, const N: usize>;
 
-/// At each two of `N` bodies, the one that comes first in the row as the first of the two.
+/// At each two of `N` bodies, the one that comes first in the row as the first of the two. One body alone has no pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pairs<const N: usize>;
 
@@ -125,10 +125,12 @@ impl<E: Effect<Group: Pair>, const A: usize, const B: usize, const N: usize> Pla
     type Advected = SeenBetween<Group<E>, E::Advected, A, B>;
 
     const PLACES: usize = 1;
-    const WRONG: Option<&'static str> = if A < N && B < N && A != B {
-        None
-    } else {
+    const WRONG: Option<&'static str> = if A >= N || B >= N {
         Some("there are no two bodies with these numbers: in `Between::<A, B, N>` the `N` bodies are counted from zero")
+    } else if A == B {
+        Some("a body isn't between itself: in `Between::<A, B, N>` the numbers `A` and `B` differ")
+    } else {
+        None
     };
     const NAME: (&'static str, [usize; 2]) = ("between two bodies", [A, B]);
 
@@ -155,7 +157,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
 
     const PLACES: usize = N * N.saturating_sub(1) / 2;
     const WRONG: Option<&'static str> =
-        if N > 1 { None } else { Some("a pair is two bodies at least: write how many there are") };
+        if N > 0 { None } else { Some("a system has one body at least: write how many, `Pairs::<N>`") };
     const NAME: (&'static str, [usize; 2]) = ("at all pairs", [N, N]);
 
     at_two_bodies!();
