@@ -46,7 +46,8 @@ pub(super) struct Work {
     /// Half the Cayley coordinates of `F`, and what they were before an update that may be shortened.
     pub(super) half: Vector3<f64>,
     before: Vector3<f64>,
-    /// The last update, which was taken from `half`, or a part of it.
+    /// The last update, which was taken from `half`, or a part of it. At the end of a step it has done, and its place is
+    /// taken by the change of the momentum, kg m²/s: one of its own takes longer.
     pub(super) update: Vector3<f64>,
     /// `D`, and `D ρ`, `D m c`.
     pub(super) increment: Matrix3<f64>,
@@ -62,8 +63,6 @@ pub(super) struct Work {
     h: Matrix3<f64>,
     /// `det B`.
     pub(super) determinant: f64,
-    /// By how much the step changes the link's momentum, kg m²/s.
-    pub(super) change: Vector3<f64>,
 }
 
 impl Work {
@@ -89,7 +88,6 @@ impl Work {
             g: matrix,
             h: matrix,
             determinant: 0.0,
-            change: vector,
         }
     };
 

@@ -363,9 +363,9 @@ impl Moving<'_> {
             let kick = (work.of_mc.cross(&work.u) + work.of_rho.cross(&beyond)) * inverse_step
                 + w.cross(&(weight + weight + work.increment * weight)) * (0.5 * h);
             beyond += work.momentum();
-            // μ⁺ = Fᵀ(μ + κ), (2.9).
-            work.change = kick + work.increment.tr_mul(&(momentum + kick));
-            sum += (momentum + work.change).sum();
+            // μ⁺ = Fᵀ(μ + κ), (2.9): the change, in the place of the update.
+            work.update = kick + work.increment.tr_mul(&(momentum + kick));
+            sum += (momentum + work.update).sum();
         }
         if !sum.is_finite() {
             return Err(NoStep::NotFinite);
@@ -374,7 +374,7 @@ impl Moving<'_> {
         *self.known = (*self.known + 1).min(3);
         let links = self.attitudes.iter_mut().zip(&mut *self.momenta).zip(&mut *self.last);
         for (((attitude, momentum), last), work) in links.zip(&*self.work) {
-            *momentum += work.change;
+            *momentum += work.update;
             *attitude = attitude.advance(&work.increment);
             if is_due(*self.steps) {
                 *attitude = orthogonal(attitude);
