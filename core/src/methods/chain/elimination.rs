@@ -1,20 +1,21 @@
 //! What a step of a chain solves, link by link: outwards where the joints go, inwards what hangs on each link and its
 //! elimination, outwards the update.
 //!
-//! All is in the axes of each link: what pulls along one then doesn't round what turns it. With `D = F − I`, what is carried outwards is the
-//! way `u` of the upper joint, and inwards the momentum `P` beyond the lower one, times `h`:
+//! All is in the axes of each link: what pulls along one then doesn't round what turns it. With `D = F − I` and the
+//! nonstandard inertia `J` about the upper joint, what is carried outwards is the way `u` of that joint, and inwards the
+//! momentum `P` beyond the lower one, times `h`:
 //!
 //! ```text
 //! u' = Qᵀ(u + D ρ)        P' = Q (P + m (u + D c))        Q = R_aᵀ R_{a+1}
 //! h r = (D J − J Dᵀ)^∨ + m c × u + ρ × P − h a            a = μ + (h/2) w × g s
 //! ```
 //!
-//! For `δF = ẑ F`, with the variation `v` of `u`, and that of the momentum beyond the lower joint as a linear function
-//! `Π v + q` of the joint's,
+//! For `δF = −ẑ F`, as an update is taken away, with the variation `v` of `u`, and that of the momentum beyond the lower
+//! joint as a linear function `Π v + q` of the joint's,
 //!
 //! ```text
 //! B = tr(F J) I − F J − ρ̂ Π (Fρ)^     G = m ĉ + ρ̂ Π     H = Π (Fρ)^ + m (Fc)^     t = ρ × q + h r
-//! z = −B⁻¹(G v + t)                    Π' = Q (Π + m I + H B⁻¹ G) Qᵀ               q' = Q (q + H B⁻¹ t)
+//! z = B⁻¹(G v + t)                     Π' = Q (Π + m I + H B⁻¹ G) Qᵀ               q' = Q (q + H B⁻¹ t)
 //! ```
 //!
 //! `B` is what of the Newton matrix is left of the link once all that hangs on it is eliminated. At the identity `Π` is the
@@ -42,8 +43,12 @@ pub(super) struct Work {
     rho: Vector3<f64>,
     /// `h a`.
     pub(super) target: Vector3<f64>,
-    /// Half the Cayley coordinates of `F`.
+    /// Half the Cayley coordinates of `F`, and what they were before an update that may be shortened.
     pub(super) half: Vector3<f64>,
+    before: Vector3<f64>,
+    /// The last update, which was taken from `half`, or a part of it. At the end of a step it has done, and its place is
+    /// taken by the change of the momentum, kg m²/s: one of its own takes longer.
+    pub(super) update: Vector3<f64>,
     /// `D`, and `D ρ`, `D m c`.
     pub(super) increment: Matrix3<f64>,
     pub(super) of_rho: Vector3<f64>,
@@ -58,12 +63,10 @@ pub(super) struct Work {
     h: Matrix3<f64>,
     /// `det B`.
     pub(super) determinant: f64,
-    /// What the last update has taken from `half`.
-    pub(super) z: Vector3<f64>,
 }
 
 impl Work {
-    /// To be [placed](Self::place).
+    /// Of no link: [`set`](Self::set) gives it one.
     pub(super) const NONE: Self = {
         let (vector, matrix) = (Vector3::new(0.0, 0.0, 0.0), Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0));
         Self {
@@ -74,6 +77,8 @@ impl Work {
             rho: vector,
             target: vector,
             half: vector,
+            before: vector,
+            update: vector,
             increment: matrix,
             of_rho: vector,
             of_mc: vector,
@@ -83,13 +88,12 @@ impl Work {
             g: matrix,
             h: matrix,
             determinant: 0.0,
-            z: vector,
         }
     };
 
-    /// This link.
+    /// What doesn't change from step to step.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(super) fn place(&mut self, link: &Link) {
+    pub(super) fn set(&mut self, link: &Link) {
         self.nonstandard = *link.J_d.as_matrix();
         self.m = link.m;
         self.mc = link.c * link.m;
@@ -101,7 +105,7 @@ impl Work {
         self.determinant > 0.0 && self.half.norm_squared() < 1.0
     }
 
-    /// `m (u + D c)`.
+    /// The link's momentum times `h`, `m (u + D c)`, kg m.
     #[cfg_attr(not(debug_assertions), inline(always))]
     pub(super) fn momentum(&self) -> Vector3<f64> {
         self.u * self.m + self.of_mc
@@ -127,7 +131,7 @@ impl Work {
     }
 }
 
-/// The squares of the lengths of an update and of the unknowns after it, and whether it wasn't shortened.
+/// The squares of the lengths of an update, before it was shortened, and of the unknowns after it; whether it is whole.
 #[derive(Clone, Copy)]
 pub(super) struct Updated {
     pub(super) update: f64,
@@ -204,27 +208,33 @@ pub(super) fn simplified(work: &mut [Work]) -> Updated {
 /// Outwards the update, and where the joints go by it.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn solved(work: &mut [Work], longest: f64) -> Updated {
+    // What has taken a whole update doesn't tell what it was: of that a rounding of the update is lost, which has no bound.
+    if longest.is_finite() {
+        for work in work.iter_mut() {
+            work.before = work.half;
+        }
+    }
     let (mut u, mut v) = (Vector3::zeros(), Vector3::zeros());
     for work in work.iter_mut() {
         let (y, z) = (work.half, work.g * v + work.t);
         v = work.next.tr_mul(&(v - z.cross(&(work.rho + work.of_rho))));
-        // dF F⁻¹ = (2 (I + ŷ) dy/(1 + |y|²))^, solved for `dy`.
-        work.z = (z - y.cross(&z) + y * y.dot(&z)) * 0.5;
-        work.half -= work.z;
+        // dF F⁻¹ = (2 (I + ŷ) dy/(1 + |y|²))^ = −ẑ, solved for `−dy`.
+        work.update = (z - y.cross(&z) + y * y.dot(&z)) * 0.5;
+        work.half -= work.update;
         u = work.turn(u);
     }
-    let largest = work.iter().map(|work| work.z.norm_squared()).fold(0.0, f64::max);
+    let largest = work.iter().map(|work| work.update.norm_squared()).fold(0.0, f64::max);
     if largest > longest * longest {
-        let too_much = 1.0 - longest / largest.sqrt();
+        let part = longest / largest.sqrt();
         for work in work.iter_mut() {
-            work.half += work.z * too_much;
+            work.half = work.before - work.update * part;
         }
         outwards(work);
     }
     // What isn't a number makes the size none either.
     let (mut update, mut size) = (0.0, 0.0);
     for work in work {
-        update += work.z.norm_squared();
+        update += work.update.norm_squared();
         size += work.half.norm_squared();
     }
     Updated { update, size, is_whole: largest <= longest * longest }

@@ -3,13 +3,13 @@
 //! The links' attitudes are the only unknowns, so joints don't open. All velocities feel each other,
 //!
 //! ```text
-//! l_d = Σ tr((F_a − I) J_a (F_a − I)ᵀ)/2h + Σ_a m_a |u_a + (F_a − I) c_a|²/2h − (h/2) g Σ w_a·(s_a + F_a s_a)
+//! l_d = Σ tr((F_a − I) K_a (F_a − I)ᵀ)/2h + Σ_a m_a |u_a + (F_a − I) c_a|²/2h − (h/2) g Σ w_a·(s_a + F_a s_a)
 //! ```
 //!
-//! where `J_a` is the nonstandard inertia about the centre of mass, `u_a` the way of the upper joint in the step, which
-//! the links above have made, and `s_a = m_a c_a + M_a ρ_a` with the mass `M_a` of all that hangs below. The Newton matrix
-//! is full, but what a link feels of all that hangs on it is a mass at its lower joint; so it is eliminated from
-//! the end of the chain to the pivot, as in the articulated-body algorithm.
+//! where `K_a` is the nonstandard inertia about the centre of mass, `J_a − m_a c_a c_aᵀ`, `u_a` the way of the upper joint
+//! in the step, which the links above have made, and `s_a = m_a c_a + M_a ρ_a` with the mass `M_a` of all that hangs below.
+//! The Newton matrix is full, but what a link feels of all that hangs on it is a mass at its lower joint; so it is
+//! eliminated from the end of the chain to the pivot, as in the articulated-body algorithm.
 
 mod elimination;
 mod stepper;

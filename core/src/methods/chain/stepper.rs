@@ -39,7 +39,8 @@ pub struct ChainMemory<const N: usize> {
 ///
 /// - Joints don't open: attitudes are all there is.
 /// - The momentum about the vertical is kept to rounding.
-/// - A step satisfies its momentum equations to rounding, or is an error that names a link and leaves the state as it was.
+/// - A step satisfies its momentum equations to rounding, or is an error that leaves the state as it was; it names a link
+///   where one is to blame.
 /// - Nothing is allocated. A chain of `N` links takes about `2 N` kB of stack.
 ///
 /// # Examples
@@ -145,18 +146,19 @@ impl<const N: usize> ChainStepper<N> {
     ///
     /// # Errors
     ///
-    /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out.
+    /// [`StepError::UnsolvedBody`] names the link that has no increment, [`StepError::NotConverged`] where none stands out;
+    /// [`StepError::NonFinite`] where a momentum after the step isn't finite.
     pub fn step(&self, state: &mut ChainState<N>) -> Result<StepReport, StepError> {
         let mut work = [Work::NONE; N];
         match dispatch(self.moving(state, &mut work)) {
             Ok(iterations) => Ok(StepReport::of(iterations)),
-            Err(Unmade::Unsolved(iterations)) => {
+            Err(NoStep::Unsolved(iterations)) => {
                 let mut slow = work;
                 at_rest(&mut slow);
                 first_of_newton(&mut slow);
                 Err(reason(&work, &slow, iterations))
             }
-            Err(Unmade::NotFinite) => Err(StepError::NonFinite { what: "momentum after the step" }),
+            Err(NoStep::NotFinite) => Err(StepError::NonFinite { what: "momentum after the step" }),
         }
     }
 
@@ -203,7 +205,7 @@ impl<const N: usize> ChainStepper<N> {
         for (k, work) in work.iter_mut().enumerate() {
             work.target = motion.momentum.0[k];
         }
-        // The first iteration from rest knows nothing of the curvature.
+        // Near rest the momenta times `h` are linear in `y`: those of the velocities `2 y`, which one iteration solves for.
         first_of_newton(&mut work);
         Bodies(from_fn(|k| work[k].half * 2.0))
     }
@@ -245,14 +247,14 @@ impl<const N: usize> ChainStepper<N> {
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn place(links: &[Link], attitudes: &[SO3], work: &mut [Work]) {
     for (link, work) in links.iter().zip(&mut *work) {
-        work.place(link);
+        work.set(link);
     }
     for (pair, work) in attitudes.windows(2).zip(work) {
         work.next = pair[0].as_matrix().tr_mul(pair[1].as_matrix());
     }
 }
 
-/// A chain, a state of it, and what is known of its next step. Nothing of it is generic, so a step is compiled once.
+/// A chain of any length, a state of it, and what is known of its next step.
 pub(super) struct Moving<'a> {
     links: &'a [Link],
     weights: &'a [Vector3<f64>],
@@ -267,20 +269,27 @@ pub(super) struct Moving<'a> {
 }
 
 /// Why there is no step.
-pub(super) enum Unmade {
+pub(super) enum NoStep {
     /// After so many iterations.
     Unsolved(u32),
     /// The momentum after it.
     NotFinite,
 }
 
+/// Where an attempt starts.
+#[derive(Clone, Copy)]
+enum Start {
+    Guess,
+    Rest,
+}
+
 impl Kernel for Moving<'_> {
-    type Output = Result<u32, Unmade>;
+    type Output = Result<u32, NoStep>;
 
     const VECTORS: Vectors = Vectors::Four;
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run(mut self) -> Result<u32, Unmade> {
+    fn run(mut self) -> Result<u32, NoStep> {
         self.prepare();
         let iterations = if self.h == 0.0 { 0 } else { self.solve()? };
         self.proceed()?;
@@ -301,18 +310,22 @@ impl Moving<'_> {
         }
     }
 
-    /// From the guess; where that fails from rest, and then with shortened updates. Returns the iterations, those of
-    /// abandoned attempts included.
+    /// From the guess, if there is one; where that fails from rest, and then with shortened updates. Returns the
+    /// iterations, those of abandoned attempts included.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn solve(&mut self) -> Result<u32, Unmade> {
-        let attempts =
-            [(MAX_ITERATIONS, f64::INFINITY), (MAX_ITERATIONS, f64::INFINITY), (MAX_DAMPED_ITERATIONS, LONGEST_DAMPED)];
+    pub(super) fn solve(&mut self) -> Result<u32, NoStep> {
+        const ATTEMPTS: [(Start, u32, f64); 3] = [
+            (Start::Guess, MAX_ITERATIONS, f64::INFINITY),
+            (Start::Rest, MAX_ITERATIONS, f64::INFINITY),
+            (Start::Rest, MAX_DAMPED_ITERATIONS, LONGEST_DAMPED),
+        ];
         let mut spent = 0;
-        for (k, (most, longest)) in attempts.into_iter().enumerate().skip(usize::from(*self.known == 0)) {
-            if k == 0 {
-                self.guess();
-            } else {
-                at_rest(self.work);
+        // A loop, as `iterate` is inlined where it is called, and is to be compiled once.
+        for (start, most, longest) in ATTEMPTS {
+            match start {
+                Start::Guess if *self.known == 0 => continue,
+                Start::Guess => self.guess(),
+                Start::Rest => at_rest(self.work),
             }
             let (iterations, is_solved) = iterate(self.work, most, longest);
             spent += iterations;
@@ -320,7 +333,7 @@ impl Moving<'_> {
                 return Ok(spent);
             }
         }
-        Err(Unmade::Unsolved(spent))
+        Err(NoStep::Unsolved(spent))
     }
 
     /// The parabola through the last three increments, or as many as there are.
@@ -339,7 +352,7 @@ impl Moving<'_> {
 
     /// The end of a step with these increments.
     #[cfg_attr(not(debug_assertions), inline(always))]
-    pub(super) fn proceed(&mut self) -> Result<(), Unmade> {
+    pub(super) fn proceed(&mut self) -> Result<(), NoStep> {
         let (h, inverse_step) = (self.h, if self.h == 0.0 { 0.0 } else { 1.0 / self.h });
         let (mut beyond, mut sum) = (Vector3::zeros(), 0.0);
         let links = self.weights.iter().zip(&*self.attitudes).zip(&*self.momenta);
@@ -350,18 +363,18 @@ impl Moving<'_> {
             let kick = (work.of_mc.cross(&work.u) + work.of_rho.cross(&beyond)) * inverse_step
                 + w.cross(&(weight + weight + work.increment * weight)) * (0.5 * h);
             beyond += work.momentum();
-            // μ⁺ = Fᵀ(μ + κ), (2.9).
-            work.z = kick + work.increment.tr_mul(&(momentum + kick));
-            sum += (momentum + work.z).sum();
+            // μ⁺ = Fᵀ(μ + κ), (2.9): the change, in the place of the update.
+            work.update = kick + work.increment.tr_mul(&(momentum + kick));
+            sum += (momentum + work.update).sum();
         }
         if !sum.is_finite() {
-            return Err(Unmade::NotFinite);
+            return Err(NoStep::NotFinite);
         }
         *self.steps += 1;
         *self.known = (*self.known + 1).min(3);
         let links = self.attitudes.iter_mut().zip(&mut *self.momenta).zip(&mut *self.last);
         for (((attitude, momentum), last), work) in links.zip(&*self.work) {
-            *momentum += work.z;
+            *momentum += work.update;
             *attitude = attitude.advance(&work.increment);
             if is_due(*self.steps) {
                 *attitude = orthogonal(attitude);
@@ -386,13 +399,19 @@ fn first_of_newton(work: &mut [Work]) {
     newton(work, f64::INFINITY);
 }
 
-/// Newton's iteration: how many were made, and whether it has settled near the identity with all determinants positive.
+/// At most so many of Newton's iterations, and what is made with their Jacobians: how many both are, and whether it has
+/// settled near the identity with all determinants positive.
+///
+/// The determinants are those before the last updates. Near a fold that needs no guard: two updates suffice where
+/// `2C²|u₁|³ ≤ ε|y|/16`, and the first is longer than `√ε|y|/8`, so `C|u₁| < 1e-4`. The Jacobian changes by twice that of
+/// itself, and for another sign it would have to change by all.
 #[cfg_attr(not(debug_assertions), inline(always))]
 fn iterate(work: &mut [Work], most: u32, longest: f64) -> (u32, bool) {
     outwards(work);
-    // The last update, where Newton's next is to continue it.
+    // The last update, if Newton's next is of its second order: of one that was shortened too much is left, and after one
+    // with a Jacobian used again what is left is that Jacobian's.
     let (mut made, mut before) = (0, None);
-    while made < most {
+    for _ in 0..most {
         made += 1;
         let Updated { update, size, is_whole } = newton(work, longest);
         if !size.is_finite() {
@@ -432,7 +451,7 @@ fn reason(work: &[Work], slow: &[Work], iterations: u32) -> StepError {
         return blamed(body);
     }
     let sum = |of: fn(&Work) -> &Vector3<f64>| work.iter().map(|work| of(work).norm_squared()).sum::<f64>();
-    let (update, size) = (sum(|work| &work.z), sum(|work| &work.half));
+    let (update, size) = (sum(|work| &work.update), sum(|work| &work.half));
     StepError::NotConverged { iterations, residual: (update / size).sqrt() }
 }
 

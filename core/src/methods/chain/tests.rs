@@ -1,4 +1,5 @@
-//! What needs no solved equations: conservation laws of a step with whatever increments.
+//! What is seen of a step from inside: that it keeps momenta without solving its equations, how well it solves them,
+//! and that vector instructions don't change it.
 
 use std::println;
 
@@ -89,5 +90,107 @@ fn momentum_of_badly_solved_steps() {
         let moved = (stepper.vertical_momentum(&state) - before).abs();
         println!("h = {h}: moved by {moved:.1e} of {largest:.0}; the increments are off by {least:.1e} at least");
         assert!(moved < 1e-13 * largest && least > off, "{moved:e} {largest} {least:e}");
+    }
+}
+
+/// Five bent links that are slim: of inertias in the ratio `slimness`, and joined this far off their long axes.
+/// The last has `last` times the mass of the others, and all move across those axes and spin about them.
+fn slim(slimness: f64, off: f64, last: f64, spin: f64) -> (Chain<5>, [SO3; 5], [Vector3<f64>; 5]) {
+    let turns = [0.2, 1.1, -0.7, 0.5, -1.3];
+    let links = turns.map(|x: f64| {
+        let central = Matrix3::from_diagonal(&Vector3::new(0.4 * slimness, 0.6 * slimness, 1.0)) / 12.0;
+        link(central, 1.0, [off * x, -off, -0.5], [-off, off * x, -1.0])
+    });
+    let mut chain = Chain { links, g: 9.81, up: Vector3::z() };
+    let [.., end] = &mut chain.links;
+    *end = Link { J_d: NonstandardInertia::new(end.J_d.as_matrix() * last).unwrap(), m: last, ..*end };
+    let attitudes = turns.map(|x| SO3::from_euler_angles(x, 0.8 * x * x, -x));
+    let velocities = turns.map(|x| Vector3::new(1.0 + x, -2.0 * x, spin * x.signum()));
+    (chain, attitudes, velocities)
+}
+
+/// No more is missing of a solution than roundings leave: another of Newton's iterations moves it no farther than those
+/// after that do, but for a factor that their scatter has. So it is where inertias or masses are in a ratio of 1e4, by which
+/// the Jacobian could change more along an update than the ones before it have told.
+#[test]
+fn nothing_but_roundings_is_missing() {
+    for (slimness, off, last, spin, h) in [
+        (1e-4, 0.0, 1.0, 3.0, 0.005),
+        (1e-4, 0.0, 1.0, 100.0, 0.005),
+        (1e-4, 0.01, 1.0, 3.0, 0.0005),
+        (1e-4, 0.01, 1.0, 30.0, 0.0002),
+        (1e-4, 0.03, 1.0, 30.0, 0.0005),
+        (1e-2, 0.0, 1e4, 3.0, 0.00005),
+        (1e-2, 0.01, 1e4, 3.0, 0.00005),
+        (1e-2, 0.01, 1e2, 3.0, 0.001),
+        (1e-2, 0.01, 1e-4, 10.0, 0.002),
+        (1.0, 0.2, 1.0, 30.0, 0.002),
+        (1.0, 0.2, 1.0, 100.0, 0.001),
+    ] {
+        let (chain, attitudes, velocities) = slim(slimness, off, last, spin);
+        let stepper = ChainStepper::new(chain, h).unwrap();
+        let mut state = stepper.start(attitudes, Bodies(velocities)).unwrap();
+        let (mut missing, mut worst, mut iterations) = (0.0_f64, 0.0_f64, 0);
+        for step in 0..2000 {
+            let mut work = [Work::NONE; 5];
+            let mut moving = stepper.moving(&mut state, &mut work);
+            moving.prepare();
+            let Ok(made) = moving.solve() else { panic!("{slimness:e} {off} {last:e} {spin} {h}: no step {step}") };
+            iterations += made;
+            let mut more: [Work; 5] = moving.work.try_into().unwrap();
+            // In roundings of all unknowns.
+            let mut further = || {
+                let updated = newton(&mut more, f64::INFINITY);
+                (updated.update / updated.size).sqrt() / f64::EPSILON
+            };
+            let first = further();
+            let left = (0..4).map(|_| further()).fold(1.0, f64::max);
+            (missing, worst) = (missing.max(first), worst.max(first / left));
+            assert!(moving.proceed().is_ok());
+        }
+        println!(
+            "{slimness:e} {off} {last:e} {spin} {h}: {missing:.1} roundings, {worst:.1} times what is left; {iterations}"
+        );
+        assert!(worst < 16.0, "{slimness:e} {off} {last:e} {spin} {h}: {missing} {worst}");
+    }
+}
+
+/// A shortened update is of the length asked for, however long the whole one: from anywhere, and in its direction.
+#[test]
+fn a_shortened_update_is_a_part_of_the_whole() {
+    let (chain, ..) = oblique();
+    for size in [1e2, 1e10, 1e17, 1e30] {
+        for start in [0.0, 0.3] {
+            let mut work = [Work::NONE];
+            work[0].set(&chain.links[2]);
+            (work[0].half, work[0].target) = (Vector3::new(start, -start, start), Vector3::new(0.3, -1.0, 2.0) * size);
+            outwards(&mut work);
+            let before = work[0].half;
+            let updated = newton(&mut work, 0.25);
+            let moved = work[0].half - before;
+            assert!(!updated.is_whole && updated.update.sqrt() > 0.01 * size, "{size:e} {start}");
+            assert!((moved.norm() - 0.25).abs() < 1e-15, "{size:e} {start}: {moved}");
+            let off = moved.normalize() + work[0].update.normalize();
+            assert!(off.norm() < 1e-14, "{size:e} {start}: {off}");
+        }
+    }
+}
+
+/// With the vector instructions of the machine a step has the digits that it has without.
+#[cfg(all(feature = "dispatch", not(debug_assertions)))]
+#[test]
+fn vector_instructions_change_no_digit() {
+    use crate::numbers::Kernel as _;
+
+    for (chain, attitudes, velocities) in [oblique(), reference()] {
+        let stepper = ChainStepper::new(chain, 0.01).unwrap();
+        let mut state = stepper.start(attitudes, Bodies(velocities)).unwrap();
+        let mut other = state;
+        for step in 0..1000 {
+            let iterations = stepper.step(&mut state).unwrap().iterations;
+            let mut work = [Work::NONE; 3];
+            assert!(stepper.moving(&mut other, &mut work).run().is_ok_and(|made| made == iterations), "{step}");
+            assert_eq!(state, other, "{step}");
+        }
     }
 }
