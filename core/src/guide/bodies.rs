@@ -160,7 +160,7 @@
 //! body is solved by itself, and a step has to be short for the stiffest of them. With one of the middle, at `Coupled`
 //! places, the row is solved together, and the step isn't bounded by 2/ω of what is stiff there, as a rod. No body may
 //! turn by more than a right angle then: such a step is an error that names the body. `examples/elastic-rod.rs` has one
-//! either way, and what a step takes: with `times` some 5 µs a body in a row of 10 as of 100, three iterations, and 0.3
+//! either way, and what a step takes: with `times` some 2 µs a body in a row of 10 as of 100, three iterations, and 0.3
 //! µs with potentials of the ends. A term that couples velocities doesn't compile there. Links on ball joints couple
 //! them, and have a stepper of their own, whose step takes a time proportional to their number:
 //! [`ChainStepper`](crate::methods::ChainStepper). `examples/hanging-chain` draws twenty of them.
