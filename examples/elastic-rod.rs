@@ -29,7 +29,8 @@ mod rods;
 type Failure = Box<dyn Error>;
 type Body = (SO3, R3);
 
-/// What a [`RodElement`] is, but for what is of higher order in the bending, by the means of the potentials at both ends of a step.
+/// What a [`RodElement`] is, but for what is of higher order in the bending, by the means of the potentials at both ends
+/// of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(

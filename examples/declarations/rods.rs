@@ -36,7 +36,8 @@ pub struct FallingBody<T = f64> {
     pub up: Vector3<T>,
 }
 
-/// A spring between points of two bodies, without a length of its own, by the mean of its potentials at both ends of a step.
+/// A spring between points of two bodies, without a length of its own, by the mean of its potentials at both ends
+/// of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),

@@ -404,8 +404,9 @@ fn share_of<T: Real, K: KineticFlow<T>>(
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Split<S, K> {
     type Kept = ();
 
-    /// A body alone has no use for wide registers, but for more of them, and for instructions that name where the result
-    /// goes: a fifth of the others copy what two of them need. Lanes that are arrays are slower with the widest.
+    /// A body alone doesn't fill wide registers. It gains by instructions with three operands, which save copies, and under
+    /// some potentials by more registers. Lanes that are arrays are slower with the widest. `cargo bench --bench vectors`
+    /// shows both.
     const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 { Vectors::Four } else { Vectors::Eight };
 
     fn step_size(&self) -> Scalar<S> {
